@@ -71,29 +71,29 @@ picture: build
 
 # The price of accuracy: docs/evidence/accuracy.md and its diagrams from real runs of three scenes (some minutes).
 accuracy:
-    cargo run --release --quiet --package accuracy -- docs/evidence/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml --overwrite
+    cargo run --release --quiet --package verification --bin accuracy -- docs/evidence/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml --overwrite
 
 # Hard cases with every scheme: docs/evidence/stability.md; then kills of many runs (some minutes). Fails where a
 # bound is broken or a row is lost.
 stability:
-    cargo run --release --quiet --package stability -- docs/evidence/stability.md --overwrite
+    cargo run --release --quiet --package verification --bin stability -- docs/evidence/stability.md --overwrite
     FLEXFRAME_KILLS=200 cargo test --release --quiet --package results --test killed
-    FLEXFRAME_KILLS=40 cargo test --release --quiet --test faults
+    FLEXFRAME_KILLS=40 cargo test --release --quiet --package flexframe-cli --test faults
 
 # Large deflection and stress against a nonlinear finite-element body, and the curves of docs/evidence/nonlinear.md (some minutes).
 nonlinear:
-    cargo test --release --quiet --package nonlinear -- --include-ignored --nocapture
+    cargo test --release --quiet --package verification --test nonlinear -- --include-ignored --nocapture
     mkdir -p docs/evidence/nonlinear
-    cargo run --release --quiet --package nonlinear -- docs/evidence/nonlinear --overwrite
+    cargo run --release --quiet --package verification --bin nonlinear -- docs/evidence/nonlinear --overwrite
 
 # Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package dynamics --bench steps
-    cargo bench --quiet --bench effects
+    cargo bench --quiet --package flexframe-cli --bench effects
 
 # docs/evidence/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: twenty minutes, `full`: hours, with all peers to their ends; parts: `modes`, `size`, `loop`, `page`).
 performance *what: build
-    .tools/performance/bin/python benches/performance/performance.py {{what}}
+    .tools/performance/bin/python crates/verification/performance/performance.py {{what}}
 
 # The Python package: its wheel, with HDF5 inside, into target/wheels, and its tests in a fresh installation (Python packages).
 python profile="release":
@@ -176,13 +176,13 @@ report-page-test:
 # Fuzz every reader for so many seconds each (libFuzzer; wants a nightly compiler).
 fuzz seconds="600":
     test -x .tools/bin/cargo-fuzz || cargo install --quiet --locked --root .tools cargo-fuzz@0.13.2
-    mkdir -p fuzz/corpus/{mesh,scene,table,expression,results}
-    cd fuzz && export RUSTUP_TOOLCHAIN=nightly && \
+    mkdir -p crates/fuzz/corpus/{mesh,scene,table,expression,results}
+    cd crates/fuzz && export RUSTUP_TOOLCHAIN=nightly && \
     cargo run --quiet --release --bin results-seeds corpus/results && \
-    fuzz() { ../.tools/bin/cargo-fuzz run --fuzz-dir . "$1" "corpus/$1" "${@:2}" -- -max_total_time={{seconds}} \
+    fuzz() { ../../.tools/bin/cargo-fuzz run --fuzz-dir . "$1" "corpus/$1" "${@:2}" -- -max_total_time={{seconds}} \
         -max_len=65536 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=512 -print_final_stats=1; } && \
-    fuzz mesh ../crates/fem-tet10/tests/data && \
-    fuzz scene ../examples ../crates/scene/src && \
+    fuzz mesh ../fem-tet10/tests/data && \
+    fuzz scene ../../examples ../scene/src && \
     fuzz table seeds/table && \
     fuzz expression seeds/expression && \
     fuzz results

@@ -22,7 +22,7 @@ pub struct Answer {
 
 /// Runs the example.
 pub fn run() -> Result<Answer, Box<dyn Error>> {
-    let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/plate.toml"))?;
+    let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plate.toml"))?;
     let model = Model::build(&scene, |_| ())?;
     let tip = model.points[0].1.clone();
     let gain = 0.2;

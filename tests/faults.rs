@@ -19,7 +19,7 @@ struct Scene {
 
 impl Scene {
     fn new(step: &str) -> Self {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).canonicalize().unwrap();
+        let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).canonicalize().unwrap();
         let text = std::fs::read_to_string(root.join("examples/ring.toml")).unwrap();
         let text = text
             .replace("../meshes", root.join("meshes").to_str().unwrap())
@@ -359,7 +359,8 @@ fn a_run_goes_on_with_the_same_body_or_not_at_all() {
     let scene = Scene::new("3e-7");
     // Another copy of the mesh, which is changed while nobody looks.
     let mesh = scene.folder.path().join("ring.msh");
-    let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/ring.msh").canonicalize().unwrap();
+    let original =
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("meshes/ring.msh").canonicalize().unwrap();
     std::fs::copy(&original, &mesh).unwrap();
     let text = std::fs::read_to_string(&scene.path).unwrap();
     let half_sine = "{ kind = \"half-sine\", duration = 0.002 }";
@@ -404,7 +405,7 @@ fn a_run_goes_on_in_a_folder_whose_name_is_no_utf8() {
     let mut scene = Scene::new("3e-7");
     let folder = scene.folder.path().join(std::ffi::OsStr::from_bytes(b"caf\xe9 %41"));
     std::fs::create_dir(&folder).unwrap();
-    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/ring.msh").canonicalize().unwrap();
+    let mesh = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("meshes/ring.msh").canonicalize().unwrap();
     std::fs::copy(&mesh, folder.join("ring.msh")).unwrap();
     let text = std::fs::read_to_string(&scene.path).unwrap().replace(mesh.to_str().unwrap(), "ring.msh");
     assert!(text.contains("\"ring.msh\""));

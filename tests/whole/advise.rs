@@ -4,7 +4,7 @@ use flexframe::advise::{AdviseReport, ModeRow, Real, advise};
 use flexframe::scene::{Choice, Effect, Scene};
 
 fn example(name: &str) -> Scene {
-    Scene::read(format!("{}/examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+    Scene::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
 /// Advice on a scene, verified; nothing that is called negligible may turn out not to be.

@@ -60,7 +60,7 @@ fn refused(folder: &Path, arguments: &[&str], words: &[&str]) {
 /// A folder with the scene of a beam and its mesh.
 fn desk(body: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/wu_haug_beam.msh");
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/wu_haug_beam.msh");
     fs::copy(mesh, folder.path().join("beam.msh")).unwrap();
     fs::write(folder.path().join("beam.toml"), BEAM.replace("BODY", body)).unwrap();
     folder

@@ -7,7 +7,7 @@ use flexframe::columns::COLUMNS;
 use results::Results;
 
 fn scene() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/pair.toml")
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("examples/pair.toml")
 }
 
 fn flexframe(folder: &Path, arguments: &[&str]) -> Output {

@@ -10,7 +10,7 @@ use flexframe::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 const NODE: usize = 100;
 
 fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
 /// The program with this folder for its cache; an empty name is none.

@@ -27,7 +27,7 @@ const THIN_BEAM: [(f64, [f64; 3], f64, Option<f64>); 8] = [
 ];
 
 fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
 fn flexframe(arguments: &[&str]) -> Output {

@@ -109,7 +109,10 @@ fn gmsh_and_its_files_end_with_the_program() {
 #[test]
 fn temporary_files_are_removed_by_a_signal() {
     let case = Case::new();
-    case.scene("bar.toml", Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/slender_bar.msh").to_str().unwrap());
+    case.scene(
+        "bar.toml",
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("meshes/slender_bar.msh").to_str().unwrap(),
+    );
     let sweep = "scene = \"bar.toml\"\n[parameters]\n\"time.end\" = { from = 10, to = 20, count = 4 }\n[results]\n\
                  strain = { peak = \"energy/strain\" }\n";
     case.write("sweep.toml", sweep);
@@ -131,7 +134,10 @@ fn temporary_files_are_removed_by_a_signal() {
 #[test]
 fn under_nohup_the_end_of_the_terminal_changes_nothing() {
     let case = Case::new();
-    case.scene("bar.toml", Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/slender_bar.msh").to_str().unwrap());
+    case.scene(
+        "bar.toml",
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("meshes/slender_bar.msh").to_str().unwrap(),
+    );
     let mut command = Command::new("nohup");
     let inner = case.command(&["animate", "bar.toml", "-o", "bar.gif", "--frames", "200"]);
     command.arg(inner.get_program()).args(inner.get_args()).current_dir(case.folder.path());

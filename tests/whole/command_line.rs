@@ -9,7 +9,7 @@ use results::{Column, Metadata, Results, Units, Values};
 use serde_json::Value;
 
 fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
 fn flexframe(arguments: &[&str]) -> Output {

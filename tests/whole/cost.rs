@@ -15,7 +15,7 @@ const TARGET: f64 = 1e-4;
 const SCENE: &str = include_str!("short_ring.toml");
 
 fn scene_text(time: &str) -> String {
-    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/ring.msh");
+    let mesh = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("meshes/ring.msh");
     SCENE.replace("MESH", mesh.to_str().unwrap()).replace("TIME", time)
 }
 

@@ -66,7 +66,7 @@ fn refused(arguments: &[&str], code: i32) -> String {
 
 /// The results of a scene in a folder.
 fn run(folder: &Path, text: &str) -> PathBuf {
-    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/wu_haug_beam.msh");
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/wu_haug_beam.msh");
     let scene = folder.join("scene.toml");
     std::fs::write(&scene, text.replace("MESH", mesh)).unwrap();
     done(&["run", scene.to_str().unwrap(), "-o", folder.to_str().unwrap()]);

@@ -11,7 +11,7 @@ use tempfile::TempDir;
 use crate::command_line::COIN;
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).canonicalize().unwrap()
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).canonicalize().unwrap()
 }
 
 fn flexframe(arguments: &[&str]) -> Command {

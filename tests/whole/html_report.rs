@@ -13,7 +13,7 @@ use results::Results;
 use serde_json::Value;
 
 fn flexframe(arguments: &[&str]) -> Output {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(root).output().unwrap()
 }
 

@@ -22,7 +22,7 @@ fn works(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
 fn each_command_works_or_refuses_in_words() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let examples = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("examples");
     std::fs::create_dir(folder.join("boom")).unwrap();
     for name in ["boom.toml", "boom/K.mtx", "boom/M.mtx", "boom/nodes.csv"] {
         std::fs::copy(examples.join(name), folder.join(name)).unwrap();

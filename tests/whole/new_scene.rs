@@ -12,7 +12,11 @@ const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: 
 fn it_names_groups_and_mass_and_runs() {
     let folder = tempfile::tempdir().unwrap();
     let mesh = folder.path().join("bar \"1\".msh");
-    std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/scene/tests/data/bar.msh"), &mesh).unwrap();
+    std::fs::copy(
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("crates/scene/tests/data/bar.msh"),
+        &mesh,
+    )
+    .unwrap();
 
     let (path, notes) = new_scene(&mesh, &AS_IT_IS, None, false).unwrap();
     assert!(notes.is_empty());

@@ -8,7 +8,7 @@ use flexframe::run::{RunSettings, run};
 use flexframe::scene::{Model, Scene};
 
 fn rows(text: &str) -> (Model, Vec<Observation>) {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/of_a_test.toml");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/of_a_test.toml");
     rows_of(&Scene::parse(text, path).unwrap())
 }
 
@@ -33,7 +33,7 @@ axis = [0.0, 0.0, 1.0]
 /// across it.
 #[test]
 fn the_bearing_of_a_pendulum_gives_what_the_closed_form_has() {
-    let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/pendulum.toml")).unwrap();
+    let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/pendulum.toml")).unwrap();
     let (_, rows) = rows_of(&scene);
     let (mass, arm, inertia, gravity, start) = (3.0, 0.5, 1.0, 9.81, 2.0_f64);
     for now in &rows {
@@ -122,7 +122,7 @@ fn the_hinge_of_a_spinning_bar_holds_it_on_its_circle() {
 /// θ(t) is the integral of the given speed; the energy is what the drive has put in.
 #[test]
 fn the_drive_of_a_spin_up_does_the_work_that_the_beam_has() {
-    let mut scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/spin_up.toml")).unwrap();
+    let mut scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spin_up.toml")).unwrap();
     scene.time.end = 17.0;
     let (_, rows) = rows_of(&scene);
     let last = rows.last().unwrap();
@@ -165,7 +165,7 @@ fn a_hinge_gives_no_moment_about_its_axis_to_a_rod_that_bends_far() {
 
 /// A beam of 8 m with these supports and loads, and the reactions in its results file.
 fn on_supports(rest: &str) -> (Model, Results) {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/of_a_test.toml");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/of_a_test.toml");
     let scene = Scene::parse(&format!("{BEAM}{rest}"), path).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let (model, report) = run(&scene, folder.path(), &RunSettings::default(), |_| ()).unwrap();

@@ -9,7 +9,7 @@ use results::Results;
 use serde_json::Value;
 
 fn flexframe(arguments: &[&str], input: &str) -> Output {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     let mut child = Command::new(env!("CARGO_BIN_EXE_flexframe"))
         .args(arguments)
         .current_dir(root)

@@ -14,7 +14,7 @@ use slepc::{Slepc, Stop};
 use tempfile::TempDir;
 
 fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
 /// A scene of `examples`, as SLEPc is to solve it, and as this program does.

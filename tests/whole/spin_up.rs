@@ -5,7 +5,7 @@ use flexframe::scene::{Choice, Constraint, Effect, Effects, Model, Scene};
 use nalgebra::Vector3;
 
 fn scene(name: &str) -> Scene {
-    Scene::read(format!("{}/examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+    Scene::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
 /// Time and place of the tip in the axes of the body, a row for each row of the results.

@@ -41,7 +41,7 @@ struct Case {
 impl Case {
     fn new(parameters: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/scene/tests/data/bar.msh");
+        let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("crates/scene/tests/data/bar.msh");
         fs::copy(data, folder.path().join("bar.msh")).unwrap();
         fs::write(folder.path().join("blade.toml"), SCENE).unwrap();
         let case = Self { folder };

@@ -28,7 +28,7 @@ fn report(text: &str) -> RunReport {
 
 /// A ring of this Young's modulus.
 fn ring(young: f64, rest: &str) -> String {
-    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/ring.msh");
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/ring.msh");
     format!(
         "[body]\nmesh = \"{mesh}\"\n\
          material = {{ young_modulus = {young:e}, poisson_ratio = 0.3, density = 7.8e-9 }}\n[modes]\nflexible = 6\n{rest}"
@@ -113,7 +113,7 @@ fn of_a_stretch_that_the_modes_do_not_hold() {
 
 /// The plate of the paper with its first mode at 5 % of its length, through zero at every row; with linear strain.
 fn bent_plate(part: f64, rest: &str) -> String {
-    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/plate.msh");
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/plate.msh");
     // Mass-normalised, 1 mm at the ends is 0.1 of the modal coordinate or so; the first frequency without masses is 50 Hz.
     format!(
         "[body]\nmesh = \"{mesh}\"\nmaterial = {{ young_modulus = 70e3, poisson_ratio = 0.33, density = 2.7e-9 }}\n\
@@ -157,7 +157,7 @@ fn of_a_load_that_bends_the_body_without_end_the_run_stops() {
 /// 0.18 of the largest coordinate beside where it should be.
 #[test]
 fn of_modes_that_long_steps_get_wrong_though_the_energy_is_right_there_is_one() {
-    let mut scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/accuracy/spin.toml")).unwrap();
+    let mut scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/accuracy/spin.toml")).unwrap();
     let mut with_step = |step: f64| {
         scene.time.control = flexframe::scene::StepControl::Fixed(step);
         scene.output.rows = flexframe::scene::Rows::EverySteps(1);
@@ -199,7 +199,7 @@ fn of_long_exact_steps() {
 /// A clamped bar of 200 mm whose first mode begins with parts of its length: displacement, and velocity over ω. It ends after
 /// half a period.
 fn clamped(modes: &str, displacement: f64, velocity: f64) -> Scene {
-    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/scene/tests/data/bar.msh");
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/scene/tests/data/bar.msh");
     let of = |q: f64, v: f64| {
         scene(&format!(
             "[body]\nmesh = \"{mesh}\"\nmaterial = {{ young_modulus = 70e3, poisson_ratio = 0.3, density = 2.7e-9 }}\n\
@@ -280,7 +280,7 @@ fn the_surface_moves_as_the_points_do() {
 fn of_a_mesh_that_was_not_read_whole() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
-    let geometry = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/scene/tests/data/bar.geo");
+    let geometry = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/scene/tests/data/bar.geo");
     let gmsh =
         Command::new("gmsh").args(["-3", "-order", "2", "-v", "0", geometry, "-o"]).arg(path("bar.inp")).status();
     assert!(gmsh.unwrap().success());

@@ -14,7 +14,7 @@ const TOO_LARGE_CURE: &str = "name a scene file; the mesh goes into a file of it
 const NOT_UTF8_CURE: &str = "save it with encoding UTF-8";
 
 /// Refusal of a scene. The message gives the place, what was found, what was expected and
-/// the help, with the line and a caret under it.
+/// help, with the line and a caret under it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {

@@ -132,7 +132,7 @@ impl Scene {
 
     /// The refusal of the value with the key path `key`, for rules that need more than the file,
     /// e.g. a point too far from the mesh. Its message is
-    /// `file:line:column: key: found …, expected …`, the line, and the help.
+    /// `file:line:column: key: found …, expected …`, the line, and help.
     pub fn refuse(
         &self,
         key: &str,

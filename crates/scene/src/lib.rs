@@ -4,7 +4,7 @@
 //! masses), the modes kept, the loads, the time step and what is written out.
 //! [`Scene::read`] gives it as plain data that obeys every rule which needs no mesh; whatever
 //! breaks a rule is refused by a [`SceneError`] that shows file, line, key, what was found, what
-//! was expected and the help:
+//! was expected and help:
 //!
 //! ```text
 //! plate.toml:34:1: `time.stpe`: unknown key `stpe`; did you mean `step`?

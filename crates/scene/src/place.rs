@@ -54,7 +54,7 @@ impl Place {
         Self { file: file.to_owned(), line, column: 1, key, excerpt: None, mark: 0..0 }
     }
 
-    /// The place, the headline, the line with what is meant underlined, and the help.
+    /// The place, the headline, the line with what is meant underlined, and help.
     pub(crate) fn show(&self, headline: &str, help: &str) -> String {
         let line = self.line.to_string();
         let gutter = " ".repeat(line.len());

@@ -16,7 +16,7 @@ use flexframe::dynamics::Observation;
 use flexframe::scene::{Model, Scene};
 
 fn repository() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
 /// The scene `examples/<name>.toml`.

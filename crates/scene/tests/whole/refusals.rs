@@ -1,4 +1,4 @@
-//! Every refusal names file, line, column and key, says what was found and expected, and the help.
+//! Every refusal names file, line, column and key, says what was found and expected, and help.
 
 use crate::common::{EXAMPLE, refusal, refused};
 use scene::{Scene, SceneError};

@@ -1,4 +1,4 @@
-//! Bad files: each is refused at its key with the file, its line, what was found, what was expected and the help.
+//! Bad files: each is refused at its key with the file, its line, what was found, what was expected and help.
 
 use super::files::cube;
 use super::{Files, MARKET};

@@ -1,0 +1,360 @@
+//! `docs/evidence/accuracy.md`: the price lists of several scenes as a page.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use flexframe::cost::{
+    self, CostError, CostReport, CostSettings, LadderRun, Line, Measured, Outcome, duration, modes_warning, price_list,
+    setting,
+};
+use flexframe::modes::frequency_unit;
+use flexframe::outputs::outputs_of_scene;
+use flexframe::scene::Scene;
+use flexframe::write_error::WriteError;
+use whole_file::write_whole;
+
+use crate::accuracy::spin::{SpinRow, spin_rates};
+
+/// Errors whose price is shown: 10^−k for these k.
+const DECADES: std::ops::RangeInclusive<i32> = 1..=10;
+/// Rows of each method in the longer tables.
+const ROWS_SHOWN: usize = 5;
+
+/// Measures the scenes and writes a page about them to `path`, with its diagrams in a folder of the same name; the whole
+/// lists go to folders in `lists`. What was there before is only replaced with `overwrite`, and the page stays until everything has been
+/// measured.
+///
+/// # Errors
+/// [`CostError`].
+pub fn accuracy_page(
+    scenes: &[Scene],
+    path: &Path,
+    lists: &Path,
+    patience: Duration,
+    overwrite: bool,
+) -> Result<Vec<PathBuf>, CostError> {
+    let pictures = path.with_extension("");
+    let picture_of = |scene: &Path| pictures.join(format!("{}.svg", name_of(scene)));
+    for scene in scenes {
+        let mut files = cost::files(&lists.join(name_of(&scene.path)));
+        files.extend([path.to_owned(), picture_of(&scene.path)]);
+        outputs_of_scene(scene, overwrite).claim(&files)?;
+    }
+    let mut reports = Vec::new();
+    for scene in scenes {
+        let folder = lists.join(name_of(&scene.path));
+        let settings = CostSettings::with_patience(patience);
+        reports.push((scene, price_list(scene, &folder, settings, |_| ())?));
+    }
+    let spin = match fastest(&reports) {
+        Some((scene, report)) if report.initial_spin > 0.0 => spin_rates(scene)?,
+        _ => Vec::new(),
+    };
+    std::fs::create_dir_all(&pictures).map_err(WriteError::of(&pictures))?;
+    let mut files = Vec::new();
+    for (_, report) in &reports {
+        let picture = picture_of(&report.scene);
+        if let Some(drawn) = report.files.iter().find(|file| file.extension() == Some("svg".as_ref())) {
+            std::fs::read(drawn).and_then(|svg| write_whole(&picture, svg)).map_err(WriteError::of(&picture))?;
+            files.push(picture);
+        }
+    }
+    write_whole(path, page(&reports, &spin, &pictures)).map_err(WriteError::of(path))?;
+    files.push(path.to_owned());
+    Ok(files)
+}
+
+/// The scene that spins fastest at the beginning.
+fn fastest<'a, 's>(reports: &'a [(&'s Scene, CostReport)]) -> Option<&'a (&'s Scene, CostReport)> {
+    reports.iter().max_by(|a, b| a.1.initial_spin.total_cmp(&b.1.initial_spin))
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_stem().unwrap_or("scene".as_ref()).display().to_string()
+}
+
+fn page(reports: &[(&Scene, CostReport)], spin: &[SpinRow], pictures: &Path) -> String {
+    let mut page = String::new();
+    // Writing to a String cannot fail.
+    let _ = write_page(&mut page, reports, spin, pictures);
+    page
+}
+
+fn write_page(
+    out: &mut String,
+    reports: &[(&Scene, CostReport)],
+    spin: &[SpinRow],
+    pictures: &Path,
+) -> std::fmt::Result {
+    writeln!(out, "# What accuracy costs\n")?;
+    if let Some((_, report)) = reports.first() {
+        writeln!(
+            out,
+            "Measured by flexframe {} on {}. `./dev accuracy` measures again and writes this page; \
+             `flexframe cost SCENE` does the same for a scene of yours.\n",
+            env!("CARGO_PKG_VERSION"),
+            report.machine
+        )?;
+    }
+    let worst_spread =
+        reports.iter().flat_map(|(_, report)| measured(&report.lines)).map(|(_, _, m)| m.spread).fold(1.0, f64::max);
+    writeln!(
+        out,
+        "**Error** is the largest, over up to 100 equally spaced times, of the angle to the reference's attitude (rad) \
+         and of the differences in modal coordinates and in displacement, velocity and acceleration of the scene's \
+         points, each relative to its largest value. The **reference** is the exponential scheme on the conservative form with steps \
+         halved until halving no longer changes it; nothing is ranked below three times its own error (≤). **Time** is \
+         that of the loop on one core: the shortest of three runs or more after one that warms up (the slowest run of \
+         a series took up to {worst_spread:.1} times as long). An evaluation is one of the rates of all modes.\n"
+    )?;
+
+    writeln!(out, "## In short: the cheapest run for each error\n")?;
+    write!(out, "| error |")?;
+    for (scene, _) in reports {
+        write!(out, " {} |", scene.title)?;
+    }
+    writeln!(out, "\n|---:|{}", "---|".repeat(reports.len()))?;
+    for k in DECADES {
+        let cells: Vec<String> = reports
+            .iter()
+            .map(|(_, report)| cheapest(measured(&report.lines), k).map_or_else(|| "–".to_owned(), with_scheme))
+            .collect();
+        if cells.iter().any(|cell| cell != "–") {
+            writeln!(out, "| 1e-{k} | {} |", cells.join(" | "))?;
+        }
+    }
+
+    for (scene, report) in reports {
+        write_scene(out, scene, report, pictures)?;
+    }
+    match fastest(reports) {
+        Some((_, report)) if !spin.is_empty() => write_spin(out, report, spin),
+        _ => Ok(()),
+    }
+}
+
+fn write_scene(out: &mut String, scene: &Scene, report: &CostReport, pictures: &Path) -> std::fmt::Result {
+    let time = &report.time_unit;
+    let file = scene.path.file_name().unwrap_or_default().display();
+    writeln!(out, "\n## {}\n", scene.title)?;
+    writeln!(
+        out,
+        "`examples/accuracy/{file}`: {} {time}, {} flexible modes, spin {:.1} rad/{time} at the beginning. The reference \
+         takes {} steps of {:.2e} {time}; its own error is {:.0e}.\n",
+        report.end,
+        report.flexible,
+        report.initial_spin,
+        report.reference.steps,
+        report.reference.step,
+        report.reference.own_error.largest()
+    )?;
+    let folder = pictures.file_name().unwrap_or_default().display();
+    writeln!(out, "![time against error]({folder}/{}.svg)\n", name_of(&report.scene))?;
+
+    writeln!(out, "The cheapest run of each scheme for an error:\n")?;
+    let lines: Vec<&Line> = report.lines.iter().collect();
+    writeln!(out, "| error | {} |", lines.iter().map(|line| line.name()).collect::<Vec<_>>().join(" | "))?;
+    writeln!(out, "|---:|{}", "---:|".repeat(lines.len()))?;
+    for k in DECADES {
+        let cells: Vec<String> = lines
+            .iter()
+            .map(|line| {
+                cheapest(measured(std::slice::from_ref(line)), k).map_or_else(|| "–".to_owned(), without_scheme)
+            })
+            .collect();
+        if cells.iter().any(|cell| cell != "–") {
+            writeln!(out, "| 1e-{k} | {} |", cells.join(" | "))?;
+        }
+    }
+    let orders: Vec<String> = lines
+        .iter()
+        .filter_map(|line| Some(format!("{} {:.2} ({})", line.name(), line.measured_order?, line.order)))
+        .collect();
+    if !orders.is_empty() {
+        writeln!(out, "\nOrders measured (and expected): {}.", orders.join(", "))?;
+    }
+    writeln!(out, "\n{}\n", paper_in_words(report))?;
+
+    writeln!(out, "Some runs of each scheme, with the balances of energy and angular momentum:\n")?;
+    writeln!(
+        out,
+        "| scheme | step or tolerance | error | attitude | modal | acceleration | energy | angular momentum | steps | \
+         evaluations | time |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|"
+    )?;
+    for line in &lines {
+        for row in shown(&line.rows) {
+            write_row(out, line, row)?;
+        }
+    }
+    writeln!(out)?;
+    write_modes(out, report)
+}
+
+fn write_row(out: &mut String, line: &Line, row: &LadderRun) -> std::fmt::Result {
+    write!(out, "| {} | {} |", line.name(), setting(row.setting))?;
+    match &row.outcome {
+        Outcome::Ran(m) => {
+            let optional = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1e}"));
+            let at_reference = if m.at_reference { "≤ " } else { "" };
+            writeln!(
+                out,
+                " {at_reference}{:.1e} | {:.1e} | {} | {} | {:.1e} | {:.1e} | {} | {} | {} |",
+                m.error,
+                m.errors.attitude,
+                optional(m.errors.modal),
+                optional(m.errors.acceleration),
+                m.energy,
+                m.angular_momentum,
+                m.steps,
+                m.evaluations,
+                duration(m.seconds)
+            )
+        }
+        Outcome::Failed(failure) => writeln!(out, " failed: {failure} | | | | | | | | |"),
+        Outcome::OutOfPatience(stopped) => writeln!(out, " {stopped} | | | | | | | | |"),
+    }
+}
+
+/// The price and the worth of the paper's scheme, in words.
+fn paper_in_words(report: &CostReport) -> String {
+    let is_paper = |line: &&Line| line.scheme == "paper";
+    let paper: Vec<Line> = report.lines.iter().filter(is_paper).cloned().collect();
+    let mut words = "**The paper's scheme.** ".to_owned();
+    if let Some(errors) = report.paper_limit.as_ref().and_then(|limit| limit.errors) {
+        let parts: Vec<String> = errors.named().map(|(name, error)| format!("{name} {error:.1e}")).collect();
+        let _ = write!(
+            words,
+            "However short its steps, the paper's formulation stays away from the conservative one: {}.",
+            parts.join(", ")
+        );
+    }
+    if let Some(why) = &report.paper_limit_failure {
+        let _ = write!(words, "The limit of the paper's formulation for short steps was not found, {why}.");
+    }
+    let reached: Vec<(i32, Found, Found)> = DECADES
+        .filter_map(|k| Some((k, cheapest(measured(&paper), k)?, cheapest(measured(&report.lines), k)?)))
+        .collect();
+    for (k, (_, row, m), (line, _, best)) in &reached {
+        if m.seconds <= best.seconds {
+            let _ = write!(
+                words,
+                " For an error of 1e-{k} it is enough: {}, {}.",
+                duration(m.seconds),
+                setting(row.setting)
+            );
+        } else {
+            let _ = write!(
+                words,
+                " For 1e-{k} it takes {} ({}), {:.1} times as long as {}.",
+                duration(m.seconds),
+                setting(row.setting),
+                m.seconds / best.seconds,
+                line.name()
+            );
+        }
+    }
+    let closest = measured(&paper).map(|(_, _, m)| m.error).fold(f64::INFINITY, f64::min);
+    if closest.is_finite() {
+        let _ = write!(words, " The smallest error of its runs is {closest:.1e}.");
+    }
+    words
+}
+
+fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
+    let Some(most) = report.modes.last() else { return Ok(()) };
+    writeln!(
+        out,
+        "What the modes cost: the same motion with fewer and more of them, against {} (steps leave {:.0e}).\n",
+        most.flexible, most.step_error
+    )?;
+    writeln!(
+        out,
+        "| modes | to, {} | error | attitude | modal | displacement | velocity | acceleration | time of a step |\n\
+         |---:|---:|---:|---:|---:|---:|---:|---:|---:|",
+        frequency_unit(&report.time_unit)
+    )?;
+    let optional = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1e}"));
+    for row in &report.modes {
+        let errors = match row.errors {
+            Some(e) => format!(
+                "{:.1e} | {:.1e} | {} | {} | {} | {}",
+                e.largest(),
+                e.attitude,
+                optional(e.modal),
+                optional(e.displacement),
+                optional(e.velocity),
+                optional(e.acceleration)
+            ),
+            None => "– | – | – | – | – | –".to_owned(),
+        };
+        writeln!(
+            out,
+            "| {} | {:.2} | {errors} | {} |",
+            row.flexible,
+            row.highest_frequency,
+            duration(row.seconds_per_step)
+        )?;
+    }
+    if let Some(warning) = modes_warning(&report.modes, report.flexible, 0.0) {
+        writeln!(out, "\n{warning}")?;
+    }
+    Ok(())
+}
+
+fn write_spin(out: &mut String, report: &CostReport, rows: &[SpinRow]) -> std::fmt::Result {
+    let (time, omega) = (&report.time_unit, report.initial_spin);
+    writeln!(out, "\n## Spin that the paper's scheme gains or loses\n")?;
+    writeln!(
+        out,
+        "In steady spin the first-order error of the scheme changes |ω| at the relative rate of about ω²Δt/2: |ω| \
+         falls, or rises if the centrifugal field stretches one of the modes. Measured over the {} {time} of \"{}\", as \
+         ln(|ω|end/|ω|start) per {time}. The limit is that of short steps, where the paper's formulation itself does \
+         not keep the spin of a body that is stretched.\n",
+        report.end, report.title
+    )?;
+    writeln!(
+        out,
+        "| modes | step, {time} | change per {time} | of it in the limit | from the step | ω²Δt/2 |\n\
+         |---:|---:|---:|---:|---:|---:|"
+    )?;
+    for row in rows {
+        writeln!(
+            out,
+            "| {} | {:e} | {:+.2e} | {:+.1e} | {:+.2e} | {:.2e} |",
+            row.flexible,
+            row.step,
+            row.rate,
+            row.rate_of_limit,
+            row.rate - row.rate_of_limit,
+            0.5 * omega * omega * row.step
+        )?;
+    }
+    Ok(())
+}
+
+type Found<'a> = (&'a Line, &'a LadderRun, &'a Measured);
+
+fn measured(lines: &[Line]) -> impl Iterator<Item = Found<'_>> {
+    lines.iter().flat_map(|line| line.rows.iter().filter_map(move |row| Some((line, row, row.measured()?))))
+}
+
+/// The fastest run within 10^−k.
+fn cheapest<'a>(runs: impl Iterator<Item = Found<'a>>, k: i32) -> Option<Found<'a>> {
+    let error = 10_f64.powi(-k);
+    runs.filter(|(_, _, m)| m.error <= error).min_by(|a, b| a.2.seconds.total_cmp(&b.2.seconds))
+}
+
+fn with_scheme((line, row, m): Found<'_>) -> String {
+    format!("{}, {}: {}", line.name(), setting(row.setting), duration(m.seconds))
+}
+
+fn without_scheme((_, row, m): Found<'_>) -> String {
+    format!("{} ({})", duration(m.seconds), setting(row.setting))
+}
+
+/// At most so many rows, evenly spread, with the first and the last.
+fn shown(rows: &[LadderRun]) -> impl Iterator<Item = &LadderRun> {
+    let count = rows.len().min(ROWS_SHOWN);
+    (0..count).map(move |i| if count > 1 { i * (rows.len() - 1) / (count - 1) } else { 0 }).filter_map(|i| rows.get(i))
+}

@@ -1,0 +1,6 @@
+#![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
+
+pub mod accuracy;
+pub mod nonlinear;
+pub mod stability;

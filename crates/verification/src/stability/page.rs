@@ -1,0 +1,95 @@
+//! `docs/evidence/stability.md`.
+
+use std::fmt::Write;
+use std::time::Instant;
+
+use crate::stability::{BOUNDED, Expected, Extent, HardCase, Outcome, sections};
+
+/// The page, and the outcomes that are not what is asked for.
+pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<String>) {
+    let mut page = String::from(
+        "# Hard cases\n\n\
+         Made by `./dev stability`, which runs every case with every scheme. A scheme either comes to its end with the \
+         error or drift given, or it is refused or stops at its first bad step; its message is then below the table. \
+         In brackets: the bound that a test asserts (the tests of `crates/verification` run the same cases, the longest \
+         of them shortened; of a refusal they check the message). Errors and drifts are the largest of the whole run. \
+         Nothing ends in NaN. A run that has gone wrong is stopped by an account of the energy: where the start, the \
+         loads and the damping do not account for half of it, the run ends with the time, the energy and help. The \
+         formulation of the paper does not keep the angular momentum, and so loses the attitude before the energy: its \
+         runs keep an account of the rotation caused by spurious angular momentum, and end where it reaches 1 rad. A \
+         body that is refused before it moves is refused by every scheme, with the same message.\n",
+    );
+    let mut broken = Vec::new();
+    for (title, cases) in sections() {
+        let mut refusals: Vec<String> = Vec::new();
+        // Writing to a String cannot fail.
+        let _ = write!(page, "\n## {title}\n\n| case | measured |");
+        let schemes = BOUNDED;
+        for method in &schemes {
+            let _ = write!(page, " {} |", name(*method));
+        }
+        let _ = writeln!(page, "\n|---|---|{}", "---|".repeat(schemes.len()));
+        for case in cases {
+            row(&mut page, &case, extent, &mut refusals, &mut broken, &mut progress);
+        }
+        for (number, refusal) in refusals.iter().enumerate() {
+            let _ = writeln!(page, "\n{title} {}: {refusal}", number + 1);
+        }
+    }
+    (page, broken)
+}
+
+fn row(
+    page: &mut String,
+    case: &HardCase,
+    extent: Extent,
+    refusals: &mut Vec<String>,
+    broken: &mut Vec<String>,
+    progress: &mut impl FnMut(&str),
+) {
+    let HardCase { name: title, why, measure, .. } = case;
+    let _ = write!(page, "| **{title}**: {why} | {measure}");
+    let mut judge = |who: &str, outcome: &Outcome, expected: Option<&Expected>| {
+        if let Some(expected) = expected.filter(|expected| !expected.holds(outcome)) {
+            broken.push(format!("{title}, {who}: {outcome:?} is not {expected}"));
+        }
+    };
+    if let Some(check) = &case.body {
+        let outcome = check.run();
+        judge("body", &outcome, Some(&check.expected));
+        let _ = write!(page, "; {}: {}", check.what, cell(&outcome, Some(&check.expected), refusals));
+    }
+    let _ = write!(page, " |");
+    for method in BOUNDED {
+        let expected = case.expected_of(method);
+        let begin = Instant::now();
+        let outcome = (case.run)(method, extent);
+        progress(&format!("{title}, {}: {outcome:?} in {:.1} s", name(method), begin.elapsed().as_secs_f64()));
+        judge(&name(method), &outcome, expected);
+        let _ = write!(page, " {} |", cell(&outcome, expected, refusals));
+    }
+    let _ = writeln!(page);
+}
+
+/// An outcome with its bound; words go below the table, each once.
+fn cell(outcome: &Outcome, expected: Option<&Expected>, refusals: &mut Vec<String>) -> String {
+    let bound = expected.map_or_else(String::new, |expected| format!(" ({expected})"));
+    match outcome {
+        Outcome::Ran(0.0) => format!("0{bound}"),
+        Outcome::Ran(error) => format!("{error:.1e}{bound}"),
+        Outcome::Refused(message) => {
+            let place = refusals.iter().position(|known| known == message).unwrap_or_else(|| {
+                refusals.push(message.clone());
+                refusals.len() - 1
+            });
+            format!("stops: {}", place + 1)
+        }
+    }
+}
+
+fn name(method: dynamics::Method) -> String {
+    match method.formulation {
+        "paper" if method.scheme == "rkmk4" => "paper rkmk4".to_owned(),
+        _ => method.scheme.to_owned(),
+    }
+}

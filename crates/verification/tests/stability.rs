@@ -1,0 +1,47 @@
+//! Every hard case, with every scheme, held to its bound; the longest runs shortened.
+
+use verification::stability::{BOUNDED, Extent, sections};
+
+fn hold(section: &str) {
+    let (_, cases) = sections().into_iter().find(|(title, _)| *title == section).unwrap();
+    let mut broken = Vec::new();
+    for case in &cases {
+        let name = case.name;
+        if let Some(check) = &case.body {
+            let outcome = check.run();
+            println!("{name}: {} {outcome:?}", check.what);
+            if !check.expected.holds(&outcome) {
+                broken.push(format!("{name}, {}: {outcome:?}, but {}", check.what, check.expected));
+            }
+        }
+        for method in BOUNDED {
+            let begin = std::time::Instant::now();
+            let outcome = (case.run)(method, Extent::Test);
+            println!("{name}: {method:?} {outcome:?} {:.2?}", begin.elapsed());
+            if let Some(expected) = case.expected_of(method).filter(|expected| !expected.holds(&outcome)) {
+                broken.push(format!("{name}, {method:?}: {outcome:?}, but {expected}"));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn motion() {
+    hold("Motion");
+}
+
+#[test]
+fn time() {
+    hold("Time");
+}
+
+#[test]
+fn structure() {
+    hold("Structure");
+}
+
+#[test]
+fn mesh_and_material() {
+    hold("Mesh and material");
+}
