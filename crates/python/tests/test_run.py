@@ -27,8 +27,8 @@ def same_as_file(results, path):
                 assert dataset.attrs[attribute] == getattr(column, attribute), name
         histories = []
         file.visititems(lambda name, item: histories.append(name) if isinstance(item, h5py.Dataset) else None)
-        histories = {name for name in histories if not name.startswith("body/")}
-        about = {"points/names", "points/position", "supports/names", "checkpoint", "warnings"}
+        histories = {name for name in histories if not name.startswith(("body/", "effects/"))}
+        about = {"input_files", "points/names", "points/position", "supports/names", "checkpoint", "warnings"}
         assert set(results) == histories - about
         assert file.attrs["complete"] == 1
 
