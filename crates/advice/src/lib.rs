@@ -63,38 +63,24 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-mod backbone;
-mod case;
-mod completed;
-mod course;
-mod estimate;
-mod excitation;
-mod fourth_order;
 mod limits;
-mod number;
-mod relative;
-mod response;
+mod motion;
 mod review;
-mod rigid;
-mod row;
 mod step;
 mod strain;
-mod strain_error;
-mod stress;
 mod table;
-mod tensor;
 
-pub use backbone::{Backbone, DETUNED};
-pub use case::{AdviceError, Case, StaticCompliance};
-pub use completed::Findings;
-pub use fourth_order::FourthOrder;
 pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits, unsteady};
+pub use motion::case::{AdviceError, Case, StaticCompliance};
 pub use review::{Broken, Detuning, Review};
-pub use row::{Row, Subject, Worth};
 pub use step::{ModeError, StepEstimate, step_estimate};
-pub use strain::LargeModes;
-pub use strain_error::StrainError;
-pub use stress::{StressField, StressInfluence, StressSource, stress, stress_row};
-pub use table::{Advice, advise, screen};
+pub use strain::backbone::{Backbone, DETUNED};
+pub use strain::error::StrainError;
+pub use strain::error_bound::LargeModes;
+pub use strain::fourth_order::FourthOrder;
+pub use strain::stress::{StressField, StressInfluence, StressSource, stress, stress_row};
+pub use table::completed::Findings;
+pub use table::row::{Row, Subject, Worth};
+pub use table::rows::{Advice, advise, screen};
 /// Crates whose types are in the interface.
 pub use {dynamics, modal};

@@ -5,11 +5,11 @@ use std::fmt;
 use dynamics::{DrivenMotion, Effect, EffectMap, LoadedMode, SteadySpin};
 use nalgebra::Vector3;
 
-use crate::backbone::DETUNED;
-use crate::case::{AdviceError, Case};
-use crate::course::Course;
-use crate::fourth_order::{FourthOrder, HOLDS};
-use crate::number::Number;
+use crate::motion::case::{AdviceError, Case};
+use crate::motion::course::Course;
+use crate::strain::backbone::DETUNED;
+use crate::strain::fourth_order::{FourthOrder, HOLDS};
+use crate::table::number::Number;
 
 /// Deflection over length at which linear strain ends.
 pub(crate) const LINEAR: f64 = 0.1;

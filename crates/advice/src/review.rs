@@ -6,12 +6,12 @@ use dynamics::{Effect, EffectMap, Moment, Observation};
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::case::{AdviceError, Case};
-use crate::fourth_order::{FourthOrder, STATED};
 use crate::limits::{LINEAR, LeftOut, Refusal, SOFTENED, beyond, deflected, detuned, refusal};
-use crate::number::Number;
-use crate::relative::relative;
-use crate::table::{Advice, held, left_out};
+use crate::motion::case::{AdviceError, Case};
+use crate::strain::fourth_order::{FourthOrder, STATED};
+use crate::table::number::Number;
+use crate::table::relative::relative;
+use crate::table::rows::{Advice, held, left_out};
 
 /// An assumption that has broken.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -507,7 +507,7 @@ impl<'a> Review<'a> {
                 periods: self.time * turns,
             };
             let matters = detuning.shift.abs() >= SHIFTED || detuning.phase.abs() >= OUT_OF_PHASE;
-            (matters && detuning.deflection >= crate::backbone::LARGE).then_some(detuning)
+            (matters && detuning.deflection >= crate::strain::backbone::LARGE).then_some(detuning)
         };
         case.backbones.iter().enumerate().filter_map(of).collect()
     }

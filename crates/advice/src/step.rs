@@ -6,8 +6,8 @@
 
 use dynamics::{Observation, Reached, Rows, Setup, SetupError, Simulation, StepControl, StepError};
 
-use crate::relative::relative;
-use crate::row::Row;
+use crate::table::relative::relative;
+use crate::table::row::Row;
 
 /// Most products of the modal matrices that the comparison may cost: some tenths of a second.
 const PRODUCTS: f64 = 6e8;

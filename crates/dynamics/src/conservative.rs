@@ -49,16 +49,12 @@
 //! p' = Dᵀ [Σ ω_iω_j (c_ij + N_ij ξ) − Σ ω_i G_i ν + Ψ_extᵀF] + Ḋᵀμ − Λq − D q̇ − ∂V_n/∂q
 //! ```
 
-mod acceleration;
 mod body;
 mod build;
 mod coordinates;
-mod deformation;
 mod energy;
 mod equations;
 mod errors;
-mod evaluation;
-mod inertia_forces;
 mod load_scale;
 pub(crate) mod manifold;
 mod methods;
@@ -66,9 +62,8 @@ mod observation;
 mod rates;
 mod start;
 mod state;
-mod velocities;
 
 pub use body::ConservativeBody;
 pub(crate) use coordinates::{InCoordinates, pair_weights};
-pub use evaluation::Evaluation;
+pub use rates::evaluation::Evaluation;
 pub(crate) use state::{get, part};

@@ -23,44 +23,27 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod assembly;
-mod coupling;
-mod deformation;
-mod element_columns;
+mod element;
 mod error;
-mod faces;
-mod geometric_stiffness;
-mod integration;
-mod lanes;
-mod locate;
-mod lumped;
 mod material;
-mod mean_rotation;
 mod mesh;
-mod msh;
-mod parts;
-mod point_mass;
-pub mod quadrature;
-mod second_order;
-mod selection;
-mod shape;
+mod nonlinear;
 mod stress;
-mod surface;
-mod tags;
-mod vectorized;
 
-pub use assembly::{Matrices, assemble};
+pub use assembly::lumped::{LumpedInertia, centroid_lumped_inertia};
+pub use assembly::matrices::{Matrices, assemble};
+pub use assembly::mean_rotation::MeanRotation;
+pub use assembly::point_mass::PointMass;
+pub use element::quadrature;
+pub use element::shape::{shape_functions, shape_gradients};
 pub use error::{AssemblyError, FilePosition, MeshError};
 /// The crate whose types are in the interface.
 pub use faer;
-pub use geometric_stiffness::{GeometricTerms, extended_geometric_stiffness, reduced_geometric_stiffness};
-pub use locate::Location;
-pub use lumped::{LumpedInertia, centroid_lumped_inertia};
 pub use material::{Material, Materials};
-pub use mean_rotation::MeanRotation;
-pub use mesh::Mesh;
-pub use msh::{msh_bytes, parse_msh, read_msh};
-pub use parts::{MeshParts, NodeGroup, SurfaceGroup};
-pub use point_mass::PointMass;
-pub use second_order::{geometric_stiffness_product, second_order_energies, second_order_forces};
-pub use shape::{shape_functions, shape_gradients};
+pub use mesh::checked::Mesh;
+pub use mesh::locate::Location;
+pub use mesh::msh::{msh_bytes, parse_msh, read_msh};
+pub use mesh::parts::{MeshParts, NodeGroup, SurfaceGroup};
+pub use nonlinear::geometric_stiffness::{GeometricTerms, extended_geometric_stiffness, reduced_geometric_stiffness};
+pub use nonlinear::second_order::{geometric_stiffness_product, second_order_energies, second_order_forces};
 pub use stress::{COMPONENTS, StressError, StressRecovery, StressSites, principal_stresses, von_mises};

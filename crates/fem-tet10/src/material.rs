@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::error::AssemblyError;
-use crate::mesh::Mesh;
+use crate::mesh::checked::Mesh;
 
 /// An isotropic, linearly elastic material.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize, serde::Serialize)]

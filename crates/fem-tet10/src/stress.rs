@@ -17,13 +17,15 @@ use faer::{Mat, MatRef};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use crate::coupling::Incidence;
-use crate::deformation::{check_field, displacement_gradients, relative_displacements, second_strain, strain, stress};
+use crate::assembly::coupling::Incidence;
+use crate::element::deformation::{
+    check_field, displacement_gradients, relative_displacements, second_strain, strain, stress,
+};
+use crate::element::integration::{IntegrationPoint, Rules};
+use crate::element::shape::{NODES, shape_gradients};
 use crate::error::AssemblyError;
-use crate::integration::{IntegrationPoint, Rules};
 use crate::material::{Material, Materials};
-use crate::mesh::Mesh;
-use crate::shape::{NODES, shape_gradients};
+use crate::mesh::checked::Mesh;
 
 pub use error_estimate::StressError;
 pub use invariants::{principal_stresses, von_mises};

@@ -8,36 +8,18 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-mod animation;
-mod axis;
+mod body;
 mod chart;
-mod chart_grid;
+mod document;
 mod error;
-mod facets;
-mod font;
-mod formats;
-mod inset;
-mod key;
-mod path;
-mod pdf;
-mod picture;
-mod plot;
-mod render;
-mod series;
-mod shapes;
-mod surface;
-mod view;
 
-#[cfg(test)]
-mod test_body;
-
-pub use animation::{Animation, Frame};
-pub use axis::Scale;
-pub use chart::{LineChart, Reference};
-pub use chart_grid::ChartGrid;
+pub use body::animation::{Animation, Frame};
+pub use body::shapes::{Panel, ShapeGrid};
+pub use body::surface::{facets, sharp_edges};
+pub use body::view::View;
+pub use chart::axis::Scale;
+pub use chart::grid::ChartGrid;
+pub use chart::lines::{LineChart, Reference};
+pub use chart::series::{Series, Stroke};
+pub use document::formats::files;
 pub use error::FigureError;
-pub use formats::files;
-pub use series::{Series, Stroke};
-pub use shapes::{Panel, ShapeGrid};
-pub use surface::{facets, sharp_edges};
-pub use view::View;

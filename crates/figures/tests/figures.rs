@@ -1,7 +1,7 @@
 //! Figures of every kind. They are left in the folder `flexframe-figures` of the system's folder for
 //! temporary files, to be looked at.
 
-#[path = "../src/test_body.rs"]
+#[path = "../src/body/test_body.rs"]
 mod test_body;
 
 use figures::*;

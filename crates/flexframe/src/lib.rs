@@ -21,33 +21,17 @@
 pub use {advice, dynamics, fem_tet10, figures, frames_rk4, modal, results, rigid_kin, scene};
 pub use {faer, nalgebra};
 
-pub mod advise;
-pub mod animation;
-pub mod campbell;
-pub mod columns;
-pub mod cost;
+mod commands;
 pub mod drawn;
-mod effects;
-pub mod export;
 pub mod failure;
-pub mod fmu;
+mod files;
 pub mod forked;
-pub mod given_file;
-pub mod html_report;
-mod json;
-pub mod mode_shapes;
-pub mod modes;
-pub mod new_scene;
-pub mod outputs;
-pub mod paper;
-pub mod peak_stress;
 pub mod plausible;
 pub mod report;
-mod results_path;
-pub mod row;
-pub mod run;
-mod scene_file;
+mod rows;
 pub mod surface;
-pub mod sweep;
-mod units;
-pub mod write_error;
+pub use commands::{
+    advise, animation, campbell, cost, export, fmu, html_report, mode_shapes, modes, new_scene, paper, run, sweep,
+};
+pub use files::{given_file, outputs, write_error};
+pub use rows::{columns, peak_stress, row};

@@ -8,7 +8,7 @@ use dynamics::Effect;
 use fem_tet10::{Material, Materials};
 use scene::{Body, Choice, Doubt, Load, Model, Scene, Units};
 
-use crate::units::UnitLabels;
+use crate::rows::units::UnitLabels;
 
 /// Young's moduli of materials, Pa: from the softest gels to above diamond.
 const YOUNG_MODULI: [f64; 2] = [1e2, 2e12];

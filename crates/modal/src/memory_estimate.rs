@@ -9,12 +9,12 @@ use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_s
 use faer::{Mat, Par, Spec};
 use rayon::prelude::*;
 
-use crate::columns::Columns;
-use crate::mass_matrix::MassMatrix;
-use crate::products::WIDTH;
-use crate::reduction_parts::{general_vectors, nodal_vectors, products_bytes};
-use crate::stiffness::StiffnessMatrix;
-use crate::symbolic::{Supernodal, Symbolic};
+use crate::factor::symbolic::{Supernodal, Symbolic};
+use crate::matrix::columns::Columns;
+use crate::matrix::mass_matrix::MassMatrix;
+use crate::matrix::products::WIDTH;
+use crate::matrix::stiffness::StiffnessMatrix;
+use crate::reduction::parts::{general_vectors, nodal_vectors, products_bytes};
 
 /// Bytes of a number or an index.
 const WORD: usize = 8;
@@ -134,7 +134,8 @@ impl MemoryEstimate {
     /// Bytes for the ordering of K + sM and the pattern of its factor.
     pub(crate) fn of_ordering(&self) -> usize {
         // The graph grows by doubling.
-        let graph = crate::ordering::ordering_bytes(self.unknowns / 3, self.entries / 9) + 2 * 4 * self.entries / 9;
+        let graph =
+            crate::factor::ordering::ordering_bytes(self.unknowns / 3, self.entries / 9) + 2 * 4 * self.entries / 9;
         graph.max(2 * WORD * (self.pattern + 3 * self.unknowns))
     }
 
@@ -212,7 +213,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::supernodes::Supernodes;
+    use crate::factor::supernodes::Supernodes;
 
     #[test]
     fn a_dense_factor_takes_a_sixth_of_the_cube_of_its_size() {

@@ -28,20 +28,12 @@
 mod block;
 mod checkpoint;
 mod column;
-mod description;
+mod container;
 mod error;
-mod lock;
 mod metadata;
-mod paths;
+mod paraview;
 mod reader;
-mod room;
-mod seal;
 mod shapes;
-mod store;
-mod structure;
-mod vtk;
-mod vtkhdf;
-mod vtu;
 mod writer;
 
 #[cfg(test)]
@@ -50,9 +42,9 @@ extern crate self as results; // for what the tests share
 pub use column::{Column, Values, present};
 pub use error::FileError;
 pub use metadata::{BodyProperties, EffectProperties, MeshProperties, Metadata, Units};
+pub use paraview::fields::{CellKind, Field, Grid};
+pub use paraview::vtkhdf::VtkHdf;
+pub use paraview::vtu::{write_pvd, write_vtu};
 pub use reader::{ColumnTable, Results};
 pub use shapes::{Shapes, StressShapes};
-pub use vtk::{CellKind, Field, Grid};
-pub use vtkhdf::VtkHdf;
-pub use vtu::{write_pvd, write_vtu};
 pub use writer::{Expected, Resumed, Writer, bytes_per_row, unfinished};

@@ -2,9 +2,10 @@
 
 use crate::checkpoint::{Checkpoint, Sums};
 use crate::column::{of_point, present};
-use crate::description::Description;
-use crate::store::Store;
-use crate::{Column, FileError, Metadata, Shapes, seal};
+use crate::container::description::Description;
+use crate::container::seal;
+use crate::container::store::Store;
+use crate::{Column, FileError, Metadata, Shapes};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::Path;

@@ -3,11 +3,11 @@
 use crate::block::Block;
 use crate::checkpoint::{self, Checkpoint, Sums};
 use crate::column::present;
+use crate::container::paths::ResultsPaths;
+use crate::container::room::Room;
+use crate::container::store::{ShapeSource, Store};
 use crate::error::check_length;
-use crate::paths::ResultsPaths;
 use crate::reader::Results;
-use crate::room::Room;
-use crate::store::{ShapeSource, Store};
 use crate::{Column, FileError, Metadata, Shapes, Values};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

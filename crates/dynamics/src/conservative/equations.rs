@@ -8,7 +8,7 @@ use crate::body::motion_state::MotionState;
 use crate::body::shapes::PointShapes;
 use crate::conservative::body::ConservativeBody;
 use crate::conservative::errors::ErrorSize;
-use crate::conservative::evaluation::Evaluation;
+use crate::conservative::rates::evaluation::Evaluation;
 use crate::conservative::state::{first_modes, part};
 use crate::equations::sizes::Sizes;
 use crate::equations::{self, Equations, ErrorNorm, Glance, Oscillators};

@@ -5,7 +5,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::body::shapes::PointShapes;
 use crate::conservative::body::{ConservativeBody, Translation};
-use crate::conservative::evaluation::Evaluation;
+use crate::conservative::rates::evaluation::Evaluation;
 use crate::conservative::state::{get, part};
 use crate::error::RateError;
 use crate::observation::reaction::HeldMotion;

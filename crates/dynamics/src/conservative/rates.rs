@@ -1,11 +1,17 @@
 //! The rates of a state.
 
+mod acceleration;
+mod deformation;
+pub(super) mod evaluation;
+mod inertia_forces;
+mod velocities;
+
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 use rigid_kin::{f_inverse, transformation_matrix};
 
 use crate::conservative::body::{ConservativeBody, Translation, along};
-use crate::conservative::evaluation::Evaluation;
+use crate::conservative::rates::evaluation::Evaluation;
 use crate::conservative::state::{Slow, get, part, set};
 use crate::error::RateError;
 use crate::load::{Applied, Coordinates, Kinematics};

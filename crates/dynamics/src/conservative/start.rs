@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::body::initial::Initial;
 use crate::body::motion_state::MotionState;
 use crate::conservative::body::{ConservativeBody, Translation, along};
-use crate::conservative::evaluation::Evaluation;
+use crate::conservative::rates::evaluation::Evaluation;
 use crate::conservative::state::{BodyList, Slow, get, part, set};
 use crate::error::{RateError, SetupError};
 use crate::matrix::four::Padded;

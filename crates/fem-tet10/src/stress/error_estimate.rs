@@ -5,10 +5,10 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::{COMPONENTS, StressRecovery};
-use crate::deformation::{check_field, displacement_gradients, relative_displacements, strain, stress};
+use crate::element::deformation::{check_field, displacement_gradients, relative_displacements, strain, stress};
+use crate::element::shape::shape_functions;
 use crate::error::AssemblyError;
 use crate::material::Material;
-use crate::shape::shape_functions;
 
 /// Strain energies of an element, or of a body: of its stress, and of the difference between its stress and the
 /// recovered one.

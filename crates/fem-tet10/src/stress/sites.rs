@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use crate::coupling::Incidence;
-use crate::locate::Location;
+use crate::assembly::coupling::Incidence;
 use crate::material::Material;
-use crate::mesh::Mesh;
+use crate::mesh::checked::Mesh;
+use crate::mesh::locate::Location;
 
 /// A weight of a node below which a point is not at it.
 const WEIGHTLESS: f64 = 1e-6;

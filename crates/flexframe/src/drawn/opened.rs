@@ -6,8 +6,8 @@ use body_file::{BodyFile, BodyFileError};
 use results::{FileError, MeshProperties, Results, Shapes};
 
 use super::{hash, of_body_file};
-use crate::columns::COLUMNS;
-use crate::scene_file;
+use crate::files::scene_file;
+use crate::rows::columns::COLUMNS;
 
 /// A results file, and the shapes of its body.
 #[derive(Debug)]

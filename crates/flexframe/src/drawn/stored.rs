@@ -9,8 +9,8 @@ use scene::{Body, Model, Scene};
 
 use super::hash;
 use super::of_model::{surface, surface_shapes_of};
-use crate::results_path::results_path;
-use crate::scene_file;
+use crate::files::results_path::results_path;
+use crate::files::scene_file;
 
 /// Shapes of more bytes stay in the body file.
 const MAX_BYTES: u64 = 256_000_000;

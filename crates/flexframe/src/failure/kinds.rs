@@ -13,21 +13,21 @@ use scene::{BuildError, SceneError, StartError};
 use slepc::SlepcError;
 
 use super::{Details, Failure, Kind};
-use crate::animation::AnimationError;
-use crate::campbell::CampbellError;
-use crate::cost::CostError;
+use crate::commands::animation::AnimationError;
+use crate::commands::campbell::CampbellError;
+use crate::commands::cost::CostError;
+use crate::commands::export::ExportError;
+use crate::commands::fmu::FmuError;
+use crate::commands::html_report::HtmlReportError;
+use crate::commands::mode_shapes::ShapesError;
+use crate::commands::new_scene::NewSceneError;
+use crate::commands::paper::PaperError;
+use crate::commands::run::{RunError, RunFailure};
+use crate::commands::sweep::{SWEEP_CURE, SweepError};
 use crate::drawn::DrawnError;
-use crate::export::ExportError;
-use crate::fmu::FmuError;
-use crate::given_file::OtherFile;
-use crate::html_report::HtmlReportError;
-use crate::mode_shapes::ShapesError;
-use crate::new_scene::NewSceneError;
-use crate::outputs::OutputError;
-use crate::paper::PaperError;
-use crate::run::{RunError, RunFailure};
-use crate::sweep::{SWEEP_CURE, SweepError};
-use crate::write_error::WriteError;
+use crate::files::given_file::OtherFile;
+use crate::files::outputs::OutputError;
+use crate::files::write_error::WriteError;
 
 impl Failure for SceneError {
     fn kind(&self) -> Kind {

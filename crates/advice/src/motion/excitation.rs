@@ -1,0 +1,236 @@
+//! Excitation of the rigid motions and of each mode, in modal coordinates: with mass-normalised shapes, forces and motions
+//! of all of them are on one scale.
+
+use dynamics::{DrivenMotion, History, LoadFrame, Pattern, SharedLoad};
+use nalgebra::{Matrix3, Matrix3xX, Vector3};
+
+use crate::motion::case::{Case, StaticCompliance};
+use crate::motion::course::Course;
+use crate::table::relative::relative;
+
+/// A load: its largest forces on the translations, the rotations and each mode where its history is 1.
+#[derive(Debug, Clone)]
+pub(crate) struct Source {
+    pub translation: f64,
+    pub rotation: f64,
+    /// nf; and as the load meets the body at the beginning.
+    pub modal: Vec<f64>,
+    pub modal_at_start: Vec<f64>,
+    /// Displacement of each mode where the load acts (nf).
+    shapes: Vec<Vector3<f64>>,
+    pub course: Course,
+    /// True if its direction turns in the body as the body turns, by `turn` at the most.
+    pub dead: bool,
+    turn: f64,
+    pub gravity: bool,
+}
+
+/// How the body turns, bounded above.
+#[derive(Debug, Clone)]
+pub(crate) struct Spin {
+    /// Largest |ω|.
+    pub largest: f64,
+    /// |ω| that is there without doubt: at the beginning, or driven.
+    pub certain: f64,
+    /// √(2 × energy of rotation): largest, and without doubt.
+    pub momentum: f64,
+    pub certain_momentum: f64,
+    /// Largest |ω̇|.
+    pub acceleration: f64,
+    /// Directions of ω that are possible: I, aaᵀ, or zero.
+    pub directions: Matrix3<f64>,
+    /// Largest angle turned.
+    pub turn: f64,
+    /// True if ω is steady.
+    pub steady: bool,
+}
+
+/// Displacement of a point in a mode, of the largest there is, that is rounding: gravity neither turns a free body nor
+/// moves its modes.
+const ROUNDING: f64 = 1e-10;
+
+impl Source {
+    /// The source of a load on the body of `case` that may turn by `turn` rad. A load that is no pattern of forces times a
+    /// history
+    /// counts for nothing: what it will do is not known before the run.
+    fn new(load: &SharedLoad, course: &Course, turn: f64, gravity: bool, case: &Case) -> Self {
+        let nothing = || {
+            let columns = vec![Vector3::zeros(); 6 + case.body.flexible()];
+            Pattern { columns, vector: Vector3::x(), frame: LoadFrame::Body, local: false }
+        };
+        let Pattern { columns, vector, frame, local } = load.pattern().unwrap_or_else(nothing);
+        let vector = if frame == LoadFrame::Global { case.initial.attitude.to_body(&vector) } else { vector };
+        let dead = frame == LoadFrame::Global && turn > 0.0;
+        let astray = if dead { turn.min(1.0) } else { 0.0 };
+        let largest = |rows: &[Vector3<f64>]| {
+            let rows = Matrix3xX::from_columns(rows);
+            let worst = (&rows * rows.transpose()).symmetric_eigenvalues().max().max(0.0).sqrt() * vector.norm();
+            ((rows.transpose() * vector).norm() + astray * worst).min(worst)
+        };
+        let turning = &columns[3..6];
+        let arm = case.body.rotation_basis.norm() * case.length;
+        let is_rounding = local && turning.iter().all(|column| column.norm() <= ROUNDING * arm);
+        let moved = |of: &dyn Fn(&Vector3<f64>) -> f64| -> Vec<f64> {
+            let modes = columns[6..].iter().zip(case.peaks);
+            modes.map(|(shape, peak)| if local && shape.norm() <= ROUNDING * peak { 0.0 } else { of(shape) }).collect()
+        };
+        Self {
+            translation: largest(&columns[..3]),
+            rotation: if is_rounding { 0.0 } else { largest(turning) },
+            modal: moved(&|shape| largest(&[*shape])),
+            modal_at_start: moved(&|shape| shape.dot(&vector).abs()),
+            shapes: columns[6..].to_vec(),
+            course: course.clone(),
+            dead,
+            turn,
+            gravity,
+        }
+    }
+
+    /// The sources of all loads of a case, whose courses are `courses`, on a body that may turn by `turn` rad.
+    fn all(case: &Case, courses: &[Course], turn: f64) -> Vec<Self> {
+        let of = |(i, (load, course))| {
+            let gravity = case.is_gravity.get(i).is_some_and(|is_gravity| *is_gravity);
+            Self::new(load, course, turn, gravity, case)
+        };
+        case.loads.iter().zip(courses).enumerate().map(of).collect()
+    }
+
+    /// Largest part of a static response that the first `keep` modes, of frequencies `omega`, leave out where the load acts.
+    /// Responses in other directions than the first count as far as the body may turn.
+    pub(crate) fn left_out(&self, whole: &StaticCompliance, omega: &[f64], keep: usize) -> f64 {
+        let part = |whole: f64, modal: &dyn Fn(usize) -> f64| -> f64 {
+            let carried: f64 = (0..keep).map(|k| (modal(k) / omega[k]).powi(2)).sum();
+            if whole > 0.0 { relative((whole - carried).max(0.0), whole) } else { 0.0 }
+        };
+        let at_start = part(whole.at_start, &|k| self.modal_at_start[k]);
+        let astray = if self.dead { self.turn.min(1.0).powi(2) } else { 0.0 };
+        let turned = whole.turned.iter().map(|(vector, work)| astray * part(*work, &|k| self.shapes[k].dot(vector)));
+        turned.fold(at_start, f64::max)
+    }
+
+    /// Largest impulse where the force is 1; with a direction a(t) that turns, by parts: `|∫ h a| ≤ max|∫h| (1 + ∫|a'|)`.
+    pub(crate) fn impulse(&self) -> f64 {
+        (self.course.net_integral * (1.0 + self.turn)).min(self.course.magnitude_integral)
+    }
+}
+
+/// A deformation of a tenth of the length adds as much to the arms of the loads; beyond it [`crate::Review`] warns.
+const ARMS: f64 = 1.1;
+/// Angles that are tried before the loads are allowed all directions.
+const TRIES: usize = 20;
+
+impl Spin {
+    /// Bounds that hold for the body with its undeformed inertia, and the loads in the directions they may come to have.
+    pub(crate) fn new(case: &Case) -> (Self, Vec<Source>) {
+        let body = case.body;
+        let of = |load: &'_ SharedLoad| load.history().cloned().unwrap_or(History::Constant);
+        let histories = case.loads.iter().map(of);
+        let courses: Vec<Course> =
+            histories.map(|history| Course::new(&history, case.end, case.costly_histories())).collect();
+        if let Some(drive) = case.drive {
+            let course = Course::new(&drive.speed.history, case.end, case.costly_histories());
+            let (axis, speed) = match drive.motion {
+                DrivenMotion::Turn { axis } => (axis, drive.speed.amplitude.abs() * course.largest),
+                DrivenMotion::Slide { .. } => (Vector3::zeros(), 0.0),
+            };
+            let momentum = speed * axis.dot(&(body.inertia * axis)).max(0.0).sqrt();
+            let turn = drive.speed.amplitude.abs() * course.magnitude_integral * axis.norm();
+            let acceleration = drive.speed.amplitude.abs() * course.steepest() * axis.norm();
+            let spin = Self {
+                largest: speed,
+                certain: speed,
+                momentum,
+                certain_momentum: momentum,
+                acceleration,
+                directions: axis * axis.transpose(),
+                turn,
+                steady: acceleration == 0.0,
+            };
+            return (spin, Source::all(case, &courses, turn));
+        }
+        let basis = body.rotation_basis;
+        let initial = (basis.transpose() * body.inertia * case.initial.omega).norm();
+        let largest_of = |momentum: f64| basis.singular_values().max() * momentum;
+        let met = |turn: f64| {
+            let sources = Source::all(case, &courses, turn);
+            let momentum = initial + ARMS * sources.iter().map(|s| s.rotation * s.impulse()).sum::<f64>();
+            (sources, momentum)
+        };
+        // As long as the body has turned by no more than `turn`, its spin is bounded; where that spin turns it no
+        // further to the end, it never gets there.
+        let mut turn = 0.0;
+        let (mut sources, mut momentum) = met(turn);
+        for _ in 0..TRIES {
+            let reached = largest_of(momentum) * case.end;
+            if reached <= turn {
+                break;
+            }
+            turn = 1.05 * reached;
+            (sources, momentum) = met(turn);
+        }
+        if largest_of(momentum) * case.end > turn {
+            (sources, momentum) = met(f64::INFINITY);
+        }
+        let directions = body.motion.rotation_projector();
+        let certain = (directions * case.initial.omega).norm();
+        let torque_free = sources.iter().all(|s| s.rotation * s.impulse() <= 1e-12 * initial);
+        let omega = case.initial.omega;
+        let about_principal =
+            (body.inertia * omega).cross(&omega).norm() <= 1e-9 * omega.dot(&(body.inertia * omega)).abs();
+        let steady = torque_free && (about_principal || body.motion.count() < 3);
+        let largest = if steady {
+            certain
+        } else if torque_free && body.motion.count() >= 3 {
+            polhode(&body.inertia, &omega).min(largest_of(momentum))
+        } else {
+            largest_of(momentum)
+        };
+        let pushed: f64 = sources.iter().map(|s| s.rotation * s.course.largest).sum();
+        let tumbling = if steady || body.motion.count() < 3 { 0.0 } else { largest * largest };
+        let caused = sources.iter().map(|s| s.rotation * s.impulse()).fold(0.0, f64::max);
+        let spin = Self {
+            largest,
+            certain,
+            momentum,
+            certain_momentum: initial.max(0.1 * caused),
+            acceleration: largest_of(pushed) + tumbling,
+            directions: if steady && omega.norm() > 0.0 {
+                let axis = omega.normalize();
+                axis * axis.transpose()
+            } else {
+                directions
+            },
+            turn: largest * case.end,
+            steady,
+        };
+        (spin, sources)
+    }
+}
+
+impl Spin {
+    /// Coriolis force 2Ω G q̇ and Euler force ω̇ G q of a unit of a mode at `omega`.
+    pub(crate) fn pull(&self, gyroscopic: f64, omega: f64) -> f64 {
+        gyroscopic * (2.0 * self.largest * omega + self.acceleration)
+    }
+}
+
+/// Largest factor by which a small deformation raises the spin of a body that tumbles freely.
+const DEFORMED: f64 = 1.05;
+
+/// Largest |ω| of a free rigid body that begins at `omega`: its squares x_i along the principal axes keep Σ J_i x_i and
+/// Σ J_i² x_i, so that the largest sum is at a discontinuity, where one of them is zero.
+fn polhode(inertia: &Matrix3<f64>, omega: &Vector3<f64>) -> f64 {
+    let j = inertia.symmetric_eigenvalues();
+    let energy = omega.dot(&(inertia * omega));
+    let momentum = (inertia * omega).norm_squared();
+    let mut largest = omega.norm_squared();
+    for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+        let x_b = (momentum - j[a] * energy) / (j[b] * (j[b] - j[a]));
+        let x_a = (energy - j[b] * x_b) / j[a];
+        if x_a >= 0.0 && x_b >= 0.0 {
+            largest = largest.max(x_a + x_b);
+        }
+    }
+    DEFORMED * largest.sqrt()
+}

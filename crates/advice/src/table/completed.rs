@@ -1,0 +1,36 @@
+//! The advice with what is found out after the modes to keep have been chosen.
+
+use dynamics::Effect;
+
+use crate::table::row::Row;
+use crate::table::rows::Advice;
+
+/// Findings about the body that a run is made with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Findings {
+    /// [`Advice::deflection`] of that body: static shapes carry some of it, too.
+    pub deflection: f64,
+    /// The row of [`crate::stress_row`], where loads or a drive stress the body.
+    pub stress: Option<Row>,
+    /// True if the body has no static shapes for the stretch by the spin.
+    pub lacks_stretch: bool,
+}
+
+impl Advice {
+    /// The same advice with what has been found since. Of the two reasons for stiffening, the stress of the spin and that
+    /// of loads and drives, the one with the larger influence has the row.
+    pub fn completed(self, findings: Findings) -> Self {
+        let mut advice = Self { deflection: findings.deflection, ..self };
+        let stiffening = &mut advice.effects[Effect::GeometricStiffening];
+        if let Some(stress) = findings.stress.filter(|stress| stiffening.influence <= stress.influence) {
+            *stiffening = stress;
+        }
+        if findings.lacks_stretch && advice.stretch >= advice.tolerance {
+            advice.static_correction.why += LACKS_STRETCH;
+        }
+        advice
+    }
+}
+
+const LACKS_STRETCH: &str = " The answer lacks what the spin stretches beyond the modes: take static_correction = true \
+     with the scheme exponential, or more modes.";

@@ -1,0 +1,4 @@
+//! Terms beyond linear strain.
+
+pub(crate) mod geometric_stiffness;
+pub(crate) mod second_order;

@@ -1,0 +1,204 @@
+//! Terms of a St. Venant–Kirchhoff body beyond the linear one: the strain of second order, its forces and its energy.
+//!
+//! ```text
+//! E = ε(u) + ½ ε₂(u,u)        ε(a) = sym ∇a        ε₂(a,b) = sym(∇aᵀ ∇b)        W = ½ ∫ E : C : E dV
+//!
+//! v·g_ab = ∫ ε(v):C:ε₂(a,b) + ε(a):C:ε₂(v,b) + ε(b):C:ε₂(v,a) dV        g_ab = ∂²f_int/∂q_a∂q_b at rest
+//! ```
+//!
+//! All integrands are sums of products of ∇v with a matrix P, so a force on a node is `∫ P ∇N_i dV`. As in the reduced
+//! geometric stiffness, displacements count against the element's first node, whose force is what balances the others.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
+use rayon::prelude::*;
+
+use crate::element::deformation::{OTHERS, check_field};
+use crate::element::integration::Rules;
+use crate::element::lanes::{Group, GroupPoint, LANES, Lame, Lanes, PARTS, Rows, Tensors};
+use crate::element::vectorized::vectorized;
+use crate::error::AssemblyError;
+use crate::material::Materials;
+use crate::mesh::checked::Mesh;
+
+/// Groups of elements whose forces are held at once, before they are added in the order of the groups: the sums are the same
+/// for any number of threads.
+const BLOCK: usize = 256;
+
+/// The forces g_ab (N×p, force per squared unit of the fields) of each pair (a, b) of columns of `fields` (N×k, length,
+/// row `3·node + axis`): the second derivatives of the internal forces of a St. Venant–Kirchhoff body at rest.
+///
+/// `u·g_ab` is symmetric in u, a and b. With `r = ω × X`, `g_rb = ω × K b − K (ω × b)`.
+///
+/// # Errors
+/// Materials that do not fit the mesh; fields whose rows are not the degrees of freedom, or with an entry that is not
+/// finite.
+///
+/// # Panics
+/// Where a pair names a column that `fields` does not have.
+pub fn second_order_forces(
+    mesh: &Mesh,
+    materials: &Materials,
+    fields: MatRef<'_, f64>,
+    pairs: &[[usize; 2]],
+) -> Result<Mat<f64>, AssemblyError> {
+    element_forces(mesh, materials, fields, pairs, |[a, of_a], [b, of_b], lame| {
+        a.second_strain(b).stress(lame).plus(&b.times(of_a)).plus(&a.times(of_b))
+    })
+}
+
+/// `K(u) V` (N×k, force) for the columns V of `fields` (N×k, length), where K(u) is the initial stress of `displacement`
+/// (N×1, length), as in [`reduced_geometric_stiffness`](crate::reduced_geometric_stiffness).
+///
+/// # Errors
+/// As [`second_order_forces`].
+pub fn geometric_stiffness_product(
+    mesh: &Mesh,
+    materials: &Materials,
+    displacement: MatRef<'_, f64>,
+    fields: MatRef<'_, f64>,
+) -> Result<Mat<f64>, AssemblyError> {
+    check_field(mesh, "displacements", displacement)?;
+    check_field(mesh, "fields", fields)?;
+    let columns = fields.ncols();
+    let column = |i: usize, j: usize| if j < columns { fields[(i, j)] } else { displacement[(i, 0)] };
+    let all = Mat::from_fn(fields.nrows(), columns + 1, column);
+    let pairs: Vec<[usize; 2]> = (0..columns).map(|field| [field, columns]).collect();
+    element_forces(mesh, materials, all.as_ref(), &pairs, |[a, _], [_, of_u], _| a.times(of_u))
+}
+
+/// `∫ ε₂(a,b) : C : ε₂(c,d) dV` (energy, one for each of `quadruples`) of columns a, b, c, d of `fields` (N×k, length).
+///
+/// An eighth of it, with all four alike, is the strain energy of fourth order of `u`, before the body has found the
+/// displacements of second order that relieve it.
+///
+/// # Errors
+/// As [`second_order_forces`].
+///
+/// # Panics
+/// Where a quadruple names a column that `fields` does not have.
+pub fn second_order_energies(
+    mesh: &Mesh,
+    materials: &Materials,
+    fields: MatRef<'_, f64>,
+    quadruples: &[[usize; 4]],
+) -> Result<Vec<f64>, AssemblyError> {
+    check_field(mesh, "fields", fields)?;
+    let materials = materials.of_elements(mesh)?;
+    if quadruples.is_empty() {
+        return Ok(Vec::new());
+    }
+    // The strain and the stress of a pair are found once at a point, in how many quadruples it may be.
+    let mut pairs: Vec<[usize; 2]> = Vec::new();
+    let mut number = |a: usize, b: usize| {
+        let pair = [a.min(b), a.max(b)];
+        pairs.iter().position(|other| *other == pair).unwrap_or_else(|| {
+            pairs.push(pair);
+            pairs.len() - 1
+        })
+    };
+    let products: Vec<[usize; 2]> = quadruples.iter().map(|[a, b, c, d]| [number(*a, *b), number(*c, *d)]).collect();
+    let (rules, fields, groups) = (Rules::new(), Rows::new(fields), Group::all(mesh));
+    let points = rules.fine();
+    let zero = || Mat::<f64>::zeros(pairs.len(), pairs.len());
+    let of_part = |part: &[Group]| -> Mat<f64> {
+        let mut sum = zero();
+        let (mut relative, mut gradients) = (Vec::new(), Vec::new());
+        // By pair, then point.
+        let [mut strains, mut stresses] = [(); 2].map(|()| vec![[[0.0; LANES]; 6]; points.len() * pairs.len()]);
+        for group in part {
+            vectorized(
+                #[inline(always)]
+                || {
+                    let (lame, positions) = (group.lame(&materials), group.positions(mesh));
+                    fields.relative(mesh, group, &mut relative);
+                    for (row, rule) in points.iter().enumerate() {
+                        let point = GroupPoint::new(&positions, rule, group.count);
+                        gradients.clear();
+                        for relative in &relative {
+                            gradients.push(point.gradient(relative));
+                        }
+                        for (pair, [a, b]) in pairs.iter().enumerate() {
+                            let strain = gradients[*a].second_strain(&gradients[*b]);
+                            let place = points.len() * pair + row;
+                            strains[place] = strain.upper(1.0);
+                            stresses[place] = strain.stress(&lame).scaled(&point.volume).upper(2.0);
+                        }
+                    }
+                },
+            );
+            let [strains, stresses] = [&strains, &stresses].map(|numbers| {
+                let numbers = numbers.as_flattened().as_flattened();
+                MatRef::from_column_major_slice(numbers, 6 * LANES * points.len(), pairs.len())
+            });
+            matmul(sum.as_mut(), Accum::Add, stresses.transpose(), strains, 1.0, Par::Seq);
+        }
+        sum
+    };
+    let parts: Vec<Mat<f64>> = groups.par_chunks(groups.len().div_ceil(PARTS)).map(of_part).collect();
+    let sum = parts.into_iter().fold(zero(), |sum, part| sum + part);
+    Ok(products.iter().map(|[first, second]| sum[(*first, *second)]).collect())
+}
+
+/// Forces (N×pairs) whose virtual work is `Σ ∫ ∇v : P dV`; `force` gives the matrix P of a pair of fields, which is a sum of
+/// products of two gradients, from ∇u and C:ε(u) of the first and of the second field and from Lamé's λ and μ.
+fn element_forces(
+    mesh: &Mesh,
+    materials: &Materials,
+    fields: MatRef<'_, f64>,
+    pairs: &[[usize; 2]],
+    force: impl Fn(&[Tensors; 2], &[Tensors; 2], &Lame) -> Tensors + Sync,
+) -> Result<Mat<f64>, AssemblyError> {
+    check_field(mesh, "fields", fields)?;
+    let materials = materials.of_elements(mesh)?;
+    let rows = fields.nrows();
+    if pairs.is_empty() {
+        return Ok(Mat::zeros(rows, 0));
+    }
+    let (rules, fields, groups) = (Rules::new(), Rows::new(fields), Group::all(mesh));
+    // By pair, then node but the first, then axis.
+    let of_group = |group: &Group| -> Vec<[[Lanes; 3]; OTHERS]> {
+        let mut sums = vec![[[[0.0; LANES]; 3]; OTHERS]; pairs.len()];
+        vectorized(
+            #[inline(always)]
+            || {
+                let (lame, positions) = (group.lame(&materials), group.positions(mesh));
+                let (mut relative, mut of_fields) = (Vec::new(), Vec::with_capacity(fields.columns));
+                fields.relative(mesh, group, &mut relative);
+                for rule in group.cubic_points(&rules) {
+                    let point = GroupPoint::new(&positions, rule, group.count);
+                    of_fields.clear();
+                    for relative in &relative {
+                        of_fields.push(point.gradient(relative).with_stress(&lame));
+                    }
+                    for ([a, b], sums) in pairs.iter().zip(&mut sums) {
+                        let force = force(&of_fields[*a], &of_fields[*b], &lame).scaled(&point.volume);
+                        point.add_forces(&force, sums);
+                    }
+                }
+            },
+        );
+        sums
+    };
+    let mut result = vec![0.0; rows * pairs.len()];
+    let mut add = |node: u32, axis: usize, pair: usize, force: f64| {
+        result[pairs.len() * (3 * node as usize + axis) + pair] += force;
+    };
+    for block in groups.chunks(BLOCK) {
+        let parts: Vec<Vec<[[Lanes; 3]; OTHERS]>> = block.par_iter().map(of_group).collect();
+        for (group, sums) in block.iter().zip(parts) {
+            for (lane, element) in group.elements[..group.count].iter().enumerate() {
+                let nodes = &mesh.elements()[*element];
+                for (place, node) in nodes[1..].iter().enumerate() {
+                    for axis in 0..3 {
+                        for (pair, sums) in sums.iter().enumerate() {
+                            add(*node, axis, pair, sums[place][axis][lane]);
+                            add(nodes[0], axis, pair, -sums[place][axis][lane]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    Ok(Mat::from_fn(rows, pairs.len(), |row, pair| result[row * pairs.len() + pair]))
+}

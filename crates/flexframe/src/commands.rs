@@ -1,0 +1,15 @@
+//! Commands, as functions.
+
+pub mod advise;
+pub mod animation;
+pub mod campbell;
+pub mod cost;
+pub mod export;
+pub mod fmu;
+pub mod html_report;
+pub mod mode_shapes;
+pub mod modes;
+pub mod new_scene;
+pub mod paper;
+pub mod run;
+pub mod sweep;

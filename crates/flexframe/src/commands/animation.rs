@@ -1,0 +1,313 @@
+//! `flexframe animate`: a scene or a results file as a moving picture.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::path::{Path, PathBuf};
+
+use dynamics::{Observation, Reached, Simulation, StepError};
+use figures::{Animation, FigureError, Frame, View};
+use nalgebra::Vector3;
+use results::Units;
+use rigid_kin::Attitude;
+use scene::{BuildError, Model, Scene};
+
+use crate::commands::export::ExportError;
+use crate::commands::modes::require_surface;
+use crate::commands::run::{self, RunError, RunProgress};
+use crate::drawn::{Drawn, Part};
+use crate::report::quantity;
+use crate::surface::Surface;
+
+/// An animation has no more frames.
+pub const MAX_FRAMES: u64 = 10_000;
+
+/// How the picture is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AnimationSettings {
+    /// Number of frames, first and last state among them (two to [`MAX_FRAMES`]).
+    pub frames: u64,
+    /// Factor on the deformation that is drawn.
+    pub magnification: f64,
+    /// Time of the first frame; `None` for the start of the run.
+    pub from: Option<f64>,
+    /// Time of the last frame; `None` for the end of the run.
+    pub to: Option<f64>,
+    /// From where the body is seen.
+    pub view: View,
+}
+
+impl Default for AnimationSettings {
+    fn default() -> Self {
+        Self { frames: 60, magnification: 1.0, from: None, to: None, view: View::default() }
+    }
+}
+
+/// An animation that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum AnimationError {
+    /// The scene could not be run.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// A step failed, and no picture is drawn.
+    #[error("{}: {source}", scene.display())]
+    Step {
+        /// The scene file.
+        scene: PathBuf,
+        /// The reason.
+        source: StepError,
+    },
+    /// There is nothing to draw.
+    #[error("{}: a rigid body without a mesh has no surface to draw; give it a mesh and `flexible = 0`", scene.display())]
+    NoMesh {
+        /// The scene file.
+        scene: PathBuf,
+    },
+    /// The name is not that of a GIF: it may be that of a file which is not to be replaced.
+    #[error("{}: the animation is a GIF; give its file a name that ends in .gif", path.display())]
+    NotGif {
+        /// Where it was to go.
+        path: PathBuf,
+    },
+    /// The times are not those of the run.
+    #[error(
+        "--from, --to: found the times from {from} to {to}, expected a part of the run, which goes from 0 to {end}\n = \
+         give --from and --to so that 0 ≤ from < to ≤ {end}, or leave them out"
+    )]
+    Times {
+        /// First time asked for.
+        from: f64,
+        /// Last time asked for.
+        to: f64,
+        /// End of the run.
+        end: f64,
+    },
+    /// The results file cannot be shown.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// The picture could not be drawn.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+}
+
+/// Runs a scene and draws it into a GIF at `path`, which ends in `.gif`; colours are the deformation. Returns a warning
+/// where the frames are too few to show the spin.
+///
+/// # Errors
+/// [`AnimationError`].
+pub fn animate(
+    scene: &Scene,
+    path: &Path,
+    settings: AnimationSettings,
+    mut progress: impl FnMut(RunProgress),
+) -> Result<Option<String>, AnimationError> {
+    require_gif(path)?;
+    require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)))?;
+    let [from, to] = settings.times(scene.time.end)?;
+    let model = Model::build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
+    let mut simulation =
+        model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
+    simulation.keep_last_step();
+    let last = settings.frames.clamp(2, MAX_FRAMES) - 1;
+    let surface = Surface::of_model(&model).ok_or_else(|| AnimationError::NoMesh { scene: scene.path.clone() })?;
+    let units = run::units(scene);
+    let body = PictureBody { title: &scene.title, units: &units, origin: model.body.origin, surface };
+    let mut picture = Picture::new(body, settings, (to - from) / last as f64);
+    for frame in 0..=last {
+        let part = frame as f64 / last as f64;
+        let due = from * (1.0 - part) + to * part;
+        let now = observed_at(&mut simulation, due)
+            .map_err(|source| AnimationError::Step { scene: scene.path.clone(), source })?;
+        picture.add(due, &now.origin_global, &now.attitude, &now.modal_displacement, &now.omega_body);
+        progress(RunProgress::Motion(simulation.time() / to));
+    }
+    picture.save(path)
+}
+
+/// Draws the rows of a results file, finished or not, as [`animate`] draws a scene. Each frame is a row: there are as many
+/// as asked for, or as there are rows.
+///
+/// # Errors
+/// [`AnimationError`].
+pub fn animate_results(
+    file: &Path,
+    path: &Path,
+    settings: AnimationSettings,
+    mut progress: impl FnMut(RunProgress),
+) -> Result<Option<String>, AnimationError> {
+    require_gif(path)?;
+    let Drawn { results, shapes, .. } = Drawn::open(file, Part::Surface).map_err(ExportError::from)?;
+    let shapes = shapes.ok_or_else(|| ExportError::NoMesh { path: file.to_owned() })?;
+    if shapes.faces.is_empty() {
+        return Err(ExportError::NoElements { path: file.to_owned() }.into());
+    }
+    let times = results.numbers("time").unwrap_or_default();
+    let [from, to] = settings.times(times.last().copied().unwrap_or_default())?;
+    let slack = 1e-9 * to;
+    let rows: Vec<usize> = (0..times.len()).filter(|row| (from - slack..=to + slack).contains(&times[*row])).collect();
+    let last = rows.len().min(settings.frames.clamp(2, MAX_FRAMES) as usize).saturating_sub(1);
+    if last == 0 {
+        let times = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
+        return Err(ExportError::NoRows { path: file.to_owned(), times }.into());
+    }
+    let chosen: Vec<usize> = (0..=last).map(|frame| rows[(frame * (rows.len() - 1) + last / 2) / last]).collect();
+    let interval = chosen.windows(2).map(|pair| times[pair[1]] - times[pair[0]]).fold(0.0, f64::max);
+    let run = &results.metadata;
+    let (origin, surface) = (run.body.origin.into(), Surface::new(shapes));
+    let body = PictureBody { title: &run.title, units: &run.units, origin, surface };
+    let mut picture = Picture::new(body, settings, interval);
+    for (frame, row) in chosen.into_iter().enumerate() {
+        let history = |path: &str| results.table(path).and_then(|table| table.row(row)).unwrap_or_default();
+        let vector = |path: &str| Vector3::from_iterator(history(path).iter().copied().chain([0.0; 3]));
+        let attitude = history("attitude").try_into().ok().and_then(|wxyz| Attitude::from_wxyz(wxyz).ok());
+        let attitude = attitude.unwrap_or(Attitude::identity());
+        let (origin, omega) = (vector("origin"), vector("angular_velocity"));
+        picture.add(times[row], &origin, &attitude, history("modal/displacement"), &omega);
+        progress(RunProgress::Motion(frame as f64 / last as f64));
+    }
+    picture.save(path)
+}
+
+fn require_gif(path: &Path) -> Result<(), AnimationError> {
+    match path.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("gif") => Ok(()),
+        _ => Err(AnimationError::NotGif { path: path.to_owned() }),
+    }
+}
+
+impl AnimationSettings {
+    /// Times of the first and the last frame of a run to this end.
+    fn times(&self, end: f64) -> Result<[f64; 2], AnimationError> {
+        let (from, to) = (self.from.unwrap_or(0.0), self.to.unwrap_or(end));
+        if 0.0 <= from && from < to && to <= end {
+            Ok([from, to])
+        } else {
+            Err(AnimationError::Times { from, to, end })
+        }
+    }
+}
+
+/// A moving picture in the making.
+struct Picture<'a> {
+    body: PictureBody<'a>,
+    settings: AnimationSettings,
+    /// Longest time from frame to frame.
+    interval: f64,
+    frames: Vec<Frame>,
+    /// Largest spin at a frame.
+    fastest: f64,
+}
+
+/// The body in a moving picture.
+struct PictureBody<'a> {
+    title: &'a str,
+    units: &'a Units,
+    /// Origin of the body frame, mesh axes.
+    origin: Vector3<f64>,
+    surface: Surface,
+}
+
+impl<'a> Picture<'a> {
+    /// A picture without frames.
+    fn new(body: PictureBody<'a>, settings: AnimationSettings, interval: f64) -> Self {
+        Self { body, settings, interval, frames: Vec::new(), fastest: 0.0 }
+    }
+
+    fn add(
+        &mut self,
+        time: f64,
+        origin_global: &Vector3<f64>,
+        attitude: &Attitude,
+        modal_displacement: &[f64],
+        omega_body: &Vector3<f64>,
+    ) {
+        self.fastest = self.fastest.max(omega_body.norm());
+        let PictureBody { units, origin, surface, .. } = &self.body;
+        let u = surface.displacements(&surface.shapes.coordinates(modal_displacement));
+        let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * self.settings.magnification).collect();
+        let decimals = decimals(self.interval);
+        self.frames.push(Frame {
+            points: surface.placed(origin, origin_global, attitude, &drawn),
+            values: u.iter().map(Vector3::norm).collect(),
+            caption: format!("t = {time:.decimals$} {}", units.time),
+        });
+    }
+
+    /// Writes it. Returns a warning where the frames are too few to show the spin.
+    fn save(self, path: &Path) -> Result<Option<String>, AnimationError> {
+        let Self { body: PictureBody { title, units, surface, .. }, settings, interval, frames, fastest } = self;
+        let factor = match settings.magnification {
+            1.0 => String::new(),
+            factor => format!(" (drawn {factor} times as large)"),
+        };
+        Animation {
+            title: title.to_owned(),
+            value_label: format!("displacement by deformation, {}{factor}", units.length),
+            triangles: &surface.triangles,
+            edges: &surface.edges,
+            frames: &frames,
+            frame_milliseconds: 50,
+            view: settings.view,
+            ground: true,
+            traced_point: None,
+        }
+        .save_gif(path)?;
+        Ok(aliased(interval, frames.len() as u64 - 1, fastest, &units.time))
+    }
+}
+
+/// The motion at a time that has not been passed yet.
+fn observed_at(simulation: &mut Simulation, due: f64) -> Result<Observation, StepError> {
+    while simulation.time() < due && simulation.advance(1)? != Reached::End {}
+    if simulation.time() <= due {
+        return simulation.observation();
+    }
+    let mut now = simulation.observation()?;
+    simulation.interpolate(due, &mut now)?;
+    Ok(now)
+}
+
+/// How many decimals tell the times of frames apart that are so far from each other.
+fn decimals(interval: f64) -> usize {
+    (-interval.log10().floor()).clamp(0.0, 15.0) as usize
+}
+
+/// A warning where the body turns by more than half a turn from frame to frame, so that it seems to turn slower or
+/// backwards. A quarter of a turn is seen as what it is.
+fn aliased(interval: f64, intervals: u64, fastest: f64, time_unit: &str) -> Option<String> {
+    let angle = fastest * interval;
+    if angle <= PI {
+        return None;
+    }
+    let enough = (intervals as f64 * angle / FRAC_PI_2).ceil() + 1.0;
+    let help = if enough <= MAX_FRAMES as f64 {
+        format!("--frames {enough:.0} shows it, or less of the time with --from and --to")
+    } else {
+        let time = (MAX_FRAMES - 1) as f64 * FRAC_PI_2 / fastest;
+        format!("show {} {time_unit} or less with --from, --to and --frames {MAX_FRAMES}", quantity(time))
+    };
+    Some(format!(
+        "the body turns by up to {:.2} turns from frame to frame, so that its spin looks slower than it is, or backwards: \
+         {help}",
+        angle / TAU
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spin_that_the_frames_do_not_show_is_told_with_the_frames_that_do() {
+        // 0.4 turns a frame is seen; 0.6 looks like 0.4 backwards.
+        assert_eq!(aliased(0.1, 10, 0.4 * TAU / 0.1, "s"), None);
+        let warning = aliased(0.1, 10, 0.6 * TAU / 0.1, "s").unwrap();
+        // Ten intervals of 0.6 turns are 24 quarters.
+        assert!(warning.contains("0.60 turns") && warning.contains("--frames 25 "), "{warning}");
+        let warning = aliased(1.0, 10, 1e4 * TAU, "s").unwrap();
+        assert!(warning.contains("--frames 10000") && warning.contains("show 0.249975 s"), "{warning}");
+    }
+
+    #[test]
+    fn times_of_frames_are_told_apart() {
+        assert_eq!([decimals(0.5), decimals(0.01), decimals(0.0012), decimals(3.0)], [1, 2, 3, 0]);
+    }
+}

@@ -1,0 +1,140 @@
+//! `flexframe campbell`: natural frequencies of a scene's body against the speed of a spin that is held.
+//!
+//! The body spins steadily about an axis through its origin: the centre of mass of a free body, a fixed point of one
+//! that is held (of a clamp or a slider the mean of its nodes). Frequencies are those that the body itself sees, so that
+//! order n stands for a load that comes by n times a turn, such as one that stands still in space. Vibrations are about
+//! the undeformed body, without damping and without the scene's loads.
+
+mod branches;
+mod critical;
+mod diagram;
+mod error;
+mod files;
+mod report;
+mod table;
+
+use std::path::Path;
+
+use dynamics::{Effect, SteadySpin};
+use nalgebra::Vector3;
+use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
+
+pub use branches::Branch;
+pub use critical::Critical;
+pub use error::CampbellError;
+pub use files::files;
+pub use report::{CampbellReport, SpinEffects};
+
+use crate::commands::modes::{frequency_unit, require_flexible};
+use crate::report::MeshReport;
+use branches::Branches;
+use error::MAX_SPEEDS;
+
+/// How far a diagram has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CampbellProgress {
+    /// The model is being built.
+    Build(BuildProgress),
+    /// The vibrations are followed from speed to speed.
+    Speeds {
+        /// Speeds that are done.
+        done: usize,
+        /// All of them.
+        total: usize,
+    },
+}
+
+/// Equally spaced spin speeds, both ends included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Speeds {
+    /// The lowest, radians per time, ≥ 0.
+    pub start: f64,
+    /// The highest, radians per time.
+    pub end: f64,
+    /// How many, 2 to 10 000.
+    pub count: usize,
+}
+
+impl Speeds {
+    fn values(&self) -> Result<Vec<f64>, CampbellError> {
+        let &Self { start, end, count } = self;
+        if !(start >= 0.0 && end > start && end.is_finite() && (2..=MAX_SPEEDS).contains(&count)) {
+            return Err(CampbellError::Speeds { start, end, count });
+        }
+        let last = (count - 1) as f64;
+        Ok((0..count).map(|i| ((last - i as f64) * start + i as f64 * end) / last).collect())
+    }
+}
+
+/// Settings of a diagram.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CampbellSettings {
+    /// Direction of the spin, axes of the mesh; any length but zero.
+    pub axis: [f64; 3],
+    /// The spin speeds.
+    pub speeds: Speeds,
+    /// Engine orders: numbers of times a turn that loads come by.
+    pub orders: Vec<f64>,
+}
+
+/// Computes the diagram of a scene, and writes `campbell.csv`, `critical_speeds.csv`, and `campbell` as SVG, PDF and PNG
+/// to `folder`.
+///
+/// Effects are those of the scene's `[effects]`, where `"auto"` is on. All its modes are kept (`flexible = "auto"`: the
+/// most there may be).
+///
+/// # Errors
+/// [`CampbellError`].
+pub fn campbell(
+    scene: &Scene,
+    folder: &Path,
+    settings: &CampbellSettings,
+    mut progress: impl FnMut(CampbellProgress),
+) -> Result<CampbellReport, CampbellError> {
+    let axis = Vector3::from(settings.axis);
+    let axis = axis.try_normalize(0.0).filter(|axis| (axis.norm() - 1.0).abs() < 1e-12);
+    let axis = axis.ok_or(CampbellError::Axis { axis: settings.axis })?;
+    let speeds = settings.speeds.values()?;
+    if let Some(&order) = settings.orders.iter().find(|order| !(**order > 0.0 && order.is_finite())) {
+        return Err(CampbellError::Order { order });
+    }
+    let mut scene = scene.clone().without_rows();
+    scene.loads.clear();
+    scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
+    // The spin is given here, whatever the scene's own motion would call for.
+    for effect in [Effect::DeformedInertia, Effect::Coriolis, Effect::GeometricStiffening] {
+        if scene.effects.choices[effect] == Choice::Auto {
+            scene.effects.choices[effect] = Choice::On;
+        }
+    }
+    let model = Model::build(&scene, |p| progress(CampbellProgress::Build(p)))?;
+    require_flexible(&scene, &model).map_err(BuildError::from)?;
+
+    let effects = &model.physics.effects;
+    let spin = SteadySpin::new(&model.body, &axis, effects);
+    let total = speeds.len();
+    let failed = |source| CampbellError::Eigen { scene: scene.path.clone(), source };
+    let branches =
+        Branches::follow(&spin, speeds, |done| progress(CampbellProgress::Speeds { done, total })).map_err(failed)?;
+    let critical_speed = spin.critical_speed().map_err(failed)?;
+    let mut report = CampbellReport {
+        title: scene.title.clone(),
+        time_unit: scene.units.time.clone(),
+        frequency_unit: frequency_unit(&scene.units.time),
+        mesh: MeshReport::new(&model),
+        axis: axis.into(),
+        origin: model.body.origin.into(),
+        effects: SpinEffects {
+            coriolis: effects[Effect::Coriolis],
+            softening: effects[Effect::DeformedInertia],
+            stiffening: effects[Effect::GeometricStiffening],
+        },
+        stable_below: critical_speed.is_finite().then_some(critical_speed),
+        critical_speeds: critical::find(&spin, &branches, &settings.orders).map_err(failed)?,
+        branches: branches.lines(model.static_shapes()),
+        speeds: branches.speeds,
+        files: Vec::new(),
+    };
+    report.files = files::write(&report, folder, &settings.orders)?;
+    Ok(report)
+}

@@ -1,0 +1,52 @@
+//! Report of a diagram.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::branches::Branch;
+use super::critical::Critical;
+use crate::files::json;
+use crate::report::MeshReport;
+
+/// Natural frequencies against spin speed.
+#[derive(Debug, Clone, Serialize)]
+pub struct CampbellReport {
+    /// Title of the scene.
+    pub title: String,
+    /// Label of the unit of time.
+    pub time_unit: String,
+    /// Unit of frequencies, such as "1/s".
+    pub frequency_unit: String,
+    /// The finite-element model.
+    pub mesh: Option<MeshReport>,
+    /// The spin axis: unit vector, axes of the mesh.
+    pub axis: [f64; 3],
+    /// The point that the axis goes through, mesh axes.
+    pub origin: [f64; 3],
+    /// The effects of the spin that are computed.
+    pub effects: SpinEffects,
+    /// Spin speeds, radians per time.
+    pub speeds: Vec<f64>,
+    /// The lines of the diagram, in the order of their frequencies at the lowest speed.
+    pub branches: Vec<Branch>,
+    /// The spin speed at which the body loses its stability because K + Ω²(K_σ − N) is no longer positive definite; none
+    /// if it never does.
+    pub stable_below: Option<f64>,
+    /// Where orders and branches cross, by order and speed; order 0 where a frequency is zero.
+    pub critical_speeds: Vec<Critical>,
+    /// Files written.
+    #[serde(serialize_with = "json::paths")]
+    pub files: Vec<PathBuf>,
+}
+
+/// Effects of the spin that are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct SpinEffects {
+    /// Coriolis forces, G.
+    pub coriolis: bool,
+    /// The centrifugal forces of the deformation, N.
+    pub softening: bool,
+    /// The stress of the centrifugal field, K_σ.
+    pub stiffening: bool,
+}

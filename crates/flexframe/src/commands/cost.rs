@@ -1,0 +1,166 @@
+//! `flexframe cost`: what accuracy costs, measured on the user's own scene.
+//!
+//! Every method runs at a ladder of steps or tolerances. Each run is compared with a reference at up to 100 equally
+//! spaced times and timed several times. The modes are an axis of their own: the same motion with fewer and more of
+//! them shows what those left out would change.
+
+mod answer;
+mod case;
+mod error;
+mod files;
+mod ladder;
+mod machine;
+mod modes;
+mod reference;
+mod report;
+mod run;
+mod setting;
+mod settings;
+mod short;
+mod table;
+
+use scene::METHODS;
+use std::path::Path;
+
+use advice::Subject;
+use dynamics::{Method, StepControl};
+use scene::{Assembly, BuildProgress, Flexible, Scene};
+
+pub use answer::Answer;
+pub use error::CostError;
+pub use files::files;
+pub use ladder::{LadderRun, Line, Measured, Outcome, Stopped};
+pub use machine::Machine;
+pub use modes::{ModesRow, modes_warning};
+pub use reference::ReferenceReport;
+pub use report::CostReport;
+pub use run::Errors;
+pub use setting::Setting;
+pub use settings::CostSettings;
+pub use short::{duration, setting};
+
+pub use crate::commands::run::RunFailure;
+
+use crate::commands::advise::settled;
+use answer::refine;
+use case::PreparedScene;
+use ladder::{Evaluator, refine_line};
+use reference::{Reference, converge};
+
+/// How far a price list has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CostProgress {
+    /// The model is being built.
+    Build(BuildProgress),
+    /// Runs are being measured.
+    Measuring {
+        /// Parts of the list that are done.
+        done: u64,
+        /// Parts of the list.
+        total: u64,
+    },
+}
+
+/// Measures what accuracy costs on a scene, and writes `cost.csv`, and `work_precision` as SVG, PDF and PNG to `folder`.
+///
+/// # Errors
+/// [`CostError`]. A run that fails is a row that says so.
+pub fn price_list(
+    scene: &Scene,
+    folder: &Path,
+    settings: CostSettings,
+    mut progress: impl FnMut(CostProgress),
+) -> Result<CostReport, CostError> {
+    let scene = &scene.clone().without_rows();
+    let assembly = Assembly::new(scene, |p| progress(CostProgress::Build(p)))?;
+    let mut builder = assembly.builder()?;
+    let model = builder.build(scene, |p| progress(CostProgress::Build(p)))?;
+    let flexible = model.body.flexible() - model.static_shapes();
+    // The same effects with each number of modes, and no static shapes, which stand for modes that are left out.
+    let mut settled = settled(scene, &model, Some((Subject::StaticCorrection, false)));
+    let mut with_modes = Vec::new();
+    for count in modes::counts(flexible, builder.available()?).into_iter().rev() {
+        settled.modes.flexible = Flexible::Count(count);
+        with_modes.insert(0, builder.build(&settled, |p| progress(CostProgress::Build(p)))?);
+    }
+    drop(builder);
+    drop(assembly);
+    let case = PreparedScene::new(scene, &model);
+
+    let ladders: Vec<(Method, bool)> = METHODS
+        .into_iter()
+        .flat_map(|method| [(method, false), (method, true)])
+        .filter(|(method, controlled)| !controlled || method.estimates_error)
+        .collect();
+    let total = ladders.len() as u64 + 3;
+    let mut done = 0;
+    let mut step = |parts: u64| {
+        done += parts;
+        progress(CostProgress::Measuring { done, total });
+    };
+    step(0);
+    let exponential = Method::EXPONENTIAL;
+    let reference = converge(&case, exponential, settings.budget(20), 0.0)
+        .map_err(|(steps, failure)| CostError::Reference { scene: scene.path.clone(), steps, failure })?;
+    step(1);
+    // The paper's formulation has a limit of its own, to which its schemes converge.
+    let (paper_limit, paper_limit_failure) = match converge(&case, frames_rk4::LIMIT, settings.budget(5), 0.0) {
+        Ok(limit) => (Some(limit), None),
+        Err((steps, failure)) => (None, Some(format!("in {steps} steps: {failure}"))),
+    };
+    step(1);
+    let evaluator = Evaluator { reference: &reference, paper_limit: paper_limit.as_ref(), settings };
+    let own = own_setting(scene);
+    let mut lines = Vec::new();
+    for (method, controlled) in ladders {
+        lines.push(refine_line(&case, &evaluator, method, controlled, own));
+        step(1);
+    }
+    if let Some(target) = settings.target {
+        refine(&case, &evaluator, &mut lines, target);
+    }
+    ladder::mark_front(&mut lines);
+    let (modes, modes_failure) = match modes::compare(&settled, &with_modes, &settings) {
+        Ok(modes) => (modes, None),
+        Err((count, failure)) => (Vec::new(), Some(format!("with {count} modes: {failure}"))),
+    };
+    step(1);
+
+    let mut report = CostReport {
+        title: scene.title.clone(),
+        scene: scene.path.clone(),
+        time_unit: scene.units.time.clone(),
+        machine: Machine::this(),
+        flexible,
+        highest_frequency: model.natural_frequencies().last().copied(),
+        initial_spin: nalgebra::Vector3::from(scene.initial.angular_velocity).norm(),
+        end: scene.time.end,
+        points: model.points.len(),
+        reference: reference.report(),
+        paper_limit: paper_limit.as_ref().map(|limit| limit.report_against(&reference, case.scales())),
+        paper_limit_failure,
+        answer: settings.target.map(|target| Answer::new(target, scene, &lines, &modes, flexible)),
+        lines,
+        modes,
+        modes_failure,
+        files: Vec::new(),
+    };
+    report.files = files::write(&report, folder)?;
+    Ok(report)
+}
+
+/// Method and control that the scene asks for itself.
+fn own_setting(scene: &Scene) -> (Method, StepControl) {
+    (scene.time.method, scene.time.control)
+}
+
+impl Reference {
+    fn report(&self) -> ReferenceReport {
+        ReferenceReport { step: self.step, steps: self.steps, own_error: self.error, errors: None }
+    }
+
+    fn report_against(&self, other: &Self, scales: &run::Scales) -> ReferenceReport {
+        let errors = Errors::between(&self.trajectory, &other.trajectory, scales);
+        ReferenceReport { errors: Some(errors), ..self.report() }
+    }
+}

@@ -1,0 +1,166 @@
+//! Columns of a results file as one table of text.
+
+use std::io::Write;
+use std::path::Path;
+
+use results::{Column, Metadata, Results, Values};
+use whole_file::WholeFile;
+
+use super::Exported;
+use super::error::ExportError;
+use super::rows::ExportRows;
+use crate::files::outputs::{OutputError, Written, outputs_of_results};
+use crate::files::write_error::WriteError;
+use crate::rows::columns::COLUMNS;
+
+/// A history in the table, and the heads of its values.
+struct Part {
+    path: String,
+    heads: Vec<String>,
+}
+
+/// Writes the rows of a results file, finished or not, as a table: a row of heads, such as `position x [mm]`, and then a
+/// row for each row. `columns` are paths of the columns, or what some begin with, such as `energy` or `points/P1`; all if
+/// there are none. The time comes first in any case. To a folder it goes under the name of the results file.
+///
+/// The table of an unfinished run begins with a line that says so, after a `#`.
+///
+/// # Errors
+/// [`ExportError`].
+pub fn export_csv(file: &Path, to: &Path, columns: &[String], rows: &ExportRows) -> Result<Exported, ExportError> {
+    let table = Table::new(file, columns, rows)?;
+    let (path, folder) = match to.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("csv") => (to.to_owned(), None),
+        _ => {
+            Written::FOLDER.check(to).map_err(OutputError::from)?;
+            (to.join(Path::new(file.file_name().unwrap_or("results".as_ref())).with_extension("csv")), Some(to))
+        }
+    };
+    let outputs = outputs_of_results(file, rows.overwrite);
+    match folder {
+        Some(folder) => {
+            outputs.claim(&[&path])?;
+            std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
+        }
+        None => outputs.claim_as(&Written::TABLE, &path)?,
+    }
+    let write = || {
+        let mut out = WholeFile::create(&path)?;
+        table.write(&mut out)?;
+        out.finish()
+    };
+    write().map_err(WriteError::of(&path))?;
+    Ok(Exported { files: vec![path], warning: table.warning })
+}
+
+/// The same table as a text, and what should be known of it.
+///
+/// # Errors
+/// [`ExportError`].
+pub fn csv_text(file: &Path, columns: &[String], rows: &ExportRows) -> Result<(String, Option<String>), ExportError> {
+    let table = Table::new(file, columns, rows)?;
+    let mut text = Vec::new();
+    table.write(&mut text).map_err(WriteError::of(file))?;
+    Ok((String::from_utf8_lossy(&text).into_owned(), table.warning))
+}
+
+/// The columns and rows that were chosen of a results file.
+struct Table {
+    results: Results,
+    parts: Vec<Part>,
+    rows: Vec<usize>,
+    /// Warning that the run is unfinished.
+    warning: Option<String>,
+}
+
+impl Table {
+    fn new(file: &Path, columns: &[String], rows: &ExportRows) -> Result<Self, ExportError> {
+        let results = Results::open(file, &COLUMNS)?;
+        let parts = chosen(file, &results, columns)?;
+        let rows = rows.of(file, &results)?;
+        let warning = ExportRows::warning(&results);
+        Ok(Self { results, parts, rows, warning })
+    }
+
+    fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
+        if let Some(warning) = &self.warning {
+            writeln!(out, "# {warning}")?;
+        }
+        let heads = self.parts.iter().flat_map(|part| &part.heads).map(|head| quoted(head));
+        writeln!(out, "{}", heads.collect::<Vec<_>>().join(","))?;
+        let tables: Vec<_> = self.parts.iter().filter_map(|part| self.results.table(&part.path)).collect();
+        for row in &self.rows {
+            let values = tables.iter().filter_map(|table| table.row(*row)).flatten();
+            for (i, value) in values.enumerate() {
+                // The shortest text that is read back as the same number.
+                write!(out, "{}{value:?}", if i == 0 { "" } else { "," })?;
+            }
+            writeln!(out)?;
+        }
+        Ok(())
+    }
+}
+
+fn chosen(file: &Path, results: &Results, columns: &[String]) -> Result<Vec<Part>, ExportError> {
+    let metadata = &results.metadata;
+    let has = |column: &&Column<_>| column.part.is_none_or(|part| metadata.parts.iter().any(|has| has == part));
+    let all: Vec<Part> = COLUMNS.iter().filter(has).flat_map(|column| parts(column, metadata)).collect();
+    let is_of = |part: &Part, asked: &str| {
+        let rest = part.path.strip_prefix(asked.trim_end_matches('/'));
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+    };
+    if let Some(found) = columns.iter().find(|asked| !all.iter().any(|part| is_of(part, asked))) {
+        let columns = all.into_iter().map(|part| part.path).collect();
+        return Err(ExportError::NoColumn { path: file.to_owned(), found: found.clone(), columns });
+    }
+    let is_chosen =
+        |part: &Part| columns.is_empty() || part.path == "time" || columns.iter().any(|asked| is_of(part, asked));
+    Ok(all.into_iter().filter(is_chosen).collect())
+}
+
+/// The histories of a column: one, or one for each point.
+fn parts<R>(column: &Column<R>, metadata: &Metadata) -> Vec<Part> {
+    let unit = column.unit(&metadata.units);
+    let part = |path: String, names: Vec<String>| {
+        let head = |name: &String| {
+            if name.is_empty() { format!("{path} [{unit}]") } else { format!("{path} {name} [{unit}]") }
+        };
+        let heads = names.iter().map(head).collect();
+        Part { path, heads }
+    };
+    let list = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+    let one = |names| vec![part(column.path.to_owned(), names)];
+    match column.values {
+        Values::Number(_) => one(list(&[""])),
+        Values::Vector(_) => one(list(&["x", "y", "z"])),
+        Values::Quaternion(_) => one(list(&["w", "x", "y", "z"])),
+        Values::Modal(_) => one((metadata.body.kinds().enumerate())
+            .map(|(k, kind)| if kind == "natural mode" { format!("{}", k + 1) } else { format!("{} {kind}", k + 1) })
+            .collect()),
+        Values::Points(_) => {
+            let quantity = column.path.trim_start_matches("points/");
+            let of_point = |name: &String| part(format!("points/{name}/{quantity}"), list(&["x", "y", "z"]));
+            metadata.point_names.iter().map(of_point).collect()
+        }
+        Values::Supports(_) => {
+            let quantity = column.path.trim_start_matches("supports/");
+            let of_support = |name: &String| part(format!("supports/{name}/{quantity}"), list(&["x", "y", "z"]));
+            metadata.support_names.iter().map(of_support).collect()
+        }
+        Values::PointNumbers(count, _) => {
+            let quantity = column.path.trim_start_matches("points/");
+            let names = match (quantity, count) {
+                (_, 1) => list(&[""]),
+                ("stress", 6) => list(&["xx", "yy", "zz", "xy", "yz", "zx"]),
+                _ => (1..=count).map(|i| i.to_string()).collect(),
+            };
+            let of_point = |name: &String| part(format!("points/{name}/{quantity}"), names.clone());
+            metadata.point_names.iter().map(of_point).collect()
+        }
+    }
+}
+
+/// A field of the table, in quotes where it has to be.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}

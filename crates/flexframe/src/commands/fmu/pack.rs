@@ -1,0 +1,189 @@
+//! Packs an FMU.
+
+use std::fmt;
+use std::io::{self, Cursor, Write};
+use std::path::{Path, PathBuf};
+
+use body_file::BodyFile;
+use scene::{Body, BuildProgress, Cache, Flexible, Model, Scene};
+use serde::Serialize;
+use whole_file::{TemporaryFolder, write_whole};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+use super::description::describe;
+use super::error::FmuError;
+use super::library::Library;
+use super::manifest::{MANIFEST, Manifest};
+use super::model::FmuModel;
+use super::packed_scene::{BODY, PackedScene, SCENE};
+use super::variables::Source;
+use crate::files::json;
+use crate::files::write_error::WriteError;
+
+/// How an FMU is packed.
+#[derive(Debug, Clone, Default)]
+pub struct FmuSettings {
+    /// The library for it; otherwise the one that the environment names, or the one beside the program.
+    pub library: Option<PathBuf>,
+}
+
+/// Report of `flexframe fmu`.
+#[derive(Debug, Clone, Serialize)]
+pub struct FmuReport {
+    /// The FMU.
+    #[serde(serialize_with = "json::path")]
+    pub fmu: PathBuf,
+    /// Its identifier in `modelDescription.xml`.
+    pub guid: String,
+    /// Names of the inputs.
+    pub inputs: Vec<String>,
+    /// Number of outputs.
+    pub outputs: usize,
+    /// Number of variables that can be looked at besides.
+    pub locals: usize,
+    /// Bytes of the file.
+    pub bytes: usize,
+}
+
+impl fmt::Display for FmuReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { fmu, guid, inputs, outputs, locals, bytes } = self;
+        writeln!(f, "{}", fmu.display())?;
+        writeln!(f, "  FMI      2.0 for co-simulation, {:.1} MB, guid {guid}", *bytes as f64 / 1e6)?;
+        writeln!(f, "  inputs   {}, held between communication points", inputs.len())?;
+        writeln!(f, "  outputs  {outputs}, and {locals} variables to look at")
+    }
+}
+
+impl FmuReport {
+    fn new(output: &Path, fmu: &FmuModel, manifest: Manifest, bytes: usize) -> Self {
+        let count = |is: bool| {
+            let of = |source: Source| matches!(source, Source::Row { is_output, .. } if is_output == is);
+            fmu.variables.iter().filter(|variable| of(variable.source)).count()
+        };
+        let is_input = |source: Source| matches!(source, Source::Input(_));
+        let inputs = fmu.variables.iter().filter(|variable| is_input(variable.source));
+        Self {
+            fmu: output.to_owned(),
+            guid: manifest.guid,
+            inputs: inputs.map(|variable| variable.name.clone()).collect(),
+            outputs: count(true),
+            locals: count(false),
+            bytes,
+        }
+    }
+}
+
+/// The scene that a body file was made of, with its body from there.
+///
+/// # Errors
+/// [`FmuError`] for a file that is no body file of this version, and for a scene that breaks a rule.
+pub fn scene_of_body(file: &Path, cache: &Cache) -> Result<Scene, FmuError> {
+    let body = BodyFile::open(file)?;
+    let text = body.attribute("scene").ok_or_else(|| FmuError::NoScene { path: file.to_owned() })?;
+    let mut scene: toml::Table = toml::from_str(text).map_err(|error| FmuError::Text(error.to_string()))?;
+    let name = std::path::absolute(file).unwrap_or_else(|_| file.to_owned()).display().to_string();
+    scene.insert("body".to_owned(), toml::Table::from_iter([("file".to_owned(), toml::Value::from(name))]).into());
+    let text = toml::to_string(&scene).map_err(|error| FmuError::Text(error.to_string()))?;
+    Ok(Scene { cache: cache.clone(), ..Scene::parse(&text, file)? })
+}
+
+/// Packs a scene and its body as an FMU, whole or not at all.
+///
+/// # Errors
+/// [`FmuError`].
+pub fn pack(
+    scene: &Scene,
+    output: &Path,
+    settings: &FmuSettings,
+    mut progress: impl FnMut(BuildProgress),
+) -> Result<FmuReport, FmuError> {
+    if matches!(scene.body, Body::Matrices(_)) {
+        let (found, expected) =
+            ("a body of matrices, which no body file holds yet", "a body with a mesh, or a rigid one");
+        return Err(scene.refuse("body.matrices", found, expected, "give the body a mesh to pack it").into());
+    }
+    let library = Library::find(settings.library.as_deref())?;
+    if !matches!(scene.modes.flexible, Flexible::Count(_)) {
+        let help = "give the number of modes to keep; `flexframe modes` shows their frequencies";
+        let found = "\"auto\", which goes by the loads of the scene";
+        return Err(scene
+            .refuse("modes.flexible", found, "a number, since nobody knows the forces from outside", help)
+            .into());
+    }
+    let is_rigid = matches!(scene.body, Body::Rigid(_));
+    let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
+    let resources = temporary.path();
+    let packed = PackedScene::new(&scene.source, scene.path.parent().unwrap_or(Path::new("")), is_rigid)?;
+    let mut names = vec![SCENE.to_owned()];
+    std::fs::write(resources.join(SCENE), &packed.text).map_err(WriteError::of(&resources.join(SCENE)))?;
+    for (from, name) in packed.tables {
+        let to = resources.join(&name);
+        std::fs::copy(&from, to).map_err(|source| FmuError::Unreadable { path: from, source })?;
+        names.push(name);
+    }
+    if !is_rigid {
+        Model::write_body(&scene.clone().for_unknown_forces(), &resources.join(BODY), false, &mut progress)?;
+        names.push(BODY.to_owned());
+    }
+    // What is packed is what will be opened. Its files have been found by now; messages name the scene that was given.
+    let opened = Scene::read(resources.join(SCENE))?;
+    let named = Scene { path: scene.path.clone(), source: scene.source.clone(), ..opened };
+    let fmu = FmuModel::new(named, progress)?;
+    let manifest = Manifest::of(resources, &names)?;
+    let text = serde_json::to_string_pretty(&manifest).map_err(|error| FmuError::Text(error.to_string()))?;
+    std::fs::write(resources.join(MANIFEST), text).map_err(WriteError::of(&resources.join(MANIFEST)))?;
+    names.push(MANIFEST.to_owned());
+
+    let identifier = c_identifier(output);
+    let bytes = zipped(resources, &names, &library, &identifier, || describe(&fmu, &manifest, &identifier))
+        .map_err(WriteError::of(output))?;
+    write_whole(output, &bytes).map_err(WriteError::of(output))?;
+    Ok(FmuReport::new(output, &fmu, manifest, bytes.len()))
+}
+
+/// The name of a file as a name in C.
+fn c_identifier(file: &Path) -> String {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    let name: String = stem.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    match name.chars().next() {
+        Some(first) if first.is_ascii_alphabetic() => name,
+        _ => format!("fmu_{name}"),
+    }
+}
+
+fn zipped(
+    resources: &Path,
+    names: &[String],
+    library: &Library,
+    identifier: &str,
+    description: impl FnOnce() -> io::Result<Vec<u8>>,
+) -> io::Result<Vec<u8>> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+    zip.start_file("modelDescription.xml", options)?;
+    zip.write_all(&description()?)?;
+    for name in names {
+        let path = resources.join(name);
+        let is_large = path.metadata()?.len() > u64::from(u32::MAX) / 2;
+        zip.start_file(format!("resources/{name}"), options.large_file(is_large))?;
+        io::copy(&mut std::fs::File::open(path)?, &mut zip)?;
+    }
+    let Library { bytes, folder, ending } = library;
+    zip.start_file(format!("binaries/{folder}/{identifier}{ending}"), options.unix_permissions(0o755))?;
+    zip.write_all(bytes)?;
+    Ok(zip.finish()?.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_name_becomes_a_name_in_c() {
+        for (file, name) in [("out/blade.fmu", "blade"), ("rotor blade-2.fmu", "rotor_blade_2"), ("2.fmu", "fmu_2")] {
+            assert_eq!(c_identifier(Path::new(file)), name);
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! `flexframe paper`: the paper's plate, each figure and number beside the paper's.
+
+mod comparison;
+mod error;
+mod figures;
+mod page;
+mod rigid_plate;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use results::Results;
+use scene::Scene;
+use serde::Serialize;
+use whole_file::write_whole;
+
+use crate::commands::run::{RunProgress, RunReport, RunSettings, run};
+use crate::files::json;
+use crate::rows::columns::COLUMNS;
+use comparison::Comparison;
+use rigid_plate::WATCHED_POINT;
+
+pub use error::PaperError;
+
+/// Report of `flexframe paper`.
+#[derive(Debug, Clone, Serialize)]
+pub struct PaperReport {
+    /// The run itself.
+    #[serde(flatten)]
+    pub run: RunReport,
+    /// The page.
+    #[serde(serialize_with = "json::path")]
+    pub report: PathBuf,
+    /// The figures: SVG, PDF and PNG of each.
+    #[serde(serialize_with = "json::paths")]
+    pub figures: Vec<PathBuf>,
+    /// The numbers on the page.
+    pub comparison: Comparison,
+}
+
+/// The page, beside the figures.
+const PAGE: &str = "report.md";
+
+/// The files that [`reproduce`] writes to a folder beside the results file.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let figures = figures::NAMES.iter().flat_map(|name| ::figures::files(&folder.join(name)));
+    std::iter::once(folder.join(PAGE)).chain(figures).collect()
+}
+
+/// Runs the scene of the paper's plate, draws every figure of the paper that can be made, and writes `report.md`
+/// beside them.
+///
+/// # Errors
+/// [`PaperError`].
+pub fn reproduce(
+    scene: &Scene,
+    folder: &Path,
+    settings: &RunSettings,
+    progress: impl FnMut(RunProgress),
+) -> Result<PaperReport, PaperError> {
+    let only_plates = || PaperError::NotThePlate { scene: scene.path.clone() };
+    if !scene.body.has_elements() {
+        return Err(only_plates());
+    }
+    if !scene.output.points.contains_key(WATCHED_POINT) {
+        return Err(PaperError::MissingPoint { scene: scene.path.clone(), point: WATCHED_POINT });
+    }
+    let (model, mut run) = run(scene, folder, settings, progress)?;
+    let started = Instant::now();
+    let results = Results::open(&run.results, &COLUMNS)?;
+    let meshed = model.meshed.as_ref().ok_or_else(only_plates)?;
+    let rigid = rigid_plate::histories(&model, &results)?.ok_or_else(only_plates)?;
+    let lumped = scene.centroid_lumped_inertia(&meshed.mesh)?.ok_or_else(only_plates)?;
+    let comparison = Comparison::new(&run, &results, &rigid, &lumped);
+    let figures = figures::draw(scene, &model, &results, &rigid, folder)?;
+    run.times.add("figures", started.elapsed());
+    let path = folder.join(PAGE);
+    write_whole(&path, page::page(scene, &run, &comparison))
+        .map_err(|source| PaperError::Report { path: path.clone(), source })?;
+    Ok(PaperReport { run, report: path, figures, comparison })
+}
+
+impl fmt::Display for PaperReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { run, comparison, .. } = self;
+        writeln!(f, "{run}")?;
+        writeln!(
+            f,
+            "  paper    frequencies within {:.2} % of Table 1; rigid motion within {:.1e} of the rigid plate's peak",
+            100.0 * comparison.worst_frequency_difference(),
+            comparison.worst_rigid_difference()
+        )?;
+        write!(f, "  report   {} with {} figures beside it", self.report.display(), self.figures.len() / 3)
+    }
+}

@@ -1,0 +1,145 @@
+//! Errors of a run.
+
+use std::path::PathBuf;
+
+use advice::Refusal;
+use dynamics::{CheckpointError, StepError};
+use results::FileError;
+use scene::{BuildError, SceneError, StartError};
+
+use super::estimate::Estimate;
+use crate::files::outputs::OutputError;
+use crate::files::write_error::help_of_writing;
+
+/// A run that could not be done.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The scene cannot be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The motion cannot start.
+    #[error("{}", source.in_scene(scene))]
+    Setup {
+        /// The scene file.
+        scene: PathBuf,
+        /// The reason.
+        source: Box<StartError>,
+    },
+    /// A step failed. The states before it are in the unfinished file.
+    #[error("{source} (the states before it are in {results})", results = results.display())]
+    Step {
+        /// The unfinished file.
+        results: PathBuf,
+        /// The reason.
+        source: StepError,
+    },
+    /// The motion has come where the model is known to be wrong. The states before it are in the unfinished file.
+    #[error("at time {time:.6}: {refusal} (the states up to there are in {})", results.display())]
+    Refused {
+        /// The unfinished file.
+        results: PathBuf,
+        /// When it was so for the first time.
+        time: f64,
+        /// The reason.
+        refusal: Refusal,
+    },
+    /// The results file cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The scene cannot be run to compare other runs with.
+    #[error("{}: the scene itself does not run, so that there is nothing to verify against: {failure}", scene.display())]
+    Verify {
+        /// The scene file.
+        scene: PathBuf,
+        /// The reason.
+        failure: Box<RunFailure>,
+    },
+    /// The run was asked to stop. The states up to there are in the unfinished file.
+    #[error("stopped at time {time}; go on with: flexframe resume {}{}", part.display(), if *replaces { " --overwrite" } else { "" })]
+    Stopped {
+        /// The unfinished file.
+        part: PathBuf,
+        /// The time that was reached.
+        time: f64,
+        /// True if another results file is there that it may replace.
+        replaces: bool,
+    },
+    /// The scene in an unfinished file is invalid.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The checkpoint of an unfinished file is that of another scene, or damaged.
+    #[error("{}: {source}", part.display())]
+    Restore {
+        /// The unfinished file.
+        part: PathBuf,
+        /// The reason.
+        source: CheckpointError,
+    },
+    /// A result of now differs from that of then.
+    #[error(
+        "{}: {what} has changed since the run began (a changed mesh or table, another version of flexframe, or another machine); a run is continued only if it stays the same bit for bit: run the scene again with --overwrite",
+        part.display()
+    )]
+    Changed {
+        /// The unfinished file.
+        part: PathBuf,
+        /// The changed part.
+        what: &'static str,
+    },
+    /// The results would go where a file is that the run reads.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// The results file would be larger than anybody wants unasked.
+    #[error(
+        "{}: the run would write {} rows, {}\n = name fewer rows in [output], such as `interval = …`, or leave `every` and \
+         `interval` out; if you want a file of more than 1 GB, allow it with --large",
+        scene.display(), estimate.rows, memory::Bytes(usize::try_from(estimate.bytes).unwrap_or(usize::MAX))
+    )]
+    Large {
+        /// The scene file.
+        scene: PathBuf,
+        /// Its estimate.
+        estimate: Estimate,
+    },
+    /// The output folder cannot be made.
+    #[error("{}: cannot make the output folder: {source}\n = {}", folder.display(), help_of_writing(source))]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// The reason.
+        source: std::io::Error,
+    },
+}
+
+impl RunError {
+    /// The error without the files of the run, for those who do not keep them.
+    pub(crate) fn without_files(&self) -> String {
+        match self {
+            Self::Step { source, .. } => source.to_string(),
+            Self::Refused { time, refusal, .. } => format!("at time {time:.6}: {refusal}"),
+            other => other.to_string(),
+        }
+    }
+}
+
+/// Reason of a run that did not come to its end.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RunFailure {
+    /// It could not start.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// A step failed.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// It was stopped when the time that it may take was used up.
+    #[error(
+        "stopped at {:.2} % of the motion, when its patience of {patience} s was used up (allow more with --patience)",
+        100.0 * reached
+    )]
+    OutOfPatience {
+        /// Time of computing that it was allowed, seconds.
+        patience: f64,
+        /// Part of the motion that it came to, 0 to 1.
+        reached: f64,
+    },
+}

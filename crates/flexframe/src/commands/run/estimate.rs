@@ -1,0 +1,106 @@
+//! Rows, bytes and time of a run, estimated before it begins.
+
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use dynamics::{Reached, Simulation};
+use memory::Bytes;
+use results::{Metadata, bytes_per_row};
+use scene::{Rows, Scene, StepControl};
+use serde::Serialize;
+
+use crate::rows::columns::COLUMNS;
+
+/// A larger file is only written for who has asked for it.
+pub(super) const LARGE: u64 = 1_000_000_000;
+
+/// Most seconds that trial steps take, and the part of the motion that they cover.
+const TRIAL: f64 = 0.05;
+const TRIAL_PART: f64 = 0.05;
+/// Steps between two looks at the clock.
+const STEPS_PER_LOOK: u64 = 16;
+
+/// Estimate of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Rows, but for those at corners of loads.
+    pub rows: u64,
+    /// Bytes of their numbers; the shapes of the body come on top.
+    pub bytes: u64,
+    /// Seconds of computing, about, by how long some first steps take; `None` where it was not tried, or these came to nothing.
+    pub seconds: Option<f64>,
+}
+
+impl Estimate {
+    /// Estimate of the rows of a scene, without a look at its steps.
+    pub(super) fn of_rows(scene: &Scene, metadata: &Metadata) -> Self {
+        let rows = rows(scene);
+        Self { rows, bytes: rows.saturating_mul(bytes_per_row(&COLUMNS, metadata)), seconds: None }
+    }
+
+    /// With the time, by a trial that leaves the simulation as it is.
+    pub(super) fn with_seconds(self, simulation: &Simulation, stop: &AtomicBool) -> Self {
+        Self { seconds: seconds(simulation.clone(), stop), ..self }
+    }
+}
+
+/// Rows that a scene asks for.
+fn rows(scene: &Scene) -> u64 {
+    let spacing = match (scene.output.rows, scene.time.control) {
+        (Rows::Interval(interval), _) => interval,
+        (Rows::EverySteps(steps), StepControl::Fixed(step)) => steps as f64 * step,
+        // No scene has that.
+        (Rows::EverySteps(_), StepControl::Tolerance(_)) => scene.time.end,
+    };
+    ((scene.time.end / spacing * (1.0 - 1e-12)).ceil() as u64).saturating_add(1)
+}
+
+/// The time of the later half of some steps, which under step control have found their length by then, for the whole motion.
+fn seconds(mut simulation: Simulation, stop: &AtomicBool) -> Option<f64> {
+    let (started, end) = (Instant::now(), simulation.end());
+    let mut before = (0.0, 0.0);
+    loop {
+        let reached = simulation.advance(STEPS_PER_LOOK).ok()?;
+        let (time, taken) = (simulation.time(), started.elapsed().as_secs_f64());
+        let is_over = taken >= TRIAL || time >= TRIAL_PART * end || stop.load(Ordering::Relaxed);
+        if is_over || reached == Reached::End {
+            return (time > before.0).then(|| (taken - before.1) / (time - before.0) * end);
+        }
+        if taken <= 0.5 * TRIAL && time <= 0.5 * TRIAL_PART * end {
+            before = (time, taken);
+        }
+    }
+}
+
+impl fmt::Display for Estimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { rows, bytes, seconds } = *self;
+        write!(f, "{rows} rows, {}", Bytes(usize::try_from(bytes).unwrap_or(usize::MAX)))?;
+        match seconds {
+            Some(seconds) if seconds < 1.0 => write!(f, ", less than a second"),
+            Some(seconds) if seconds < 120.0 => write!(f, ", about {seconds:.0} s"),
+            Some(seconds) if seconds < 7200.0 => write!(f, ", about {:.0} min", seconds / 60.0),
+            Some(seconds) => write!(f, ", about {:.0} h", seconds / 3600.0),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_estimated_is_told_in_units_that_people_use() {
+        for (bytes, seconds, text) in [
+            (1_500_000, Some(0.2), "7 rows, 2 MB, less than a second"),
+            (2_000_000_000, Some(75.4), "7 rows, 2.0 GB, about 75 s"),
+            (1, Some(600.0), "7 rows, 1 MB, about 10 min"),
+            (1, Some(72_000.0), "7 rows, 1 MB, about 20 h"),
+            (1, None, "7 rows, 1 MB"),
+        ] {
+            assert_eq!(Estimate { rows: 7, bytes, seconds }.to_string(), text);
+        }
+    }
+}

@@ -1,0 +1,434 @@
+//! `flexframe sweep`: one scene with many values of its keys.
+//!
+//! Scenes with the same body share it: it is assembled and factored once. The models are made one after the other, and their
+//! runs go on at once, as many as there are threads.
+
+mod error;
+mod plan;
+mod shard;
+mod table;
+mod text;
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError, mpsc};
+use std::time::{Duration, Instant};
+
+use body_file::Hash;
+use results::{ColumnTable, Results};
+use scene::{Assembly, BuildProgress, Cache, Model, ModelBuilder, Scene};
+use serde::Serialize;
+use whole_file::{FileLock, TemporaryFolder};
+
+use crate::commands::run::{self, RunSettings};
+use crate::files::json;
+use crate::files::outputs::{OutputError, Outputs, Written};
+use crate::files::write_error::WriteError;
+use crate::rows::columns::COLUMNS;
+use crate::{modes, plausible};
+use plan::{Asked, Plan};
+use table::{Done, RowState, Table};
+use text::{Shown, write_csv};
+
+pub(crate) use error::SWEEP_CURE;
+pub use error::SweepError;
+pub use shard::{Shard, slurm_script};
+
+/// The table is written again so often.
+const WRITE_INTERVAL: Duration = Duration::from_secs(1);
+
+/// Rows that the summary names of those that failed, and of those with warnings.
+const SHOWN: usize = 5;
+
+/// How far a sweep has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SweepProgress {
+    /// A body is being made.
+    Build(BuildProgress),
+    /// Rows that are done or have failed.
+    Rows {
+        /// So many.
+        done: u64,
+        /// Number of all.
+        total: u64,
+    },
+}
+
+/// How a sweep treats files, and how it works.
+#[derive(Debug, Clone)]
+pub struct SweepSettings {
+    /// Throws a table of another sweep away that is in the way, and the rows of this one.
+    pub overwrite: bool,
+    /// Allows runs whose results are more than 1 GB; they are temporary.
+    pub large: bool,
+    /// Runs at once.
+    pub threads: usize,
+    /// Where bodies are kept from run to run.
+    pub cache: Cache,
+    /// Only the rows of this part of the sweep, into a table of its own ([`Shard::table`]).
+    pub shard: Option<Shard>,
+}
+
+/// Report of `flexframe sweep`.
+#[derive(Debug, Clone, Serialize)]
+pub struct SweepReport {
+    /// Title of the scene.
+    pub title: String,
+    /// The table.
+    #[serde(serialize_with = "json::path")]
+    pub output: PathBuf,
+    /// Rows of the table; with a shard, those that are the shard's.
+    pub rows: usize,
+    /// Rows that are done, those of an earlier run of the sweep among them.
+    pub done: usize,
+    /// Shards without a table or with rows that were not run, such as "2/4", where shards were merged.
+    pub unfinished: Vec<Shard>,
+    /// Rows that were done before.
+    pub kept: usize,
+    /// Rows that were computed before from files that have changed since, and were open again.
+    pub stale: usize,
+    /// Errors of the rows without results, by their number from 0.
+    pub failures: BTreeMap<usize, String>,
+    /// Warnings of rows that are done, by their number.
+    pub warnings: BTreeMap<usize, Vec<String>>,
+    /// How often matrices were assembled and factored.
+    pub reductions: usize,
+    /// The same numbers as CSV; none of a shard.
+    #[serde(serialize_with = "json::optional_path")]
+    pub csv: Option<PathBuf>,
+    /// Some rows for people.
+    #[serde(skip)]
+    shown: Shown,
+}
+
+impl SweepReport {
+    /// The failure of a sweep none of whose rows is done, though some were run.
+    ///
+    /// # Errors
+    /// [`SweepError::AllFailed`].
+    pub fn require_a_row(&self) -> Result<(), SweepError> {
+        match self.failures.iter().next() {
+            Some((row, words)) if self.done == 0 => {
+                Err(SweepError::AllFailed { path: self.output.clone(), row: *row, words: words.clone() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The report of a table of the whole sweep, of which `kept` rows were done before.
+    fn of(plan: Plan, output: &Path, csv: Option<PathBuf>, table: &Table, kept: usize) -> Self {
+        let [done, _] = table.counts();
+        Self {
+            csv,
+            shown: Shown::new(&plan, table),
+            title: plan.title,
+            output: output.to_owned(),
+            rows: table.rows.len(),
+            done,
+            unfinished: Vec::new(),
+            kept,
+            stale: table.stale,
+            failures: table.failures(),
+            warnings: table.warnings(),
+            reductions: 0,
+        }
+    }
+}
+
+/// Runs a sweep and writes its table to `output`, or that of its shard beside it. Rows that are in it already are kept.
+///
+/// # Errors
+/// [`SweepError`]; what fails in one row is in the table.
+pub fn sweep(
+    path: &Path,
+    output: &Path,
+    settings: &SweepSettings,
+    mut progress: impl FnMut(SweepProgress),
+) -> Result<SweepReport, SweepError> {
+    let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
+    // Rows find what earlier rows have asked of the mesh.
+    let folder = settings.cache.folder().map_or_else(|| temporary.path().join("cache"), Path::to_owned);
+    let cache = if settings.cache.folder().is_some() {
+        settings.cache.clone()
+    } else {
+        settings.cache.elsewhere(folder, u64::MAX)
+    };
+    let plan = Plan::read(path, &cache)?;
+    let of_shard = settings.shard.map(|shard| shard.table(output));
+    let output = of_shard.as_deref().unwrap_or(output);
+    let csv = settings.shard.is_none().then(|| output.with_extension("csv"));
+    let outputs = outputs(&plan, path, settings.overwrite);
+    csv.iter().map(PathBuf::as_path).chain([output]).try_for_each(|file| outputs.spare(file))?;
+    Written::SWEEP.check(output).map_err(OutputError::from)?;
+    if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
+    }
+    let _alone = lock(output)?;
+    let is_mine = |row: usize| settings.shard.is_none_or(|shard| shard.has(row));
+    let mut table = Table::open(output, &plan, settings.overwrite)?;
+    if let Some(csv) = csv.as_deref() {
+        claim_csv(csv, &table, settings.overwrite)?;
+    }
+    let [kept, _] = table.counts();
+    let mine = (0..plan.rows.len()).filter(|row| is_mine(*row)).count();
+    let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (i, row) in plan.rows.iter().enumerate() {
+        match row {
+            _ if table.rows[i] != RowState::Open || !is_mine(i) => {}
+            Ok(scene) => groups.entry(Assembly::made_of(scene)).or_default().push(i),
+            Err(words) => table.rows[i] = RowState::Failed(words.clone()),
+        }
+    }
+    table.write(output, &plan, false)?;
+    let mut written = Instant::now();
+    for rows in groups.values() {
+        let Some(Ok(first)) = rows.first().map(|row| &plan.rows[*row]) else { continue };
+        let mut all_failed =
+            |words: &str| rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(words.to_owned()));
+        let assembly = match Assembly::new(first, |p| progress(SweepProgress::Build(p))) {
+            Ok(assembly) => assembly,
+            Err(error) => {
+                all_failed(&error.to_string());
+                continue;
+            }
+        };
+        let builder = match assembly.builder() {
+            Ok(builder) => Mutex::new(builder),
+            Err(error) => {
+                all_failed(&error.to_string());
+                continue;
+            }
+        };
+        if plan.has_changed(rows[0]) {
+            all_failed(CHANGED);
+            continue;
+        }
+        let of_run = RunSettings { large: settings.large, rows_alone: true, ..RunSettings::default() };
+        run_rows(&plan, rows, &builder, temporary.path(), (settings.threads, &of_run), |row, outcome| {
+            table.rows[row] = outcome;
+            let [done, failed] = table.counts();
+            progress(SweepProgress::Rows { done: (done + failed) as u64, total: mine as u64 });
+            if written.elapsed() >= WRITE_INTERVAL {
+                table.write(output, &plan, false)?;
+                written = Instant::now();
+            }
+            Ok(())
+        })?;
+        if plan.has_changed(rows[0]) {
+            rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(CHANGED.to_owned()));
+        }
+    }
+    finish(&mut table, &plan, output, csv.as_deref())?;
+    let report = SweepReport::of(plan, output, csv, &table, kept);
+    Ok(SweepReport { rows: mine, reductions: cache.notes().assembled, ..report })
+}
+
+/// Merges the tables of all `count` shards of a sweep into the table `output`. Rows that no shard has run stay open: a
+/// shard that was cut off is run again and merged again, or the sweep goes on without shards.
+///
+/// # Errors
+/// [`SweepError`]: the sweep cannot be read, or a table is of another one.
+pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Result<SweepReport, SweepError> {
+    let plan = Plan::read(path, &Cache::none())?;
+    let shards = Shard::all(count).map(|shard| shard.table(output));
+    let csv = output.with_extension("csv");
+    let outputs = shards.fold(outputs(&plan, path, overwrite), |outputs, shard| outputs.and_input(&shard));
+    [output, &csv].into_iter().try_for_each(|file| outputs.spare(file))?;
+    Written::SWEEP.check(output).map_err(OutputError::from)?;
+    let _alone = lock(output)?;
+    // Rows that the table has already stay, and one of another sweep is not lost.
+    let mut table = Table::open(output, &plan, overwrite)?;
+    claim_csv(&csv, &table, overwrite)?;
+    let [kept, _] = table.counts();
+    let mut unfinished = Vec::new();
+    let mut has_tables = false;
+    for shard in Shard::all(count) {
+        let found = Table::read(&shard.table(output), &plan)?;
+        has_tables |= found.is_some();
+        if let Some(Table { stale: rows @ 1.., .. }) = found {
+            return Err(SweepError::OtherFiles { path: shard.table(output), rows });
+        }
+        for (row, state) in table.rows.iter_mut().enumerate().filter(|(row, _)| shard.has(*row)) {
+            if *state == RowState::Open
+                && let Some(of_shard) = &found
+            {
+                *state = of_shard.rows[row].clone();
+            }
+            if *state == RowState::Open && unfinished.last() != Some(&shard) {
+                unfinished.push(shard);
+            }
+        }
+    }
+    if !has_tables {
+        let first = Shard::all(count).next().map(|shard| shard.table(output)).unwrap_or_default();
+        return Err(SweepError::NoShard { first, count });
+    }
+    finish(&mut table, &plan, output, Some(&csv))?;
+    Ok(SweepReport { unfinished, ..SweepReport::of(plan, output, Some(csv), &table, kept) })
+}
+
+/// Refuses to replace a CSV file that was not written with the table.
+fn claim_csv(csv: &Path, table: &Table, overwrite: bool) -> Result<(), SweepError> {
+    let is_ours = || Hash::of_file(csv).is_ok_and(|hash| hash.to_string() == table.csv);
+    if overwrite || !csv.exists() || is_ours() {
+        return Ok(());
+    }
+    Err(SweepError::OtherCsv { path: csv.to_owned() })
+}
+
+/// Writes the table for the last time, and its numbers as CSV.
+fn finish(table: &mut Table, plan: &Plan, output: &Path, csv: Option<&Path>) -> Result<(), SweepError> {
+    if let Some(csv) = csv {
+        write_csv(csv, plan, table).map_err(WriteError::of(csv))?;
+        table.csv = Hash::of_file(csv).map_err(WriteError::of(csv))?.to_string();
+    }
+    table.write(output, plan, true)
+}
+
+/// Error of a row whose files changed.
+const CHANGED: &str = "a file of the body was changed while the sweep ran\n = run it again";
+
+/// Files that a sweep may not write over: all that it reads.
+fn outputs(plan: &Plan, sweep: &Path, overwrite: bool) -> Outputs {
+    // Rows with the same body and histories have the same files.
+    let same = |scene: &Scene| format!("{:?} {:?} {:?}", scene.body, scene.loads, scene.constraint);
+    let scenes: BTreeMap<String, &Scene> = plan.rows.iter().flatten().map(|scene| (same(scene), scene)).collect();
+    let files = scenes.into_values().flat_map(Scene::files);
+    Outputs::new(std::iter::once(sweep.to_owned()).chain(files).collect(), overwrite)
+}
+
+/// Keeps other sweeps from writing the table.
+fn lock(table: &Path) -> Result<FileLock, SweepError> {
+    let lock = FileLock::of(table).map_err(WriteError::of(table))?;
+    lock.ok_or_else(|| SweepError::Busy { path: table.to_owned() })
+}
+
+/// Runs some rows of one body, and tells what became of each.
+fn run_rows(
+    plan: &Plan,
+    rows: &[usize],
+    builder: &Mutex<ModelBuilder<'_>>,
+    folder: &Path,
+    (threads, settings): (usize, &RunSettings),
+    mut tell: impl FnMut(usize, RowState) -> Result<(), SweepError>,
+) -> Result<(), SweepError> {
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        let (sender, receiver) = mpsc::channel();
+        for _ in 0..threads.clamp(1, rows.len()) {
+            let (sender, next) = (sender.clone(), &next);
+            scope.spawn(move || {
+                while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let outcome = match &plan.rows[*row] {
+                        Ok(scene) => run_row(scene, plan, builder, folder, settings)
+                            .map_or_else(RowState::Failed, RowState::Done),
+                        Err(words) => RowState::Failed(words.clone()),
+                    };
+                    // Where nobody listens any longer, the table could not be written.
+                    if sender.send((*row, outcome)).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        receiver.iter().try_for_each(|(row, outcome)| tell(row, outcome))
+    })
+}
+
+/// The results of a row, or why there are none.
+fn run_row(
+    scene: &Scene,
+    plan: &Plan,
+    builder: &Mutex<ModelBuilder<'_>>,
+    folder: &Path,
+    settings: &RunSettings,
+) -> Result<Done, String> {
+    let build = |scene: &Scene| -> Result<Model, String> {
+        let mut builder = builder.lock().unwrap_or_else(PoisonError::into_inner);
+        builder.build(scene, |_| ()).map_err(|error| error.to_string())
+    };
+    let [asks_run, asks_frequencies] = plan.asks();
+    let mut done = Done { results: Vec::new(), warnings: Vec::new() };
+    let mut frequencies = Vec::new();
+    if asks_frequencies {
+        let scene = modes::unloaded(scene);
+        let model = build(&scene)?;
+        modes::require_flexible(&scene, &model).map_err(|error| error.to_string())?;
+        frequencies = model.natural_frequencies();
+        done.warnings = plausible::doubts(&scene, &model);
+    }
+    let folder = TemporaryFolder::inside(folder).map_err(|error| error.to_string())?;
+    let mut results = None;
+    if asks_run {
+        let run = run::run_model(scene, &build(scene)?, folder.path(), settings, |_| ());
+        done.warnings = run.map_err(|error| error.without_files())?.warnings;
+        let path = run::results_path(scene, folder.path());
+        results = Some(Results::open(path, &COLUMNS).map_err(|error| error.to_string())?);
+    }
+    let value = |asked: &Asked| match (asked, &results) {
+        (Asked::Final(column), Some(results)) => column_of(results, column, |table| {
+            table.rows().checked_sub(1).and_then(|last| table.row(last)).map(<[f64]>::to_vec)
+        }),
+        (Asked::Peak(column), Some(results)) => column_of(results, column, |table| {
+            let largest = |k: usize| table.column(k)?.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+            (0..table.width()).map(largest).collect()
+        }),
+        _ => Ok(frequencies.clone()),
+    };
+    done.results = plan.results.values().map(value).collect::<Result<_, String>>()?;
+    Ok(done)
+}
+
+/// Numbers of a column of the results.
+fn column_of(
+    results: &Results,
+    column: &str,
+    numbers: impl FnOnce(&ColumnTable) -> Option<Vec<f64>>,
+) -> Result<Vec<f64>, String> {
+    let table = results.table(column).ok_or_else(|| {
+        format!(
+            "the results have no column {column}: docs/reference/results.md lists them, and those of points are \
+             points/NAME/displacement and so on"
+        )
+    })?;
+    numbers(table).ok_or_else(|| format!("the column {column} has no rows"))
+}
+
+impl fmt::Display for SweepReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.title)?;
+        writeln!(f, "  rows     {} done ({} of them before), {} failed", self.done, self.kept, self.failures.len())?;
+        if self.stale > 0 {
+            writeln!(f, "  stale    {} rows were computed before from files that have changed since", self.stale)?;
+        }
+        for (row, words) in self.failures.iter().take(SHOWN) {
+            writeln!(f, "  failed   row {row}: {}", words.lines().next().unwrap_or_default())?;
+        }
+        if self.failures.len() > SHOWN {
+            writeln!(f, "           and {} more, see `failures` in the file", self.failures.len() - SHOWN)?;
+        }
+        for (row, words) in self.warnings.iter().take(SHOWN) {
+            writeln!(f, "  warning  row {row}: {}", words.join("; "))?;
+        }
+        if self.warnings.len() > SHOWN {
+            writeln!(f, "           and {} more, see `warnings` in the file", self.warnings.len() - SHOWN)?;
+        }
+        for shard in &self.unfinished {
+            writeln!(
+                f,
+                "  open     shard {shard} has rows that were not run: run it again (--shard {shard}), then merge again"
+            )?;
+        }
+        if self.reductions > 0 {
+            writeln!(f, "  body     matrices assembled and factored {} time(s)", self.reductions)?;
+        }
+        if self.done > 0 {
+            write!(f, "\n{}\n", self.shown)?;
+        }
+        write!(f, "  wrote    {}", self.output.display())?;
+        self.csv.iter().try_for_each(|csv| write!(f, " {}", csv.display()))
+    }
+}

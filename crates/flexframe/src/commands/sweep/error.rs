@@ -1,0 +1,130 @@
+//! Errors of a sweep.
+
+use std::path::PathBuf;
+
+use body_file::BodyFileError;
+use scene::{BuildError, SceneError};
+
+use crate::files::outputs::OutputError;
+use crate::files::write_error::WriteError;
+
+/// Help about the file of a sweep.
+pub(crate) const SWEEP_CURE: &str = "correct it: docs/reference/cli.md, \"Sweeps\", has an example with all its keys";
+
+/// A sweep that could not be made. What fails in a row of it is in its table.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// The file of the sweep cannot be read.
+    #[error("{}: the file of the sweep cannot be read: {source}\n = check its name; it is relative to the folder you are in", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        source: std::io::Error,
+    },
+    /// The file of the sweep says something that cannot be right.
+    #[error("{}: `{key}`: found {found}, expected {expected}\n = {SWEEP_CURE}", path.display())]
+    Invalid {
+        /// The file.
+        path: PathBuf,
+        /// The key in it.
+        key: String,
+        /// The value that stands there.
+        found: String,
+        /// The value that should stand there.
+        expected: String,
+    },
+    /// The file of the sweep is not TOML, or has another form.
+    #[error("{}: {message}\n = {SWEEP_CURE}", path.display())]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// Message of the parser, with the place.
+        message: String,
+    },
+    /// The scene cannot be read, or no row of the sweep is a scene.
+    #[error("{source}{}", where_(key.as_deref()))]
+    Scene {
+        /// The parameters of the first row, if it is not the scene itself.
+        key: Option<String>,
+        /// The reason.
+        source: SceneError,
+    },
+    /// The body cannot be made.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A file that is there is not the table of this sweep.
+    #[error(
+        "{}: the file there is not the table of this sweep ({what}); move it away, choose another file with -o, or replace it \
+         with --overwrite",
+        path.display()
+    )]
+    OtherTable {
+        /// The file.
+        path: PathBuf,
+        /// Its kind.
+        what: String,
+    },
+    /// The table would go where a file is that the sweep reads.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A file is where the CSV file would go, which the sweep has not written.
+    #[error(
+        "{}: the sweep writes its numbers here, too, and has not written what is there\n = move it away, choose another name for \
+         the table with -o, or replace both with --overwrite",
+        path.display()
+    )]
+    OtherCsv {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Another sweep writes the table.
+    #[error("{}: another sweep is writing this table\n = wait for its end, or choose another file with -o", path.display())]
+    Busy {
+        /// The table.
+        path: PathBuf,
+    },
+    /// A shard has rows of other files than there are now.
+    #[error(
+        "{}: {rows} of its rows were computed from files that have changed since: a mesh, what it includes, or a table of a load\n = \
+         run this shard again, which computes them anew, and then merge",
+        path.display()
+    )]
+    OtherFiles {
+        /// The table of the shard.
+        path: PathBuf,
+        /// So many.
+        rows: usize,
+    },
+    /// No row is done.
+    #[error("{}: all rows that were run have failed; row {row}: {words}", path.display())]
+    AllFailed {
+        /// The table.
+        path: PathBuf,
+        /// The first of them.
+        row: usize,
+        /// Reason of the failure.
+        words: String,
+    },
+    /// There is nothing to merge.
+    #[error(
+        "{}: there is no such table, nor one of the other shards of {count}; run the shards first (--shard 1/{count} and so on), with \
+         the same -o, or merge as many as there are", first.display()
+    )]
+    NoShard {
+        /// The table of the first shard.
+        first: PathBuf,
+        /// As many shards were asked for.
+        count: usize,
+    },
+    /// The table cannot be written.
+    #[error(transparent)]
+    Table(#[from] BodyFileError),
+    /// A folder cannot be made.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+fn where_(key: Option<&str>) -> String {
+    key.map_or_else(String::new, |key| format!("\n  = with {key} (no row of the sweep is a scene that can be read)"))
+}

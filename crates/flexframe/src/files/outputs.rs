@@ -1,0 +1,31 @@
+//! Files that the commands read, so that they do not write over them ([`whole_file::Outputs`]).
+
+use std::path::Path;
+
+use mesh_import::files_of_mesh;
+use results::Results;
+use scene::Scene;
+pub use whole_file::{OutputError, Outputs, Written};
+
+use crate::drawn::body_files;
+use crate::files::scene_file;
+
+/// Files that a command may write that reads a scene.
+pub fn outputs_of_scene(scene: &Scene, overwrite: bool) -> Outputs {
+    Outputs::new(scene.files(), overwrite)
+}
+
+/// The same of one that reads a mesh or geometry.
+pub fn outputs_of_mesh(mesh: &Path, overwrite: bool) -> Outputs {
+    Outputs::new(files_of_mesh(mesh), overwrite)
+}
+
+/// The same of one that reads a results file; it spares the body file, and what the run read.
+pub fn outputs_of_results(file: &Path, overwrite: bool) -> Outputs {
+    let mut inputs = Vec::new();
+    if let Ok(metadata) = Results::metadata_of(file) {
+        inputs.extend(metadata.input_files.iter().map(|text| scene_file::to_path(text)));
+        inputs.extend(metadata.body.mesh.iter().flat_map(|mesh| body_files(file, mesh)));
+    }
+    Outputs::new(inputs, overwrite).and_input(file)
+}

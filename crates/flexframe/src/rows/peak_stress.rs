@@ -1,0 +1,130 @@
+//! The largest von Mises stress of a run, over the whole body and all rows.
+
+use dynamics::Observation;
+use faer::Col;
+use fem_tet10::{StressError, StressRecovery};
+use scene::{Body, Meshed, Model, Scene, StressPeak};
+use serde::Serialize;
+
+use crate::files::json;
+use crate::report::quantity;
+use crate::rows::units::UnitLabels;
+
+/// The largest von Mises stress of a run, and what is known of its error.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PeakStress {
+    /// The stress, force per area.
+    #[serde(serialize_with = "json::number")]
+    pub von_mises: f64,
+    /// When.
+    #[serde(serialize_with = "json::number")]
+    pub time: f64,
+    /// Where: the node, in the numbering of the mesh.
+    pub node: u64,
+    /// Its position in the undeformed body, mesh axes.
+    pub at: [f64; 3],
+    /// The physical groups that it is in.
+    pub groups: Vec<String>,
+    /// The von Mises stress that the modes leave out there and then, of the static response to what acts on the body.
+    #[serde(serialize_with = "json::number")]
+    pub left_out: f64,
+    /// The largest one then, anywhere in the body.
+    #[serde(serialize_with = "json::number")]
+    pub max_left_out: f64,
+    /// The error of the mesh, in the norm of the energy of the whole body, relative to the stress then; not known with large
+    /// deflection.
+    #[serde(serialize_with = "json::optional")]
+    pub mesh_error: Option<f64>,
+}
+
+/// The largest one so far.
+#[derive(Debug, Clone)]
+pub(crate) struct Largest {
+    peak: StressPeak,
+    time: f64,
+    modal_displacement: Vec<f64>,
+}
+
+impl Largest {
+    /// Takes one more row into account.
+    pub(crate) fn watch(so_far: &mut Option<Self>, model: &Model, now: &Observation) {
+        let Some(peak) = model.stress.as_ref().and_then(|stress| stress.peak(now)) else { return };
+        if so_far.as_ref().is_none_or(|largest| peak.von_mises > largest.peak.von_mises) {
+            *so_far = Some(Self { peak, time: now.time, modal_displacement: now.modal_displacement.clone() });
+        }
+    }
+
+    /// With its place and what the mesh makes of it.
+    pub(crate) fn report(&self, scene: &Scene, model: &Model) -> Option<PeakStress> {
+        let meshed = model.meshed.as_ref()?;
+        let StressPeak { von_mises, node, left_out, max_left_out } = self.peak;
+        let mesh = &meshed.mesh;
+        Some(PeakStress {
+            von_mises,
+            time: self.time,
+            node: mesh.node_tags()[node as usize],
+            at: mesh.positions()[node as usize],
+            groups: mesh.groups_of_node(node).into_iter().map(str::to_owned).collect(),
+            left_out,
+            max_left_out,
+            mesh_error: if model.physics.large_deflection.is_some() { None } else { self.mesh_error(scene, meshed) },
+        })
+    }
+
+    fn mesh_error(&self, scene: &Scene, meshed: &Meshed) -> Option<f64> {
+        let Body::Meshed(body) = &scene.body else { return None };
+        let displacement = &meshed.modes.shapes * Col::from_iter(self.modal_displacement.iter().copied());
+        let recovery = StressRecovery::new(&meshed.mesh, &body.materials).ok()?;
+        let nodal = recovery.nodal_stress(displacement.as_mat()).ok()?;
+        let of_elements = recovery.error_estimate(displacement.as_ref(), nodal.col(0)).ok()?;
+        Some(of_elements.into_iter().sum::<StressError>().relative())
+    }
+}
+
+impl PeakStress {
+    /// Such as "largest von Mises stress 41.2 MPa at 0.01 s at (0, 5, 0) mm; the modes leave out …".
+    pub(crate) fn in_words(&self, units: &UnitLabels<'_>) -> String {
+        let (stress, UnitLabels { length, time, .. }) = (units.stress(), units);
+        let [x, y, z] = self.at.map(quantity);
+        let groups = if self.groups.is_empty() { String::new() } else { format!(" in {}", self.groups.join(", ")) };
+        let mesh_error = match self.mesh_error {
+            Some(error) => format!(", the mesh is {:.1} % off in the mean", 100.0 * error),
+            None => String::new(),
+        };
+        format!(
+            "largest von Mises stress {} {stress} at {} {time} at ({x}, {y}, {z}) {length}{groups}; the modes leave out \
+             {:.1e} {stress} there and {:.1e} {stress} at most anywhere{mesh_error}",
+            quantity(self.von_mises),
+            quantity(self.time),
+            self.left_out,
+            self.max_left_out
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_number_has_its_unit_behind_it() {
+        let stress = PeakStress {
+            von_mises: 41.25,
+            time: 0.5,
+            node: 7,
+            at: [0.0, 5.0, 10.0],
+            groups: vec!["root".to_owned()],
+            left_out: 0.125,
+            max_left_out: 0.25,
+            mesh_error: Some(0.03),
+        };
+        let words = stress.in_words(&UnitLabels { length: "mm", mass: "Mg", time: "s" });
+        let quantities = [41.25, 0.5, 5.0, 10.0].map(quantity);
+        let [peak, time, y, z] = &quantities;
+        let expected = [
+            format!("stress {peak} MPa at {time} s at (0, {y}, {z}) mm in root; "),
+            "leave out 1.2e-1 MPa there and 2.5e-1 MPa at most anywhere, the mesh is 3.0 % off".to_owned(),
+        ];
+        assert!(expected.iter().all(|part| words.contains(part)), "{words}");
+    }
+}

@@ -1,0 +1,221 @@
+//! The units that SI has names for, in the labels of a scene: N, mJ and MPa where it is in mm, Mg and s.
+
+/// Labels of a scene's units.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct UnitLabels<'a> {
+    pub(crate) length: &'a str,
+    pub(crate) mass: &'a str,
+    pub(crate) time: &'a str,
+}
+
+impl<'a> From<&'a scene::Units> for UnitLabels<'a> {
+    fn from(scene::Units { length, mass, time }: &'a scene::Units) -> Self {
+        Self { length, mass, time }
+    }
+}
+
+impl UnitLabels<'_> {
+    /// "N", or "lb in/s²" where the units are not those of SI, or not a power of 1000 of N.
+    pub(crate) fn force(&self) -> String {
+        let Self { length, mass, time } = self;
+        self.named("N", [1, 1, -2]).unwrap_or_else(|| format!("{mass} {length}/{time}²"))
+    }
+
+    /// "mJ".
+    pub(crate) fn energy(&self) -> String {
+        let Self { length, mass, time } = self;
+        self.named("J", [2, 1, -2]).unwrap_or_else(|| format!("{mass} {length}²/{time}²"))
+    }
+
+    /// "MPa".
+    pub(crate) fn stress(&self) -> String {
+        let Self { length, mass, time } = self;
+        self.named("Pa", [-1, 1, -2]).unwrap_or_else(|| format!("{mass}/({length} {time}²)"))
+    }
+
+    /// "N mm".
+    pub(crate) fn moment(&self) -> String {
+        self.times_force(&[self.length]).unwrap_or_else(|| format!("{} {}²/{}²", self.mass, self.length, self.time))
+    }
+
+    /// "mW".
+    pub(crate) fn power(&self) -> String {
+        let Self { length, mass, time } = self;
+        self.named("W", [2, 1, -3]).unwrap_or_else(|| format!("{mass} {length}²/{time}³"))
+    }
+
+    /// "N s".
+    pub(crate) fn momentum(&self) -> String {
+        self.times_force(&[self.time]).unwrap_or_else(|| format!("{} {}/{}", self.mass, self.length, self.time))
+    }
+
+    /// "N mm s".
+    pub(crate) fn angular_momentum(&self) -> String {
+        let Self { length, mass, time } = self;
+        self.times_force(&[length, time]).unwrap_or_else(|| format!("{mass} {length}²/{time}"))
+    }
+
+    /// The unit of force where it has a name, times other units.
+    fn times_force(&self, others: &[&str]) -> Option<String> {
+        let force = self.named("N", [1, 1, -2])?;
+        Some([&[force.as_str()], others].concat().join(" "))
+    }
+
+    /// A unit of SI with its prefix, from the powers of length, mass and time that it has in m, kg and s.
+    fn named(&self, name: &str, powers: [i32; 3]) -> Option<String> {
+        let prefix = match self.tens(powers)? {
+            -9 => "n",
+            -6 => "µ",
+            -3 => "m",
+            0 => "",
+            3 => "k",
+            6 => "M",
+            9 => "G",
+            _ => return None,
+        };
+        Some(format!("{prefix}{name}"))
+    }
+
+    /// Seconds in the unit of time.
+    pub(crate) fn seconds(&self) -> Option<f64> {
+        time(self.time).map(|ten| 10f64.powi(ten))
+    }
+
+    /// A unit in m, kg and s, from the powers of length, mass and time that it has; inches and pounds are known, too.
+    pub(crate) fn in_si(&self, powers: [i32; 3]) -> Option<f64> {
+        let ten = |power: i32| 10_f64.powi(power);
+        let factors = [
+            length(self.length).map(ten).or_else(|| imperial_length(self.length))?,
+            mass(self.mass).map(ten).or_else(|| imperial_mass(self.mass))?,
+            time(self.time).map(ten)?,
+        ];
+        Some(factors.iter().zip(powers).map(|(factor, power)| factor.powi(power)).product())
+    }
+
+    /// "mm/s²".
+    pub(crate) fn acceleration(&self) -> String {
+        format!("{}/{}²", self.length, self.time)
+    }
+
+    /// The power of ten of a unit in m, kg and s, from the powers of length, mass and time that it has.
+    pub(crate) fn tens(&self, powers: [i32; 3]) -> Option<i32> {
+        let tens = [length(self.length)?, mass(self.mass)?, time(self.time)?];
+        Some(tens.iter().zip(powers).map(|(ten, power)| ten * power).sum())
+    }
+}
+
+/// The power of ten in metres.
+fn length(label: &str) -> Option<i32> {
+    match label {
+        "km" => Some(3),
+        "m" => Some(0),
+        "cm" => Some(-2),
+        "mm" => Some(-3),
+        "um" | "µm" | "μm" => Some(-6),
+        _ => None,
+    }
+}
+
+/// In metres.
+fn imperial_length(label: &str) -> Option<f64> {
+    match label {
+        "in" | "inch" => Some(0.0254),
+        "ft" => Some(0.3048),
+        _ => None,
+    }
+}
+
+/// In kilograms: a pound, and the masses that a force of one pound accelerates by 1 ft/s² and by 1 in/s².
+fn imperial_mass(label: &str) -> Option<f64> {
+    const POUND: f64 = 0.453_592_37;
+    const POUND_FORCE: f64 = 9.806_65 * POUND;
+    match label {
+        "lb" | "lbm" => Some(POUND),
+        "slug" => Some(POUND_FORCE / 0.3048),
+        "slinch" | "blob" | "lbf s²/in" | "lbf s^2/in" | "lbf·s²/in" | "lbf*s^2/in" => Some(POUND_FORCE / 0.0254),
+        _ => None,
+    }
+}
+
+/// The power of ten in kilograms.
+fn mass(label: &str) -> Option<i32> {
+    match label {
+        "Mg" | "t" => Some(3),
+        "kg" => Some(0),
+        "g" => Some(-3),
+        "mg" => Some(-6),
+        _ => None,
+    }
+}
+
+/// The power of ten in seconds.
+fn time(label: &str) -> Option<i32> {
+    match label {
+        "s" => Some(0),
+        "ms" => Some(-3),
+        "us" | "µs" | "μs" => Some(-6),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::UnitLabels;
+
+    #[test]
+    fn derived_units_have_their_names_where_they_are_of_si() {
+        for (length, mass, time, expected) in [
+            ("mm", "Mg", "s", ["mW", "N mm", "N s", "N mm s"]),
+            ("mm", "g", "ms", ["W", "N mm", "N ms", "N mm ms"]),
+            ("in", "lb", "s", ["lb in²/s³", "lb in²/s²", "lb in/s", "lb in²/s"]),
+        ] {
+            let units = UnitLabels { length, mass, time };
+            let found = [units.power(), units.moment(), units.momentum(), units.angular_momentum()];
+            assert_eq!(found, expected, "{units:?}");
+        }
+        for (length, mass, time, expected) in [
+            ("mm", "Mg", "s", ["N", "mJ", "MPa"]),
+            ("mm", "t", "s", ["N", "mJ", "MPa"]),
+            ("m", "kg", "s", ["N", "J", "Pa"]),
+            ("mm", "kg", "ms", ["kN", "J", "GPa"]),
+            ("mm", "g", "ms", ["N", "mJ", "MPa"]),
+            ("mm", "kg", "s", ["mN", "µJ", "kPa"]),
+            // A dyne is no power of 1000 of N, an erg none of J.
+            ("cm", "g", "s", ["g cm/s²", "g cm²/s²", "g/(cm s²)"]),
+            ("in", "lb", "s", ["lb in/s²", "lb in²/s²", "lb/(in s²)"]),
+            ("mm", "Mg", "", ["Mg mm/²", "Mg mm²/²", "Mg/(mm ²)"]),
+        ] {
+            let units = UnitLabels { length, mass, time };
+            assert_eq!([units.force(), units.energy(), units.stress()], expected, "{units:?}");
+        }
+    }
+
+    /// Each row of docs/reference/units.md, to its four digits.
+    #[test]
+    fn the_table_of_units_is_right() {
+        let table = include_str!("../../../../docs/reference/units.md");
+        let rows: Vec<Vec<&str>> = (table.lines().skip_while(|line| !line.starts_with("|---")).skip(1))
+            .take_while(|line| line.starts_with('|'))
+            .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+            .collect();
+        assert_eq!(rows.len(), 9);
+        for row in rows {
+            let [length, mass, time, force, stress, energy, numbers @ ..] = &row[..] else { panic!("{row:?}") };
+            let units = UnitLabels { length, mass, time };
+            let [pascals, kilograms, gravity] =
+                [[-1, 1, -2], [-3, 1, 0], [1, 0, -2]].map(|of| units.in_si(of).unwrap());
+            let expected =
+                [2.1e11 / pascals, 7850.0 / kilograms, 7e10 / pascals, 2700.0 / kilograms, 9.80665 / gravity];
+            assert_eq!(numbers.len(), expected.len(), "{row:?}");
+            for (number, expected) in numbers.iter().zip(expected) {
+                let number: f64 = number.parse().unwrap();
+                assert!((number / expected - 1.0).abs() < 5e-4, "{row:?}: {number} {expected}");
+            }
+            if units.tens([1, 1, -2]).is_some_and(|ten| ten % 3 == 0)
+                && units.tens([2, 1, -2]).is_some_and(|ten| ten >= -9)
+            {
+                assert_eq!([units.force(), units.stress(), units.energy()], [*force, *stress, *energy], "{row:?}");
+            }
+        }
+    }
+}

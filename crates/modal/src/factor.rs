@@ -1,0 +1,13 @@
+//! The Cholesky factor of K + sM.
+
+pub(crate) mod cholesky;
+pub(crate) mod interleave;
+pub(crate) mod layout;
+pub(crate) mod ordering;
+pub(crate) mod shifted;
+pub(crate) mod shifted_matrix;
+pub(crate) mod substitution;
+pub(crate) mod subtrees;
+pub(crate) mod supernode;
+pub(crate) mod supernodes;
+pub(crate) mod symbolic;

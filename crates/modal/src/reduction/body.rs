@@ -1,0 +1,303 @@
+//! The reduced body: every constant that the motion needs, none of them of the mesh's size.
+//!
+//! Eqs. (M7)–(M10) of `docs/method/modes.md`.
+//!
+//! With `X` the node positions from the origin (the centre of mass of a free body), `Ψ = [Ψ_R, Ψ_f]` the rigid and
+//! flexible shapes, and `(I⊗A)` a 3×3 matrix A acting on each node's vector (the definitions of any other mass than a scalar
+//! for each pair of nodes are those of [`ReducedBody::new`]):
+//!
+//! | here | theory | definition |
+//! |---|---|---|
+//! | [`rotation_products`](Constants::rotation_products) | E_ab | `Ψᵀ M (I⊗e_a e_bᵀ) Ψ`, so `Ψᵀ M (I⊗R) Ψ = Σ R_ab E_ab` |
+//! | [`inertia_first`](Constants::inertia_first) | c_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) X`, symmetrised in ij |
+//! | [`inertia_second`](Constants::inertia_second) | N_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) Ψ_f`, symmetrised in ij |
+//! | [`gyroscopic`](Constants::gyroscopic) | G_i | `Ψ_fᵀ M (I⊗[e_i×]) Ψ_f`, skew |
+//! | [`translation_first`](Constants::translation_first) | t_i | `Ψ_fᵀ M (1⊗e_i)`, zero for a free body |
+//! | [`rotation_first`](Constants::rotation_first) | b_i | `Ψ_fᵀ M (I⊗[e_i×]) X`, zero for a free or pinned body |
+//! | [`stress_stiffness`](Constants::stress_stiffness) | Ψ_fᵀ K_ij Ψ_f | of the stress that spinning causes |
+
+use faer::sparse::SparseColMatRef;
+use faer::{Mat, MatRef};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::error::ModalError;
+use crate::input::check_finite_entries;
+use crate::matrix::mass_matrix::MassMatrix;
+use crate::matrix::pairs::PAIRS;
+use crate::reduction::general::general_products;
+use crate::reduction::inertia_products::Products;
+use crate::reduction::nodal::nodal_products;
+use crate::solve::Modes;
+use crate::support::motion::RigidMotion;
+
+/// An elastic body in modal coordinates: [`Constants`] whose sizes fit together and which are finite. They can be read as
+/// its fields.
+#[derive(Debug, Clone)]
+pub struct ReducedBody(Constants);
+
+impl std::ops::Deref for ReducedBody {
+    type Target = Constants;
+
+    fn deref(&self) -> &Constants {
+        &self.0
+    }
+}
+
+/// The constants of a body in modal coordinates. Axes are those of the mesh. X is measured from the origin: the centre
+/// of mass of a free body, a fixed point of one that is held.
+#[derive(Debug, Clone)]
+pub struct Constants {
+    /// Total mass m.
+    pub mass: f64,
+    /// Centre of mass in the mesh's frame.
+    pub center_of_mass: Vector3<f64>,
+    /// The rigid motions that it has.
+    pub motion: RigidMotion,
+    /// The origin, in the mesh's frame.
+    pub origin: Vector3<f64>,
+    /// Inertia J₀ of the undeformed body about the origin.
+    pub inertia: Matrix3<f64>,
+    /// T (3×3): the velocity of the origin of rigid modal velocities y is `T y[..3]`. Columns of motions that the body
+    /// does not have are zero; I/√m of a free body.
+    pub translation_basis: Matrix3<f64>,
+    /// B (3×3): the angular velocity of rigid modal velocities y is `B y[3..6]`. Columns of motions that the body has
+    /// not got are zero.
+    pub rotation_basis: Matrix3<f64>,
+    /// Circular natural frequencies of the flexible modes, rad per time (nf).
+    pub circular_frequencies: Vec<f64>,
+    /// Number of natural modes among the flexible ones: they come first, static shapes after them.
+    pub natural_modes: usize,
+    /// E_ab (3×3 matrices of 6+nf × 6+nf).
+    pub rotation_products: [[Mat<f64>; 3]; 3],
+    /// E^X_ab = `Ψᵀ M (e_a e_bᵀ) X` (3×3 vectors of 6+nf).
+    pub position_products: [[Vec<f64>; 3]; 3],
+    /// c_ij for ij = 11, 22, 33, 23, 13, 12 (6 vectors of nf).
+    pub inertia_first: [Vec<f64>; 6],
+    /// N_ij in the same order (6 matrices of nf×nf).
+    pub inertia_second: [Mat<f64>; 6],
+    /// G_i (3 matrices of nf×nf).
+    pub gyroscopic: [Mat<f64>; 3],
+    /// t_i (3 vectors of nf).
+    pub translation_first: [Vec<f64>; 3],
+    /// b_i (3 vectors of nf).
+    pub rotation_first: [Vec<f64>; 3],
+    /// Ψ_fᵀ K_ij Ψ_f for ij = 11, 22, 33, 23, 13, 12 (6 matrices of nf×nf): K_ij is the stress stiffness matrix of the
+    /// static response to the centrifugal field of ω_iω_j, Eq. (G1) of `docs/method/stiffening.md`. `None` if it was not asked for.
+    pub stress_stiffness: Option<[Mat<f64>; 6]>,
+}
+
+/// A material point of the body: where it is, and how the modes move it.
+#[derive(Debug, Clone)]
+pub struct BodyPoint {
+    /// Undeformed position X from the origin, body axes.
+    pub position_body: Vector3<f64>,
+    /// Rows of the flexible shapes at the point (3×nf): `u = Φ q`.
+    pub shapes: Mat<f64>,
+}
+
+impl ReducedBody {
+    /// ij of [`Constants::inertia_first`] and [`Constants::inertia_second`], and of any symmetric 3×3 matrix.
+    pub const PAIRS: [(usize, usize); 6] = PAIRS;
+
+    /// The body with these constants.
+    ///
+    /// # Errors
+    /// [`ModalError::Length`] where sizes do not fit together, [`ModalError::NotFinite`], [`ModalError::NotPositive`].
+    pub fn from_constants(constants: Constants) -> Result<Self, ModalError> {
+        constants.check()?;
+        Ok(Self(constants))
+    }
+
+    /// The same body, stiffened by the stress of a spin: [`Constants::stress_stiffness`].
+    ///
+    /// # Errors
+    /// As [`Self::from_constants`].
+    pub fn with_stress_stiffness(self, stress_stiffness: Option<[Mat<f64>; 6]>) -> Result<Self, ModalError> {
+        Self::from_constants(Constants { stress_stiffness, ..self.0 })
+    }
+
+    /// Reduces the body with mass matrix `mass` and nodes `positions` to its `modes`.
+    ///
+    /// The part of M that a large rotation uses, where M is constant in body axes:
+    ///
+    /// * A scalar mass for each pair of nodes ([`crate::NodalMass`]) commutes with rotations: every constant is exact.
+    /// * Any other M, with three or six degrees of freedom a node: J₀, b_i and t_i are exact. The deformed body takes the
+    ///   velocities of a node for `ω×(X + u) + u̇` and `ω + ω×θ + θ̇` (body axes): c_ij is exact for a rotary inertia that
+    ///   sits on a node, and turns with it. Left out is what M gives because it does not commute with rotations: the
+    ///   symmetric part of `Ψᵀ M (I⊗[e_i×]) Ψ`, the momentum `Eᵀ M (I⊗[ω×]) Ψ q` (the centre of mass of a free body stays
+    ///   at its origin), couplings of translations with rotations that turn with a node, and all that is of second order in
+    ///   the rotations of nodes. With consistent masses of beams and shells this vanishes with the square of the element
+    ///   length; energy and momenta of the motion are conserved in any case.
+    /// * The formulation of the paper has no rotations of nodes: it is right for masses of the first kind only.
+    ///
+    /// # Errors
+    /// [`ModalError::NoRigidBodyMass`] where M does not give translations the mass of a rigid body to 1e-9,
+    /// [`ModalError::NotSymmetric`]; [`ModalError::Length`] and [`ModalError::Size`] where the modes or the positions are
+    /// not those of its nodes.
+    pub fn new(
+        modes: &Modes,
+        mass: SparseColMatRef<'_, usize, f64>,
+        positions: &[[f64; 3]],
+    ) -> Result<Self, ModalError> {
+        Self::of_mass(modes, &MassMatrix::new(mass, positions.len())?, positions)
+    }
+
+    /// The same, with the mass matrix of a [`crate::Solver`].
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_mass(modes: &Modes, mass: &MassMatrix<'_>, positions: &[[f64; 3]]) -> Result<Self, ModalError> {
+        let rigid = &modes.rigid;
+        let n = positions.len();
+        let nf = modes.shapes.ncols();
+        check_size("the rows of the mode shapes", modes.shapes.nrows(), mass.dofs() * n)?;
+        check_size("the rows of the rigid mode shapes", rigid.shapes.nrows(), mass.dofs() * n)?;
+        check_size("the list of eigenvalues", modes.eigenvalues.len(), nf)?;
+        let Products {
+            rotation_products,
+            position_products,
+            inertia_first,
+            inertia_second,
+            gyroscopic,
+            translation_first,
+            rotation_first,
+        } = match mass {
+            MassMatrix::Nodal(mass) => nodal_products(modes, mass, positions)?,
+            MassMatrix::General(mass) => general_products(modes, mass, positions)?,
+        };
+        Self::from_constants(Constants {
+            mass: rigid.mass,
+            center_of_mass: rigid.center_of_mass,
+            motion: rigid.motion,
+            origin: rigid.origin,
+            inertia: rigid.inertia,
+            translation_basis: rigid.translation_basis,
+            rotation_basis: rigid.rotation_basis,
+            circular_frequencies: modes.eigenvalues.iter().map(|lambda| lambda.sqrt()).collect(),
+            natural_modes: modes.natural(),
+            rotation_products,
+            position_products,
+            inertia_first,
+            inertia_second,
+            gyroscopic,
+            translation_first,
+            rotation_first,
+            stress_stiffness: None,
+        })
+    }
+
+    /// Number of flexible modes nf.
+    pub fn flexible(&self) -> usize {
+        self.circular_frequencies.len()
+    }
+
+    /// The same body with its first `flexible` modes only: every constant is a leading part of the one here.
+    pub fn truncated(&self, flexible: usize) -> Self {
+        let nf = flexible.min(self.flexible());
+        let leading = |matrix: &Mat<f64>, size: usize| matrix.get(..size, ..size).to_owned();
+        Self(Constants {
+            circular_frequencies: self.circular_frequencies[..nf].to_vec(),
+            natural_modes: self.natural_modes.min(nf),
+            rotation_products: self.rotation_products.each_ref().map(|r| r.each_ref().map(|m| leading(m, 6 + nf))),
+            position_products: self.position_products.each_ref().map(|r| r.each_ref().map(|v| v[..6 + nf].to_vec())),
+            inertia_first: self.inertia_first.each_ref().map(|v| v[..nf].to_vec()),
+            inertia_second: self.inertia_second.each_ref().map(|m| leading(m, nf)),
+            gyroscopic: self.gyroscopic.each_ref().map(|m| leading(m, nf)),
+            translation_first: self.translation_first.each_ref().map(|v| v[..nf].to_vec()),
+            rotation_first: self.rotation_first.each_ref().map(|v| v[..nf].to_vec()),
+            stress_stiffness: self.stress_stiffness.as_ref().map(|k| k.each_ref().map(|m| leading(m, nf))),
+            ..self.0
+        })
+    }
+
+    /// Rows of the rigid shapes at a point X from the origin (3×6): `[T, −[X×] B]`.
+    pub fn rigid_shapes(&self, position_body: &Vector3<f64>) -> nalgebra::Matrix3x6<f64> {
+        let mut shapes = nalgebra::Matrix3x6::zeros();
+        shapes.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.translation_basis);
+        shapes.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-position_body.cross_matrix() * self.rotation_basis));
+        shapes
+    }
+}
+
+impl Constants {
+    /// Refuses sizes that do not fit together, numbers that are not finite, and frequencies that are not positive.
+    fn check(&self) -> Result<(), ModalError> {
+        let nf = self.circular_frequencies.len();
+        let square = |what, matrix: &Mat<f64>, size: usize| -> Result<(), ModalError> {
+            check_size(what, matrix.nrows(), size)?;
+            check_size(what, matrix.ncols(), size)?;
+            check_finite_entries(what, matrix.col_iter().flat_map(|column| column.iter()).copied())
+        };
+        let list = |what, values: &[f64], size: usize| -> Result<(), ModalError> {
+            check_size(what, values.len(), size)?;
+            check_finite_entries(what, values.iter().copied())
+        };
+        self.motion.check()?;
+        check_finite_entries("mass", [self.mass])?;
+        check_finite_entries("center of mass", self.center_of_mass.iter().copied())?;
+        check_finite_entries("origin", self.origin.iter().copied())?;
+        check_finite_entries("inertia", self.inertia.iter().copied())?;
+        check_finite_entries("translation basis", self.translation_basis.iter().copied())?;
+        check_finite_entries("rotation basis", self.rotation_basis.iter().copied())?;
+        if let Some(value) =
+            self.circular_frequencies.iter().copied().find(|omega| !(*omega > 0.0 && omega.is_finite()))
+        {
+            return Err(ModalError::NotPositive { what: "circular frequency", value });
+        }
+        if self.natural_modes > nf {
+            return Err(ModalError::Length { what: "the natural modes", found: self.natural_modes, expected: nf });
+        }
+        self.rotation_products.iter().flatten().try_for_each(|m| square("rotation products", m, 6 + nf))?;
+        self.position_products.iter().flatten().try_for_each(|v| list("position products", v, 6 + nf))?;
+        self.inertia_first.iter().try_for_each(|v| list("first moments of the modes", v, nf))?;
+        self.inertia_second.iter().try_for_each(|m| square("second moments of the modes", m, nf))?;
+        self.gyroscopic.iter().try_for_each(|m| square("gyroscopic matrix", m, nf))?;
+        self.translation_first.iter().try_for_each(|v| list("momenta of the modes in a translation", v, nf))?;
+        self.rotation_first.iter().try_for_each(|v| list("momenta of the modes in a rotation", v, nf))?;
+        self.stress_stiffness.iter().flatten().try_for_each(|m| square("stress stiffness", m, nf))
+    }
+}
+
+/// Weights of a point sum to one but for this.
+const WEIGHTS: f64 = 1e-6;
+
+/// Refuses a list of another length.
+fn check_size(what: &'static str, found: usize, expected: usize) -> Result<(), ModalError> {
+    if found == expected { Ok(()) } else { Err(ModalError::Length { what, found, expected }) }
+}
+
+impl BodyPoint {
+    /// The point that moves as `Σ weights_i u(nodes_i)`, where the weights sum to one. Rotations of nodes do not move it.
+    ///
+    /// # Errors
+    /// [`ModalError::NoNode`] for a node that the mesh does not have, [`ModalError::Length`] for lists of other lengths,
+    /// [`ModalError::NotFinite`], [`ModalError::Weights`].
+    pub fn new(modes: &Modes, positions: &[[f64; 3]], nodes: &[u32], weights: &[f64]) -> Result<Self, ModalError> {
+        let count = positions.len();
+        check_size("the list of weights", weights.len(), nodes.len())?;
+        let dofs = if modes.shapes.nrows() == 6 * count { 6 } else { 3 };
+        check_size("the rows of the mode shapes", modes.shapes.nrows(), dofs * count)?;
+        check_finite_entries("weight", weights.iter().copied())?;
+        let sum = weights.iter().sum::<f64>();
+        if (sum - 1.0).abs() > WEIGHTS {
+            return Err(ModalError::Weights { sum });
+        }
+        if let Some(node) = nodes.iter().copied().find(|node| *node as usize >= count) {
+            return Err(ModalError::NoNode { node, count });
+        }
+        let carried = || nodes.iter().map(|node| *node as usize).zip(weights);
+        let position: Vector3<f64> = carried().map(|(node, w)| Vector3::from(positions[node]) * *w).sum();
+        let shapes: MatRef<'_, f64> = modes.shapes.as_ref();
+        Ok(Self {
+            position_body: position - modes.rigid.origin,
+            shapes: Mat::from_fn(3, shapes.ncols(), |axis, k| {
+                carried().map(|(node, w)| shapes[(dofs * node + axis, k)] * w).sum()
+            }),
+        })
+    }
+
+    /// A point of a rigid body, at a position from its origin.
+    pub fn rigid(position_body: Vector3<f64>) -> Self {
+        Self { position_body, shapes: Mat::zeros(3, 0) }
+    }
+}

@@ -1,0 +1,296 @@
+//! Supports of a body, and the rigid motions that they leave.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::error::ModalError;
+use crate::input::check_finite;
+
+/// How far from 1 the length of a direction may be.
+const UNIT: f64 = 1e-9;
+
+/// The rigid motions of a body that what holds it leaves free, mesh axes.
+///
+/// It tells the directions that the body may translate along, the axes that it may turn about, and
+/// the point that stays where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RigidMotion {
+    translations: Directions,
+    rotations: Directions,
+    fixed_point: Option<Vector3<f64>>,
+    others: Twists,
+}
+
+/// A rigid motion: the velocity of a point of the body, and its angular velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Twist {
+    /// Velocity of the point.
+    pub velocity: Vector3<f64>,
+    /// Angular velocity; zero of a translation.
+    pub rotation: Vector3<f64>,
+}
+
+/// Up to six rigid motions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Twists {
+    list: [Twist; 6],
+    count: usize,
+}
+
+impl Twists {
+    const NONE: Self = Self {
+        list: [Twist { velocity: Vector3::new(0.0, 0.0, 0.0), rotation: Vector3::new(0.0, 0.0, 0.0) }; 6],
+        count: 0,
+    };
+}
+
+/// Up to three unit vectors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Directions {
+    list: [Vector3<f64>; 3],
+    count: usize,
+}
+
+impl Directions {
+    const NONE: Self = Self { list: [Vector3::new(0.0, 0.0, 0.0); 3], count: 0 };
+    const ALL: Self = Self {
+        list: [Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 1.0, 0.0), Vector3::new(0.0, 0.0, 1.0)],
+        count: 3,
+    };
+
+    fn one(direction: Vector3<f64>) -> Self {
+        Self { list: [direction, Vector3::zeros(), Vector3::zeros()], count: 1 }
+    }
+
+    fn as_slice(&self) -> &[Vector3<f64>] {
+        &self.list[..self.count]
+    }
+}
+
+/// How a body is held: the nodes and degrees of freedom that move with the support, and the motions that the support has.
+///
+/// A held node moves as the support does, i.e. as one of the rigid motions of [`Support::motion`] takes it along; a
+/// node on the axis of a hinge or at the point of a pin does not move at all. The same holds for single degrees of freedom:
+/// none of the motions that they leave moves them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Support {
+    /// The rigid motions left.
+    pub motion: RigidMotion,
+    /// Indices of the nodes that are held in all their degrees of freedom.
+    pub nodes: Vec<u32>,
+    /// Single degrees of freedom that are held, as pairs of a node and 0 to 2 for its translation along x, y or z, 3 to 5
+    /// for its rotation.
+    pub dofs: Vec<(u32, usize)>,
+}
+
+impl Support {
+    /// The support of a free body.
+    pub fn free() -> Self {
+        Self::new(RigidMotion::free(), Vec::new())
+    }
+
+    /// The support of nodes with these indices, which move as the `motion` takes them along.
+    pub fn new(motion: RigidMotion, nodes: Vec<u32>) -> Self {
+        Self { motion, nodes, dofs: Vec::new() }
+    }
+}
+
+impl RigidMotion {
+    /// The motion of a free body: three translations and three rotations.
+    pub const fn free() -> Self {
+        Self { translations: Directions::ALL, rotations: Directions::ALL, fixed_point: None, others: Twists::NONE }
+    }
+
+    /// Three rotations about a point.
+    pub const fn pin(point: Vector3<f64>) -> Self {
+        Self {
+            translations: Directions::NONE,
+            rotations: Directions::ALL,
+            fixed_point: Some(point),
+            others: Twists::NONE,
+        }
+    }
+
+    /// A rotation about an axis: a point of it and its direction, a unit vector.
+    pub fn hinge(point: Vector3<f64>, axis: Vector3<f64>) -> Self {
+        Self {
+            translations: Directions::NONE,
+            rotations: Directions::one(axis),
+            fixed_point: Some(point),
+            others: Twists::NONE,
+        }
+    }
+
+    /// A translation along a unit vector.
+    pub fn slider(direction: Vector3<f64>) -> Self {
+        Self {
+            translations: Directions::one(direction),
+            rotations: Directions::NONE,
+            fixed_point: None,
+            others: Twists::NONE,
+        }
+    }
+
+    /// None: the body can only deform. Positions are measured from `origin`, e.g. a point of the axis that a clamp is
+    /// turned about.
+    pub const fn clamp(origin: Vector3<f64>) -> Self {
+        Self {
+            translations: Directions::NONE,
+            rotations: Directions::NONE,
+            fixed_point: Some(origin),
+            others: Twists::NONE,
+        }
+    }
+
+    /// Motions of another kind, up to six; positions are measured from `origin`.
+    pub(crate) fn other(origin: Vector3<f64>, motions: impl Iterator<Item = Twist>) -> Self {
+        let mut others = Twists::NONE;
+        for motion in motions.take(others.list.len()) {
+            others.list[others.count] = motion;
+            others.count += 1;
+        }
+        Self { others, ..Self::clamp(origin) }
+    }
+
+    /// A basis of the motions that [`Support::of_dofs`] left, as velocities of [`Self::fixed_point`] and angular
+    /// velocities, where they are not those of a free, pinned, hinged, sliding or clamped body: e.g. two translations and a
+    /// rotation in a plane. Empty otherwise. Such a body has modes; the equations of large motion are not there for it.
+    pub fn others(&self) -> &[Twist] {
+        &self.others.list[..self.others.count]
+    }
+
+    /// Unit vectors that the body may translate along: three, one or none.
+    pub fn translations(&self) -> &[Vector3<f64>] {
+        self.translations.as_slice()
+    }
+
+    /// Unit vectors that the body may turn about: three, one or none.
+    pub fn rotations(&self) -> &[Vector3<f64>] {
+        self.rotations.as_slice()
+    }
+
+    /// Number of rigid modes: 6, 3, 1 or 0, or that of [`Self::others`].
+    pub fn count(&self) -> usize {
+        self.translations.count + self.rotations.count + self.others.count
+    }
+
+    /// True if nothing holds the body.
+    pub fn is_free(&self) -> bool {
+        self.translations.count + self.rotations.count == 6
+    }
+
+    /// The point that stays where it is (of a clamp and of [`Self::others`], the one that positions are measured from): the
+    /// origin of a body with these motions. `None` where that is the centre of mass.
+    pub fn fixed_point(&self) -> Option<Vector3<f64>> {
+        self.fixed_point
+    }
+
+    /// The part of an angular velocity that the body may have: Σ a aᵀ of its axes.
+    pub fn rotation_projector(&self) -> Matrix3<f64> {
+        self.rotations().iter().map(|axis| axis * axis.transpose()).sum()
+    }
+
+    /// The part of a velocity of its origin that the body may have: Σ d dᵀ of its directions.
+    pub fn translation_projector(&self) -> Matrix3<f64> {
+        self.translations().iter().map(|direction| direction * direction.transpose()).sum()
+    }
+
+    /// T and B of a rigid body with these motions: the velocity of the origin is `T y[..3]` and the angular velocity
+    /// `B y[3..6]`, where the kinetic energy is ½|y|². Columns of motions that are missing are zero.
+    ///
+    /// `inertia` is about the origin. B = L⁻ᵀ with J₀ = L Lᵀ where all rotations are free: no principal axes are
+    /// needed, which a sphere does not have.
+    ///
+    /// # Errors
+    /// [`ModalError::NoInertia`] where a motion meets none, [`ModalError::NotUnit`], [`ModalError::NotFinite`].
+    pub(crate) fn bases(&self, mass: f64, inertia: &Matrix3<f64>) -> Result<(Matrix3<f64>, Matrix3<f64>), ModalError> {
+        self.check()?;
+        let no_inertia = || ModalError::NoInertia { mass, inertia: inertia.diagonal().into() };
+        if !(mass > 0.0 && mass.is_finite()) {
+            return Err(no_inertia());
+        }
+        let (mut translation, mut rotation) = (Matrix3::zeros(), Matrix3::zeros());
+        for (i, direction) in self.translations().iter().enumerate() {
+            translation.set_column(i, &(direction / mass.sqrt()));
+        }
+        match self.rotations() {
+            [] => {}
+            [axis] => {
+                let moment = axis.dot(&(inertia * axis));
+                if !(moment > 0.0 && moment.is_finite()) {
+                    return Err(no_inertia());
+                }
+                rotation.set_column(0, &(axis / moment.sqrt()));
+            }
+            _ => {
+                let factor = inertia.cholesky().ok_or_else(no_inertia)?.l();
+                rotation = factor.transpose().try_inverse().ok_or_else(no_inertia)?;
+            }
+        }
+        Ok((translation, rotation))
+    }
+
+    /// Displacements of the point X by each of the motions; rotations are by 1/`length`, of a free body about `center`.
+    pub(crate) fn displacements(
+        &self,
+        position: &Vector3<f64>,
+        center: &Vector3<f64>,
+        length: f64,
+    ) -> Vec<Vector3<f64>> {
+        let about = self.fixed_point.unwrap_or(*center);
+        let turned = self.rotations().iter().map(|axis| axis.cross(&(position - about)) / length);
+        let others = self.others().iter().map(|twist| twist.velocity + twist.rotation.cross(&(position - about)));
+        self.translations().iter().copied().chain(turned).chain(others).collect()
+    }
+
+    /// Angular velocities of the same motions.
+    pub(crate) fn turns(&self, length: f64) -> Vec<Vector3<f64>> {
+        let unturned = self.translations().iter().map(|_| Vector3::zeros());
+        let turned = self.rotations().iter().map(|axis| axis / length);
+        unturned.chain(turned).chain(self.others().iter().map(|twist| twist.rotation)).collect()
+    }
+
+    /// Name of column `mode` of the six rigid shapes in messages.
+    pub(crate) fn name(&self, mode: usize) -> &'static str {
+        match (self.translations(), self.rotations()) {
+            _ if self.others.count > 0 => "motion that the support leaves",
+            (_, [_]) => "rotation about the hinge",
+            ([_], _) => "translation along the slider",
+            _ => [
+                "translation along x",
+                "translation along y",
+                "translation along z",
+                "rotation about x",
+                "rotation about y",
+                "rotation about z",
+            ][mode],
+        }
+    }
+
+    /// Refuses points that are not finite and directions that are not unit vectors.
+    pub(crate) fn check(&self) -> Result<(), ModalError> {
+        let point = self.fixed_point().unwrap_or_default();
+        check_finite("the support's point", "axis", point.iter().map(|c| [*c]))?;
+        let is_unit = |direction: &Vector3<f64>| (direction.norm() - 1.0).abs() < UNIT;
+        match self.translations().iter().chain(self.rotations()).find(|direction| !is_unit(direction)) {
+            Some(direction) => Err(ModalError::NotUnit { direction: (*direction).into() }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// In words, such as "2 translations and 1 rotation".
+impl std::fmt::Display for RigidMotion {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let turns = self.turns(1.0);
+        let rotations = turns.iter().filter(|turn| **turn != Vector3::zeros()).count();
+        let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+        match (turns.len() - rotations, rotations) {
+            (0, 0) => f.write_str("no rigid motion"),
+            (0, rotations) => f.write_str(&counted(rotations, "rotation")),
+            (translations, 0) => f.write_str(&counted(translations, "translation")),
+            (translations, rotations) => {
+                write!(f, "{} and {}", counted(translations, "translation"), counted(rotations, "rotation"))
+            }
+        }
+    }
+}

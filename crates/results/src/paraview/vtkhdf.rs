@@ -1,0 +1,161 @@
+//! VTKHDF, ParaView's own layout of an HDF5 file (version 2.0, ParaView 5.12 and later).
+//!
+//! The mesh is there once: all steps begin at the same points and cells, and `PointDataOffsets` says where the values of
+//! each step are. ParaView then keeps the mesh while time goes on. Steps are written one by one.
+
+use crate::FileError;
+use crate::error::check_length;
+use crate::paraview::fields::{Field, Grid};
+use hdf5::types::FixedAscii;
+use hdf5::{Group, H5Type};
+use ndarray::{ArrayView, ArrayView1, ArrayView2, Dimension, s};
+use std::path::{Path, PathBuf};
+use whole_file::TemporaryFile;
+
+/// A file that is being written. It takes its place in [`VtkHdf::finish`]; if it is dropped before, nothing has happened.
+#[derive(Debug)]
+pub struct VtkHdf {
+    file: hdf5::File,
+    place: TemporaryFile,
+    path: PathBuf,
+    points: usize,
+    datasets: Vec<hdf5::Dataset>,
+    overwrite: bool,
+}
+
+impl VtkHdf {
+    /// Begins a file with the fields at these times; without times, of a state that has none.
+    ///
+    /// # Errors
+    /// [`FileError::Exists`], [`FileError::System`] and [`FileError::Hdf5`].
+    pub fn create(
+        path: impl AsRef<Path>,
+        grid: &Grid,
+        times: Option<&[f64]>,
+        fields: &[Field],
+        overwrite: bool,
+    ) -> Result<Self, FileError> {
+        let path = path.as_ref();
+        let place = temporary(path, overwrite)?;
+        let failed = |what: &str| FileError::hdf5(path, format!("write {what}"));
+        let mut builder = hdf5::File::with_options();
+        // HDF5 would lock the file, and a process that is started meanwhile would keep the lock to its end.
+        builder.with_fapl(|plist| plist.file_locking(false));
+        let file = builder.create(&place).map_err(FileError::hdf5(path, "create the file"))?;
+        let group = file.create_group("VTKHDF").map_err(failed("VTKHDF"))?;
+        write_head(&group, grid).map_err(failed("the mesh"))?;
+        let steps = times.map_or(1, <[f64]>::len);
+        let points = grid.points.len();
+        let data = group.create_group("PointData").map_err(failed("PointData"))?;
+        let create = |field: &Field| {
+            let builder = data.new_dataset::<f64>();
+            match field.components {
+                1 => builder.shape(steps * points).create(field.name.as_str()),
+                components => builder.shape((steps * points, components)).create(field.name.as_str()),
+            }
+            .map_err(failed(&field.name))
+        };
+        let datasets = fields.iter().map(create).collect::<Result<_, _>>()?;
+        if let Some(times) = times {
+            write_steps(&group, times, points, fields).map_err(failed("Steps"))?;
+        }
+        Ok(Self { file, place, path: path.to_owned(), points, datasets, overwrite })
+    }
+
+    /// Writes a field of a step, point by point; both are numbered from 0.
+    ///
+    /// # Errors
+    /// [`FileError::WrongLength`] for a field that there is not; [`FileError::Hdf5`], also for a list of another length than
+    /// points times components, and for a step that there is not.
+    pub fn write(&self, step: usize, field: usize, values: &[f64]) -> Result<(), FileError> {
+        let count = self.datasets.len();
+        check_length(&self.path, "the fields", count.max(field + 1), count)?;
+        let dataset = &self.datasets[field];
+        let rows = step * self.points..(step + 1) * self.points;
+        let written = match values.len() / self.points.max(1) {
+            1 => dataset.write_slice(ArrayView1::from(values), s![rows]),
+            components => ArrayView2::from_shape((self.points, components), values)
+                .map_err(|error| hdf5::Error::Internal(error.to_string()))
+                .and_then(|values| dataset.write_slice(values, s![rows, ..])),
+        };
+        written.map_err(FileError::hdf5(&self.path, format!("write step {step}")))
+    }
+
+    /// Moves the file into its place, once it is safe on the disk.
+    ///
+    /// # Errors
+    /// [`FileError::Exists`], [`FileError::System`] and [`FileError::Hdf5`].
+    pub fn finish(self) -> Result<(), FileError> {
+        drop(self.datasets);
+        self.file.close().map_err(FileError::hdf5(&self.path, "write the file"))?;
+        put(self.place, &self.path, self.overwrite)
+    }
+}
+
+/// The place of a file that is not there yet, in the same folder.
+pub(crate) fn temporary(path: &Path, overwrite: bool) -> Result<TemporaryFile, FileError> {
+    if !overwrite && path.symlink_metadata().is_ok() {
+        return Err(FileError::Exists { path: path.to_owned() });
+    }
+    let made = TemporaryFile::beside(path, ".tmp");
+    Ok(made.map_err(|error| FileError::system(path, "create the file", &error))?.1)
+}
+
+/// Moves a file that is complete into its place.
+pub(crate) fn put(place: TemporaryFile, path: &Path, overwrite: bool) -> Result<(), FileError> {
+    let failed = |error| FileError::system(path, "write the file", &error);
+    std::fs::File::open(&place).and_then(|file| file.sync_all()).map_err(failed)?;
+    place.put(path, overwrite).map_err(|error| match error.kind() {
+        std::io::ErrorKind::AlreadyExists => FileError::Exists { path: path.to_owned() },
+        _ => failed(error),
+    })
+}
+
+/// Version, type and mesh.
+fn write_head(group: &Group, grid: &Grid) -> hdf5::Result<()> {
+    group.new_attr_builder().with_data(&[2_i64, 0]).create("Version")?;
+    let kind =
+        FixedAscii::<16>::from_ascii("UnstructuredGrid").map_err(|error| hdf5::Error::Internal(error.to_string()))?;
+    group.new_attr::<FixedAscii<16>>().create("Type")?.write_scalar(&kind)?;
+    let (cells, each) = (grid.cells(), grid.cells.points());
+    for (name, count) in [
+        ("NumberOfPoints", grid.points.len()),
+        ("NumberOfCells", cells),
+        ("NumberOfConnectivityIds", grid.connectivity.len()),
+    ] {
+        write(group, name, ArrayView::from(&[count as i64]))?;
+    }
+    write(group, "Points", ArrayView2::from(grid.points.as_slice()))?;
+    let connectivity: Vec<i64> = grid.connectivity.iter().map(|point| i64::from(*point)).collect();
+    write(group, "Connectivity", ArrayView::from(&connectivity))?;
+    let offsets: Vec<i64> = (0..=cells).map(|cell| (cell * each) as i64).collect();
+    write(group, "Offsets", ArrayView::from(&offsets))?;
+    write(group, "Types", ArrayView::from(&vec![grid.cells.number(); cells]))
+}
+
+/// The times, and where each step begins: in the same mesh, and after the values of the steps before it.
+fn write_steps(group: &Group, times: &[f64], points: usize, fields: &[Field]) -> hdf5::Result<()> {
+    let steps = group.create_group("Steps")?;
+    steps.new_attr::<i64>().create("NSteps")?.write_scalar(&(times.len() as i64))?;
+    write(&steps, "Values", ArrayView::from(times))?;
+    write(&steps, "NumberOfParts", ArrayView::from(&vec![1_i64; times.len()]))?;
+    let zeros = vec![0_i64; times.len()];
+    for name in ["PartOffsets", "PointOffsets"] {
+        write(&steps, name, ArrayView::from(&zeros))?;
+    }
+    for name in ["CellOffsets", "ConnectivityIdOffsets"] {
+        // A column for the one kind of cells of this type.
+        write(&steps, name, ArrayView::from(&zeros).into_shape_with_order((times.len(), 1)).map_err(internal)?)?;
+    }
+    let of_data = steps.create_group("PointDataOffsets")?;
+    let offsets: Vec<i64> = (0..times.len()).map(|step| (step * points) as i64).collect();
+    fields.iter().try_for_each(|field| write(&of_data, &field.name, ArrayView::from(&offsets)))
+}
+
+fn internal(error: ndarray::ShapeError) -> hdf5::Error {
+    hdf5::Error::Internal(error.to_string())
+}
+
+fn write<T: H5Type, D: Dimension>(group: &Group, name: &str, values: ArrayView<'_, T, D>) -> hdf5::Result<()> {
+    group.new_dataset_builder().with_data(values).create(name).map(drop)
+}
