@@ -7,7 +7,7 @@ use flexframe::scene::Scene;
 use verification::accuracy::accuracy_page;
 
 /// The ring, spinning and ringing, for a twentieth of a second.
-const SCENE: &str = include_str!("../../../tests/whole/short_ring.toml");
+const SCENE: &str = include_str!("../../../tests/program/commands/short_ring.toml");
 
 #[test]
 fn the_page_has_its_tables_and_its_pictures() {

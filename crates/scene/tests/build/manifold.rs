@@ -1,5 +1,5 @@
 //! Large deflection: the plate against nonlinear finite elements. (A cantilever against the elastica:
-//! `nonlinear/tests/whole/elastica.rs`.)
+//! `verification/tests/nonlinear/elastica.rs`.)
 
 use advice::FourthOrder;
 use dynamics::Observation;

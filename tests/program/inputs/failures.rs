@@ -8,7 +8,7 @@ use flexframe::failure::Kind;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::command_line::COIN;
+use crate::inputs::command_line::COIN;
 
 fn root() -> PathBuf {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).canonicalize().unwrap()

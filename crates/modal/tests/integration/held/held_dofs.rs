@@ -6,8 +6,8 @@ use modal::{ModalError, RigidMotion, Support};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::beam::Beam;
-use crate::oracles::dense_eigenvalues_of;
-use crate::supports::{body, nodes};
+use crate::held::supports::{body, nodes};
+use crate::modes::oracles::dense_eigenvalues_of;
 
 /// The motion that these degrees of freedom leave of the block, counted from 0.
 fn left(dofs: &[(u32, usize)]) -> RigidMotion {

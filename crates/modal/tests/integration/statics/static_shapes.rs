@@ -5,8 +5,8 @@ use modal::{Modes, RigidMotion, Solver, Support};
 use nalgebra::Vector3;
 
 use crate::bodies::Body;
-use crate::statics::{Bar, work};
-use crate::supports::{body, supports};
+use crate::held::supports::{body, supports};
+use crate::statics::responses::{Bar, work};
 
 /// The static displacement at a force, in its direction, as the modes give it: Σ (φᵀf)²/λ.
 fn modal_flexibility(modes: &Modes, force: &Mat<f64>) -> f64 {

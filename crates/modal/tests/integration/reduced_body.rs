@@ -5,7 +5,7 @@ use modal::{BodyPoint, Constants, Modes, ReducedBody, Support};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::bodies::Body;
-use crate::supports;
+use crate::held::supports;
 
 const NF: usize = 7;
 /// The order in which pairs ij are stored.

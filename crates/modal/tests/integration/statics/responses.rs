@@ -6,7 +6,7 @@ use modal::{BucklingAccuracy, ModalError, RigidMotion, StaticAccuracy, Support};
 use nalgebra::Vector3;
 
 use crate::bodies::{Body, STEEL, block_mesh, mesh_file};
-use crate::supports::{allowed, body, nodes, supports};
+use crate::held::supports::{allowed, body, nodes, supports};
 
 /// A bar along x without Poisson effect.
 pub struct Bar {

@@ -5,8 +5,8 @@ use modal::{ModalError, ReducedBody, Support, acceleration_fields, centrifugal_f
 use nalgebra::Vector3;
 
 use crate::bodies::STEEL;
-use crate::statics::{Bar, work};
-use crate::supports::{body, supports};
+use crate::held::supports::{body, supports};
+use crate::statics::responses::{Bar, work};
 
 /// Σ ω_iω_j f_ij over all nine ij.
 fn of_spin(fields: &Mat<f64>, omega: &Vector3<f64>) -> Mat<f64> {

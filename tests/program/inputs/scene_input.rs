@@ -44,7 +44,7 @@ fn values_are_set_from_the_command_line() {
 fn a_scene_comes_from_standard_input() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let scene = include_str!("../../examples/heavy_top.toml");
+    let scene = include_str!("../../../examples/heavy_top.toml");
     json(&flexframe(&["run", "-", "-o", out, "--json", "--set", "time.end=0.25"], scene));
     assert!(folder.path().join("stdin.h5").is_file());
     let broken = flexframe(&["run", "-", "-o", out], "title = 3\n");

@@ -7,7 +7,7 @@ use modal::{Modes, RigidMotion, Support};
 use nalgebra::Vector3;
 
 use crate::bodies::{Body, STEEL, block_mesh};
-use crate::supports::nodes;
+use crate::held::supports::nodes;
 
 const LENGTH: f64 = 400.0;
 const WIDTH: f64 = 4.0;

@@ -6,7 +6,7 @@ use modal::{
     Eigenpairs, Engine, EngineError, EngineStats, HeldMatrix, HeldProblem, ModalError, Progress, StaticAnswers,
 };
 
-use crate::supports::{body, supports};
+use crate::held::supports::{body, supports};
 
 const NF: usize = 10;
 

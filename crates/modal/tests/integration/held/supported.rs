@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::oracles::dense_eigenvalues_of;
-use crate::supports::{allowed, body, supports};
+use crate::held::supports::{allowed, body, supports};
+use crate::modes::oracles::dense_eigenvalues_of;
 
 const NF: usize = 10;
 

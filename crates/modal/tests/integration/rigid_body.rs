@@ -4,7 +4,7 @@ use faer::Mat;
 use modal::{ModalError, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::supports::{body, supports};
+use crate::held::supports::{body, supports};
 
 #[test]
 fn constants_equal_those_of_a_mesh_whatever_holds_it() {

@@ -1,7 +1,7 @@
 //! No eigenvalue is missed and none is doubled: against dense solutions and counts of negative pivots.
 
 use crate::bodies::{Body, CORNER, STEEL, block, mesh_file, tetrahedra};
-use crate::oracles::{count_below, dense_eigenvalues};
+use crate::modes::oracles::{count_below, dense_eigenvalues};
 
 fn assert_equals_dense(body: &Body, flexible: usize, tolerance: f64) {
     let (k, m) = (body.matrices.stiffness(), body.matrices.mass());

@@ -7,7 +7,7 @@ use modal::{
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::beam::{Beam, Sparse, order};
-use crate::supports;
+use crate::held::supports;
 
 /// Roots of cosh x cos x = 1: a beam with free ends.
 const FREE: [f64; 3] = [4.730_040_744_862_704, 7.853_204_624_095_838, 10.995_607_838_001_671];

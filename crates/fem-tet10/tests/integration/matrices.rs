@@ -1,0 +1,10 @@
+//! Mass, stiffness and forces.
+
+pub(crate) mod geometric_stiffness;
+pub(crate) mod mass;
+pub(crate) mod mean_rotation;
+pub(crate) mod point_masses;
+pub(crate) mod second_order;
+pub(crate) mod stiffness;
+pub(crate) mod stress;
+pub(crate) mod surface;

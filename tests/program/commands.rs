@@ -1,0 +1,11 @@
+//! Commands, with their outputs.
+
+pub(crate) mod advise;
+pub(crate) mod body;
+pub(crate) mod campbell;
+pub(crate) mod cost;
+pub(crate) mod export;
+pub(crate) mod fmu;
+pub(crate) mod html_report;
+pub(crate) mod new_scene;
+pub(crate) mod sweep;

@@ -1,0 +1,9 @@
+//! The program and its library as users meet them. One program, so that it is linked once and no core waits for the last
+//! test of each file.
+
+mod commands;
+mod examples;
+mod inputs;
+mod library;
+mod runs;
+mod slepc;
