@@ -34,7 +34,7 @@ fn the_memory_that_is_printed_is_used() {
     let examples = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("examples").canonicalize().unwrap();
     for (scene, count) in [("plate.toml", 10), ("plate.toml", 150), ("nafems_fv12.toml", 10)] {
         let output = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "peak_memory::the_memory_that_is_printed_is_used", "--nocapture"])
+            .args(["--exact", "runs::peak_memory::the_memory_that_is_printed_is_used", "--nocapture"])
             .env(SCENE, format!("{}*{count}", examples.join(scene).display()))
             .output()
             .unwrap();

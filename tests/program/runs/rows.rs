@@ -92,7 +92,7 @@ fn the_memory_of_a_run_does_not_go_with_its_end() {
     }
     let peak = |end: &str| -> u64 {
         let output = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "rows::the_memory_of_a_run_does_not_go_with_its_end", "--nocapture"])
+            .args(["--exact", "runs::rows::the_memory_of_a_run_does_not_go_with_its_end", "--nocapture"])
             .env(END, end)
             .output()
             .unwrap();
