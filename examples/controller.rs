@@ -9,8 +9,9 @@ use std::sync::Arc;
 use flexframe::dynamics::{
     Initial, LoadFn, Method, Observation, Physics, Rows, Setup, SharedLoad, Simulation, StepControl,
 };
+use flexframe::model::Model;
 use flexframe::nalgebra::Vector3;
-use flexframe::scene::{Model, Scene};
+use flexframe::scene::Scene;
 
 /// Result of the example.
 pub struct Answer {

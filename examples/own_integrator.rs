@@ -10,8 +10,9 @@ use flexframe::dynamics::{
     Abilities, Beginning, Equations, Evaluation, Initial, Method, Observation, Scheme, Simulation, Step, StepControl,
     StepError, StepLimit,
 };
+use flexframe::model::Model;
 use flexframe::nalgebra::Vector3;
-use flexframe::scene::{Model, Scene};
+use flexframe::scene::Scene;
 
 /// The midpoint rule, with room for its second stage.
 #[derive(Debug, Clone)]

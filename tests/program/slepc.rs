@@ -8,7 +8,8 @@ use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use faer::Mat;
-use flexframe::scene::{Model, Scene};
+use flexframe::model::{Builder, Model};
+use flexframe::scene::Scene;
 use serde_json::Value;
 use slepc::{Slepc, Stop};
 use tempfile::TempDir;
@@ -22,8 +23,8 @@ fn both(name: &str, change: impl Fn(&mut Scene)) -> [Model; 2] {
     let mut scene = Scene::read(root().join("examples").join(name)).unwrap();
     change(&mut scene);
     let ours = Model::build(&scene, |_| ()).unwrap();
-    scene.solver = Some(Slepc::run(2, Stop::default()));
-    [Model::build(&scene, |_| ()).unwrap(), ours]
+    let builder = Builder { solver: Some(Slepc::run(2, Stop::default())), ..Builder::default() };
+    [builder.build(&scene, |_| ()).unwrap(), ours]
 }
 
 /// Sine of the largest angle between what the columns of two matrices span.

@@ -10,7 +10,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use flexframe::dynamics::{ConservativeBody, Reached, Rows, StepControl};
-use flexframe::scene::{Choice, Effect, Flexible, Large, Model, Scene};
+use flexframe::model::Model;
+use flexframe::scene::{Choice, Effect, Flexible, Large, Scene};
 
 const STEP: f64 = 1e-4;
 const RUNS: usize = 15;

@@ -18,7 +18,8 @@ use flexframe::outputs::{OutputError, Written, outputs_of_results, outputs_of_sc
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
-use scene::{BuildError, Cache, Flexible, ImportSettings, Scene, SceneError};
+use model::{BuildError, Builder, Cache};
+use scene::{Flexible, Scene, SceneError};
 use slepc::files_of_folder;
 
 use crate::cli_error::CliError;
@@ -374,30 +375,28 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn settings(signals: &Signals, overwrite: bool, cache: &Cache) -> RunSettings {
-    RunSettings { overwrite, large: false, rows_alone: false, stop: signals.stop(), cache: cache.clone() }
+fn settings(signals: &Signals, overwrite: bool, builder: &Builder) -> RunSettings {
+    RunSettings { overwrite, large: false, rows_alone: false, stop: signals.stop(), builder: builder.clone() }
 }
 
 fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Failure>> {
     let cache = if cli.no_cache { Cache::none() } else { Cache::of_user() };
-    if cli.trust_geometry {
-        cache.trust_geometry();
-    }
-    let done = command(cli, json, &cache);
+    let builder = Builder { cache: cache.clone(), solver: None, trust_geometry: cli.trust_geometry };
+    let done = command(cli, json, builder);
     if !json {
         output::notes(&cache.notes());
     }
     done
 }
 
-fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Failure>> {
+fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<dyn Failure>> {
     let tell_doubts = |scene: &Scene| {
         if !json_errors {
             output::doubts(plausible::doubts_of_scene(scene));
         }
     };
     let read = |input: SceneInput| -> Result<Scene, Box<dyn Failure>> {
-        let scene = input.read(cache)?;
+        let scene = input.read()?;
         tell_doubts(&scene);
         Ok(scene)
     };
@@ -406,7 +405,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
     let mut bar = Bar::new(json_errors);
     match cli.command {
         Command::New { mesh, output, mesh_size, raise_order, files } => {
-            let settings = ImportSettings { mesh_size, raise_order, trust_geometry: cli.trust_geometry };
+            let settings = new_scene::ImportSettings { mesh_size, raise_order, trust_geometry: cli.trust_geometry };
             GivenFile::expect(&mesh, &[GivenFile::Mesh], "a mesh or geometry")?;
             if output.as_deref().is_some_and(output::is_standard) {
                 let (scene, notes) = new_scene::scene_text(&mesh, &settings)?;
@@ -424,18 +423,18 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
         }
         Command::Run { scene: SceneArgs { scene, json }, output, files, large, solver } => {
             output::require_file("--output", output.as_deref())?;
-            let mut scenes = scene.read_bodies(cache)?;
+            let scenes = scene.read_bodies()?;
             scenes.iter().for_each(tell_doubts);
-            match &mut scenes[..] {
+            match &scenes[..] {
                 [scene] => {
-                    if let Some(to) = solver.take(scene, signals.slepc())? {
-                        return write_only(scene, &to, files.overwrite, bar);
+                    if let Some(to) = solver.take(&mut builder, signals.slepc())? {
+                        return write_only(scene, &builder, &to, files.overwrite, bar);
                     }
                 }
                 several => solver.refuse_several(several.len())?,
             }
             let folder = folder(&scenes[0], output)?;
-            let settings = RunSettings { large, ..settings(&signals, files.overwrite, cache) };
+            let settings = RunSettings { large, ..settings(&signals, files.overwrite, &builder) };
             let report = run::run_bodies(&scenes, &folder, &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
@@ -445,7 +444,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
         }
         Command::Resume { file, files, json } => {
             GivenFile::expect(&file, &[GivenFile::Results], "the unfinished results file of a run")?;
-            let (_, _, report) = run::resume(&file, &settings(&signals, files.overwrite, cache), |p| {
+            let (_, _, report) = run::resume(&file, &settings(&signals, files.overwrite, &builder), |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;
@@ -454,25 +453,25 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
         }
         Command::Reduce { scene: SceneArgs { scene, json }, output, files, solver, matrices, stress } => {
             output::require_file("--output", Some(&output))?;
-            let mut scene = read(scene)?;
-            if let Some(to) = solver.take(&mut scene, signals.slepc())? {
-                return write_only(&scene, &to, files.overwrite, bar);
+            let scene = read(scene)?;
+            if let Some(to) = solver.take(&mut builder, signals.slepc())? {
+                return write_only(&scene, &builder, &to, files.overwrite, bar);
             }
-            outputs_of_scene(&scene, files.overwrite).claim_as(&Written::BODY, &output)?;
-            let report = modes::reduce(&scene, &output, matrices, stress, |p| bar.build(p))?;
+            outputs_of_scene(&scene, &builder, files.overwrite).claim_as(&Written::BODY, &output)?;
+            let report = modes::reduce(&scene, &builder, &output, matrices, stress, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)?;
             if json { Ok(()) } else { output::list(&[output]) }
         }
         Command::Fmu { scene: SceneArgs { scene, json }, output, files, library } => {
             output::require_file("--output", Some(&output))?;
-            let scene = scene.read_scene_or_body(cache)?;
+            let scene = scene.read_scene_or_body()?;
             if !json {
                 output::doubts(plausible::doubts_of_scene(&scene));
             }
-            let outputs = outputs_of_scene(&scene, files.overwrite);
+            let outputs = outputs_of_scene(&scene, &builder, files.overwrite);
             outputs.and_input(&fmu::library_path(library.as_deref())).claim_as(&Written::FMU, &output)?;
-            let report = fmu::pack(&scene, &output, &FmuSettings { library }, |p| bar.build(p))?;
+            let report = fmu::pack(&scene, &builder, &output, &FmuSettings { library }, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)
         }
@@ -482,17 +481,17 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             if let Some(count) = flexible {
                 scene.modes.flexible = Flexible::Count(count);
             }
-            if let Some(to) = solver.take(&mut scene, signals.slepc())? {
-                return write_only(&scene, &to, files.overwrite, bar);
+            if let Some(to) = solver.take(&mut builder, signals.slepc())? {
+                return write_only(&scene, &builder, &to, files.overwrite, bar);
             }
             output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
             let picture = output.as_ref().map(|folder| folder.join("modes"));
             if let Some(picture) = &picture {
                 modes::require_surface(&scene)?;
-                outputs_of_scene(&scene, files.overwrite).claim(&figures::files(picture))?;
+                outputs_of_scene(&scene, &builder, files.overwrite).claim(&figures::files(picture))?;
             }
             let (model, report) =
-                modes::modes(&scene, |p| bar.build(p)).map_err(|error| of_option(error.into(), flexible))?;
+                modes::modes(&scene, &builder, |p| bar.build(p)).map_err(|error| of_option(error.into(), flexible))?;
             drop(bar);
             let pictures = match (output, picture) {
                 (Some(folder), Some(picture)) => {
@@ -509,7 +508,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             Ok(())
         }
         Command::Advise { scene: SceneArgs { scene, json }, verify } => {
-            let report = advise::advise(&read(scene)?, verify, |p| bar.advise(p))?;
+            let report = advise::advise(&read(scene)?, &builder, verify, |p| bar.advise(p))?;
             drop(bar);
             output::print(&report, json)
         }
@@ -529,8 +528,8 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             }
             let settings = CampbellSettings { axis, speeds, orders };
             let folder = folder(&scene, output)?;
-            outputs_of_scene(&scene, files.overwrite).claim(&campbell::files(&folder))?;
-            let report = campbell::campbell(&scene, &folder, &settings, |p| bar.campbell(p))
+            outputs_of_scene(&scene, &builder, files.overwrite).claim(&campbell::files(&folder))?;
+            let report = campbell::campbell(&scene, &builder, &folder, &settings, |p| bar.campbell(p))
                 .map_err(|error| of_option(error, flexible))?;
             drop(bar);
             output::print(&report, json)
@@ -538,9 +537,9 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
         Command::Paper { scene: SceneArgs { scene, json }, output, files } => {
             output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
-            let settings = settings(&signals, files.overwrite, cache);
+            let settings = settings(&signals, files.overwrite, &builder);
             let folder = folder(&scene, output)?;
-            outputs_of_scene(&scene, files.overwrite).claim(&paper::files(&folder))?;
+            outputs_of_scene(&scene, &builder, files.overwrite).claim(&paper::files(&folder))?;
             let report = paper::reproduce(&scene, &folder, &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
@@ -553,8 +552,8 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             let scene = read(scene)?;
             let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
             let folder = folder(&scene, output)?;
-            outputs_of_scene(&scene, files.overwrite).claim(&cost::files(&folder))?;
-            let report = cost::price_list(&scene, &folder, settings, |p| bar.cost(p))?;
+            outputs_of_scene(&scene, &builder, files.overwrite).claim(&cost::files(&folder))?;
+            let report = cost::price_list(&scene, &builder, &folder, settings, |p| bar.cost(p))?;
             drop(bar);
             output::print(&report, json)
         }
@@ -626,7 +625,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 Some(count) => sweep::merge(&file, &output, count.into(), overwrite)?,
                 None => {
                     let threads = rayon::current_num_threads();
-                    let settings = SweepSettings { overwrite, large, threads, cache: cache.clone(), shard };
+                    let settings = SweepSettings { overwrite, large, threads, builder, shard };
                     sweep::sweep(&file, &output, &settings, |p| bar.sweep(p))?
                 }
             };
@@ -645,8 +644,8 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 }
                 None => {
                     let scene = read(scene)?.without_rows();
-                    outputs_of_scene(&scene, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
-                    animate(&scene, &output, settings, |p| bar.run(p))?
+                    outputs_of_scene(&scene, &builder, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
+                    animate(&scene, &builder, &output, settings, |p| bar.run(p))?
                 }
             };
             drop(bar);
@@ -657,10 +656,16 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
 }
 
 /// Writes the modes that a scene asks for as a problem for SLEPc.
-fn write_only(scene: &Scene, to: &WriteOnly, overwrite: bool, mut bar: Bar) -> Result<(), Box<dyn Failure>> {
+fn write_only(
+    scene: &Scene,
+    builder: &Builder,
+    to: &WriteOnly,
+    overwrite: bool,
+    mut bar: Bar,
+) -> Result<(), Box<dyn Failure>> {
     Written::FOLDER.check(&to.folder).map_err(OutputError::from)?;
-    outputs_of_scene(scene, overwrite).claim(&files_of_folder(&to.folder))?;
-    let files = modes::write_problem(scene, &to.folder, to.ranks, |p| bar.build(p))?;
+    outputs_of_scene(scene, builder, overwrite).claim(&files_of_folder(&to.folder))?;
+    let files = modes::write_problem(scene, builder, &to.folder, to.ranks, |p| bar.build(p))?;
     drop(bar);
     output::list(&files)
 }

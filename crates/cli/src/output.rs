@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use flexframe::failure::{Failure, FailureReport};
 use flexframe::run::Estimate;
-use scene::CacheNotes;
+use model::CacheNotes;
 use serde::Serialize;
 
 use crate::cli_error::CliError;

@@ -11,7 +11,7 @@ use flexframe::sweep::SweepProgress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use memory::Bytes;
 use modal::{EnginePhase, Forecast, Progress};
-use scene::BuildProgress;
+use model::BuildProgress;
 
 use crate::output;
 

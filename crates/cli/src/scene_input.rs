@@ -6,7 +6,7 @@ use clap::Args;
 use flexframe::failure::Failure;
 use flexframe::fmu::scene_of_body;
 use flexframe::given_file::GivenFile;
-use scene::{AssignError, Cache, Scene, System, assign, text_from, text_of};
+use scene::{AssignError, Scene, System, assign, text_from, text_of};
 use toml::Value;
 
 use crate::cli_error::CliError;
@@ -33,14 +33,14 @@ pub struct SceneInput {
 
 impl SceneInput {
     /// The same, of a body file, too: then it is the scene that it was made of.
-    pub fn read_scene_or_body(self, cache: &Cache) -> Result<Scene, Box<dyn Failure>> {
+    pub fn read_scene_or_body(self) -> Result<Scene, Box<dyn Failure>> {
         if !self.scene.extension().is_some_and(|extension| extension == "h5" || extension == "hdf5") {
-            return self.read(cache);
+            return self.read();
         }
         GivenFile::expect(&self.scene, &[GivenFile::Scene, GivenFile::Body], "a scene file or a body file")?;
-        let scene = scene_of_body(&self.scene, cache)?;
+        let scene = scene_of_body(&self.scene)?;
         let text = assigned(&scene.source, &self.set)?;
-        Ok(Scene { cache: cache.clone(), ..Scene::parse(&text, &self.scene)? })
+        Ok(Scene::parse(&text, &self.scene)?)
     }
 
     /// The results file that was given in the place of a scene, if one was. It has a scene of its own, which is not to be changed.
@@ -58,20 +58,19 @@ impl SceneInput {
     }
 
     /// Reads the scene of one body, sets the values, and checks it.
-    pub fn read(self, cache: &Cache) -> Result<Scene, Box<dyn Failure>> {
+    pub fn read(self) -> Result<Scene, Box<dyn Failure>> {
         let body = self.body.clone();
         let (text, path) = self.text()?;
-        Ok(Scene { cache: cache.clone(), ..Scene::parse_body(&text, path, body.as_deref())? })
+        Ok(Scene::parse_body(&text, path, body.as_deref())?)
     }
 
     /// Reads the scenes of all bodies, or of the one that was named.
-    pub fn read_bodies(self, cache: &Cache) -> Result<Vec<Scene>, Box<dyn Failure>> {
+    pub fn read_bodies(self) -> Result<Vec<Scene>, Box<dyn Failure>> {
         if self.body.is_some() {
-            return Ok(vec![self.read(cache)?]);
+            return Ok(vec![self.read()?]);
         }
         let (text, path) = self.text()?;
-        let System { bodies } = System::parse(&text, path)?;
-        Ok(bodies.into_iter().map(|scene| Scene { cache: cache.clone(), ..scene }).collect())
+        Ok(System::parse(&text, path)?.bodies)
     }
 
     /// The text with the values set, and where it comes from.

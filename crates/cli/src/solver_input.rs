@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use scene::Scene;
+use model::Builder;
 use slepc::{Slepc, Stop};
 
 use crate::cli_error::CliError;
@@ -56,8 +56,8 @@ impl SolverInput {
         }
     }
 
-    /// Gives the scene its solver, or says what is to be written instead; `stop` stops the solver.
-    pub fn take(self, scene: &mut Scene, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
+    /// Gives the builder its solver, or says what is to be written instead; `stop` stops the solver.
+    pub fn take(self, builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
         let ranks = self.ranks.map(|ranks| ranks as usize);
         if self.solver != Some(Solver::Slepc) {
             let ours = [
@@ -72,8 +72,8 @@ impl SolverInput {
         }
         match (ranks, self.write_only, self.read) {
             (Some(ranks), Some(folder), _) => return Ok(Some(WriteOnly { folder, ranks })),
-            (Some(ranks), None, _) => scene.solver = Some(Slepc::run(ranks, stop.clone())),
-            (None, _, Some(folder)) => scene.solver = Some(Slepc::read(folder)),
+            (Some(ranks), None, _) => builder.solver = Some(Slepc::run(ranks, stop.clone())),
+            (None, _, Some(folder)) => builder.solver = Some(Slepc::read(folder)),
             (None, ..) => return Err(refused("--solver", "slepc alone", "--ranks N or --read DIR beside it")),
         }
         Ok(None)

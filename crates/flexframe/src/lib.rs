@@ -4,7 +4,8 @@
 //! `flexframe run` does.
 //!
 //! ```no_run
-//! use flexframe::scene::{Model, Scene};
+//! use flexframe::model::Model;
+//! use flexframe::scene::Scene;
 //!
 //! let scene = Scene::read("examples/plate.toml")?;
 //! let model = Model::build(&scene, |_progress| ())?;
@@ -18,7 +19,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-pub use {advice, dynamics, fem_tet10, figures, frames_rk4, modal, results, rigid_kin, scene};
+pub use {advice, dynamics, fem_tet10, figures, frames_rk4, modal, model, results, rigid_kin, scene};
 pub use {faer, nalgebra};
 
 mod commands;

@@ -6,7 +6,8 @@
 
 use dynamics::Effect;
 use fem_tet10::{Material, Materials};
-use scene::{Body, Choice, Doubt, Load, Model, Scene, Units};
+use model::{Doubt, Meshed, Model};
+use scene::{Body, Choice, Load, Scene, Units};
 
 use crate::rows::units::UnitLabels;
 
@@ -31,16 +32,20 @@ const IMPERIAL_GRAVITIES: [f64; 2] = [386.09, 32.174];
 pub fn doubts_of_scene(scene: &Scene) -> Vec<String> {
     let mut doubts = Vec::new();
     if let Body::Meshed(body) = &scene.body {
-        match &body.materials {
-            Materials::Uniform(material) => doubts.extend(of_material(material, "", &scene.units)),
-            Materials::ByGroup(each) => doubts.extend(
-                each.iter()
-                    .flat_map(|(group, material)| of_material(material, &format!(" of {group:?}"), &scene.units)),
-            ),
-        }
+        doubts.extend(of_materials(&body.materials, &scene.units));
     }
     doubts.extend(scene.loads.iter().enumerate().filter_map(|(load, acts)| of_acceleration(load, acts, &scene.units)));
     doubts
+}
+
+fn of_materials(materials: &Materials, units: &Units) -> Vec<String> {
+    match materials {
+        Materials::Uniform(material) => of_material(material, "", units).into_iter().collect(),
+        Materials::ByGroup(each) => {
+            let of_group = |(group, material)| of_material(material, &format!(" of {group:?}"), units);
+            each.iter().flat_map(of_group).collect()
+        }
+    }
 }
 
 /// Doubts about a scene, its mesh and its modes, in sentences.
@@ -51,11 +56,12 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         doubts.extend(notes.map(|note| format!("{}: {note}", files.stiffness.display())));
         doubts.extend(without_elements(scene, model));
     }
-    if let Body::Meshed(body) = &scene.body {
-        let notes = model.meshed.iter().flat_map(|meshed| &meshed.mesh_notes);
-        doubts.extend(notes.map(|note| format!("{}: {note}", body.mesh.display())));
-        let of_mesh = model.meshed.iter().flat_map(|meshed| scene::doubts(scene, &meshed.mesh));
-        doubts.extend(of_mesh.map(|doubt: Doubt| doubt.to_string()));
+    if let Some(Meshed { mesh, elements: Some(body), mesh_notes, .. }) = &model.meshed {
+        if let Body::File(_) = scene.body {
+            doubts.extend(of_materials(&body.materials, &scene.units));
+        }
+        doubts.extend(mesh_notes.iter().map(|note| format!("{}: {note}", body.mesh.display())));
+        doubts.extend(model::doubts(scene, body, mesh).into_iter().map(|doubt: Doubt| doubt.to_string()));
     }
     let ratios = &model.damping_ratios()[..model.body.flexible() - model.static_shapes()];
     let over: Vec<f64> = ratios.iter().copied().filter(|ratio| *ratio > 1.0).collect();

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use memory::Bytes;
 use modal::EngineStats;
+use model::{MatrixChecks, Meshed, Model};
 use nalgebra::Matrix3;
-use scene::{MatrixChecks, Meshed, Model};
 use serde::{Serialize, Serializer};
 
 /// Times of the phases, seconds, in the order in which they were passed.

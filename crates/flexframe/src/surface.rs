@@ -1,10 +1,10 @@
 //! The surface of a body, for pictures.
 
 use figures::{facets, sharp_edges};
+use model::Model;
 use nalgebra::Vector3;
 use results::Shapes;
 use rigid_kin::Attitude;
-use scene::Model;
 
 use crate::drawn::shapes_of;
 

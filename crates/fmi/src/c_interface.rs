@@ -688,6 +688,7 @@ mod tests {
     use std::path::Path;
 
     use flexframe::fmu::{FmuSettings, pack};
+    use flexframe::model::Builder;
     use flexframe::scene::Scene;
 
     use super::*;
@@ -704,7 +705,14 @@ mod tests {
         let scene = Scene::parse(text, "ball.toml").unwrap();
         let library = folder.join("library");
         std::fs::write(&library, format!("{MARKER} fmi2DoStep")).unwrap();
-        let report = pack(&scene, &folder.join("ball.fmu"), &FmuSettings { library: Some(library) }, |_| ()).unwrap();
+        let report = pack(
+            &scene,
+            &Builder::default(),
+            &folder.join("ball.fmu"),
+            &FmuSettings { library: Some(library) },
+            |_| (),
+        )
+        .unwrap();
         let zip = std::fs::File::open(folder.join("ball.fmu")).unwrap();
         zip::ZipArchive::new(zip).unwrap().extract(folder).unwrap();
         Instance::new(&report.guid, folder.join("resources").to_str().unwrap()).unwrap()

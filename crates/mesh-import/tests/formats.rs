@@ -35,7 +35,7 @@ impl Formats {
         let folder = if with_meshlane() { "formats_meshlane" } else { "formats" };
         let formats = Self { folder: Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder) };
         fs::create_dir_all(&formats.folder).unwrap();
-        let geo = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scene/tests/data/bar.geo");
+        let geo = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model/tests/data/bar.geo");
         fs::copy(geo, formats.path("bar.geo")).unwrap();
         formats.gmsh(&["bar.geo", "-3", "-order", "2", "-format", "msh41", "-o", "bar.msh"]);
         for ending in ["inp", "bdf", "vtk", "unv"] {

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use flexframe::faer::MatRef;
+use flexframe::model::Model;
 use flexframe::nalgebra::Matrix3;
-use flexframe::scene::Model;
 use numpy::ndarray::{ArrayView, ArrayView2, ArrayView3, Dimension, ShapeBuilder};
 use numpy::{Element, PyArray, PyArrayMethods};
 use pyo3::prelude::*;

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use flexframe::faer::{ColRef, MatRef};
+use flexframe::model::{Assembly, BuildError, BuildProgress, Meshed, Model};
 use flexframe::modes::frequency_unit;
 use flexframe::plausible::doubts_of_scene;
 use flexframe::report::{BodyReport, quantity};
-use flexframe::scene::{Assembly, BuildError, BuildProgress, Meshed, Model};
 use numpy::ndarray::ArrayView1;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
@@ -54,7 +54,7 @@ impl Body {
             return Err(wrong_input(py, "scene", "a scene of another body", expected, help));
         }
         let (assembly, of_thread) = (self.assembly.clone(), scene.get().scene().clone());
-        let build = move |told: &mut dyn FnMut(BuildProgress)| assembly.builder()?.build(&of_thread, told);
+        let build = move |told: &mut dyn FnMut(BuildProgress)| assembly.variants()?.build(&of_thread, told);
         let model = Arc::new(built(py, &scene, build)?);
         Ok(Self { scene, model, assembly: self.assembly.clone() })
     }
@@ -85,10 +85,10 @@ impl Body {
     #[new]
     fn new(py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
         warn(py, doubts_of_scene(scene.get().scene()))?;
-        let of_thread = scene.get().scene().clone();
+        let (of_thread, builder) = (scene.get().scene().clone(), scene.get().builder().clone());
         let build = move |told: &mut dyn FnMut(BuildProgress)| {
-            let assembly = Assembly::new(&of_thread, &mut *told)?;
-            let model = assembly.builder()?.build(&of_thread, told)?;
+            let assembly = builder.assemble(&of_thread, &mut *told)?;
+            let model = assembly.variants()?.build(&of_thread, told)?;
             Ok((model, assembly.without_matrices()))
         };
         let (model, assembly) = built(py, &scene, build)?;
@@ -270,6 +270,6 @@ fn built<T: Send + 'static>(
     if let Some(error) = raised {
         return Err(error);
     }
-    warn(py, doubts.into_iter().chain(scene.get().scene().cache.notes().warnings))?;
+    warn(py, doubts.into_iter().chain(scene.get().builder().cache.notes().warnings))?;
     result.map_err(|error| exception(py, &error))
 }

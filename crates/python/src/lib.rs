@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 
 mod arrays;
 mod body;
-mod cache;
+mod builder;
 mod columns;
 mod constants;
 mod dict;

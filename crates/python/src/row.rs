@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use flexframe::dynamics::Observation;
+use flexframe::model::Model;
 use flexframe::results::Metadata;
-use flexframe::scene::Model;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 

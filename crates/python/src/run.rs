@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use flexframe::model::Builder;
 use flexframe::run::{RunError, RunProgress, RunReport, RunSettings};
-use flexframe::scene::Cache;
 use pyo3::prelude::*;
 
-use crate::cache::cache;
+use crate::builder::builder;
 use crate::errors::{add_note, exception, warn};
 use crate::interrupt::{Stop, interruptible};
 use crate::results::read_results;
@@ -26,8 +26,8 @@ pub(crate) fn run(
     overwrite: bool,
     large: bool,
 ) -> PyResult<Bound<'_, PyAny>> {
-    let scene = scene.get().scene().clone();
-    followed(py, (overwrite, large), scene.cache.clone(), move |settings, progress| {
+    let (scene, builder) = (scene.get().scene().clone(), scene.get().builder().clone());
+    followed(py, (overwrite, large), builder, move |settings, progress| {
         flexframe::run::run(&scene, &folder, settings, progress).map(|(_, report)| report)
     })
 }
@@ -42,7 +42,7 @@ pub(crate) fn resume(
     overwrite: bool,
     trust_geometry: bool,
 ) -> PyResult<Bound<'_, PyAny>> {
-    followed(py, (overwrite, false), cache(py, trust_geometry)?, move |settings, progress| {
+    followed(py, (overwrite, false), builder(py, trust_geometry)?, move |settings, progress| {
         flexframe::run::resume(&file, settings, progress).map(|(_, _, report)| report)
     })
 }
@@ -50,12 +50,13 @@ pub(crate) fn resume(
 fn followed<'py>(
     py: Python<'py>,
     (overwrite, large): (bool, bool),
-    cache: Cache,
+    builder: Builder,
     work: impl FnOnce(&RunSettings, &mut dyn FnMut(RunProgress)) -> Result<RunReport, RunError> + Send + 'static,
 ) -> PyResult<Bound<'py, PyAny>> {
     let stop = Stop::default();
     let in_motion = Arc::new(AtomicBool::new(false));
-    let settings = RunSettings { overwrite, large, rows_alone: false, stop: stop.flag(), cache: cache.clone() };
+    let settings = RunSettings { overwrite, large, rows_alone: false, stop: stop.flag(), builder };
+    let cache = settings.builder.cache.clone();
     let (told, moves) = (stop.clone(), in_motion.clone());
     let run = move || {
         work(&settings, &mut |progress| match progress {

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use flexframe::scene::{AssignError, Cache, assign};
+use flexframe::model::Builder;
+use flexframe::scene::{AssignError, assign};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::cache::{MODULE, cache};
+use crate::builder::{MODULE, builder};
 use crate::dict::{to_text, to_toml};
 use crate::errors::{exception, wrong_input};
 use crate::html::{escaped, heading};
@@ -27,21 +28,29 @@ const NAME: &str = "scene";
 ///
 /// A scene can be pickled and copied. The files that it names are read where it is unpickled.
 #[pyclass(frozen, module = "flexframe")]
-pub(crate) struct Scene(Arc<flexframe::scene::Scene>);
+pub(crate) struct Scene {
+    scene: Arc<flexframe::scene::Scene>,
+    builder: Builder,
+}
 
 /// The function that unpickles scenes.
 const UNPICKLE: &str = "_scene";
 
 impl Scene {
     pub(crate) fn scene(&self) -> &Arc<flexframe::scene::Scene> {
-        &self.0
+        &self.scene
     }
 
-    fn parsed(py: Python<'_>, text: &str, path: PathBuf, body: Option<&str>, cache: Cache) -> PyResult<Self> {
+    /// What builds its body.
+    pub(crate) fn builder(&self) -> &Builder {
+        &self.builder
+    }
+
+    fn parsed(py: Python<'_>, text: &str, path: PathBuf, body: Option<&str>, builder: Builder) -> PyResult<Self> {
         // Tables of histories are read, too.
         let scene = detached(py, || flexframe::scene::Scene::parse_body(text, path, body))?;
         let scene = scene.map_err(|error| exception(py, &error))?;
-        Ok(Self(Arc::new(flexframe::scene::Scene { cache, ..scene })))
+        Ok(Self { scene: Arc::new(scene), builder })
     }
 }
 
@@ -57,11 +66,11 @@ impl Scene {
         trust_geometry: bool,
     ) -> PyResult<Self> {
         let py = source.py();
-        let cache = cache(py, trust_geometry)?;
+        let builder = builder(py, trust_geometry)?;
         if let Ok(dict) = source.cast::<PyDict>() {
             let name = name.as_deref().unwrap_or(NAME);
             let text = to_text(dict, name)?;
-            return Self::parsed(py, &text, base.unwrap_or_default().join(name), body, cache);
+            return Self::parsed(py, &text, base.unwrap_or_default().join(name), body, builder);
         }
         let Ok(path) = source.extract::<PathBuf>() else {
             let found = source.get_type().name()?;
@@ -73,12 +82,12 @@ impl Scene {
             return Err(PyTypeError::new_err(message));
         }
         let text = py.detach(|| flexframe::scene::text_of(&path)).map_err(|error| exception(py, &error))?;
-        Self::parsed(py, &text, path, body, cache)
+        Self::parsed(py, &text, path, body, builder)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let unpickle = py.import(MODULE)?.getattr(UNPICKLE)?;
-        let state = (&self.0.source, &self.0.path, self.0.cache.trusts_geometry());
+        let state = (&self.scene.source, &self.scene.path, self.builder.trust_geometry);
         Ok((unpickle, state.into_pyobject(py)?))
     }
 
@@ -94,55 +103,55 @@ impl Scene {
             let help = "name the key as messages about the scene do; docs/reference/scene.md lists them";
             wrong_input(py, &format!("`{key}`"), &found, &expected, help)
         };
-        let text = assign(&self.0.source, &assigned).map_err(refused)?;
-        Self::parsed(py, &text, self.0.path.clone(), None, self.0.cache.clone())
+        let text = assign(&self.scene.source, &assigned).map_err(refused)?;
+        Self::parsed(py, &text, self.scene.path.clone(), None, self.builder.clone())
     }
 
     /// The title of the run.
     #[getter]
     fn title(&self) -> &str {
-        &self.0.title
+        &self.scene.title
     }
 
     /// The text of the scene, TOML.
     #[getter]
     fn text(&self) -> &str {
-        &self.0.source
+        &self.scene.source
     }
 
     /// The scene file, or `base` and `name` of a dict.
     #[getter]
     fn path(&self) -> &PathBuf {
-        &self.0.path
+        &self.scene.path
     }
 
     /// Time at the end of the run.
     #[getter]
     fn end(&self) -> f64 {
-        self.0.time.end
+        self.scene.time.end
     }
 
     /// Labels of "length", "mass" and "time".
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        units(py, &self.0.units.length, &self.0.units.mass, &self.0.units.time)
+        units(py, &self.scene.units.length, &self.scene.units.mass, &self.scene.units.time)
     }
 
     fn __repr__(&self) -> String {
-        format!("Scene({:?}, {:?})", self.0.path.display().to_string(), self.0.title)
+        format!("Scene({:?}, {:?})", self.scene.path.display().to_string(), self.scene.title)
     }
 
     /// The title and the text.
     fn _repr_html_(&self) -> String {
-        let file = self.0.path.display().to_string();
-        heading(&self.0.title, &file) + &format!("<pre>{}</pre>", escaped(&self.0.source))
+        let file = self.scene.path.display().to_string();
+        heading(&self.scene.title, &file) + &format!("<pre>{}</pre>", escaped(&self.scene.source))
     }
 }
 
 /// The scene that was pickled.
 #[pyfunction(name = "_scene")]
 pub(crate) fn unpickled(py: Python<'_>, text: &str, path: PathBuf, trust_geometry: bool) -> PyResult<Scene> {
-    Scene::parsed(py, text, path, None, cache(py, trust_geometry)?)
+    Scene::parsed(py, text, path, None, builder(py, trust_geometry)?)
 }
 
 /// The labels of the units.

@@ -4,7 +4,6 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use crate::alone::{BodyText, BodyTexts};
-use crate::cache::Cache;
 use crate::check::Check;
 use crate::document::{BODIES, Document, Node};
 use crate::error::SceneError;
@@ -110,8 +109,6 @@ impl Scene {
             path: document.path().to_owned(),
             whole_file: body_text.as_ref().map(|text| text.whole.clone()),
             source: body_text.map_or_else(|| document.text().to_owned(), |text| text.alone),
-            cache: Cache::none(),
-            solver: None,
         })
     }
 

@@ -1,35 +1,17 @@
-//! The files that a scene is read from.
+//! The files that a scene itself is read from.
 
 use std::path::{Path, PathBuf};
-
-use mesh_import::files_of_mesh;
-use slepc::Slepc;
 
 use crate::constraint::Constraint;
 use crate::history::History;
 use crate::load::Load;
-use crate::scene::{Body, MeshedBody, Scene};
-
-impl Body {
-    /// The files that it is read from, and what a mesh or geometry may include.
-    pub fn files(&self) -> Vec<PathBuf> {
-        match self {
-            Self::Meshed(MeshedBody { file: Some(file), .. }) => vec![file.clone()],
-            Self::Meshed(body) => files_of_mesh(&body.mesh),
-            Self::Matrices(matrices) => matrices.list().map(|(_, path)| path.to_owned()).collect(),
-            Self::Rigid(_) => Vec::new(),
-        }
-    }
-}
+use crate::scene::Scene;
 
 impl Scene {
-    /// The scene file and all files that it names: those of the body, what a mesh or geometry may include, the tables of
-    /// histories, and what SLEPc has left in a folder.
+    /// The scene file, and the tables of its histories: what is read to know the scene. Those of its body are read later.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut files = vec![self.path.clone()];
-        files.extend(self.body.files());
         files.extend(self.histories().flat_map(tables).map(Path::to_owned));
-        files.extend(self.solver.iter().flat_map(Slepc::files));
         files
     }
 

@@ -1,4 +1,4 @@
-//! The scene file: read, checked, and turned into a body and its motion.
+//! The scene file: read, and checked.
 //!
 //! A scene is a TOML file that says everything about one run: the body (mesh, materials, point
 //! masses), the modes kept, the loads, the time step and what is written out.
@@ -16,8 +16,7 @@
 //!
 //! A rule that needs the mesh is checked later and refused the same way by [`Scene::refuse`].
 //!
-//! [`Model::build`] makes the mesh, the modes and the reduced body of a scene, and [`Model::start`]
-//! the motion.
+//! The crate knows no mesh: the crate `model` makes a body of a scene.
 //!
 //! One file of this crate per idea:
 //! `document` is the TOML tree in which every value knows its key path and its place;
@@ -34,8 +33,6 @@
 
 mod alone;
 mod assign;
-mod build;
-mod cache;
 mod check;
 mod constraint;
 mod deserialize;
@@ -50,7 +47,6 @@ mod load;
 mod methods;
 mod modes;
 mod ordinary_file;
-mod origin;
 mod place;
 mod scene;
 mod section;
@@ -61,11 +57,6 @@ mod system;
 mod unit_vector;
 
 pub use assign::{AssignError, assign};
-pub use build::{
-    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, BuildWork, Doubt, MatrixChecks, Meshed, Model,
-    ModelBuilder, StartError, StressPeak, SupportRows, doubts,
-};
-pub use cache::{Cache, CacheNotes};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use document::join as key_path;
 pub use dynamics::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
@@ -76,9 +67,10 @@ pub use file::{text_from, text_of};
 pub use history::{DrivenSpeed, Formula, History, TablePoints};
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use matrix_import::MatrixFiles;
-pub use mesh_import::ImportSettings;
 pub use methods::{METHODS, method_named};
 pub use modes::{Damping, Flexible, Large, Modes, Rayleigh};
 pub use place::Place;
-pub use scene::{Body, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Time, Units};
+pub use scene::{Body, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Time, Units};
+pub use shorten::shorten;
+pub use suggest::one_of;
 pub use system::System;

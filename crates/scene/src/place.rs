@@ -55,7 +55,7 @@ impl Place {
     }
 
     /// The place, the headline, the line with what is meant underlined, and help.
-    pub(crate) fn show(&self, headline: &str, help: &str) -> String {
+    pub fn show(&self, headline: &str, help: &str) -> String {
         let line = self.line.to_string();
         let gutter = " ".repeat(line.len());
         let Some(excerpt) = &self.excerpt else { return format!("{self}: {headline}\n{gutter} = {help}") };

@@ -11,11 +11,8 @@ use std::sync::Arc;
 use dynamics::{Effect, Method, Rows, StepControl};
 use fem_tet10::{Materials, PointMass};
 use matrix_import::MatrixFiles;
-use mesh_import::ImportSettings;
 use serde::Deserialize;
-use slepc::Slepc;
 
-use crate::cache::Cache;
 use crate::constraint::Constraint;
 use crate::effects::{Choice, Effects};
 use crate::load::Load;
@@ -54,11 +51,6 @@ pub struct Scene {
     pub source: String,
     /// The text of the scene file, for the places of later errors, where it is another.
     pub whole_file: Option<Arc<str>>,
-    /// Where the answers of the finite-element model are kept from run to run; nowhere, until the program says so.
-    pub cache: Cache,
-    /// Solver of modes and static responses in the place of this program; `None`, until the program says so. It is no part of
-    /// what is asked of a body: its answers are the same within rounding.
-    pub solver: Option<Slepc>,
 }
 
 /// Labels of the units. The program never converts: they are shown, not used.
@@ -78,6 +70,8 @@ pub struct Units {
 pub enum Body {
     /// Key `mesh`: a body that can deform.
     Meshed(MeshedBody),
+    /// Key `file`: such a body from its body file.
+    File(FileBody),
     /// Key `matrices`: mass and stiffness of a body that can deform, from another program. The files are already resolved
     /// against the folder of the scene file.
     Matrices(MatrixFiles),
@@ -88,23 +82,40 @@ pub enum Body {
 impl Body {
     /// True if its elements are known, and with them stress and its consequences.
     pub fn has_elements(&self) -> bool {
-        matches!(self, Self::Meshed(_))
+        matches!(self, Self::Meshed(_) | Self::File(_))
     }
 }
 
 /// A body of finite elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshedBody {
-    /// The mesh file, already resolved against the folder of the scene file; of a body from a body file, what that was made of.
+    /// The mesh file, already resolved against the folder of the scene file.
     pub mesh: PathBuf,
-    /// How it is read where it is no MSH 4.1: keys `mesh_size` and `raise_order`.
-    pub import: ImportSettings,
+    /// Key `mesh_size`: the largest size of an element where geometry is meshed, length; `None` leaves it to the mesher.
+    pub mesh_size: Option<f64>,
+    /// Key `raise_order`: true if straight edges of first-order elements get a node in their middle.
+    pub raise_order: bool,
     /// Materials of the elements: key `material` for the whole mesh, or `materials` by the name of the physical group.
     pub materials: Materials,
     /// Masses added at points; default none.
     pub point_masses: Vec<PointMass>,
-    /// Key `file`: the body file that the body comes from, in place of the mesh file, already resolved.
-    pub file: Option<PathBuf>,
+}
+
+/// A body from a body file. The file says what it was made of, and what the scene says besides must be the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileBody {
+    /// The body file, already resolved against the folder of the scene file.
+    pub file: PathBuf,
+    /// The mesh file, already resolved.
+    pub mesh: Option<PathBuf>,
+    /// As [`MeshedBody::mesh_size`].
+    pub mesh_size: Option<f64>,
+    /// As [`MeshedBody::raise_order`].
+    pub raise_order: bool,
+    /// As [`MeshedBody::materials`].
+    pub materials: Option<Materials>,
+    /// As [`MeshedBody::point_masses`].
+    pub point_masses: Option<Vec<PointMass>>,
 }
 
 /// A rigid body without a mesh. Its axes are those of the scene's positions ("mesh axes" elsewhere).
@@ -194,7 +205,7 @@ pub struct Output {
 impl Scene {
     /// The same, with the stress of all nodes in each coordinate; a body without a mesh has none.
     pub fn with_stress_field(mut self) -> Self {
-        self.output.stress_field = matches!(self.body, Body::Meshed(_));
+        self.output.stress_field = self.body.has_elements();
         self
     }
 
@@ -219,7 +230,7 @@ impl Scene {
     }
 
     /// The effects that are on under forces that nobody knows, of those that the scene leaves open.
-    pub(crate) fn on_under_unknown_forces(&self) -> Vec<Effect> {
+    pub fn on_under_unknown_forces(&self) -> Vec<Effect> {
         let choices = &self.effects.choices;
         let is_rigid = matches!(self.body, Body::Rigid(_))
             || self.modes.flexible.most() == 0

@@ -4,7 +4,7 @@
 pub(crate) const SHOWN: usize = 100;
 
 /// The text, cut if it is very long, on one line.
-pub(crate) fn shorten(text: &str) -> String {
+pub fn shorten(text: &str) -> String {
     let mut words = text.split_whitespace();
     let mut short = words.next().unwrap_or_default().to_owned();
     for word in words.take(SHOWN) {

@@ -67,7 +67,7 @@ pub(crate) fn list(names: &[&str]) -> String {
 }
 
 /// "one of" the names in quotes; of very many, the first.
-pub(crate) fn one_of(names: &[String]) -> String {
+pub fn one_of(names: &[String]) -> String {
     const SHOWN: usize = 20;
     let first: Vec<String> = names.iter().take(SHOWN).map(|name| shorten(name)).collect();
     match names.len().checked_sub(SHOWN) {

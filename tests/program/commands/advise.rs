@@ -1,6 +1,7 @@
 //! `flexframe advise`: what it calls negligible is, on scenes of each kind.
 
 use flexframe::advise::{AdviseReport, ModeRow, Real, advise};
+use flexframe::model::Builder;
 use flexframe::scene::{Choice, Effect, Scene};
 
 fn example(name: &str) -> Scene {
@@ -9,7 +10,7 @@ fn example(name: &str) -> Scene {
 
 /// Advice on a scene, verified; nothing that is called negligible may turn out not to be.
 fn verified(scene: &Scene) -> AdviseReport {
-    let report = advise(scene, true, |_| ()).unwrap();
+    let report = advise(scene, &Builder::default(), true, |_| ()).unwrap();
     for row in &report.rows {
         let name = format!("{}: {}", report.title, row.subject.name());
         match &row.real {
@@ -67,7 +68,7 @@ fn the_plate_at_10_rad_s_is_stiffened_by_three_per_cent() {
     scene.initial.angular_velocity = [0.0, 10.0, 0.0];
     scene.initial.modal_velocity = vec![1.0];
     scene.effects.choices[Effect::GeometricStiffening] = Choice::Auto;
-    let report = advise(&scene, false, |_| ()).unwrap();
+    let report = advise(&scene, &Builder::default(), false, |_| ()).unwrap();
     let row = report.rows.iter().find(|row| row.subject.name() == "geometric_stiffening").unwrap();
     let ratio = (10.0 / (std::f64::consts::TAU * report.modes[0].frequency)).powi(2);
     let shift = (1.0 + row.value).sqrt() - 1.0;

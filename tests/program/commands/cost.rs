@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use dynamics::{Method, Observation, Rows, StepControl};
 use flexframe::cost::{CostReport, CostSettings, LadderRun, Line, Measured, Outcome, Setting, price_list};
-use scene::{METHODS, Model, Scene};
+use model::{Builder, Model};
+use scene::{METHODS, Scene};
 
 const TARGET: f64 = 1e-4;
 
@@ -35,7 +36,7 @@ fn list() -> &'static (CostReport, String) {
     LIST.get_or_init(|| {
         let folder = tempfile::tempdir().unwrap();
         let settings = settings(40_000, TARGET);
-        let report = price_list(&scene("step = 3e-5"), folder.path(), settings, |_| ()).unwrap();
+        let report = price_list(&scene("step = 3e-5"), &Builder::default(), folder.path(), settings, |_| ()).unwrap();
         assert_eq!(report.files.len(), 4);
         assert!(report.files.iter().all(|file| std::fs::metadata(file).unwrap().len() > 1000));
         let csv = std::fs::read_to_string(folder.path().join("cost.csv")).unwrap();
@@ -155,7 +156,8 @@ fn the_answer_reaches_the_target_when_the_scene_is_run_with_it() {
 #[test]
 fn a_target_beyond_reach_is_said_to_be() {
     let folder = tempfile::tempdir().unwrap();
-    let report = price_list(&scene("step = 3e-5"), folder.path(), settings(1000, 1e-30), |_| ()).unwrap();
+    let report =
+        price_list(&scene("step = 3e-5"), &Builder::default(), folder.path(), settings(1000, 1e-30), |_| ()).unwrap();
     let answer = report.answer.unwrap();
     assert!(answer.run.is_none() && answer.lines.is_empty() && answer.smallest_error > 1e-20);
     assert!(answer.to_string().contains("no setting that was tried"), "{answer}");
@@ -167,7 +169,7 @@ fn a_run_that_takes_longer_than_the_patience_is_stopped_and_named() {
     let patience = Duration::from_millis(20);
     let settings = CostSettings { patience, timed_for: Duration::from_millis(1), ..settings(1_000_000, TARGET) };
     // Five million steps, which take some seconds.
-    let report = price_list(&scene("step = 1e-8"), folder.path(), settings, |_| ()).unwrap();
+    let report = price_list(&scene("step = 1e-8"), &Builder::default(), folder.path(), settings, |_| ()).unwrap();
     let rows: Vec<&LadderRun> = report.lines.iter().flat_map(|line| &line.rows).collect();
     let own = rows.iter().find(|row| row.of_scene).unwrap();
     let Outcome::OutOfPatience(stopped) = &own.outcome else { panic!("{own:?}") };

@@ -6,9 +6,10 @@ use std::process::{Command, Output};
 use faer::Mat;
 use flexframe::columns::COLUMNS;
 use flexframe::fem_tet10::{self, Materials, StressRecovery};
+use flexframe::model::Model;
 use flexframe::rigid_kin::Attitude;
 use flexframe::row::Row;
-use flexframe::scene::{Body, Model, Scene};
+use flexframe::scene::{Body, Scene};
 use nalgebra::Vector3;
 use results::{Results, unfinished};
 
@@ -76,7 +77,7 @@ fn run(folder: &Path, text: &str) -> PathBuf {
 fn materials(scene: &Scene) -> Materials {
     match &scene.body {
         Body::Meshed(body) => body.materials.clone(),
-        Body::Rigid(_) | Body::Matrices(_) => unreachable!("the body has a mesh"),
+        Body::File(_) | Body::Rigid(_) | Body::Matrices(_) => unreachable!("the body has a mesh"),
     }
 }
 

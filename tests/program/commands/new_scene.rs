@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use flexframe::new_scene::{NewSceneError, new_scene};
+use flexframe::new_scene::{ImportSettings, NewSceneError, new_scene};
 use flexframe::run::{self, RunSettings};
-use flexframe::scene::{Body, ImportSettings, Scene};
+use flexframe::scene::{Body, Scene};
 
 const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false };
 
@@ -13,7 +13,7 @@ fn it_names_groups_and_mass_and_runs() {
     let folder = tempfile::tempdir().unwrap();
     let mesh = folder.path().join("bar \"1\".msh");
     std::fs::copy(
-        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("crates/scene/tests/data/bar.msh"),
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("crates/model/tests/data/bar.msh"),
         &mesh,
     )
     .unwrap();
@@ -78,7 +78,7 @@ fn the_materials_of_a_deck_are_those_of_its_scene_and_another_one_is_told() {
         let (path, notes) = new_scene(&mesh, &AS_IT_IS, None, true).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         let scene = Scene::parse(&text, &path).unwrap();
-        (text, flexframe::scene::Model::build(&scene, |_| ()).unwrap(), notes)
+        (text, flexframe::model::Model::build(&scene, |_| ()).unwrap(), notes)
     };
     let both = "*SOLID SECTION, ELSET=arm, MATERIAL=AW 6082\n*SOLID SECTION, ELSET=head, MATERIAL=AW 6082\n";
     let (text, model, notes) = of(both);
@@ -101,7 +101,7 @@ fn the_materials_of_a_deck_are_those_of_its_scene_and_another_one_is_told() {
     // A scene with one of its own keeps it, and says so.
     let own = text.replacen("density = 2.7e-9", "density = 2.8e-9", 1);
     let scene = Scene::parse(&own, folder.path().join("own.toml")).unwrap();
-    let model = flexframe::scene::Model::build(&scene, |_| ()).unwrap();
+    let model = flexframe::model::Model::build(&scene, |_| ()).unwrap();
     let notes = &model.meshed.as_ref().unwrap().mesh_notes;
     assert!((model.body.mass / (10.0 * 2.8e-9 + 2.0 * 7.85e-9) - 1.0).abs() < 1e-9);
     assert_eq!(notes.len(), 1, "{notes:?}");

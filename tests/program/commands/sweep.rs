@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use flexframe::model::Builder;
 use flexframe::run::{self, RunSettings};
-use flexframe::scene::{Cache, Scene};
+use flexframe::scene::Scene;
 use flexframe::sweep::{Shard, SweepReport, SweepSettings, merge, sweep};
 
 const SCENE: &str = r#"
@@ -41,7 +42,7 @@ struct Case {
 impl Case {
     fn new(parameters: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("crates/scene/tests/data/bar.msh");
+        let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("crates/model/tests/data/bar.msh");
         fs::copy(data, folder.path().join("bar.msh")).unwrap();
         fs::write(folder.path().join("blade.toml"), SCENE).unwrap();
         let case = Self { folder };
@@ -62,7 +63,7 @@ impl Case {
     }
 
     fn run_shard(&self, overwrite: bool, shard: Option<Shard>) -> Result<SweepReport, String> {
-        let settings = SweepSettings { overwrite, large: false, threads: 3, cache: Cache::none(), shard };
+        let settings = SweepSettings { overwrite, large: false, threads: 3, builder: Builder::default(), shard };
         sweep(&self.path("sweep.toml"), &self.path("sweep.h5"), &settings, |_| ()).map_err(|error| error.to_string())
     }
 
@@ -269,7 +270,7 @@ fn frequencies_are_swept_without_a_run() {
     assert_eq!((report.done, report.reductions), (2, 2), "{:?}", report.failures);
     let found = case.table("results/f");
     let scene = Scene::parse(SCENE, case.path("blade.toml")).unwrap();
-    let (_, modes) = flexframe::modes::modes(&scene, |_| ()).unwrap();
+    let (_, modes) = flexframe::modes::modes(&scene, &Builder::default(), |_| ()).unwrap();
     assert_eq!(found[..4], modes.body.natural_frequencies);
     for k in 0..4 {
         assert!((found[4 + k] / found[k] - 2.0).abs() < 1e-6, "{found:?}");

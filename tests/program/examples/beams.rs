@@ -1,7 +1,7 @@
 //! A slender bar under each constraint: rigid modes left, beam theory, and modes that the reactions do no work on.
 
 use flexframe::fem_tet10::{Material, Materials, assemble};
-use flexframe::scene::Model;
+use flexframe::model::Model;
 
 use crate::examples::{build, rows, scene};
 

@@ -1,7 +1,8 @@
 //! One body with everything, with nothing but its rigid motion, and with nothing but translation.
 
 use flexframe::dynamics::{ConservativeBody, Stats};
-use flexframe::scene::{Model, Scene};
+use flexframe::model::Model;
+use flexframe::scene::Scene;
 
 use crate::examples::{build, scene};
 

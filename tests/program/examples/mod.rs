@@ -13,7 +13,8 @@ mod top;
 use std::path::PathBuf;
 
 use flexframe::dynamics::Observation;
-use flexframe::scene::{Model, Scene};
+use flexframe::model::Model;
+use flexframe::scene::Scene;
 
 fn repository() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))

@@ -1,7 +1,8 @@
 //! Compound pendulums on a hinge under gravity, against the elliptic integral.
 
 use flexframe::dynamics::Observation;
-use flexframe::scene::{Body, Choice, Effect, Materials, MeshedBody, Model, Scene};
+use flexframe::model::Model;
+use flexframe::scene::{Body, Choice, Effect, Materials, MeshedBody, Scene};
 use nalgebra::Vector3;
 
 use crate::examples::{build, rows, scene};

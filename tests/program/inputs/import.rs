@@ -26,7 +26,7 @@ fn modes(folder: &Path, body: &str, gmsh: &str, cache: &Path) -> Output {
 #[test]
 fn geometry_and_first_order_meshes_give_modes_and_are_meshed_once() {
     let folder = tempfile::tempdir().unwrap();
-    let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("crates/scene/tests/data/");
+    let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("crates/model/tests/data/");
     std::fs::copy(data.join("bar.geo"), folder.path().join("bar.geo")).unwrap();
     let cache = tempfile::tempdir().unwrap();
     let found = |body: &str, gmsh: &str| -> Value {

@@ -40,7 +40,7 @@ struct Desk(TempDir);
 impl Desk {
     fn new() -> Self {
         let desk = Self(tempfile::tempdir().unwrap());
-        let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/scene/tests/data/bar.msh");
+        let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/model/tests/data/bar.msh");
         fs::copy(mesh, desk.path("bar.msh")).unwrap();
         desk.file("bar.toml", BAR);
         desk

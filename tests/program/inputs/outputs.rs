@@ -124,7 +124,7 @@ struct Desk {
 impl Desk {
     fn new() -> Self {
         let desk = Self { folder: tempfile::tempdir().unwrap() };
-        let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("crates/scene/tests/data/bar.msh");
+        let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("crates/model/tests/data/bar.msh");
         fs::copy(data, desk.at("bar.msh")).unwrap();
         for (name, text) in [
             ("bar.toml", SCENE),

@@ -6,9 +6,10 @@ use flexframe::advice::Refusal;
 use flexframe::advise::advise;
 use flexframe::columns::COLUMNS;
 use flexframe::dynamics::Rows;
+use flexframe::model::{Builder, Cache, Model};
 use flexframe::modes::{modes, reduce};
 use flexframe::run::{RunError, RunReport, RunSettings, results_path, run};
-use flexframe::scene::{Cache, Model, Scene};
+use flexframe::scene::Scene;
 use flexframe::surface::Surface;
 use results::{Results, unfinished};
 
@@ -95,7 +96,7 @@ fn of_a_stretch_that_the_modes_do_not_hold() {
             ),
         )
     };
-    let table = |text: &str| advise(&scene(text), false, |_| ()).unwrap().to_string();
+    let table = |text: &str| advise(&scene(text), &Builder::default(), false, |_| ()).unwrap().to_string();
     let (with, without) = (spin("exponential"), spin("rkmk4"));
     assert!(report(&with).warnings.is_empty() && !table(&with).contains("lacks"));
     let report = report(&without);
@@ -138,7 +139,10 @@ fn of_a_body_that_bends_far_it_says_what_is_wrong_by_how_much_and_too_far_is_ref
     let message = failed.unwrap_err().to_string();
     assert!(message.contains("36.00 times its length"), "{message}");
     assert!(
-        advise(&scene(&text), false, |_| ()).unwrap().to_string().contains("This model is refused: the body bends by")
+        advise(&scene(&text), &Builder::default(), false, |_| ())
+            .unwrap()
+            .to_string()
+            .contains("This model is refused: the body bends by")
     );
 }
 
@@ -161,7 +165,7 @@ fn of_modes_that_long_steps_get_wrong_though_the_energy_is_right_there_is_one() 
     let mut with_step = |step: f64| {
         scene.time.control = flexframe::scene::StepControl::Fixed(step);
         scene.output.rows = flexframe::scene::Rows::EverySteps(1);
-        let table = advise(&scene, false, |_| ()).unwrap();
+        let table = advise(&scene, &Builder::default(), false, |_| ()).unwrap();
         let report = run(&scene, tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ()).unwrap().1;
         (table.rows.into_iter().find(|row| row.subject.name() == "step").unwrap(), report)
     };
@@ -199,7 +203,7 @@ fn of_long_exact_steps() {
 /// A clamped bar of 200 mm whose first mode begins with parts of its length: displacement, and velocity over ω. It ends after
 /// half a period.
 fn clamped(modes: &str, displacement: f64, velocity: f64) -> Scene {
-    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/scene/tests/data/bar.msh");
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/model/tests/data/bar.msh");
     let of = |q: f64, v: f64| {
         scene(&format!(
             "[body]\nmesh = \"{mesh}\"\nmaterial = {{ young_modulus = 70e3, poisson_ratio = 0.3, density = 2.7e-9 }}\n\
@@ -280,19 +284,18 @@ fn the_surface_moves_as_the_points_do() {
 fn of_a_mesh_that_was_not_read_whole() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
-    let geometry = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/scene/tests/data/bar.geo");
+    let geometry = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/model/tests/data/bar.geo");
     let gmsh =
         Command::new("gmsh").args(["-3", "-order", "2", "-v", "0", geometry, "-o"]).arg(path("bar.inp")).status();
     assert!(gmsh.unwrap().success());
     let mesh = std::fs::read_to_string(path("bar.inp")).unwrap();
     let more = "*NSET, NSET=some\n1, 2,\n3\n*SURFACE, NAME=none, TYPE=NODE\nsome,\n";
     std::fs::write(path("bar.inp"), mesh + more).unwrap();
-    let cache = Cache::new(path("cache"), 1 << 30);
+    let builder = Builder::with_cache(Cache::new(path("cache"), 1 << 30));
     let scene = |body: &str| {
         let rest = "[modes]\nflexible = 2\n[time]\nend = 1e-4\nstep = 1e-5\n";
         let units = UNITS.replace("\"m\"", "\"mm\"").replace("kg", "Mg");
-        let scene = Scene::parse(&format!("{units}[body]\n{body}\n{rest}"), path("bar.toml")).unwrap();
-        Scene { cache: cache.clone(), ..scene }
+        Scene::parse(&format!("{units}[body]\n{body}\n{rest}"), path("bar.toml")).unwrap()
     };
     let material = "material = { young_modulus = 210e3, poisson_ratio = 0.3, density = 7.85e-9 }";
     let imported = scene(&format!("mesh = \"bar.inp\"\n{material}"));
@@ -300,12 +303,13 @@ fn of_a_mesh_that_was_not_read_whole() {
         let [warning] = warnings else { panic!("{warnings:?}") };
         assert!(warning.contains("bar.inp: the surface none is one of nodes"), "{warning}");
     };
-    is_told(&modes(&imported, |_| ()).unwrap().1.warnings);
-    is_told(&modes(&imported, |_| ()).unwrap().1.warnings);
-    is_told(&reduce(&imported, &path("bar.body.h5"), false, false, |_| ()).unwrap().warnings);
+    is_told(&modes(&imported, &builder, |_| ()).unwrap().1.warnings);
+    is_told(&modes(&imported, &builder, |_| ()).unwrap().1.warnings);
+    is_told(&reduce(&imported, &builder, &path("bar.body.h5"), false, false, |_| ()).unwrap().warnings);
     std::fs::remove_file(path("bar.inp")).unwrap();
-    let report = run(&scene("file = \"bar.body.h5\""), folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
+    let settings = RunSettings { builder: builder.clone(), ..RunSettings::default() };
+    let report = run(&scene("file = \"bar.body.h5\""), folder.path(), &settings, |_| ()).unwrap().1;
     is_told(&report.warnings);
     is_told(&Results::open(&report.results, &COLUMNS).unwrap().metadata.warnings);
-    assert!(cache.notes().warnings.is_empty(), "{:?}", cache.notes());
+    assert!(builder.cache.notes().warnings.is_empty(), "{:?}", builder.cache.notes());
 }

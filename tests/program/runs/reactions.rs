@@ -2,10 +2,11 @@
 
 use flexframe::columns::COLUMNS;
 use flexframe::dynamics::Observation;
+use flexframe::model::Model;
 use flexframe::nalgebra::Vector3;
 use flexframe::results::Results;
 use flexframe::run::{RunSettings, run};
-use flexframe::scene::{Model, Scene};
+use flexframe::scene::Scene;
 
 fn rows(text: &str) -> (Model, Vec<Observation>) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/of_a_test.toml");

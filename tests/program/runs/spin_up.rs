@@ -1,7 +1,8 @@
 //! Beams on a driven hinge that spin faster than they bend: examples/spin_up.toml and examples/wu_haug.toml.
 
 use flexframe::advice::Refusal;
-use flexframe::scene::{Choice, Constraint, Effect, Effects, Model, Scene};
+use flexframe::model::Model;
+use flexframe::scene::{Choice, Constraint, Effect, Effects, Scene};
 use nalgebra::Vector3;
 
 fn scene(name: &str) -> Scene {

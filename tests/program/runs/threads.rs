@@ -21,5 +21,5 @@ const _: () = {
     is_send_and_sync::<results::Results>();
     is_send_and_sync::<results::Writer<dynamics::Observation>>();
     is_send_and_sync::<scene::Scene>();
-    is_send_and_sync::<scene::Model>();
+    is_send_and_sync::<model::Model>();
 };

@@ -5,7 +5,8 @@ mod verify;
 use std::fmt;
 
 use advice::{Row, StrainError, Subject};
-use scene::{Assembly, BuildProgress, Method, Model, Scene};
+use model::{BuildProgress, Builder, Model};
+use scene::{Method, Scene};
 use serde::{Serialize, Serializer};
 
 use crate::commands::modes::frequency_unit;
@@ -121,16 +122,21 @@ pub enum AdviseProgress {
 ///
 /// # Errors
 /// [`RunError`] of the scene as it is. A run with an effect switched that fails is a row that says so.
-pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgress)) -> Result<AdviseReport, RunError> {
+pub fn advise(
+    scene: &Scene,
+    builder: &Builder,
+    verify: bool,
+    mut progress: impl FnMut(AdviseProgress),
+) -> Result<AdviseReport, RunError> {
     let of_paper = !scene.time.method.abilities.switches_effects;
     let mut scene = scene.clone().without_rows();
     if of_paper {
         scene.time.method = Method::EXPONENTIAL;
     }
     let scene = &scene;
-    let assembly = Assembly::new(scene, |p| progress(AdviseProgress::Build(p)))?;
-    let mut builder = assembly.builder()?;
-    let model = builder.build(scene, |p| progress(AdviseProgress::Build(p)))?;
+    let assembly = builder.assemble(scene, |p| progress(AdviseProgress::Build(p)))?;
+    let mut variants = assembly.variants()?;
+    let model = variants.build(scene, |p| progress(AdviseProgress::Build(p)))?;
     let step = step_row(scene, &model);
     let rows = model.advice.rows().chain([(Subject::Step, &step)]).map(|(subject, row)| EffectRow {
         subject,
@@ -164,7 +170,7 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
     if verify {
         let total = report.rows.iter().filter(|row| row.on.is_some()).count() as u64 + 1;
         progress(AdviseProgress::Verifying { done: 0, total });
-        let mut base = verify::Base::new(scene, &model, &mut builder)?;
+        let mut base = verify::Base::new(scene, &model, &mut variants)?;
         for (i, row) in report.rows.iter_mut().filter(|row| row.on.is_some()).enumerate() {
             progress(AdviseProgress::Verifying { done: i as u64 + 1, total });
             row.real = Some(base.influence(row.subject));

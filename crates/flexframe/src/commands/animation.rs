@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 
 use dynamics::{Observation, Reached, Simulation, StepError};
 use figures::{Animation, FigureError, Frame, View};
+use model::{BuildError, Builder};
 use nalgebra::Vector3;
 use results::Units;
 use rigid_kin::Attitude;
-use scene::{BuildError, Model, Scene};
+use scene::Scene;
 
 use crate::commands::export::ExportError;
 use crate::commands::modes::require_surface;
@@ -95,6 +96,7 @@ pub enum AnimationError {
 /// [`AnimationError`].
 pub fn animate(
     scene: &Scene,
+    builder: &Builder,
     path: &Path,
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
@@ -102,7 +104,7 @@ pub fn animate(
     require_gif(path)?;
     require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)))?;
     let [from, to] = settings.times(scene.time.end)?;
-    let model = Model::build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
+    let model = builder.build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
     let mut simulation =
         model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
     simulation.keep_last_step();

@@ -16,8 +16,9 @@ mod table;
 use std::path::Path;
 
 use dynamics::{Effect, SteadySpin};
+use model::{BuildError, BuildProgress, Builder};
 use nalgebra::Vector3;
-use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
+use scene::{Choice, Flexible, Scene};
 
 pub use branches::Branch;
 pub use critical::Critical;
@@ -87,6 +88,7 @@ pub struct CampbellSettings {
 /// [`CampbellError`].
 pub fn campbell(
     scene: &Scene,
+    builder: &Builder,
     folder: &Path,
     settings: &CampbellSettings,
     mut progress: impl FnMut(CampbellProgress),
@@ -107,7 +109,7 @@ pub fn campbell(
             scene.effects.choices[effect] = Choice::On;
         }
     }
-    let model = Model::build(&scene, |p| progress(CampbellProgress::Build(p)))?;
+    let model = builder.build(&scene, |p| progress(CampbellProgress::Build(p)))?;
     require_flexible(&scene, &model).map_err(BuildError::from)?;
 
     let effects = &model.physics.effects;

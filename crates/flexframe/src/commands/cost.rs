@@ -24,7 +24,8 @@ use std::path::Path;
 
 use advice::Subject;
 use dynamics::{Method, StepControl};
-use scene::{Assembly, BuildProgress, Flexible, Scene};
+use model::{BuildProgress, Builder};
+use scene::{Flexible, Scene};
 
 pub use answer::Answer;
 pub use error::CostError;
@@ -67,23 +68,24 @@ pub enum CostProgress {
 /// [`CostError`]. A run that fails is a row that says so.
 pub fn price_list(
     scene: &Scene,
+    builder: &Builder,
     folder: &Path,
     settings: CostSettings,
     mut progress: impl FnMut(CostProgress),
 ) -> Result<CostReport, CostError> {
     let scene = &scene.clone().without_rows();
-    let assembly = Assembly::new(scene, |p| progress(CostProgress::Build(p)))?;
-    let mut builder = assembly.builder()?;
-    let model = builder.build(scene, |p| progress(CostProgress::Build(p)))?;
+    let assembly = builder.assemble(scene, |p| progress(CostProgress::Build(p)))?;
+    let mut variants = assembly.variants()?;
+    let model = variants.build(scene, |p| progress(CostProgress::Build(p)))?;
     let flexible = model.body.flexible() - model.static_shapes();
     // The same effects with each number of modes, and no static shapes, which stand for modes that are left out.
     let mut settled = settled(scene, &model, Some((Subject::StaticCorrection, false)));
     let mut with_modes = Vec::new();
-    for count in modes::counts(flexible, builder.available()?).into_iter().rev() {
+    for count in modes::counts(flexible, variants.available()?).into_iter().rev() {
         settled.modes.flexible = Flexible::Count(count);
-        with_modes.insert(0, builder.build(&settled, |p| progress(CostProgress::Build(p)))?);
+        with_modes.insert(0, variants.build(&settled, |p| progress(CostProgress::Build(p)))?);
     }
-    drop(builder);
+    drop(variants);
     drop(assembly);
     let case = PreparedScene::new(scene, &model);
 

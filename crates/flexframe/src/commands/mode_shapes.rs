@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use figures::{FigureError, Panel, ShapeGrid, View};
+use model::{Meshed, Model};
 use nalgebra::Vector3;
-use scene::{Meshed, Model, Scene, SceneError};
+use scene::{Scene, SceneError};
 
 use crate::commands::modes::{frequency_unit, require_flexible, require_surface};
 use crate::drawn::shapes_of;

@@ -4,7 +4,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use dynamics::Effect;
-use scene::{Assembly, Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
+use model::{BuildError, BuildProgress, Builder, Meshed, Model};
+use scene::{Body, Choice, Flexible, Scene, SceneError};
 use serde::Serialize;
 
 use crate::plausible;
@@ -50,13 +51,14 @@ impl ModesReport {
 /// [`BuildError`].
 pub fn reduce(
     scene: &Scene,
+    builder: &Builder,
     output: &Path,
     matrices: bool,
     stress: bool,
     progress: impl FnMut(BuildProgress),
 ) -> Result<ModesReport, BuildError> {
     let scene = &if stress { scene.clone().with_stress_field() } else { scene.clone() };
-    let model = Model::write_body(scene, output, matrices, progress)?;
+    let model = builder.write_body(scene, output, matrices, progress)?;
     Ok(ModesReport::new(scene, &model))
 }
 
@@ -64,9 +66,13 @@ pub fn reduce(
 ///
 /// # Errors
 /// [`BuildError`].
-pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Model, ModesReport), BuildError> {
+pub fn modes(
+    scene: &Scene,
+    builder: &Builder,
+    progress: impl FnMut(BuildProgress),
+) -> Result<(Model, ModesReport), BuildError> {
     let scene = unloaded(scene);
-    let model = Model::build(&scene, progress)?;
+    let model = builder.build(&scene, progress)?;
     let report = ModesReport::new(&scene, &model);
     Ok((model, report))
 }
@@ -88,11 +94,12 @@ pub(crate) fn unloaded(scene: &Scene) -> Scene {
 /// [`BuildError`].
 pub fn write_problem(
     scene: &Scene,
+    builder: &Builder,
     folder: &Path,
     ranks: usize,
     progress: impl FnMut(BuildProgress),
 ) -> Result<Vec<PathBuf>, BuildError> {
-    Assembly::new(scene, progress)?.builder()?.write_problem(scene, folder, ranks)
+    builder.assemble(scene, progress)?.variants()?.write_problem(scene, folder, ranks)
 }
 
 /// The mesh and the modes of a body that has flexible ones.
@@ -105,10 +112,12 @@ pub(crate) fn require_flexible<'a>(scene: &Scene, model: &'a Model) -> Result<&'
     }
     let (key, help) = match scene.body {
         Body::Rigid(_) => ("body.rigid", "give the body a mesh, and `flexible` in [modes]"),
-        Body::Meshed(_) | Body::Matrices(_) if scene.effects.choices[Effect::Flexibility] == Choice::Off => {
+        Body::Meshed(_) | Body::File(_) | Body::Matrices(_)
+            if scene.effects.choices[Effect::Flexibility] == Choice::Off =>
+        {
             ("effects.flexibility", "remove it, so that the body deforms")
         }
-        Body::Meshed(_) | Body::Matrices(_) => ("modes.flexible", "keep flexible modes"),
+        Body::Meshed(_) | Body::File(_) | Body::Matrices(_) => ("modes.flexible", "keep flexible modes"),
     };
     let found = "a body without flexible modes, which has no natural frequencies";
     Err(scene.refuse(key, found, "one flexible mode or more", help))
@@ -126,7 +135,7 @@ pub fn require_surface(scene: &Scene) -> Result<(), SceneError> {
             "a body with a mesh, to draw it",
             "use the numbers: `flexframe modes` without -o, `flexframe run`, `flexframe export FILE --csv TABLE.csv`",
         )),
-        Body::Meshed(_) | Body::Rigid(_) => Ok(()),
+        Body::Meshed(_) | Body::File(_) | Body::Rigid(_) => Ok(()),
     }
 }
 

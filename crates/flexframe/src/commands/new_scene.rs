@@ -5,7 +5,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use fem_tet10::{AssemblyError, Material, Materials, centroid_lumped_inertia};
-use mesh_import::{ImportError, ImportSettings, Imported, MeshFile};
+pub use mesh_import::ImportSettings;
+use mesh_import::{ImportError, Imported, MeshFile};
 use whole_file::write_whole;
 
 use crate::files::outputs::{OutputError, Written, outputs_of_mesh};

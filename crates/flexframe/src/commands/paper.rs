@@ -71,7 +71,9 @@ pub fn reproduce(
     let results = Results::open(&run.results, &COLUMNS)?;
     let meshed = model.meshed.as_ref().ok_or_else(only_plates)?;
     let rigid = rigid_plate::histories(&model, &results)?.ok_or_else(only_plates)?;
-    let lumped = scene.centroid_lumped_inertia(&meshed.mesh)?.ok_or_else(only_plates)?;
+    let elements = meshed.elements.as_ref().ok_or_else(only_plates)?;
+    let lumped = fem_tet10::centroid_lumped_inertia(&meshed.mesh, &elements.materials, &elements.point_masses)
+        .map_err(model::BuildError::from)?;
     let comparison = Comparison::new(&run, &results, &rigid, &lumped);
     let figures = figures::draw(scene, &model, &results, &rigid, folder)?;
     run.times.add("figures", started.elapsed());

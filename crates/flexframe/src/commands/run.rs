@@ -14,8 +14,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use dynamics::{DrivenMotion, Simulation};
+use model::{BuildError, Builder, Model};
 use results::{BodyProperties, Expected, Metadata, Results, Resumed, Units, Writer, unfinished};
-use scene::{BuildError, Cache, Model, Scene, SceneError, StepControl};
+use scene::{Scene, SceneError, StepControl};
 
 pub use balances::Balances;
 pub(crate) use balances::Monitor;
@@ -50,7 +51,7 @@ pub fn run(
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Model, RunReport), RunError> {
     check(scene, folder, settings)?;
-    let model = Model::build(scene, |p| progress(RunProgress::Build(p)))?;
+    let model = settings.builder.build(scene, |p| progress(RunProgress::Build(p)))?;
     // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
     progress(RunProgress::Built);
     let report = run_model(scene, &model, folder, settings, progress)?;
@@ -76,7 +77,7 @@ pub fn run_bodies(
 /// Refuses a run that could not write its files.
 fn check(scene: &Scene, folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
     let path = results_path(scene, folder);
-    let outputs = outputs_of_scene(scene, settings.overwrite);
+    let outputs = outputs_of_scene(scene, &settings.builder, settings.overwrite);
     outputs.spare(&path)?;
     outputs.spare(&unfinished(&path))?;
     std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
@@ -98,7 +99,7 @@ pub fn run_model(
     let started = Instant::now();
     let mut simulation = start(scene, model)?;
     let checkpoint = simulation.checkpoint().map_err(|source| RunError::Restore { part: path.clone(), source })?.len();
-    let metadata = metadata_of_file(scene, model);
+    let metadata = metadata_of_file(scene, model, &settings.builder);
     let estimate = Estimate::of_rows(scene, &metadata);
     if estimate.bytes > LARGE && !settings.large {
         return Err(RunError::Large { scene: scene.path.clone(), estimate });
@@ -106,7 +107,7 @@ pub fn run_model(
     let estimate = estimate.with_seconds(&simulation, &settings.stop);
     progress(RunProgress::Estimate(estimate));
     let rows = usize::try_from(estimate.rows).unwrap_or(usize::MAX);
-    let shapes = if settings.rows_alone { None } else { stored_shapes(scene, model).map_err(BuildError::from)? };
+    let shapes = if settings.rows_alone { None } else { stored_shapes(model).map_err(BuildError::from)? };
     let expected = Expected { rows, checkpoint, overwrite: settings.overwrite };
     let writer = Writer::create(&path, &metadata, shapes.as_ref(), &COLUMNS, expected)?;
     drop(shapes);
@@ -130,15 +131,15 @@ pub fn resume(
 ) -> Result<(Scene, Model, RunReport), RunError> {
     let Resumed { writer, results, checkpoint } = Writer::resume(file, &COLUMNS, settings.overwrite)?;
     let part = writer.unfinished().to_path_buf();
-    let scene = scene_of(&results, &settings.cache)?;
-    outputs_of_scene(&scene, settings.overwrite).spare(writer.path())?;
+    let scene = scene_of(&results)?;
+    outputs_of_scene(&scene, &settings.builder, settings.overwrite).spare(writer.path())?;
     let estimate = Estimate::of_rows(&scene, &results.metadata);
-    let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
+    let model = settings.builder.build(&scene, |p| progress(RunProgress::Build(p)))?;
     progress(RunProgress::Built);
     let started = Instant::now();
     let mut simulation = start(&scene, &model)?;
     let changed = |what| RunError::Changed { part: part.clone(), what };
-    let now = metadata_of_file(&scene, &model);
+    let now = metadata_of_file(&scene, &model, &settings.builder);
     if now.program_version != results.metadata.program_version {
         return Err(changed("the version of flexframe"));
     }
@@ -166,9 +167,9 @@ pub fn resume(
 }
 
 /// The scene of a run that is to go on.
-fn scene_of(results: &Results, cache: &Cache) -> Result<Scene, SceneError> {
+fn scene_of(results: &Results) -> Result<Scene, SceneError> {
     let Metadata { scene_text, scene_file, .. } = &results.metadata;
-    Ok(Scene { cache: cache.clone(), ..Scene::parse(scene_text, scene_file::to_path(scene_file))? })
+    Scene::parse(scene_text, scene_file::to_path(scene_file))
 }
 
 fn start(scene: &Scene, model: &Model) -> Result<Simulation, RunError> {
@@ -176,10 +177,10 @@ fn start(scene: &Scene, model: &Model) -> Result<Simulation, RunError> {
 }
 
 /// The metadata in the results file of a run.
-fn metadata_of_file(scene: &Scene, model: &Model) -> Metadata {
+fn metadata_of_file(scene: &Scene, model: &Model, builder: &Builder) -> Metadata {
     let metadata = metadata(scene, model);
     Metadata {
-        input_files: scene.files().iter().map(|file| scene_file::to_text(file)).collect(),
+        input_files: builder.files(scene).iter().map(|file| scene_file::to_text(file)).collect(),
         body: BodyProperties { mesh: mesh_properties(scene, model), ..metadata.body },
         ..metadata
     }

@@ -17,8 +17,9 @@ use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
 use body_file::Hash;
+use model::{Assembly, BuildProgress, Builder, Model, Variants};
 use results::{ColumnTable, Results};
-use scene::{Assembly, BuildProgress, Cache, Model, ModelBuilder, Scene};
+use scene::Scene;
 use serde::Serialize;
 use whole_file::{FileLock, TemporaryFolder};
 
@@ -65,8 +66,8 @@ pub struct SweepSettings {
     pub large: bool,
     /// Runs at once.
     pub threads: usize,
-    /// Where bodies are kept from run to run.
-    pub cache: Cache,
+    /// What builds the bodies.
+    pub builder: Builder,
     /// Only the rows of this part of the sweep, into a table of its own ([`Shard::table`]).
     pub shard: Option<Shard>,
 }
@@ -149,17 +150,16 @@ pub fn sweep(
 ) -> Result<SweepReport, SweepError> {
     let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
     // Rows find what earlier rows have asked of the mesh.
-    let folder = settings.cache.folder().map_or_else(|| temporary.path().join("cache"), Path::to_owned);
-    let cache = if settings.cache.folder().is_some() {
-        settings.cache.clone()
-    } else {
-        settings.cache.elsewhere(folder, u64::MAX)
+    let cache = match &settings.builder.cache {
+        cache if cache.folder().is_some() => cache.clone(),
+        none => none.elsewhere(temporary.path().join("cache"), u64::MAX),
     };
-    let plan = Plan::read(path, &cache)?;
+    let builder = Builder { cache, ..settings.builder.clone() };
+    let plan = Plan::read(path)?;
     let of_shard = settings.shard.map(|shard| shard.table(output));
     let output = of_shard.as_deref().unwrap_or(output);
     let csv = settings.shard.is_none().then(|| output.with_extension("csv"));
-    let outputs = outputs(&plan, path, settings.overwrite);
+    let outputs = outputs(&plan, path, &builder, settings.overwrite);
     csv.iter().map(PathBuf::as_path).chain([output]).try_for_each(|file| outputs.spare(file))?;
     Written::SWEEP.check(output).map_err(OutputError::from)?;
     if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
@@ -187,15 +187,15 @@ pub fn sweep(
         let Some(Ok(first)) = rows.first().map(|row| &plan.rows[*row]) else { continue };
         let mut all_failed =
             |words: &str| rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(words.to_owned()));
-        let assembly = match Assembly::new(first, |p| progress(SweepProgress::Build(p))) {
+        let assembly = match builder.assemble(first, |p| progress(SweepProgress::Build(p))) {
             Ok(assembly) => assembly,
             Err(error) => {
                 all_failed(&error.to_string());
                 continue;
             }
         };
-        let builder = match assembly.builder() {
-            Ok(builder) => Mutex::new(builder),
+        let variants = match assembly.variants() {
+            Ok(variants) => Mutex::new(variants),
             Err(error) => {
                 all_failed(&error.to_string());
                 continue;
@@ -206,7 +206,7 @@ pub fn sweep(
             continue;
         }
         let of_run = RunSettings { large: settings.large, rows_alone: true, ..RunSettings::default() };
-        run_rows(&plan, rows, &builder, temporary.path(), (settings.threads, &of_run), |row, outcome| {
+        run_rows(&plan, rows, &variants, temporary.path(), (settings.threads, &of_run), |row, outcome| {
             table.rows[row] = outcome;
             let [done, failed] = table.counts();
             progress(SweepProgress::Rows { done: (done + failed) as u64, total: mine as u64 });
@@ -222,7 +222,7 @@ pub fn sweep(
     }
     finish(&mut table, &plan, output, csv.as_deref())?;
     let report = SweepReport::of(plan, output, csv, &table, kept);
-    Ok(SweepReport { rows: mine, reductions: cache.notes().assembled, ..report })
+    Ok(SweepReport { rows: mine, reductions: builder.cache.notes().assembled, ..report })
 }
 
 /// Merges the tables of all `count` shards of a sweep into the table `output`. Rows that no shard has run stay open: a
@@ -231,10 +231,11 @@ pub fn sweep(
 /// # Errors
 /// [`SweepError`]: the sweep cannot be read, or a table is of another one.
 pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Result<SweepReport, SweepError> {
-    let plan = Plan::read(path, &Cache::none())?;
+    let plan = Plan::read(path)?;
     let shards = Shard::all(count).map(|shard| shard.table(output));
     let csv = output.with_extension("csv");
-    let outputs = shards.fold(outputs(&plan, path, overwrite), |outputs, shard| outputs.and_input(&shard));
+    let outputs =
+        shards.fold(outputs(&plan, path, &Builder::default(), overwrite), |outputs, shard| outputs.and_input(&shard));
     [output, &csv].into_iter().try_for_each(|file| outputs.spare(file))?;
     Written::SWEEP.check(output).map_err(OutputError::from)?;
     let _alone = lock(output)?;
@@ -291,11 +292,11 @@ fn finish(table: &mut Table, plan: &Plan, output: &Path, csv: Option<&Path>) -> 
 const CHANGED: &str = "a file of the body was changed while the sweep ran\n = run it again";
 
 /// Files that a sweep may not write over: all that it reads.
-fn outputs(plan: &Plan, sweep: &Path, overwrite: bool) -> Outputs {
+fn outputs(plan: &Plan, sweep: &Path, builder: &Builder, overwrite: bool) -> Outputs {
     // Rows with the same body and histories have the same files.
     let same = |scene: &Scene| format!("{:?} {:?} {:?}", scene.body, scene.loads, scene.constraint);
     let scenes: BTreeMap<String, &Scene> = plan.rows.iter().flatten().map(|scene| (same(scene), scene)).collect();
-    let files = scenes.into_values().flat_map(Scene::files);
+    let files = scenes.into_values().flat_map(|scene| builder.files(scene));
     Outputs::new(std::iter::once(sweep.to_owned()).chain(files).collect(), overwrite)
 }
 
@@ -309,7 +310,7 @@ fn lock(table: &Path) -> Result<FileLock, SweepError> {
 fn run_rows(
     plan: &Plan,
     rows: &[usize],
-    builder: &Mutex<ModelBuilder<'_>>,
+    variants: &Mutex<Variants<'_>>,
     folder: &Path,
     (threads, settings): (usize, &RunSettings),
     mut tell: impl FnMut(usize, RowState) -> Result<(), SweepError>,
@@ -322,7 +323,7 @@ fn run_rows(
             scope.spawn(move || {
                 while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let outcome = match &plan.rows[*row] {
-                        Ok(scene) => run_row(scene, plan, builder, folder, settings)
+                        Ok(scene) => run_row(scene, plan, variants, folder, settings)
                             .map_or_else(RowState::Failed, RowState::Done),
                         Err(words) => RowState::Failed(words.clone()),
                     };
@@ -342,13 +343,13 @@ fn run_rows(
 fn run_row(
     scene: &Scene,
     plan: &Plan,
-    builder: &Mutex<ModelBuilder<'_>>,
+    variants: &Mutex<Variants<'_>>,
     folder: &Path,
     settings: &RunSettings,
 ) -> Result<Done, String> {
     let build = |scene: &Scene| -> Result<Model, String> {
-        let mut builder = builder.lock().unwrap_or_else(PoisonError::into_inner);
-        builder.build(scene, |_| ()).map_err(|error| error.to_string())
+        let mut variants = variants.lock().unwrap_or_else(PoisonError::into_inner);
+        variants.build(scene, |_| ()).map_err(|error| error.to_string())
     };
     let [asks_run, asks_frequencies] = plan.asks();
     let mut done = Done { results: Vec::new(), warnings: Vec::new() };

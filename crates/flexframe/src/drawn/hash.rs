@@ -2,7 +2,7 @@
 
 use body_file::{BodyFile, Digest, Hash};
 use faer::MatRef;
-use scene::Meshed;
+use model::Meshed;
 
 /// The datasets of a body file that are hashed.
 const DATASETS: [&str; 2] = ["modes/shapes", "static_shapes/shapes"];

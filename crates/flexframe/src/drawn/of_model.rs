@@ -4,8 +4,8 @@ use dynamics::Manifold;
 use faer::Mat;
 use fem_tet10::{AssemblyError, Mesh, StressRecovery};
 use modal::SecondOrderShapes;
+use model::{Meshed, Model};
 use results::{Shapes, StressShapes};
-use scene::{Body, Meshed, Model, Scene};
 
 /// A body without elements is drawn by so many of its nodes at the most.
 const MAX_NODES: usize = 20_000;
@@ -15,11 +15,11 @@ const MAX_NODES: usize = 20_000;
 ///
 /// # Errors
 /// [`AssemblyError`] where the stress cannot be computed, for want of memory.
-pub(crate) fn surface_shapes_of(scene: &Scene, model: &Model) -> Result<Option<Shapes>, AssemblyError> {
+pub(crate) fn surface_shapes_of(model: &Model) -> Result<Option<Shapes>, AssemblyError> {
     let Some(meshed) = &model.meshed else { return Ok(None) };
     let manifold = model.physics.large_deflection.as_ref();
     let mut shapes = shapes_of(meshed, manifold);
-    if let Body::Meshed(body) = &scene.body {
+    if let Some(body) = &meshed.elements {
         let recovery = StressRecovery::new(&meshed.mesh, &body.materials)?.at_nodes(&shapes.nodes);
         shapes.stress = Some(stress(&recovery, meshed, manifold, &shapes.nodes)?);
     }

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use fem_tet10::AssemblyError;
 use memory::Bytes;
+use model::Model;
 use results::{MeshProperties, Shapes};
-use scene::{Body, Model, Scene};
+use scene::{Body, Scene};
 
 use super::hash;
 use super::of_model::{surface, surface_shapes_of};
@@ -19,8 +20,8 @@ const MAX_BYTES: u64 = 256_000_000;
 ///
 /// # Errors
 /// [`AssemblyError`] where the stress cannot be computed, for want of memory.
-pub(crate) fn stored_shapes(scene: &Scene, model: &Model) -> Result<Option<Shapes>, AssemblyError> {
-    if bytes(model) > MAX_BYTES { Ok(None) } else { surface_shapes_of(scene, model) }
+pub(crate) fn stored_shapes(model: &Model) -> Result<Option<Shapes>, AssemblyError> {
+    if bytes(model) > MAX_BYTES { Ok(None) } else { surface_shapes_of(model) }
 }
 
 /// The finite-element model of a body, in the words of a results file.
@@ -28,7 +29,7 @@ pub(crate) fn mesh_properties(scene: &Scene, model: &Model) -> Option<MeshProper
     let meshed = model.meshed.as_ref()?;
     let mesh = &meshed.mesh;
     let (body_file, shapes_hash) = match &scene.body {
-        Body::Meshed(body) => (body_file(scene, body.file.as_deref()), hash::of_model(meshed)),
+        Body::Meshed(_) | Body::File(_) => (body_file(scene), hash::of_model(meshed)),
         // No body file is made of these.
         Body::Matrices(_) | Body::Rigid(_) => (String::new(), String::new()),
     };
@@ -39,26 +40,25 @@ pub(crate) fn mesh_properties(scene: &Scene, model: &Model) -> Option<MeshProper
 /// A warning where the results file of a run does not carry the shapes.
 pub(crate) fn not_stored(scene: &Scene, model: &Model) -> Option<String> {
     let bytes = bytes(model);
-    let Body::Meshed(body) = &scene.body else { return None };
-    (bytes > MAX_BYTES).then(|| {
+    (scene.body.has_elements() && bytes > MAX_BYTES).then(|| {
         let [bytes, limit] = [bytes, MAX_BYTES].map(|bytes| Bytes(usize::try_from(bytes).unwrap_or(usize::MAX)));
         format!(
             "the shapes on the surface take {bytes}, and a results file carries {limit} of them at the most: report, animate and \
              export --vtkhdf, --vtu and --modes will read them from the body file {}{}",
-            body_file(scene, body.file.as_deref()),
-            match body.file {
-                Some(_) => "",
-                None => " beside the results file, which `flexframe reduce SCENE --stress -o FILE` makes",
+            body_file(scene),
+            match scene.body {
+                Body::File(_) => "",
+                _ => " beside the results file, which `flexframe reduce SCENE --stress -o FILE` makes",
             }
         )
     })
 }
 
 /// The body file with the shapes on all nodes: that of the scene, or one beside the results file.
-fn body_file(scene: &Scene, given: Option<&Path>) -> String {
-    match given {
-        Some(file) => scene_file::to_text(file),
-        None => results_path(scene, Path::new("")).with_extension("body.h5").to_string_lossy().into_owned(),
+fn body_file(scene: &Scene) -> String {
+    match &scene.body {
+        Body::File(body) => scene_file::to_text(&body.file),
+        _ => results_path(scene, Path::new("")).with_extension("body.h5").to_string_lossy().into_owned(),
     }
 }
 

@@ -7,9 +7,10 @@ use fem_tet10::{AssemblyError, MeshError};
 use figures::FigureError;
 use mesh_import::ImportError;
 use modal::ModalError;
+use model::{BuildError, StartError};
 use report::ReportError;
 use results::FileError;
-use scene::{BuildError, SceneError, StartError};
+use scene::SceneError;
 use slepc::SlepcError;
 
 use super::{Details, Failure, Kind};

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use mesh_import::files_of_mesh;
+use model::Builder;
 use results::Results;
 use scene::Scene;
 pub use whole_file::{OutputError, Outputs, Written};
@@ -10,9 +11,9 @@ pub use whole_file::{OutputError, Outputs, Written};
 use crate::drawn::body_files;
 use crate::files::scene_file;
 
-/// Files that a command may write that reads a scene.
-pub fn outputs_of_scene(scene: &Scene, overwrite: bool) -> Outputs {
-    Outputs::new(scene.files(), overwrite)
+/// Files that a command may write that builds a scene.
+pub fn outputs_of_scene(scene: &Scene, builder: &Builder, overwrite: bool) -> Outputs {
+    Outputs::new(builder.files(scene), overwrite)
 }
 
 /// The same of one that reads a mesh or geometry.

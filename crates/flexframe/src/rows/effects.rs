@@ -2,8 +2,9 @@
 
 use advice::Subject;
 use dynamics::{DrivenMotion, Effect};
+use model::Model;
 use results::EffectProperties;
-use scene::{Load, Model, Scene};
+use scene::{Load, Scene};
 
 use crate::report::quantity;
 

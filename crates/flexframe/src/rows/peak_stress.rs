@@ -3,7 +3,7 @@
 use dynamics::Observation;
 use faer::Col;
 use fem_tet10::{StressError, StressRecovery};
-use scene::{Body, Meshed, Model, Scene, StressPeak};
+use model::{Meshed, Model, StressPeak};
 use serde::Serialize;
 
 use crate::files::json;
@@ -55,7 +55,7 @@ impl Largest {
     }
 
     /// With its place and what the mesh makes of it.
-    pub(crate) fn report(&self, scene: &Scene, model: &Model) -> Option<PeakStress> {
+    pub(crate) fn report(&self, model: &Model) -> Option<PeakStress> {
         let meshed = model.meshed.as_ref()?;
         let StressPeak { von_mises, node, left_out, max_left_out } = self.peak;
         let mesh = &meshed.mesh;
@@ -67,14 +67,14 @@ impl Largest {
             groups: mesh.groups_of_node(node).into_iter().map(str::to_owned).collect(),
             left_out,
             max_left_out,
-            mesh_error: if model.physics.large_deflection.is_some() { None } else { self.mesh_error(scene, meshed) },
+            mesh_error: if model.physics.large_deflection.is_some() { None } else { self.mesh_error(meshed) },
         })
     }
 
-    fn mesh_error(&self, scene: &Scene, meshed: &Meshed) -> Option<f64> {
-        let Body::Meshed(body) = &scene.body else { return None };
+    fn mesh_error(&self, meshed: &Meshed) -> Option<f64> {
+        let elements = meshed.elements.as_ref()?;
         let displacement = &meshed.modes.shapes * Col::from_iter(self.modal_displacement.iter().copied());
-        let recovery = StressRecovery::new(&meshed.mesh, &body.materials).ok()?;
+        let recovery = StressRecovery::new(&meshed.mesh, &elements.materials).ok()?;
         let nodal = recovery.nodal_stress(displacement.as_mat()).ok()?;
         let of_elements = recovery.error_estimate(displacement.as_ref(), nodal.col(0)).ok()?;
         Some(of_elements.into_iter().sum::<StressError>().relative())

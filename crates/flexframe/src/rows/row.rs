@@ -4,7 +4,7 @@ use std::ops::Deref;
 
 use dynamics::Observation;
 use fem_tet10::{principal_stresses, von_mises};
-use scene::Model;
+use model::Model;
 
 /// A row of a results file: the motion, and what was asked for besides.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +32,7 @@ pub struct PointStress {
 impl Row {
     /// Zeros: room for the rows of a model.
     pub fn new(model: &Model) -> Self {
-        let stressed = model.stress.as_ref().map_or(0, scene::BodyStress::points);
+        let stressed = model.stress.as_ref().map_or(0, model::BodyStress::points);
         Self {
             motion: Observation::new(model.body.flexible(), model.points.len()),
             stress: vec![PointStress::default(); stressed],

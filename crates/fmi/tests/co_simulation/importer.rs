@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::ptr;
 
 use flexframe::fmu::{FmuModel, FmuSettings, Input, Manifest, Source, Variable, marker, pack};
+use flexframe::model::Builder;
 use flexframe::scene::Scene;
 use flexframe_fmi::c_interface::*;
 use tempfile::TempDir;
@@ -27,7 +28,7 @@ impl Fmu {
         // The functions are called in this process: the library in the FMU has only to be taken for it.
         fs::write(place("library"), format!("{} fmi2DoStep", marker())).unwrap();
         let settings = FmuSettings { library: Some(place("library")) };
-        let report = pack(scene, &place("beam.fmu"), &settings, |_| ()).unwrap();
+        let report = pack(scene, &Builder::default(), &place("beam.fmu"), &settings, |_| ()).unwrap();
         let mut zip = zip::ZipArchive::new(Cursor::new(fs::read(place("beam.fmu")).unwrap())).unwrap();
         zip.extract(place("unpacked")).unwrap();
         let mut description = String::new();

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use flexframe::dynamics::{LoadFn, Rows, Setup, SharedLoad, Simulation};
 use flexframe::fmu::{FmuModel, Source};
+use flexframe::model::Builder;
 use flexframe::nalgebra::Vector3;
 use flexframe::scene::Scene;
 use flexframe_fmi::c_interface::{fmi2EnterInitializationMode, fmi2ExitInitializationMode};
@@ -83,7 +84,7 @@ fn a_controller_outside_is_the_same_controller_inside() {
         instance.set(&force, &held).unwrap();
     });
 
-    let model = FmuModel::new(scene.clone(), |_| ()).unwrap();
+    let model = FmuModel::new(scene.clone(), &Builder::default(), |_| ()).unwrap();
     let (model, tip) = (model.model, 1);
     assert_eq!(model.points[tip].0, "tip");
     let held = Arc::new(Mutex::new(Vector3::zeros()));

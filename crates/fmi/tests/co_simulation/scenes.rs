@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use flexframe::fmu::FmuModel;
+use flexframe::model::Builder;
 use flexframe::row::Row;
 use flexframe::scene::Scene;
 
@@ -120,7 +121,7 @@ pub fn rigid() -> Scene {
 
 /// The rows of a run of the library, without an FMU.
 pub fn own_run(scene: &Scene) -> Vec<Vec<f64>> {
-    let fmu = FmuModel::new(scene.clone(), |_| ()).unwrap();
+    let fmu = FmuModel::new(scene.clone(), &Builder::default(), |_| ()).unwrap();
     let mut row = Row::new(&fmu.model);
     fmu.model
         .start(&fmu.scene)

@@ -1,19 +1,16 @@
 //! The rules on `[body]`.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use body_file::BodyFile;
 use fem_tet10::{Material, Materials, PointMass};
 use matrix_import::MatrixFiles;
-use mesh_import::{ImportSettings, MeshFile, Reader, reader_of};
 use nalgebra::{Matrix3, Vector3};
 
 use super::Check;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::origin::Origin;
-use crate::scene::{Body, MeshedBody, RigidBody};
+use crate::scene::{Body, FileBody, MeshedBody, RigidBody};
 use crate::section::{BodySection, MatricesSection, RigidSection};
 
 /// Relative difference of entries of an inertia tensor that should be equal, still taken for rounding.
@@ -30,17 +27,26 @@ impl Check<'_> {
         if let Some(matrices) = matrices {
             return self.matrices(&matrices).map(Body::Matrices);
         }
-        let import = ImportSettings { mesh_size, raise_order: raise_order.unwrap_or_default(), trust_geometry: false };
+        let raise_order = raise_order.unwrap_or_default();
         let Some(rigid) = rigid else {
-            if let Some(file) = file {
-                return self.reduced(&file, mesh, import, material, materials, point_masses).map(Body::Meshed);
-            }
-            let Some(mesh) = mesh else { return Err(self.missing("body", "mesh")) };
-            let mesh = self.document.folder().join(self.mesh(&mesh)?);
-            self.import(&mesh, &import)?;
-            let materials = self.materials(material, materials)?;
-            self.point_masses(&point_masses)?;
-            return Ok(Body::Meshed(MeshedBody { mesh, import, materials, point_masses, file: None }));
+            let mesh = mesh.as_deref().map(|mesh| self.mesh(mesh)).transpose()?;
+            let mesh = mesh.map(|mesh| self.document.folder().join(mesh));
+            self.mesh_size(mesh_size)?;
+            let Some(file) = file else {
+                let Some(mesh) = mesh else { return Err(self.missing("body", "mesh")) };
+                let materials = self.materials(material, materials)?;
+                self.point_masses(&point_masses)?;
+                return Ok(Body::Meshed(MeshedBody { mesh, mesh_size, raise_order, materials, point_masses }));
+            };
+            let is_given = material.is_some() || materials.is_some();
+            return Ok(Body::File(FileBody {
+                file: self.body_file(&file, mesh.is_some())?,
+                mesh,
+                mesh_size,
+                raise_order,
+                materials: if is_given { Some(self.materials(material, materials)?) } else { None },
+                point_masses: self.has("body.point_masses").then_some(point_masses),
+            }));
         };
         for key in ["mesh", "file", "mesh_size", "raise_order", "material", "materials", "point_masses"] {
             if self.has(&join("body", key)) {
@@ -90,82 +96,24 @@ impl Check<'_> {
         })
     }
 
-    /// The body of a body file. What the scene says besides must be what the file was made of.
-    fn reduced(
-        &self,
-        file: &str,
-        mesh: Option<String>,
-        import: ImportSettings,
-        material: Option<Material>,
-        materials: Option<BTreeMap<String, Material>>,
-        point_masses: Vec<PointMass>,
-    ) -> Result<MeshedBody, SceneError> {
-        const KEY: &str = "body.file";
-        const CURE: &str = "make the file again: flexframe reduce SCENE -o FILE, from a scene without `file`";
-        let refuse = |found: String, expected: &str| self.document.place(KEY).refuse(found, expected, CURE);
-        self.require(!file.is_empty() && !file.contains('\0'), KEY, "the name of a body file", CURE)?;
-        let path = self.document.folder().join(file);
-        let opened = BodyFile::open(&path).and_then(|file| Origin::read(&file));
-        let origin = opened.map_err(|error| refuse(error.to_string(), "a body file that flexframe reduce has made"))?;
-        if origin.program_version != env!("CARGO_PKG_VERSION") {
-            let found = format!("a body file of flexframe {}", origin.program_version);
-            return Err(refuse(found, concat!("one of flexframe ", env!("CARGO_PKG_VERSION"))));
-        }
-        if mesh.is_none()
-            && let Some(key) = ["mesh_size", "raise_order"].iter().find(|key| self.has(&join("body", key)))
-        {
-            return Err(self.document.place(&join("body", key)).refuse(
+    /// The place of a body file. What it holds is looked at when the body is built.
+    fn body_file(&self, file: &str, has_mesh: bool) -> Result<PathBuf, SceneError> {
+        const HELP: &str = "make the file: flexframe reduce SCENE -o FILE, from a scene without `file`";
+        self.require(!file.is_empty() && !file.contains('\0'), "body.file", "the name of a body file", HELP)?;
+        let of_mesh = ["mesh_size", "raise_order"].iter().find(|key| self.has(&join("body", key)));
+        match of_mesh.filter(|_| !has_mesh) {
+            None => Ok(self.document.folder().join(file)),
+            Some(key) => Err(self.document.place(&join("body", key)).refuse(
                 format!("`{key}` for a body file, whose mesh is there"),
                 "it beside `mesh`",
                 "remove it",
-            ));
+            )),
         }
-        if let Some(mesh) = &mesh {
-            let mesh = self.document.folder().join(self.mesh(mesh)?);
-            self.import(&mesh, &import)?;
-            // The file does without the mesh.
-            if let Some(hash) = MeshFile::read(&mesh, &import).ok().and_then(|file| file.hash())
-                && hash.to_string() != origin.mesh_hash
-            {
-                return Err(refuse(
-                    "a body file that was made of another mesh".to_owned(),
-                    "one of the mesh of the scene",
-                ));
-            }
-        }
-        if material.is_some() || materials.is_some() {
-            let materials = self.materials(material, materials)?;
-            if materials != origin.materials() {
-                let found = format!("a body file of another material: {:?}", origin.materials());
-                return Err(refuse(found, "one of the materials of the scene"));
-            }
-        }
-        if self.has("body.point_masses") && point_masses != origin.point_masses {
-            let found = format!("a body file with other point masses ({} of them)", origin.point_masses.len());
-            return Err(refuse(found, "one of the point masses of the scene"));
-        }
-        let materials = origin.materials();
-        Ok(MeshedBody {
-            mesh: origin.mesh.into(),
-            import,
-            materials,
-            point_masses: origin.point_masses,
-            file: Some(path),
-        })
     }
 
-    /// A size is for geometry.
-    fn import(&self, mesh: &Path, import: &ImportSettings) -> Result<(), SceneError> {
-        let Some(size) = import.mesh_size else { return Ok(()) };
-        self.positive("body.mesh_size", size, "give the largest size of an element in your unit of length")?;
-        if reader_of(mesh, import) == Reader::GmshMesher {
-            return Ok(());
-        }
-        Err(self.document.place("body.mesh_size").refuse(
-            "a size for a mesh that is there",
-            "geometry to be meshed: a .geo, STEP, IGES or BREP file",
-            "remove it, or mesh again with elements of this size",
-        ))
+    fn mesh_size(&self, size: Option<f64>) -> Result<(), SceneError> {
+        let help = "give the largest size of an element in your unit of length";
+        size.map_or(Ok(()), |size| self.positive("body.mesh_size", size, help))
     }
 
     fn rigid(&self, section: &RigidSection) -> Result<RigidBody, SceneError> {

@@ -83,7 +83,7 @@ impl Check<'_> {
     /// Refuses a key that speaks of nodes, on a body without a mesh.
     pub(super) fn needs_mesh(&self, key: &str, body: &Body) -> Result<(), SceneError> {
         match body {
-            Body::Meshed(_) | Body::Matrices(_) => Ok(()),
+            Body::Meshed(_) | Body::File(_) | Body::Matrices(_) => Ok(()),
             Body::Rigid(_) => Err(self.document.place(key).refuse(
                 "a part of a mesh",
                 "none, since `rigid` in [body] has no mesh",

@@ -48,7 +48,7 @@ fn the_whole_example() {
 fn meshed(scene: &Scene) -> &MeshedBody {
     match &scene.body {
         Body::Meshed(body) => body,
-        Body::Rigid(_) | Body::Matrices(_) => panic!("a body without a mesh"),
+        Body::File(_) | Body::Rigid(_) | Body::Matrices(_) => panic!("a body without a mesh"),
     }
 }
 

@@ -8,6 +8,7 @@ use flexframe::cost::{
     self, CostError, CostReport, CostSettings, LadderRun, Line, Measured, Outcome, duration, modes_warning, price_list,
     setting,
 };
+use flexframe::model::Builder;
 use flexframe::modes::frequency_unit;
 use flexframe::outputs::outputs_of_scene;
 use flexframe::scene::Scene;
@@ -39,13 +40,13 @@ pub fn accuracy_page(
     for scene in scenes {
         let mut files = cost::files(&lists.join(name_of(&scene.path)));
         files.extend([path.to_owned(), picture_of(&scene.path)]);
-        outputs_of_scene(scene, overwrite).claim(&files)?;
+        outputs_of_scene(scene, &Builder::default(), overwrite).claim(&files)?;
     }
     let mut reports = Vec::new();
     for scene in scenes {
         let folder = lists.join(name_of(&scene.path));
         let settings = CostSettings::with_patience(patience);
-        reports.push((scene, price_list(scene, &folder, settings, |_| ())?));
+        reports.push((scene, price_list(scene, &Builder::default(), &folder, settings, |_| ())?));
     }
     let spin = match fastest(&reports) {
         Some((scene, report)) if report.initial_spin > 0.0 => spin_rates(scene)?,

@@ -2,7 +2,8 @@
 
 use flexframe::dynamics::{Rows, StepControl};
 use flexframe::frames_rk4;
-use flexframe::scene::{Assembly, BuildError, Flexible, Scene};
+use flexframe::model::{BuildError, Builder};
+use flexframe::scene::{Flexible, Scene};
 
 /// Steps of the runs.
 const STEPS: [u64; 4] = [1000, 2000, 5000, 10_000];
@@ -22,14 +23,14 @@ pub(super) struct SpinRow {
 pub(super) fn spin_rates(scene: &Scene) -> Result<Vec<SpinRow>, BuildError> {
     let end = scene.time.end;
     let mut rows = Vec::new();
-    let assembly = Assembly::new(scene, |_| ())?;
-    let mut builder = assembly.builder()?;
-    let model = builder.build(scene, |_| ())?;
+    let assembly = Builder::default().assemble(scene, |_| ())?;
+    let mut variants = assembly.variants()?;
+    let model = variants.build(scene, |_| ())?;
     let most = model.body.flexible() - model.static_shapes();
     for flexible in [most / 2, most] {
         let mut scene = scene.clone();
         scene.modes.flexible = Flexible::Count(flexible);
-        let (scene, model) = (&scene, builder.build(&scene, |_| ())?);
+        let (scene, model) = (&scene, variants.build(&scene, |_| ())?);
         let rate = |method, step| -> Option<f64> {
             let rows = model.start_with(scene, method, StepControl::Fixed(step), Rows::Interval(end)).ok()?;
             let spins: Vec<f64> =

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use dynamics::Observation;
 use fem_tet10::Material;
+use model::Model;
 use nalgebra::Vector3;
-use scene::{Model, Scene};
+use scene::Scene;
 
 use crate::nonlinear::error::NonlinearError;
 use crate::nonlinear::mean_axes::mean_axes;

@@ -1,7 +1,8 @@
 //! Energy over a long run with all that stresses a body, and large modes.
 
 use dynamics::Observation;
-use scene::{Choice, Effect, Flexible, Model, Scene, StepControl};
+use model::Model;
+use scene::{Choice, Effect, Flexible, Scene, StepControl};
 use verification::nonlinear::{bodies, cases};
 
 /// The soft rod with all that acts on it.

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use dynamics::Observation;
-use scene::{Choice, Effect, Large, Load, Model, Scene};
+use model::Model;
+use scene::{Choice, Effect, Large, Load, Scene};
 use verification::nonlinear::cases;
 
 fn example(name: &str) -> PathBuf {

@@ -1,7 +1,8 @@
 //! The plate of the paper, with its masses, on its own mesh.
 
 use dynamics::Method;
-use scene::{Body, Choice, Effect, Large, Materials, Model, Scene};
+use model::Model;
+use scene::{Body, Choice, Effect, Large, Materials, Scene};
 use verification::nonlinear::{Solid, cases};
 
 #[test]

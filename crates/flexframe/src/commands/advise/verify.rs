@@ -2,8 +2,9 @@
 
 use advice::Subject;
 use dynamics::{Effect, EffectMap, Observation, Rows, StepControl};
+use model::{Model, Variants};
 use nalgebra::{Matrix3, Vector3};
-use scene::{Choice, Flexible, Large, Model, ModelBuilder, Scene};
+use scene::{Choice, Flexible, Large, Scene};
 use serde::Serialize;
 
 use crate::commands::run::{RunError, RunFailure};
@@ -34,12 +35,12 @@ pub enum Real {
 pub(super) struct Base<'a, 'b> {
     scene: &'a Scene,
     model: &'a Model,
-    builder: &'a mut ModelBuilder<'b>,
+    builder: &'a mut Variants<'b>,
     motion: Vec<Observation>,
 }
 
 impl<'a, 'b> Base<'a, 'b> {
-    pub(super) fn new(scene: &'a Scene, model: &'a Model, builder: &'a mut ModelBuilder<'b>) -> Result<Self, RunError> {
+    pub(super) fn new(scene: &'a Scene, model: &'a Model, builder: &'a mut Variants<'b>) -> Result<Self, RunError> {
         // Settled as the others are, so that nothing but the switch is between them.
         let settled = settled(scene, model, None);
         let motion = follow(&settled, &builder.build(&settled, |_| ())?)

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use dynamics::EigenError;
 use figures::FigureError;
-use scene::BuildError;
+use model::BuildError;
 
 use crate::files::write_error::WriteError;
 

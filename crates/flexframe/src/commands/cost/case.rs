@@ -1,7 +1,8 @@
 //! A scene with its model, ready to be run in any way.
 
 use dynamics::{Method, Rows, SetupError, Simulation, StepControl};
-use scene::{Model, Scene, StartError};
+use model::{Model, StartError};
+use scene::Scene;
 
 use super::run::Scales;
 

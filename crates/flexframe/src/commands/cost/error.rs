@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use figures::FigureError;
-use scene::BuildError;
+use model::BuildError;
 
 use crate::commands::run::RunFailure;
 use crate::files::outputs::OutputError;

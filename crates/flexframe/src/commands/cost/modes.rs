@@ -1,7 +1,8 @@
 //! Modes as an axis of their own: what keeping fewer or more of them changes.
 
 use dynamics::{Method, StepControl};
-use scene::{Model, Scene};
+use model::Model;
+use scene::Scene;
 use serde::Serialize;
 
 use super::case::PreparedScene;

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use dynamics::{Observation, PointMotion, Reached, Simulation, Stats};
+use model::Model;
 use nalgebra::Vector3;
-use scene::Model;
 use serde::Serialize;
 
 use crate::commands::run::{Balances, Monitor, RunFailure};

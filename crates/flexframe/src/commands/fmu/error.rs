@@ -4,7 +4,8 @@ use std::io;
 use std::path::PathBuf;
 
 use body_file::BodyFileError;
-use scene::{BuildError, SceneError, StartError};
+use model::{BuildError, StartError};
+use scene::SceneError;
 
 use crate::files::write_error::WriteError;
 

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use dynamics::RotationShapes;
+use model::{BuildProgress, Builder, Model};
 use results::Metadata;
-use scene::{BuildProgress, Model, Scene};
+use scene::Scene;
 
 use super::error::FmuError;
 use super::si_unit::seconds;
@@ -34,9 +35,9 @@ impl FmuModel {
     ///
     /// # Errors
     /// [`FmuError`].
-    pub fn new(scene: Scene, progress: impl FnMut(BuildProgress)) -> Result<Self, FmuError> {
+    pub fn new(scene: Scene, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, FmuError> {
         let scene = scene.for_unknown_forces();
-        let model = Model::build(&scene, progress)?;
+        let model = builder.build(&scene, progress)?;
         model
             .start(&scene)
             .map_err(|source| FmuError::Start { scene: scene.path.clone(), source: Box::new(source) })?;
@@ -51,7 +52,7 @@ impl FmuModel {
     /// # Errors
     /// [`FmuError`].
     pub fn open(resources: &Path) -> Result<Self, FmuError> {
-        Self::new(Scene::read(resources.join(super::packed_scene::SCENE))?, |_| ())
+        Self::new(Scene::read(resources.join(super::packed_scene::SCENE))?, &Builder::default(), |_| ())
     }
 
     /// The numbers of a row, which [`Source::Row`](super::Source::Row) counts.

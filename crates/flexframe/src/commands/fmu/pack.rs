@@ -5,7 +5,8 @@ use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use body_file::BodyFile;
-use scene::{Body, BuildProgress, Cache, Flexible, Model, Scene};
+use model::{BuildProgress, Builder};
+use scene::{Body, Flexible, Scene};
 use serde::Serialize;
 use whole_file::{TemporaryFolder, write_whole};
 use zip::write::SimpleFileOptions;
@@ -79,14 +80,14 @@ impl FmuReport {
 ///
 /// # Errors
 /// [`FmuError`] for a file that is no body file of this version, and for a scene that breaks a rule.
-pub fn scene_of_body(file: &Path, cache: &Cache) -> Result<Scene, FmuError> {
+pub fn scene_of_body(file: &Path) -> Result<Scene, FmuError> {
     let body = BodyFile::open(file)?;
     let text = body.attribute("scene").ok_or_else(|| FmuError::NoScene { path: file.to_owned() })?;
     let mut scene: toml::Table = toml::from_str(text).map_err(|error| FmuError::Text(error.to_string()))?;
     let name = std::path::absolute(file).unwrap_or_else(|_| file.to_owned()).display().to_string();
     scene.insert("body".to_owned(), toml::Table::from_iter([("file".to_owned(), toml::Value::from(name))]).into());
     let text = toml::to_string(&scene).map_err(|error| FmuError::Text(error.to_string()))?;
-    Ok(Scene { cache: cache.clone(), ..Scene::parse(&text, file)? })
+    Ok(Scene::parse(&text, file)?)
 }
 
 /// Packs a scene and its body as an FMU, whole or not at all.
@@ -95,6 +96,7 @@ pub fn scene_of_body(file: &Path, cache: &Cache) -> Result<Scene, FmuError> {
 /// [`FmuError`].
 pub fn pack(
     scene: &Scene,
+    builder: &Builder,
     output: &Path,
     settings: &FmuSettings,
     mut progress: impl FnMut(BuildProgress),
@@ -124,13 +126,13 @@ pub fn pack(
         names.push(name);
     }
     if !is_rigid {
-        Model::write_body(&scene.clone().for_unknown_forces(), &resources.join(BODY), false, &mut progress)?;
+        builder.write_body(&scene.clone().for_unknown_forces(), &resources.join(BODY), false, &mut progress)?;
         names.push(BODY.to_owned());
     }
     // What is packed is what will be opened. Its files have been found by now; messages name the scene that was given.
     let opened = Scene::read(resources.join(SCENE))?;
     let named = Scene { path: scene.path.clone(), source: scene.source.clone(), ..opened };
-    let fmu = FmuModel::new(named, progress)?;
+    let fmu = FmuModel::new(named, &Builder::default(), progress)?;
     let manifest = Manifest::of(resources, &names)?;
     let text = serde_json::to_string_pretty(&manifest).map_err(|error| FmuError::Text(error.to_string()))?;
     std::fs::write(resources.join(MANIFEST), text).map_err(WriteError::of(&resources.join(MANIFEST)))?;

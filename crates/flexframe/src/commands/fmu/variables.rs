@@ -1,9 +1,10 @@
 //! The variables of an FMU: inputs, and the columns of a results file as outputs.
 
 use dynamics::{DrivenMotion, Effect};
+use model::Model;
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use results::{Column, Metadata, Values};
-use scene::{Load, Model, Scene};
+use scene::{Load, Scene};
 
 use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;

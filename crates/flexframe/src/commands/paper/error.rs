@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use model::BuildError;
 use results::FileError;
 use rigid_kin::{RigidBodyError, RigidStepError};
-use scene::BuildError;
 
 use crate::commands::mode_shapes::ShapesError;
 use crate::commands::run::RunError;

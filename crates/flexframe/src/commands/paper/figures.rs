@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use dynamics::SharedLoad;
 use figures::{ChartGrid, FigureError, LineChart, Reference, Scale, Series, Stroke};
+use model::Model;
 use results::Results;
-use scene::{Model, Scene};
+use scene::Scene;
 
 use super::rigid_plate::{RigidHistories, WATCHED_POINT, dead_force};
 use crate::commands::mode_shapes::{self, ShapesError};

@@ -3,10 +3,10 @@
 use std::any::Any;
 
 use dynamics::{LoadFrame, PointForce, SharedLoad};
+use model::Model;
 use nalgebra::Vector3;
 use results::Results;
 use rigid_kin::{Attitude, RigidBody, RigidState, Wrench};
-use scene::Model;
 
 use super::error::PaperError;
 

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use advice::Refusal;
 use dynamics::{CheckpointError, StepError};
+use model::{BuildError, StartError};
 use results::FileError;
-use scene::{BuildError, SceneError, StartError};
+use scene::SceneError;
 
 use super::estimate::Estimate;
 use crate::files::outputs::OutputError;

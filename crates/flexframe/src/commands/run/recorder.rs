@@ -4,10 +4,11 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use dynamics::{Initial, Observation, Reached, Simulation, Stats, StepError};
+use model::Model;
 use nalgebra::Vector3;
 use results::{Results, Writer};
 use rigid_kin::Attitude;
-use scene::{Model, Scene, StepControl};
+use scene::{Scene, StepControl};
 
 use super::balances::Conserved;
 use super::error::RunError;
@@ -164,7 +165,7 @@ impl<'a> Recorder<'a> {
             turned_from_start: self.first_attitude.angle_to(&last.attitude),
             moved: (last.position_global - self.first_center).into(),
             peak_strain_energy: self.peak_strain_energy,
-            peak_stress: self.peak_stress.as_ref().and_then(|peak| peak.report(scene, model)),
+            peak_stress: self.peak_stress.as_ref().and_then(|peak| peak.report(model)),
             final_energy: last.energy(),
             balances,
             right_unsummed,

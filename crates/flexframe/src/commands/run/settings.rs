@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use scene::{BuildProgress, Cache};
+use model::{BuildProgress, Builder};
 
 use super::estimate::Estimate;
 
@@ -31,6 +31,6 @@ pub struct RunSettings {
     pub rows_alone: bool,
     /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
     pub stop: Arc<AtomicBool>,
-    /// Where a run that is resumed finds what was computed of its mesh before; a scene that is run knows its own.
-    pub cache: Cache,
+    /// What builds the body.
+    pub builder: Builder,
 }

@@ -2,7 +2,8 @@
 
 use advice::{Refusal, Review, StepEstimate};
 use dynamics::{EffectMap, Initial, Moment, Observation, Simulation};
-use scene::{BuildError, Load, Model, Scene};
+use model::{BuildError, Model};
+use scene::{Load, Scene};
 
 use super::balances::{Balances, Conserved, Monitor};
 use super::error::RunError;

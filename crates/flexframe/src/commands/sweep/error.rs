@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use body_file::BodyFileError;
-use scene::{BuildError, SceneError};
+use model::BuildError;
+use scene::SceneError;
 
 use crate::files::outputs::OutputError;
 use crate::files::write_error::WriteError;

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use body_file::{Digest, Hash};
 use foreign_program::read_at_most;
-use scene::{AssignError, Body, Cache, Scene, SceneError, assign};
+use model::files_of_body;
+use scene::{AssignError, Body, Scene, SceneError, assign};
 use serde::Deserialize;
 use toml::{Table, Value};
 
@@ -76,7 +77,7 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    pub fn read(path: &Path, cache: &Cache) -> Result<Self, SweepError> {
+    pub fn read(path: &Path) -> Result<Self, SweepError> {
         let bytes =
             read_at_most(path, LONGEST).map_err(|source| SweepError::Unreadable { path: path.to_owned(), source })?;
         let of_sweep = String::from_utf8(bytes).map_err(|error| SweepError::Form {
@@ -143,7 +144,7 @@ impl Plan {
                 invalid(&format!("parameters.\"{key}\""), found, &expected)
             })?;
             rows.push(match Scene::parse(&text, &scene.path) {
-                Ok(scene) => Ok(Scene { cache: cache.clone(), ..scene }),
+                Ok(scene) => Ok(scene),
                 Err(refusal) => {
                     let words = refusal.to_string();
                     first_refusal.get_or_insert((row, refusal));
@@ -199,7 +200,7 @@ fn identity(scene: &Scene, body: &Hash) -> u64 {
 
 /// Hash of the files of a body.
 fn contents(body: &Body) -> Hash {
-    let files = body.files();
+    let files = files_of_body(body);
     let digest = files.iter().fold(Digest::new(), |digest, path| {
         // What is no ordinary file can be read only once; what cannot be read fails in its row.
         let hash = Some(path).filter(|path| path.is_file()).and_then(|path| Hash::of_file(path).ok());
@@ -282,7 +283,7 @@ mod tests {
         ];
         let write = |(name, text): (&str, &str)| std::fs::write(at(name), text).unwrap();
         files.into_iter().for_each(write);
-        let plan = || Plan::read(&at("sweep.toml"), &Cache::none()).unwrap();
+        let plan = || Plan::read(&at("sweep.toml")).unwrap();
         let first = plan();
         assert!(first.identities[0] != first.identities[1] && !first.has_changed(0));
         for (name, text) in

@@ -1,0 +1,206 @@
+//! The base that all models of a body share, whatever effects and modes they have: its mesh and its matrices.
+
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use dynamics::{Drive, Effect};
+use fem_tet10::{Materials, Mesh};
+use matrix_import::MatrixFiles;
+use mesh_import::Imported;
+use modal::Support;
+use scene::{Body, Constraint, MeshedBody, RigidBody, Scene};
+
+use crate::body::given::read_body_file;
+use crate::builder::Builder;
+use crate::cache::store::Store;
+use crate::error::BuildError;
+use crate::mesh::doubt::doubts;
+use crate::mesh::fe_matrices::FeMatrices;
+use crate::mesh::given::{Given, MatrixChecks};
+use crate::mesh::other_materials::other_materials;
+use crate::mesh::read::{matrices, mesh_file, mesh_in};
+use crate::progress::{BuildProgress, BuildTimes, timed};
+use crate::support::support;
+
+/// The mesh and the matrices of the body of a scene, and what holds it.
+pub struct Assembly(pub(crate) Assembled);
+
+pub(crate) enum Assembled {
+    Meshed(Box<AssembledMesh>),
+    Rigid(RigidBody),
+}
+
+/// Source of the matrices of a body.
+pub(crate) enum MadeOf {
+    Elements(MeshedBody),
+    Files(MatrixFiles),
+}
+
+pub(crate) struct AssembledMesh {
+    pub builder: Builder,
+    /// For messages.
+    pub scene: Scene,
+    pub body: MadeOf,
+    pub mesh: Arc<Mesh>,
+    /// Notes about the parts of the mesh file that were left out.
+    pub mesh_notes: Vec<String>,
+    /// The matrices, where they are needed: where answers are known, none are.
+    matrices: OnceLock<(FeMatrices, Duration)>,
+    /// Checks of matrices from another program.
+    pub checks: Option<MatrixChecks>,
+    pub support: Support,
+    pub drive: Option<Drive>,
+    /// Where answers are kept from run to run.
+    pub store: Option<Store>,
+    pub times: BuildTimes,
+}
+
+impl Builder {
+    /// Reads the mesh of a scene, and assembles its matrices, for models that differ in their effects and modes.
+    ///
+    /// # Errors
+    /// [`BuildError`]: what the mesh, the materials or the supports refuse.
+    pub fn assemble(&self, scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Assembly, BuildError> {
+        let (body, given) = match &scene.body {
+            Body::Meshed(body) => (body.clone(), None),
+            Body::File(given) => {
+                let (file, body) = read_body_file(self, scene, given)?;
+                (body, Some(file))
+            }
+            Body::Matrices(files) => return self.assemble_matrices(scene, files, progress),
+            Body::Rigid(body) => return Ok(Assembly(Assembled::Rigid(*body))),
+        };
+        let mut times = BuildTimes::default();
+        progress(BuildProgress::Mesh);
+        let read = || {
+            // It is read once: the answers that are kept and the mesh are of the same bytes.
+            let file = if given.is_none() { Some(mesh_file(self, scene, &body)?) } else { None };
+            let store = Store::open(&self.cache, &body, given, file.as_ref())?;
+            let made = || match &file {
+                Some(file) => mesh_in(self, scene, file),
+                None => mesh_in(self, scene, &mesh_file(self, scene, &body)?),
+            };
+            let imported = match &store {
+                Some(store) => store.mesh(scene, &body, made)?,
+                None => made()?,
+            };
+            Ok::<_, BuildError>((store, imported))
+        };
+        let (store, Imported { mesh, notes: mut mesh_notes, materials }) = timed(&mut times.mesh, read)?;
+        mesh_notes.extend(other_materials(&mesh, &materials, &body.materials));
+        let mesh = Arc::new(mesh);
+        doubts(scene, &body, &mesh).into_iter().for_each(|doubt| progress(BuildProgress::Doubt(doubt)));
+        let (support, drive) = support(scene, Some((&mesh, 3)))?;
+        let assembled = AssembledMesh {
+            builder: self.clone(),
+            scene: scene.clone(),
+            body: MadeOf::Elements(body),
+            mesh,
+            mesh_notes,
+            matrices: OnceLock::new(),
+            checks: None,
+            support,
+            drive,
+            store,
+            times,
+        };
+        if assembled.store.is_none() {
+            progress(BuildProgress::Assembly);
+            assembled.matrices()?;
+        }
+        Ok(Assembly(Assembled::Meshed(Box::new(assembled))))
+    }
+
+    /// The same of matrices from another program, which are read each time.
+    fn assemble_matrices(
+        &self,
+        scene: &Scene,
+        files: &MatrixFiles,
+        mut progress: impl FnMut(BuildProgress),
+    ) -> Result<Assembly, BuildError> {
+        let mut times = BuildTimes::default();
+        progress(BuildProgress::Mesh);
+        let given = timed(&mut times.mesh, || Given::read(scene, files))?;
+        let Given { nodes, hash, notes: mesh_notes, matrices, checks } = given;
+        let mesh = Arc::new(nodes);
+        let store = Store::of_matrices(&self.cache, hash);
+        let (support, drive) = support(scene, Some((&mesh, checks.dofs)))?;
+        let assembled = AssembledMesh {
+            builder: self.clone(),
+            scene: scene.clone(),
+            body: MadeOf::Files(files.clone()),
+            mesh,
+            mesh_notes,
+            matrices: OnceLock::from((matrices, Duration::ZERO)),
+            checks: Some(checks),
+            support,
+            drive,
+            store,
+            times,
+        };
+        Ok(Assembly(Assembled::Meshed(Box::new(assembled))))
+    }
+}
+
+impl Assembly {
+    /// All that the assembly of a scene is made of, as a text: scenes with the same may share it.
+    pub fn made_of(scene: &Scene) -> String {
+        let flexibility = scene.effects.choices[Effect::Flexibility];
+        // Such a support is checked against what the scene begins with.
+        let initial = matches!(scene.constraint, Some(Constraint::Support { .. })).then_some(&scene.initial);
+        format!("{:?} {:?} {:?} {flexibility:?} {initial:?}", scene.body, scene.constraint, scene.modes.flexible)
+    }
+
+    /// The same without the matrices, which are assembled again where they are needed, for who keeps it for long.
+    pub fn without_matrices(mut self) -> Self {
+        if let Assembled::Meshed(assembled) = &mut self.0
+            && let MadeOf::Elements(_) = assembled.body
+        {
+            assembled.matrices.take();
+        }
+        self
+    }
+}
+
+impl AssembledMesh {
+    /// Mass and stiffness, assembled at the first call.
+    pub fn matrices(&self) -> Result<&FeMatrices, BuildError> {
+        if let Some((found, _)) = self.matrices.get() {
+            return Ok(found);
+        }
+        let mut time = Duration::ZERO;
+        let MadeOf::Elements(body) = &self.body else { return Err(self.without_elements()) };
+        let assembled = timed(&mut time, || matrices(&self.scene, body, &self.mesh))?;
+        self.builder.cache.has_assembled();
+        Ok(&self.matrices.get_or_init(|| (FeMatrices::Assembled(assembled), time)).0)
+    }
+
+    /// Degrees of freedom of a node.
+    pub fn dofs(&self) -> usize {
+        self.checks.map_or(3, |checks| checks.dofs)
+    }
+
+    /// The mesh file, the materials and the point masses of its elements.
+    pub fn elements(&self) -> Option<&MeshedBody> {
+        match &self.body {
+            MadeOf::Elements(body) => Some(body),
+            MadeOf::Files(_) => None,
+        }
+    }
+
+    /// Materials of the elements.
+    pub fn materials(&self) -> Result<&Materials, BuildError> {
+        self.elements().map(|body| &body.materials).ok_or_else(|| self.without_elements())
+    }
+
+    /// The refusal of what needs elements.
+    fn without_elements(&self) -> BuildError {
+        let found = "a body of matrices, whose elements are not known";
+        self.scene.refuse("body.matrices", found, "a body with elements", "give the body a mesh and a material").into()
+    }
+
+    /// How long the assembly took.
+    pub fn assembly_time(&self) -> Duration {
+        self.matrices.get().map_or(Duration::ZERO, |(_, time)| *time)
+    }
+}

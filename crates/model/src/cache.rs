@@ -1,0 +1,281 @@
+//! The cache: a folder in which what the finite-element model of a body was asked is kept from run to run.
+//!
+//! Every answer is a file of its own ([`body_file`]), `PROGRAM/MESH/QUESTION.h5`, named by hashes of all that it follows from:
+//! the program and the machine, the bytes of the mesh file, and the question with the material, the support and what else it
+//! is about. A file is never changed: it appears whole, and is checked when it is read. So any number of programs may use the
+//! folder at once, and what has changed is not found.
+
+pub(crate) mod answer;
+pub(crate) mod answers;
+pub(crate) mod store;
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use body_file::{BodyFileError, Declared, Digest, Hash, Writer};
+
+/// Bytes that the user's cache may have.
+const LIMIT: u64 = 4 << 30;
+/// The folder of flexframe in that of the caches.
+const NAME: &str = "flexframe";
+/// Digits of the names of folders.
+const PROGRAM_DIGITS: usize = 16;
+const MESH_DIGITS: usize = 64;
+
+/// Where answers are kept from run to run; nowhere by default. Clones share what [`Cache::notes`] counts.
+#[derive(Debug, Clone, Default)]
+pub struct Cache(Arc<Inner>);
+
+#[derive(Debug, Default)]
+struct Inner {
+    folder: Option<PathBuf>,
+    limit: u64,
+    /// The file of the program, where that is not the one that runs.
+    program: Option<PathBuf>,
+    /// Makes a file. A program that has no cache, such as the library in FMUs, does without what makes files, which is HDF5.
+    create: Option<CreateFile>,
+    read: AtomicUsize,
+    computed: AtomicUsize,
+    assembled: AtomicUsize,
+    /// True if nothing can be written.
+    is_closed: AtomicBool,
+    /// Warnings, also of the caches made by [`Cache::elsewhere`].
+    warnings: Arc<Mutex<Vec<String>>>,
+    /// True if a thread computes.
+    computing: Mutex<bool>,
+    computed_all: Condvar,
+}
+
+/// [`Writer::create`].
+type CreateFile = fn(&Path, BTreeMap<String, String>, &[Declared]) -> Result<Writer, BodyFileError>;
+
+/// Counts of the use of a cache.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct CacheNotes {
+    /// Answers that were read.
+    pub read: usize,
+    /// Answers that were computed.
+    pub computed: usize,
+    /// How often matrices were assembled.
+    pub assembled: usize,
+    /// Warnings: files that could not be read or written, and other faults of reading that the user should know.
+    pub warnings: Vec<String>,
+}
+
+impl Cache {
+    /// None: nothing is kept.
+    pub fn none() -> Self {
+        Self::default()
+    }
+
+    /// A cache in a folder, which is made if it does not exist, with a limit of its bytes.
+    pub fn new(folder: impl Into<PathBuf>, limit: u64) -> Self {
+        let create: CreateFile = |path, texts, datasets| Writer::create(path, texts, datasets);
+        Self(Arc::new(Inner { folder: Some(folder.into()), limit, create: Some(create), ..Inner::default() }))
+    }
+
+    /// One in another folder for the same user: it says what there is to say through this one.
+    pub fn elsewhere(&self, folder: impl Into<PathBuf>, limit: u64) -> Self {
+        let Self(mut inner) = Self::new(folder, limit);
+        if let Some(inner) = Arc::get_mut(&mut inner) {
+            inner.warnings = self.0.warnings.clone();
+            inner.program = self.0.program.clone();
+        }
+        Self(inner)
+    }
+
+    /// The same for the user of a program that is in another file than the one that runs: in a library of Python.
+    pub fn of_program(self, file: impl Into<PathBuf>) -> Self {
+        let inner = &*self.0;
+        Self(Arc::new(Inner {
+            folder: inner.folder.clone(),
+            limit: inner.limit,
+            program: Some(file.into()),
+            create: inner.create,
+            ..Inner::default()
+        }))
+    }
+
+    /// The user's: the folder `FLEXFRAME_CACHE`, or `flexframe` in `XDG_CACHE_HOME` or in `~/.cache`, with 4 GiB at most. None
+    /// where `FLEXFRAME_CACHE` is empty, or no folder is known.
+    pub fn of_user() -> Self {
+        let variable = |name: &str| std::env::var_os(name).map(PathBuf::from);
+        let absolute = |name: &str| variable(name).filter(|folder| folder.is_absolute());
+        let folder = match variable("FLEXFRAME_CACHE") {
+            Some(folder) if folder.as_os_str().is_empty() => None,
+            Some(folder) => Some(folder),
+            None => absolute("XDG_CACHE_HOME")
+                .or_else(|| absolute("HOME").map(|home| home.join(".cache")))
+                .map(|caches| caches.join(NAME)),
+        };
+        folder.map_or_else(Self::none, |folder| Self::new(folder, LIMIT))
+    }
+
+    /// Its folder.
+    pub fn folder(&self) -> Option<&Path> {
+        self.0.folder.as_deref()
+    }
+
+    /// Function that makes its files; none where nothing is kept.
+    pub(crate) fn create(&self) -> Option<CreateFile> {
+        self.0.create
+    }
+
+    /// Counts of its use up to now.
+    pub fn notes(&self) -> CacheNotes {
+        CacheNotes {
+            read: self.0.read.load(Ordering::Relaxed),
+            computed: self.0.computed.load(Ordering::Relaxed),
+            assembled: self.0.assembled.load(Ordering::Relaxed),
+            warnings: self.0.warnings.lock().unwrap_or_else(PoisonError::into_inner).clone(),
+        }
+    }
+
+    /// The folder of a mesh, by the hash of its file; made if it does not exist.
+    pub(crate) fn of_mesh(&self, mesh: &Hash) -> Option<PathBuf> {
+        let folder = self.folder()?.join(program(self.0.program.as_deref())).join(mesh.to_string());
+        match whole_file::make_folder(&folder) {
+            Ok(()) => Some(folder),
+            Err(error) => {
+                self.close(&error.to_string());
+                None
+            }
+        }
+    }
+
+    pub(crate) fn has_read(&self) {
+        self.0.read.fetch_add(1, Ordering::Relaxed);
+    }
+
+    pub(crate) fn has_computed(&self) {
+        self.0.computed.fetch_add(1, Ordering::Relaxed);
+    }
+
+    pub(crate) fn has_assembled(&self) {
+        self.0.assembled.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Says once what is wrong.
+    pub(crate) fn warn(&self, warning: String) {
+        let mut warnings = self.0.warnings.lock().unwrap_or_else(PoisonError::into_inner);
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
+    }
+
+    /// Writes no more, where the folder cannot be written.
+    pub(crate) fn close(&self, reason: &str) {
+        if !self.0.is_closed.swap(true, Ordering::Relaxed) {
+            let at = self.folder().unwrap_or(Path::new("")).display();
+            self.warn(format!("the cache {at} cannot be written, and what is computed is not kept: {reason}"));
+        }
+    }
+
+    pub(crate) fn is_closed(&self) -> bool {
+        self.0.is_closed.load(Ordering::Relaxed)
+    }
+
+    /// Waits until no other thread of this program computes, and keeps the others waiting until it is dropped: several threads
+    /// do not compute the same.
+    pub(crate) fn computing(&self) -> Computing {
+        let computing = self.0.computing.lock().unwrap_or_else(PoisonError::into_inner);
+        let computing = self.0.computed_all.wait_while(computing, |computing| *computing);
+        *computing.unwrap_or_else(PoisonError::into_inner) = true;
+        Computing(self.clone())
+    }
+
+    /// Removes the files that were used longest ago until the others are within the limit. Others may do the same at once.
+    pub(crate) fn trim(&self) {
+        let Some(folder) = self.folder() else { return };
+        let mut files = list(folder);
+        let mut bytes: u64 = files.iter().map(|(_, bytes, _)| bytes).sum();
+        files.sort();
+        for (_, size, path) in files {
+            if bytes <= self.0.limit {
+                break;
+            }
+            let _ = fs::remove_file(&path);
+            // Of a mesh of which nothing is left; refused where something is.
+            let _ = path.parent().map(fs::remove_dir);
+            bytes -= size;
+        }
+    }
+}
+
+/// Only one of the threads that share a cache has this.
+#[derive(Debug)]
+pub(crate) struct Computing(Cache);
+
+impl Drop for Computing {
+    fn drop(&mut self) {
+        let Inner { computing, computed_all, .. } = &*self.0.0;
+        *computing.lock().unwrap_or_else(PoisonError::into_inner) = false;
+        computed_all.notify_one();
+    }
+}
+
+/// The same folder and limit.
+impl PartialEq for Cache {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.0.folder, self.0.limit) == (&other.0.folder, other.0.limit)
+    }
+}
+
+/// Says that a file was used now. Without the right to it, it will look older than it is.
+pub(crate) fn touch(path: &Path) {
+    let _ = File::options().append(true).open(path).and_then(|file| file.set_modified(SystemTime::now()));
+}
+
+/// When each file of the cache was used last, its bytes, and its path. Whatever else is in the folder is left alone.
+fn list(folder: &Path) -> Vec<(SystemTime, u64, PathBuf)> {
+    let mut files = Vec::new();
+    for entry in hashed(folder, PROGRAM_DIGITS).iter().flat_map(|program| hashed(program, MESH_DIGITS)) {
+        for entry in entries(&entry).filter(|entry| entry.path().extension() == Some("h5".as_ref())) {
+            // Links are not followed.
+            if let Some(found) = entry.metadata().ok().filter(fs::Metadata::is_file) {
+                files.push((found.modified().unwrap_or(UNIX_EPOCH), found.len(), entry.path()));
+            }
+        }
+    }
+    files
+}
+
+/// The folders in a folder whose names are a given number of hexadecimal digits.
+fn hashed(folder: &Path, digits: usize) -> Vec<PathBuf> {
+    let is_hash = |name: &str| name.len() == digits && name.bytes().all(|byte| byte.is_ascii_hexdigit());
+    entries(folder)
+        .filter(|entry| entry.file_name().to_str().is_some_and(is_hash))
+        .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()))
+        .map(|entry| entry.path())
+        .collect()
+}
+
+fn entries(folder: &Path) -> impl Iterator<Item = fs::DirEntry> {
+    fs::read_dir(folder).into_iter().flatten().flatten()
+}
+
+/// The program and the machine, whose answers are the same to the last bit: the version, the size and the time of the file
+/// of the program, and what its processor can do.
+fn program(file: Option<&Path>) -> String {
+    let file = file.map_or_else(std::env::current_exe, |file| Ok(file.to_owned()));
+    let built = file.and_then(fs::metadata).map(|file| (file.len(), file.modified().ok()));
+    let text = format!("{} {} {built:?} {}", env!("CARGO_PKG_VERSION"), std::env::consts::ARCH, features());
+    let digits = Digest::new().text(&text).finish().to_string();
+    digits[..PROGRAM_DIGITS].to_owned()
+}
+
+/// Sets of instructions that faer chooses from.
+fn features() -> String {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let has =
+            [is_x86_feature_detected!("avx512f"), is_x86_feature_detected!("avx2"), is_x86_feature_detected!("fma")];
+        format!("{has:?}")
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    String::new()
+}

@@ -1,0 +1,208 @@
+//! Where the answers about the body of a scene are kept from run to run.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use body_file::{BodyFile, BodyFileError, Declared, Digest, Hash, Kind, Writer};
+use mesh_import::{Imported, MeshFile};
+use scene::{MeshedBody, Scene};
+
+use crate::body::origin::Origin;
+use crate::cache::answer::{Answer, Kept, group};
+use crate::cache::{Cache, touch};
+use crate::error::BuildError;
+use crate::mesh::arrays::{self, MeshArrays};
+
+/// The name of the file of a mesh.
+const MESH: &str = "mesh.h5";
+
+/// The answers about one body.
+pub(crate) struct Store {
+    cache: Cache,
+    /// The body file that the scene names.
+    given: Option<BodyFile>,
+    /// The folder of the mesh in the cache.
+    folder: Option<PathBuf>,
+    /// The hash of what was read of the mesh, or of the matrices.
+    mesh: Hash,
+    /// The start of all questions about the body.
+    body: Digest,
+    /// Questions that were asked, for who writes a body file.
+    asked: Mutex<BTreeSet<Hash>>,
+}
+
+impl Store {
+    /// The answers about the mesh in a file, or in the body file that the scene names. None where nothing is kept.
+    pub fn open(
+        cache: &Cache,
+        body: &MeshedBody,
+        given: Option<BodyFile>,
+        file: Option<&MeshFile>,
+    ) -> Result<Option<Self>, BuildError> {
+        let cache = cache.clone();
+        let mesh = match &given {
+            Some(file) => Origin::read(file)?.mesh_hash.parse().ok(),
+            None if cache.folder().is_none() => return Ok(None),
+            None => file.and_then(MeshFile::hash),
+        };
+        let Some(mesh) = mesh else { return Ok(None) };
+        let folder = cache.of_mesh(&mesh);
+        if folder.is_none() && given.is_none() {
+            return Ok(None);
+        }
+        // Written out, numbers are what they are to the last bit.
+        let about = format!("{:?} {:?}", body.materials, body.point_masses);
+        let body = Digest::new().hash(&mesh).text(&about);
+        Ok(Some(Self { cache, given, folder, mesh, body, asked: Mutex::default() }))
+    }
+
+    /// The same for matrices from another program, with the hash of what was read of them.
+    pub fn of_matrices(cache: &Cache, mesh: Hash) -> Option<Self> {
+        let cache = cache.clone();
+        let folder = Some(cache.of_mesh(&mesh)?);
+        let body = Digest::new().hash(&mesh).text("matrices");
+        Some(Self { cache, given: None, folder, mesh, body, asked: Mutex::default() })
+    }
+
+    /// The start of a question about the body.
+    pub fn question(&self) -> Digest {
+        self.body.clone()
+    }
+
+    /// The hash of the mesh file.
+    pub fn mesh_hash(&self) -> &Hash {
+        &self.mesh
+    }
+
+    /// The body file that the scene names.
+    pub fn given(&self) -> Option<&BodyFile> {
+        self.given.as_ref()
+    }
+
+    /// The mesh of the body, with what its file has that was left out; `made` of the file where it is not kept.
+    pub fn mesh(
+        &self,
+        scene: &Scene,
+        body: &MeshedBody,
+        made: impl FnOnce() -> Result<Imported, BuildError>,
+    ) -> Result<Imported, BuildError> {
+        let source = body.mesh.display().to_string();
+        if let Some(file) = &self.given {
+            return Ok(arrays::read(file, source)?);
+        }
+        let place = self.folder.as_ref().map(|folder| folder.join(MESH));
+        let kept = place.as_ref().and_then(|place| self.read(place, |file| arrays::read(file, source.clone())));
+        if let Some(imported) = kept {
+            return Ok(imported);
+        }
+        let imported = made()?;
+        if let Some(place) = place.filter(|_| !self.cache.is_closed()) {
+            let arrays = MeshArrays::new(&imported.mesh, &imported.notes, &imported.materials);
+            let texts = BTreeMap::from(arrays.texts());
+            self.write(&place, texts, &arrays.declared(&scene.units.length), |writer| arrays.write(writer));
+        }
+        Ok(imported)
+    }
+
+    /// The answer to a question, if it is known.
+    pub fn recall<T>(
+        &self,
+        question: &Hash,
+        recall: impl Fn(&Kept<'_>) -> Result<T, BodyFileError>,
+    ) -> Result<Option<T>, BuildError> {
+        self.asked.lock().unwrap_or_else(PoisonError::into_inner).insert(*question);
+        let kept = |file: &BodyFile| recall(&Kept { file, group: group(question) });
+        if let Some(file) = self.given.as_ref().filter(|file| has(file, question)) {
+            let answer = kept(file)?;
+            self.cache.has_read();
+            return Ok(Some(answer));
+        }
+        Ok(self.place(question).and_then(|place| self.read(&place, kept)))
+    }
+
+    /// Keeps the answer to a question.
+    pub fn keep(&self, question: &Hash, answer: impl FnOnce() -> Answer) {
+        self.cache.has_computed();
+        if let Some(place) = self.place(question).filter(|_| !self.cache.is_closed()) {
+            self.write_answer(&place, question, &answer());
+        }
+    }
+
+    /// The files that have the answers to all that was asked.
+    pub fn files(&self) -> Result<Vec<(Hash, BodyFile)>, BuildError> {
+        let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let file = |question: Hash| {
+            let given = self.given.as_ref().filter(|file| has(file, &question)).map(|file| file.path().to_owned());
+            let place = given.or_else(|| self.place(&question)).unwrap_or_default();
+            Ok((question, BodyFile::open(place)?))
+        };
+        asked.into_iter().map(file).collect()
+    }
+
+    fn place(&self, question: &Hash) -> Option<PathBuf> {
+        self.folder.as_ref().map(|folder| folder.join(format!("{question}.h5")))
+    }
+
+    fn write_answer(&self, place: &Path, question: &Hash, answer: &Answer) {
+        let declared = |name: &str, kind, shape: &[usize]| Declared {
+            path: format!("{}/{name}", group(question)),
+            kind,
+            shape: shape.to_vec(),
+            attributes: Vec::new(),
+            same_as: None,
+        };
+        let numbers = answer.numbers.iter().map(|(name, array)| declared(name, Kind::F64, &array.shape));
+        let counts = answer.counts.iter().map(|(name, array)| declared(name, Kind::U64, &array.shape));
+        let datasets: Vec<Declared> = numbers.chain(counts).collect();
+        self.write(place, BTreeMap::new(), &datasets, |writer| {
+            for (name, array) in &answer.numbers {
+                writer.write(&format!("{}/{name}", group(question)), &array.values)?;
+            }
+            for (name, array) in &answer.counts {
+                writer.write(&format!("{}/{name}", group(question)), &array.values)?;
+            }
+            Ok(())
+        });
+    }
+
+    /// Content of a file of the cache; none where there is no file, or a damaged one.
+    fn read<T>(&self, place: &Path, read: impl Fn(&BodyFile) -> Result<T, BodyFileError>) -> Option<T> {
+        match BodyFile::open(place).and_then(|file| read(&file)) {
+            Ok(found) => {
+                touch(place);
+                self.cache.has_read();
+                Some(found)
+            }
+            Err(BodyFileError::System { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
+            Err(error) => {
+                self.cache.warn(format!("cache entry damaged; recomputing: {error}"));
+                None
+            }
+        }
+    }
+
+    fn write(
+        &self,
+        place: &Path,
+        texts: BTreeMap<String, String>,
+        datasets: &[Declared],
+        write: impl FnOnce(&mut Writer) -> Result<(), BodyFileError>,
+    ) {
+        let Some(create) = self.cache.create() else { return };
+        let written = create(place, texts, datasets).and_then(|mut writer| {
+            write(&mut writer)?;
+            writer.finish(false)
+        });
+        match written {
+            Ok(()) => self.cache.trim(),
+            Err(error) => self.cache.close(&error.to_string()),
+        }
+    }
+}
+
+/// True if a file has the answer to a question, or a part of it.
+fn has(file: &BodyFile, question: &Hash) -> bool {
+    let group = group(question);
+    file.datasets().any(|dataset| dataset.strip_prefix(&group).is_some_and(|rest| rest.starts_with('/')))
+}

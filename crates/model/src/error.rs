@@ -1,0 +1,198 @@
+//! Errors of a scene that cannot be built or started, each at its place in the scene file.
+
+use std::path::{Path, PathBuf};
+
+use advice::{AdviceError, Refusal};
+use body_file::BodyFileError;
+use dynamics::{LoadedError, SetupError};
+use fem_tet10::{AssemblyError, MeshError};
+use mesh_import::ImportError;
+use modal::ModalError;
+use nalgebra::Vector3;
+use scene::{Place, Scene, SceneError, one_of, shorten};
+
+/// A scene that cannot be built.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// Something in the scene does not fit the mesh.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The mesh cannot be used.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The mesh cannot be imported.
+    #[error(transparent)]
+    Import(#[from] Box<ImportError>),
+    /// The matrices cannot be assembled.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    /// The modes cannot be found.
+    #[error("{}: {source}", scene.display())]
+    Modal {
+        /// The scene file.
+        scene: PathBuf,
+        /// The reason.
+        source: ModalError,
+    },
+    /// A body file cannot be read or written.
+    #[error(transparent)]
+    BodyFile(#[from] BodyFileError),
+    /// No advice can be given on it.
+    #[error(transparent)]
+    Advice(#[from] AdviceError),
+    /// A load that the integrator refuses.
+    #[error(transparent)]
+    Load(#[from] SetupError),
+    /// The vibrations under steady loads are not known.
+    #[error("{}: {source}", scene.display())]
+    Loaded {
+        /// The scene file.
+        scene: PathBuf,
+        /// The reason.
+        source: Box<LoadedError>,
+    },
+}
+
+/// A motion that cannot start.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StartError {
+    /// The integrator refuses it.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The step that the scene names is beyond the limit of the method.
+    #[error("{}", at.show(&format!("found {found}, expected {expected}"), help))]
+    Step {
+        /// Where it is named.
+        at: Box<Place>,
+        /// The step, and why it is refused.
+        found: String,
+        /// The limit.
+        expected: String,
+        /// The help.
+        help: &'static str,
+    },
+    /// The model is known to be wrong.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+}
+
+impl StartError {
+    /// The message, which begins with the scene file.
+    pub fn in_scene(&self, path: &Path) -> String {
+        match self {
+            Self::Step { .. } => self.to_string(),
+            Self::Setup(_) | Self::Refused(_) => format!("{}: {self}", path.display()),
+        }
+    }
+
+    /// At the key of the scene, where it is the step.
+    pub(crate) fn at_key(self, scene: &Scene) -> Self {
+        let (step, limit, why, help) = match &self {
+            Self::Setup(SetupError::StepBeyondLimit { step, limit, mode, frequency }) => (
+                step,
+                limit,
+                format!("the stability limit that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4"),
+                "take a smaller step or fewer modes",
+            ),
+            Self::Setup(SetupError::StepBeyondSpin { step, limit, spin }) => (
+                step,
+                limit,
+                format!("what this scheme follows of a spin of {spin:.6} rad per time"),
+                "take a smaller step",
+            ),
+            _ => return self,
+        };
+        let (found, expected) = (format!("a step of {step:e}, beyond {why}"), format!("at most {limit:.4e}"));
+        Self::Step { at: scene.place("time.step").into(), found, expected, help }
+    }
+}
+
+/// An assembly error at its place in the scene file.
+pub(crate) fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
+    let message = error.to_string();
+    match error {
+        AssemblyError::OffBody { source_name, node, position, distance, .. } => {
+            // A coordinate that is zero but for rounding is shown as zero.
+            let size = Vector3::from(position).norm();
+            let shown = position.map(|c| if c.abs() < 1e-9 * size { 0.0 } else { c });
+            if !scene.body.has_elements() {
+                return scene.refuse(
+                    key,
+                    format!("a point without a node: the nearest one of {source_name} is {distance:.6} away"),
+                    "a node: the elements between the nodes of a body of matrices are not known",
+                    format!("use its node {node} at {shown:?}"),
+                );
+            }
+            scene.refuse(
+                key,
+                format!("a point that is not on the body: the nearest node of {source_name} is {distance:.6} away"),
+                "a point of the body",
+                format!("use a point of the body; its node {node} is at {shown:?}"),
+            )
+        }
+        AssemblyError::Spread { radius, count, distance, .. } => scene.refuse(
+            key,
+            format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),
+            "nodes all around the point that can carry the mass",
+            "use a larger spread, or leave it out for a point of the body",
+        ),
+        AssemblyError::Patch { radius, count, distance, .. } => scene.refuse(
+            key,
+            format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),
+            "three nodes or more, not on a line, that can take the moment",
+            "use a larger radius, or leave it out for a point of the body",
+        ),
+        AssemblyError::MissingGroup { group, present, .. } => scene.refuse(
+            key,
+            format!("the physical volume \"{}\", which the mesh has not", shorten(&group)),
+            one_of(&present),
+            "rename it, or name the volume in the geometry and mesh again",
+        ),
+        _ => scene.refuse(key, message, "something that fits the mesh", "correct it"),
+    }
+}
+
+/// A mesh error, such as a group that is not there, at its place in the scene file.
+pub(crate) fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
+    if let MeshError::NoGroup { kind, group, present, .. } = error {
+        let (what, help) = if scene.body.has_elements() {
+            ("mesh", "use one of these, or name it in the geometry and mesh again")
+        } else {
+            ("body", "use one of these, or add it to the groups in the table of nodes (*NSET in an .inp file)")
+        };
+        let found = format!("the physical {kind} \"{}\", which the {what} has not", shorten(group));
+        return scene.refuse(key, found, one_of(present), help).into();
+    }
+    scene
+        .refuse(key, error.to_string(), "something that the mesh has", "name it in the geometry, and mesh again")
+        .into()
+}
+
+pub(crate) fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
+    match error {
+        ModalError::TooManyModes { available: 0, .. } => scene
+            .refuse(
+                "constraints[0]",
+                "a support that holds every node of the body",
+                "a part of the body that is free to deform",
+                "hold fewer nodes, or set `flexible = 0` in [modes]",
+            )
+            .into(),
+        ModalError::TooManyModes { requested, available } => scene
+            .refuse(
+                "modes.flexible",
+                requested.to_string(),
+                format!("at most {available}: a mode for each degree of freedom that has mass and that nothing holds, less the rigid ones"),
+                "ask for fewer modes, or use a finer mesh",
+            )
+            .into(),
+        other => modal(scene)(other),
+    }
+}
+
+/// Adds the scene file to errors of the modal analysis, which know no file.
+pub(crate) fn modal(scene: &Scene) -> impl Fn(ModalError) -> BuildError {
+    |source| BuildError::Modal { scene: scene.path.clone(), source }
+}

@@ -1,0 +1,46 @@
+//! From the description of a scene to a body that can move.
+//!
+//! [`Model::build`] reads the mesh of a scene, finds its modes and reduces the body; [`Model::start`] begins the motion. A
+//! [`Builder`] does so with a [`Cache`], or with another solver. An [`Assembly`] is the part that scenes share which differ in
+//! their effects and modes, and its [`Variants`] are their models.
+//!
+//! | folder | concept |
+//! |---|---|
+//! | `body` | the body file: written for later runs and other programs, read where a scene names one |
+//! | `cache` | results of the finite-element model, kept from run to run |
+//! | `mesh` | mesh or matrices of a body, and doubts about them |
+//! | `structure` | the finite-element model: modes, static responses, stress |
+//! | `support`, `load`, `stress` | what holds the body, what acts on it, and the stress of that |
+//! | `reduction` | `survey` (what the scene may need), `decide` (what it gets), `reduce` (make it) |
+//! | `model` | the reduced body with its points and loads |
+
+#![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
+mod assembly;
+mod body;
+mod builder;
+mod cache;
+mod error;
+mod load;
+mod mesh;
+mod model;
+mod progress;
+mod reduction;
+mod stress;
+mod structure;
+mod support;
+mod variants;
+
+pub use assembly::Assembly;
+pub use body::files::files_of_body;
+pub use builder::Builder;
+pub use cache::{Cache, CacheNotes};
+pub use error::{BuildError, StartError};
+pub use mesh::doubt::{Doubt, doubts};
+pub use mesh::given::MatrixChecks;
+pub use model::{Meshed, Model};
+pub use progress::{BuildProgress, BuildTimes, BuildWork};
+pub use stress::shapes::{BodyStress, StressPeak};
+pub use support::reactions::SupportRows;
+pub use variants::Variants;

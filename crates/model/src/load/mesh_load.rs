@@ -1,0 +1,560 @@
+//! Loads of a scene: where they act on the mesh, and what that is in modal coordinates.
+
+use std::sync::Arc;
+
+use dynamics::{
+    BodyField, Effect, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SecondOrder,
+    SharedLoad,
+};
+use faer::Mat;
+use fem_tet10::{Location, MeanRotation, Mesh};
+use modal::{BodyPoint, Modes, ReducedBody};
+use nalgebra::Vector3;
+use rigid_kin::Attitude;
+use scene::{Choice, Force, Load, Moment, Scene, Traction};
+
+use crate::error::{BuildError, modal, refuse, refuse_mesh};
+use crate::load::directed::Directed;
+use crate::load::history::history;
+use crate::load::turning::Turning;
+use crate::model::initial::first_attitude;
+
+/// A part of a load along or across an axis that is rounding.
+const PARALLEL: f64 = 1e-12;
+
+/// A load on the nodes of the mesh.
+pub(crate) struct MeshLoad {
+    /// Name for the reader.
+    name: String,
+    /// Action of an amplitude of 1 or −1.
+    action: Action,
+    /// Size of the amplitude.
+    size: f64,
+    pub history: dynamics::History,
+    /// True if it keeps its direction in the body or in the material.
+    pub follows: bool,
+    /// How the material that its direction turns with is turned by the nodes.
+    turning: Option<Rotation>,
+    /// Degrees of freedom of a node.
+    dofs: usize,
+    /// Attitude of the body at the beginning.
+    attitude: Attitude,
+    is_gravity: bool,
+    /// True if it is the acceleration of the base, which stresses the body as that of a drive does.
+    pub is_base_acceleration: bool,
+}
+
+/// Loads on a body, each with whether it is gravity.
+pub(crate) struct BodyLoads {
+    pub loads: Vec<SharedLoad>,
+    pub is_gravity: Vec<bool>,
+}
+
+impl BodyLoads {
+    /// All of them, or all but gravity.
+    pub fn acting(self, with_gravity: bool) -> Vec<SharedLoad> {
+        let acts = |is_gravity: &bool| with_gravity || !is_gravity;
+        self.loads.into_iter().zip(&self.is_gravity).filter(|(_, g)| acts(g)).map(|(load, _)| load).collect()
+    }
+}
+
+impl FromIterator<(SharedLoad, bool)> for BodyLoads {
+    fn from_iter<I: IntoIterator<Item = (SharedLoad, bool)>>(loads: I) -> Self {
+        let (loads, is_gravity) = loads.into_iter().unzip();
+        Self { loads, is_gravity }
+    }
+}
+
+/// Where a load acts, and how much.
+enum Action {
+    /// A force at the weighted mean of nodes; the weights sum to one.
+    Force { nodes: Vec<u32>, weights: Vec<f64>, force: Vector3<f64> },
+    /// A force on every mass: M times an acceleration of the whole body.
+    Weight { weight: Arc<UnitWeight>, force: Vector3<f64> },
+    /// A couple on the rotation of the material at its place.
+    Moment { patch: Rotation, moment: Vector3<f64> },
+    /// Forces on nodes that are fixed in the body.
+    Field { nodes: Vec<u32>, forces: Vec<Vector3<f64>>, group: String, pressure: f64 },
+}
+
+/// Forces of a unit acceleration of the whole body.
+pub(crate) struct UnitWeight {
+    /// Forces on the unknowns, for an acceleration along each axis (N×3). In general they act on rotations, too.
+    pub forces: Mat<f64>,
+    pub mass: f64,
+}
+
+impl UnitWeight {
+    /// The centre of mass, which moves as the mean of all masses does: in a free body not at all.
+    fn point(&self, body: &ReducedBody, modes: &Modes) -> BodyPoint {
+        let position_body = body.center_of_mass - body.origin;
+        if body.motion.is_free() {
+            return BodyPoint { position_body, shapes: Mat::zeros(3, modes.shapes.ncols()) };
+        }
+        let shapes = self.forces.transpose() * modes.shapes.as_ref();
+        BodyPoint { position_body, shapes: shapes * faer::Scale(1.0 / self.mass) }
+    }
+}
+
+/// A small rotation of the material at some place.
+enum Rotation {
+    /// The mean rotation of nodes, by their displacements.
+    Mean(MeanRotation),
+    /// The rotation of a node that has one.
+    OfNode(u32),
+}
+
+/// Change of a pressure on a surface as the surface moves in each mode.
+pub(crate) struct FollowerChange {
+    /// Change of the resultant and of the moment about the origin of the body (nf).
+    pub force: Vec<Vector3<f64>>,
+    pub moment: Vec<Vector3<f64>>,
+    /// Ψᵀ ∂f/∂q (nf × nf).
+    pub load_stiffness: Mat<f64>,
+}
+
+/// The loads of a scene on its mesh.
+pub(crate) fn on_mesh(
+    scene: &Scene,
+    mesh: &Mesh,
+    dofs: usize,
+    weight: &Arc<UnitWeight>,
+) -> Result<Vec<MeshLoad>, BuildError> {
+    let attitude = first_attitude(scene);
+    acting(scene)
+        .map(|(i, load)| {
+            let key = |name: &str| format!("loads[{i}].{name}");
+            let surface = |error| refuse_mesh(scene, &key("group"), &error);
+            let amplitude = amplitude(load);
+            let unit = direction(load) * amplitude.signum();
+            let spread = |weights: Vec<f64>, nodes: Vec<u32>| {
+                let total: f64 = weights.iter().sum();
+                let weights = weights.into_iter().map(|w| w / total).collect();
+                Action::Force { nodes, weights, force: unit * total }
+            };
+            let action = match load {
+                Load::Force(load) => {
+                    let Location { nodes, weights } =
+                        mesh.locate(load.at).map_err(|error| refuse(scene, &key("at"), error))?;
+                    Action::Force { nodes: nodes.to_vec(), weights: weights.to_vec(), force: unit }
+                }
+                Load::Moment(load) => Action::Moment {
+                    patch: match load.radius {
+                        None => rotation_at(scene, mesh, dofs, &key("at"), load.at)?,
+                        radius => {
+                            let mean = mesh.mean_rotation(load.at, radius);
+                            Rotation::Mean(mean.map_err(|error| refuse(scene, &key("radius"), error))?)
+                        }
+                    },
+                    moment: unit,
+                },
+                Load::Traction(load) => {
+                    let (nodes, weights) = mesh.surface_weights(&load.group).map_err(surface)?;
+                    spread(weights, nodes)
+                }
+                Load::Pressure(load) => {
+                    let (nodes, forces) = mesh.surface_pressure(&load.group).map_err(surface)?;
+                    let pressure = amplitude.signum();
+                    let forces = forces.into_iter().map(|f| f * pressure).collect();
+                    Action::Field { nodes, forces, group: load.group.clone(), pressure }
+                }
+                Load::Gravity(_) | Load::BaseAcceleration(_) => {
+                    Action::Weight { weight: weight.clone(), force: unit * weight.mass }
+                }
+            };
+            let history = history(scene, &key("history"), of(load))?;
+            let name = name(i, load);
+            let turning = match load {
+                Load::Force(load) if load.frame == LoadFrame::Material => {
+                    Some(rotation_at(scene, mesh, dofs, &key("frame"), load.at)?)
+                }
+                _ => None,
+            };
+            let (follows, is_gravity) = (follows(load), is_gravity(load));
+            let is_base_acceleration = matches!(load, Load::BaseAcceleration(_));
+            Ok(MeshLoad {
+                name,
+                action,
+                size: amplitude.abs(),
+                history,
+                follows,
+                turning,
+                dofs,
+                attitude,
+                is_gravity,
+                is_base_acceleration,
+            })
+        })
+        .collect()
+}
+
+/// The loads of a scene on a rigid body without a mesh.
+pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, BuildError> {
+    acting(scene)
+        .map(|(i, load)| {
+            let at = |position: [f64; 3]| {
+                let position_body = Vector3::from(position) - body.origin;
+                PointShapes::new(body, &BodyPoint::rigid(position_body))
+            };
+            let history = history(scene, &format!("loads[{i}].history"), of(load))?;
+            let on_body: SharedLoad = match load {
+                Load::Force(load) => Arc::new(PointForce {
+                    point: at(load.at),
+                    force: Vector3::from(load.direction) * load.amplitude,
+                    frame: load.frame,
+                    turning: None,
+                    history,
+                }),
+                Load::Moment(load) => Arc::new(PointMoment {
+                    rotation: RotationShapes::new(body, Mat::zeros(3, 0).as_ref()),
+                    moment: Vector3::from(load.direction) * load.amplitude,
+                    frame: load.frame,
+                    history,
+                }),
+                Load::Gravity(_) | Load::BaseAcceleration(_) => {
+                    let weight = direction(load) * (amplitude(load) * body.mass);
+                    Arc::new(PointForce::dead(at(body.center_of_mass.into()), weight, history))
+                }
+                Load::Pressure(_) | Load::Traction(_) => {
+                    return Err(scene
+                        .refuse(
+                            &format!("loads[{i}].group"),
+                            "a surface of a body without a mesh",
+                            "a load on a point",
+                            "give its resultant as a force and a moment, or give the body a mesh",
+                        )
+                        .into());
+                }
+            };
+            Ok((on_body, is_gravity(load)))
+        })
+        .collect()
+}
+
+/// The loads that may act, with their numbers in the scene.
+fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
+    let with_gravity = scene.effects.choices[Effect::Gravity] != Choice::Off;
+    scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !is_gravity(load))
+}
+
+/// Name of a load for the reader.
+fn name(i: usize, load: &Load) -> String {
+    let kind = match load {
+        Load::Force(_) => "the force",
+        Load::Moment(_) => "the moment",
+        Load::Traction(_) => "the traction",
+        Load::Pressure(_) => "the pressure",
+        Load::Gravity(_) => "gravity",
+        Load::BaseAcceleration(_) => "the base acceleration",
+    };
+    format!("{kind} loads[{i}]")
+}
+
+fn is_gravity(load: &Load) -> bool {
+    matches!(load, Load::Gravity(_))
+}
+
+fn of(load: &Load) -> &scene::History {
+    match load {
+        Load::Force(load) => &load.history,
+        Load::Moment(load) => &load.history,
+        Load::Pressure(load) => &load.history,
+        Load::Traction(load) => &load.history,
+        Load::Gravity(load) => &load.history,
+        Load::BaseAcceleration(load) => &load.history,
+    }
+}
+
+fn amplitude(load: &Load) -> f64 {
+    match load {
+        Load::Force(load) => load.amplitude,
+        Load::Moment(load) => load.amplitude,
+        Load::Pressure(load) => load.amplitude,
+        Load::Traction(load) => load.amplitude,
+        Load::Gravity(load) => load.amplitude,
+        Load::BaseAcceleration(load) => load.amplitude,
+    }
+}
+
+/// Where it acts along, as a unit vector; zero of a pressure. Every mass is pulled against the acceleration of the base.
+fn direction(load: &Load) -> Vector3<f64> {
+    match load {
+        Load::Force(load) => load.direction.into(),
+        Load::Moment(load) => load.direction.into(),
+        Load::Traction(load) => load.direction.into(),
+        Load::Gravity(load) => load.direction.into(),
+        Load::BaseAcceleration(load) => -Vector3::from(load.direction),
+        Load::Pressure(_) => Vector3::zeros(),
+    }
+}
+
+fn follows(load: &Load) -> bool {
+    match load {
+        Load::Pressure(_) => true,
+        Load::Force(Force { frame, .. })
+        | Load::Moment(Moment { frame, .. })
+        | Load::Traction(Traction { frame, .. }) => *frame != LoadFrame::Global,
+        Load::Gravity(_) | Load::BaseAcceleration(_) => false,
+    }
+}
+
+/// The rotation of the material at a point: of the node there where nodes have rotations, otherwise of the elements around it.
+fn rotation_at(scene: &Scene, mesh: &Mesh, dofs: usize, key: &str, at: [f64; 3]) -> Result<Rotation, BuildError> {
+    if mesh.has_elements() {
+        return Ok(Rotation::Mean(mesh.mean_rotation(at, None).map_err(|error| refuse(scene, key, error))?));
+    }
+    let Location { nodes, .. } = mesh.locate(at).map_err(|error| refuse(scene, key, error))?;
+    if dofs == 6 {
+        return Ok(Rotation::OfNode(nodes[0]));
+    }
+    Err(scene
+        .refuse(
+            key,
+            "the rotation at a node of a body of matrices, whose nodes only have translations",
+            "a rotation that the matrices know",
+            "give a moment a `radius` with three nodes or more in it; give a force `frame = \"body\"`",
+        )
+        .into())
+}
+
+impl MeshLoad {
+    pub fn is_gravity(&self) -> bool {
+        self.is_gravity
+    }
+
+    /// "gravity along (0, 0, -1)", for a force or moment in body axes.
+    pub fn name_along(&self, vector: &Vector3<f64>) -> String {
+        let rounded = |x: f64| (x * 100.0).round() / 100.0 + 0.0;
+        match vector.try_normalize(0.0) {
+            Some(d) => {
+                format!("{} along ({}, {}, {}) of the body", self.name, rounded(d.x), rounded(d.y), rounded(d.z))
+            }
+            None => self.name.clone(),
+        }
+    }
+
+    /// Size of the amplitude, which multiplies what is said of a unit.
+    pub(crate) fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The force or moment in the first attitude, body axes, where the history is 1 and the amplitude 1 or −1; none of a field.
+    pub(crate) fn unit(&self) -> Option<Vector3<f64>> {
+        match &self.action {
+            Action::Force { force: vector, .. }
+            | Action::Weight { force: vector, .. }
+            | Action::Moment { moment: vector, .. } => {
+                Some(if self.follows { *vector } else { self.attitude.to_body(vector) })
+            }
+            Action::Field { .. } => None,
+        }
+    }
+
+    /// Forces or moments of the same size, in body axes, whose combinations are all that a dead load of an amplitude of 1 may
+    /// become as the body turns; none where it keeps its direction in the body.
+    pub(crate) fn turned(&self, turning: Turning) -> Vec<Vector3<f64>> {
+        let turns = (!self.follows || self.turning.is_some()) && self.size > 0.0;
+        let Some(vector) = self.unit().filter(|v| turns && v.norm() > 0.0) else { return Vec::new() };
+        let size = vector.norm();
+        let turning = if self.turning.is_some() { Turning::Freely } else { turning };
+        match turning {
+            Turning::Not => Vec::new(),
+            Turning::Freely => [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * size).into(),
+            Turning::About(axis) => {
+                let along = axis * axis.dot(&vector);
+                let across = vector - along;
+                let mut turned = Vec::new();
+                if across.norm() > PARALLEL * size {
+                    let across = across.normalize() * size;
+                    turned.extend([across, axis.cross(&across)]);
+                }
+                if along.norm() > PARALLEL * size {
+                    turned.push(axis * size);
+                }
+                turned
+            }
+        }
+    }
+
+    /// The same in global axes, of a load that keeps its direction there; none of one that does so in the body.
+    pub(crate) fn dead_unit(&self) -> Option<Vector3<f64>> {
+        self.unit().filter(|_| !self.follows).map(|unit| self.attitude.to_global(&unit))
+    }
+
+    /// The parts of the load in its first attitude along `turned`, relative to them: one whole part without any.
+    pub(crate) fn parts(&self, turned: &[Vector3<f64>]) -> Vec<f64> {
+        match self.unit() {
+            Some(unit) if !turned.is_empty() => turned.iter().map(|t| t.dot(&unit) / t.norm_squared()).collect(),
+            _ => vec![1.0],
+        }
+    }
+
+    /// The forces on the nodes of the undeformed body in its first attitude, where the history is 1 and the amplitude 1 or −1
+    /// (3n); with `vector`, of that force or moment in place of the load's own.
+    pub(crate) fn add_unit_nodal_forces(&self, vector: Option<Vector3<f64>>, mut forces: faer::ColMut<'_, f64>) {
+        let vector = vector.or(self.unit()).unwrap_or_default();
+        let mut add = |node: u32, force: &Vector3<f64>| {
+            for axis in 0..3 {
+                forces[self.dofs * node as usize + axis] += force[axis];
+            }
+        };
+        match &self.action {
+            Action::Force { nodes, weights, .. } => {
+                nodes.iter().zip(weights).for_each(|(node, w)| add(*node, &(vector * *w)));
+            }
+            Action::Weight { weight, .. } => {
+                for axis in 0..3 {
+                    let acceleration = vector[axis] / weight.mass;
+                    for row in 0..weight.forces.nrows() {
+                        forces[row] += acceleration * weight.forces[(row, axis)];
+                    }
+                }
+            }
+            Action::Moment { patch: Rotation::OfNode(node), .. } => {
+                for axis in 0..3 {
+                    forces[self.dofs * *node as usize + 3 + axis] += vector[axis];
+                }
+            }
+            Action::Moment { patch: Rotation::Mean(patch), .. } => {
+                for (node, turned) in patch.nodes.iter().zip(&patch.rotation_per_displacement) {
+                    add(*node, &turned.tr_mul(&vector));
+                }
+            }
+            Action::Field { nodes, forces, .. } => nodes.iter().zip(forces).for_each(|(node, f)| add(*node, f)),
+        }
+    }
+
+    /// Change of a pressure as its surface moves; none of other loads.
+    pub(crate) fn follower_change(
+        &self,
+        scene: &Scene,
+        mesh: &Mesh,
+        body: &ReducedBody,
+        modes: &Modes,
+    ) -> Result<Option<FollowerChange>, BuildError> {
+        let Action::Field { nodes, forces, group, pressure } = &self.action else { return Ok(None) };
+        let nf = body.flexible();
+        let mut change = FollowerChange {
+            force: vec![Vector3::zeros(); nf],
+            moment: vec![Vector3::zeros(); nf],
+            load_stiffness: Mat::zeros(nf, nf),
+        };
+        for k in 0..nf {
+            let (_, changes) = mesh
+                .surface_pressure_change(group, modes.shapes.col(k))
+                .map_err(|error| refuse_mesh(scene, "loads", &error))?;
+            for ((node, force), added) in nodes.iter().zip(forces).zip(&changes) {
+                let added = added * (*pressure * self.size);
+                let position = Vector3::from(mesh.positions()[*node as usize]) - body.origin;
+                change.force[k] += added;
+                change.moment[k] += self.shape(modes, *node, k).cross(&(force * self.size)) + position.cross(&added);
+                for a in 0..nf {
+                    change.load_stiffness[(a, k)] += self.shape(modes, *node, a).dot(&added);
+                }
+            }
+        }
+        Ok(Some(change))
+    }
+
+    /// The load on the modes of a body, with the stiffness by its stress. A pressure turns with its surface: its resultant does
+    /// always, what it does along the modes where `has_load_stiffness` says so.
+    pub(crate) fn reduced(
+        &self,
+        scene: &Scene,
+        mesh: &Mesh,
+        body: &ReducedBody,
+        modes: &Modes,
+        stress: &[Directed],
+        has_load_stiffness: bool,
+    ) -> Result<SharedLoad, BuildError> {
+        let frame = if self.follows { LoadFrame::Body } else { LoadFrame::Global };
+        let nf = body.flexible();
+        let history = self.history.clone();
+        let second_order = || -> Result<Option<SecondOrder>, BuildError> {
+            if stress.is_empty() {
+                return Ok(None);
+            }
+            let of_unit = |directed: &Directed| {
+                let size = directed.vector.norm();
+                (directed.vector / size, &directed.stiffness * faer::Scale(1.0 / size))
+            };
+            Ok(Some(SecondOrder::new(stress.iter().map(of_unit).collect())?))
+        };
+        let at = |point: &BodyPoint, force: Vector3<f64>| -> Result<SharedLoad, BuildError> {
+            let point = PointShapes::new(body, point);
+            let point = match second_order()? {
+                Some(second_order) => point.with_second_order(second_order),
+                None => point,
+            };
+            let turning = self.turning.as_ref().map(|patch| self.rotations(patch, body, modes));
+            let frame = if turning.is_some() { LoadFrame::Material } else { frame };
+            Ok(Arc::new(PointForce { point, force, frame, turning, history: self.history.clone() }))
+        };
+        Ok(match &self.action {
+            Action::Force { nodes, weights, force } => {
+                let point = BodyPoint::new(modes, mesh.positions(), nodes, weights).map_err(modal(scene))?;
+                at(&point, force * self.size)?
+            }
+            Action::Weight { weight, force } => at(&weight.point(body, modes), force * self.size)?,
+            Action::Moment { patch, moment } => {
+                let rotation = self.rotations(patch, body, modes);
+                let rotation = match second_order()? {
+                    Some(second_order) => rotation.with_second_order(second_order),
+                    None => rotation,
+                };
+                Arc::new(PointMoment { rotation, moment: moment * self.size, frame, history })
+            }
+            Action::Field { nodes, forces, .. } => {
+                let position = |node: u32| Vector3::from(mesh.positions()[node as usize]) - body.origin;
+                let acting = || nodes.iter().copied().zip(forces.iter().map(|force| force * self.size));
+                let force_body: Vector3<f64> = acting().map(|(_, f)| f).sum();
+                let moment_body: Vector3<f64> = acting().map(|(node, f)| position(node).cross(&f)).sum();
+                let rigid = [body.translation_basis.tr_mul(&force_body), body.rotation_basis.tr_mul(&moment_body)];
+                let flexible = (0..nf).map(|k| acting().map(|(node, f)| self.shape(modes, node, k).dot(&f)).sum());
+                let modal = rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect();
+                let change = self.follower_change(scene, mesh, body, modes)?;
+                let load_stiffness = change.as_ref().filter(|_| has_load_stiffness).map_or(Vec::new(), |change| {
+                    change.load_stiffness.col_iter().flat_map(|c| c.iter().copied().collect::<Vec<_>>()).collect()
+                });
+                let of_field = |directed: &Directed| SecondOrder::new(vec![(Vector3::x(), directed.stiffness.clone())]);
+                let second_order = stress.first().map(of_field).transpose()?;
+                let (force_change, moment_change) = match change {
+                    Some(change) => (change.force, change.moment),
+                    None => (Vec::new(), vec![Vector3::zeros(); nf]),
+                };
+                let field = BodyField {
+                    force_body,
+                    moment_body,
+                    modal,
+                    force_change,
+                    moment_change,
+                    load_stiffness,
+                    second_order,
+                };
+                Arc::new(FieldLoad { field, history })
+            }
+        })
+    }
+
+    /// How the material is turned by the modes.
+    fn rotations(&self, rotation: &Rotation, body: &ReducedBody, modes: &Modes) -> RotationShapes {
+        let of_mode = |k: usize| -> Vector3<f64> {
+            match rotation {
+                Rotation::Mean(patch) => {
+                    let of = patch.nodes.iter().zip(&patch.rotation_per_displacement);
+                    of.map(|(node, a)| a * self.shape(modes, *node, k)).sum()
+                }
+                Rotation::OfNode(node) => {
+                    Vector3::from_fn(|axis, _| modes.shapes[(self.dofs * *node as usize + 3 + axis, k)])
+                }
+            }
+        };
+        let turned: Vec<Vector3<f64>> = (0..body.flexible()).map(of_mode).collect();
+        RotationShapes::new(body, Mat::from_fn(3, turned.len(), |axis, k| turned[k][axis]).as_ref())
+    }
+
+    /// Displacement of a node in a flexible mode.
+    fn shape(&self, modes: &Modes, node: u32, k: usize) -> Vector3<f64> {
+        Vector3::from_fn(|axis, _| modes.shapes[(self.dofs * node as usize + axis, k)])
+    }
+}

@@ -1,0 +1,27 @@
+//! Rotations that the body of a scene can make.
+
+use dynamics::{Drive, DrivenMotion, Effect};
+use modal::RigidMotion;
+use nalgebra::Vector3;
+use scene::{Choice, Scene};
+
+/// How a body can turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Turning {
+    Not,
+    /// About one axis, a unit vector.
+    About(Vector3<f64>),
+    Freely,
+}
+
+pub(crate) fn turning(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> Turning {
+    if scene.effects.choices[Effect::Rotation] == Choice::Off {
+        return Turning::Not;
+    }
+    match (motion.rotations(), drive.map(|drive| drive.motion)) {
+        (_, Some(DrivenMotion::Turn { axis })) => Turning::About(axis),
+        ([], _) => Turning::Not,
+        ([axis], _) => Turning::About(*axis),
+        _ => Turning::Freely,
+    }
+}

@@ -1,0 +1,80 @@
+//! The mesh of a scene and its matrices.
+
+use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble};
+use std::path::Path;
+
+use mesh_import::{ImportError, ImportSettings, Imported, MeshFile, Reader, reader_of};
+use scene::{MeshedBody, Scene, SceneError, shorten};
+
+use crate::builder::Builder;
+use crate::error::{BuildError, refuse};
+
+/// How a mesh file is read.
+pub(crate) fn import_settings(builder: &Builder, mesh_size: Option<f64>, raise_order: bool) -> ImportSettings {
+    ImportSettings { mesh_size, raise_order, trust_geometry: builder.trust_geometry }
+}
+
+/// The mesh file of a body, as it is now.
+pub(crate) fn mesh_file(builder: &Builder, scene: &Scene, body: &MeshedBody) -> Result<MeshFile, BuildError> {
+    let settings = import_settings(builder, body.mesh_size, body.raise_order);
+    mesh_file_at(scene, &body.mesh, &settings)?.map_err(refused(scene))
+}
+
+/// The same at a place; a size is refused for what is no geometry.
+pub(crate) fn mesh_file_at(
+    scene: &Scene,
+    mesh: &Path,
+    settings: &ImportSettings,
+) -> Result<Result<MeshFile, ImportError>, SceneError> {
+    if settings.mesh_size.is_some() && reader_of(mesh, settings) != Reader::GmshMesher {
+        return Err(scene.refuse(
+            "body.mesh_size",
+            "a size for a mesh that is there",
+            "geometry to be meshed: a .geo, STEP, IGES or BREP file",
+            "remove it, or mesh again with elements of this size",
+        ));
+    }
+    Ok(MeshFile::read(mesh, settings))
+}
+
+/// The mesh in that file.
+pub(crate) fn mesh_in(builder: &Builder, scene: &Scene, file: &MeshFile) -> Result<Imported, BuildError> {
+    if let Some(remark) = file.remark() {
+        builder.cache.warn(remark);
+    }
+    file.mesh().map_err(refused(scene))
+}
+
+fn refused(scene: &Scene) -> impl Fn(ImportError) -> BuildError {
+    |error| match error {
+        ImportError::Mesh(MeshError::Io { source_name, source: cause }) | ImportError::Io { source_name, cause } => {
+            scene
+                .refuse(
+                    "body.mesh",
+                    format!("a mesh that cannot be read: {}: {cause}", shorten(&source_name)),
+                    "a mesh file, its path relative to the folder of the scene file",
+                    "correct the path, or make the mesh: gmsh -3 -order 2 -format msh41 BODY.geo",
+                )
+                .into()
+        }
+        ImportError::Mesh(error) => BuildError::from(error),
+        other => Box::new(other).into(),
+    }
+}
+
+pub(crate) fn matrices(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<Matrices, BuildError> {
+    assemble(mesh, &body.materials, &body.point_masses).map_err(|error| {
+        let at = match &error {
+            AssemblyError::OffBody { at, .. } | AssemblyError::Spread { at, .. } => *at,
+            AssemblyError::MissingGroup { group, .. } => {
+                let key = format!("body.materials.{group}");
+                return refuse(scene, &key, error).into();
+            }
+            _ => return error.into(),
+        };
+        match body.point_masses.iter().position(|p| p.at == at) {
+            Some(i) => refuse(scene, &format!("body.point_masses[{i}].at"), error).into(),
+            None => error.into(),
+        }
+    })
+}

@@ -1,0 +1,253 @@
+//! A body that can move, as a scene describes it.
+
+pub(crate) mod initial;
+pub(crate) mod point_rotations;
+pub(crate) mod points;
+
+use std::sync::Arc;
+
+use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
+use dynamics::{
+    ConservativeBody, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, Physics, PointShapes, Rows,
+    Setup, SharedLoad, Simulation, StepControl,
+};
+use faer::Mat;
+use fem_tet10::Mesh;
+use frames_rk4::Paper;
+use modal::{Modes, ReducedBody};
+use scene::{MeshedBody, Scene};
+
+use crate::error::StartError;
+use crate::mesh::given::MatrixChecks;
+use crate::model::initial::initial;
+use crate::progress::BuildTimes;
+use crate::stress::shapes::BodyStress;
+use crate::support::reactions::SupportRows;
+
+/// Deflection over the length at which small vibrations are looked at.
+const SMALL: f64 = 1e-3;
+
+/// The finite-element side of a body.
+#[derive(Debug, Clone)]
+pub struct Meshed {
+    /// The mesh.
+    pub mesh: Arc<Mesh>,
+    /// The mesh file, the materials and the point masses of its elements; `None` for a body of matrices from another program.
+    pub elements: Option<MeshedBody>,
+    /// Notes about the parts of the mesh file that were left out, in sentences.
+    pub mesh_notes: Vec<String>,
+    /// Checks of the matrices, of a body of matrices from another program.
+    pub checks: Option<MatrixChecks>,
+    /// Bytes that the mass and stiffness matrices took.
+    pub matrix_bytes: usize,
+    /// Rigid and flexible modes on the mesh.
+    pub modes: Modes,
+    /// Shapes on the mesh that only follow large modes (3n × …), none without: what the extended shapes have after the
+    /// modes.
+    pub following: Mat<f64>,
+}
+
+/// The body of a scene in modal coordinates, with its mesh, its points and its loads.
+#[derive(Debug)]
+pub struct Model {
+    /// Mesh and modes; `None` for a rigid body without a mesh.
+    pub meshed: Option<Meshed>,
+    /// The reduced body.
+    pub body: ReducedBody,
+    /// The part of the physics that is computed.
+    pub physics: Physics,
+    /// The points whose motion is written out, by name.
+    pub points: Vec<(String, PointShapes)>,
+    /// The paper's scheme with the scene's reference points.
+    pub paper: Paper,
+    /// Which effects the scene calls for, and why.
+    pub advice: Advice,
+    /// Known error of the model, if there is one: it does not start unless the scene says `refuse = false`.
+    pub refusal: Option<Refusal>,
+    /// Where the time went.
+    pub times: BuildTimes,
+    /// Its stress, where the scene asks for it.
+    pub stress: Option<BodyStress>,
+    /// Reactions of several supports.
+    pub supports: Option<SupportRows>,
+    pub(crate) loads: Vec<SharedLoad>,
+    pub(crate) damping_ratios: Vec<f64>,
+    /// All loads that the scene does not switch off, gravity that it does not call for among them.
+    pub(crate) all_loads: Vec<SharedLoad>,
+    /// The damping that the scene does not switch off, where it does not call for it, too (nf).
+    pub(crate) all_damping_ratios: Vec<f64>,
+    pub(crate) size: Size,
+    /// Remainder of the static responses to the spin beside the modes (6), where that is to be watched.
+    pub(crate) left_out: Vec<f64>,
+    /// Backbones of the modes that may bend the body far.
+    pub(crate) backbones: Vec<Option<Backbone>>,
+}
+
+/// The size of a body and of its modes.
+#[derive(Debug, Clone)]
+pub(crate) struct Size {
+    /// Largest distance of two points of the body.
+    pub length: f64,
+    /// Largest displacement of a node in each mode (nf).
+    pub peaks: Vec<f64>,
+}
+
+impl Model {
+    /// Frequencies of the flexible modes, cycles per time.
+    pub fn natural_frequencies(&self) -> Vec<f64> {
+        self.body.circular_frequencies.iter().map(|omega| omega / std::f64::consts::TAU).collect()
+    }
+
+    /// Damping ratio of each flexible mode.
+    pub fn damping_ratios(&self) -> &[f64] {
+        &self.damping_ratios
+    }
+
+    /// The loads, at their points of the body.
+    pub fn loads(&self) -> &[SharedLoad] {
+        &self.loads
+    }
+
+    /// The parts of the run of its scene where forces are added that the estimates do not know: the physics, the loads and the
+    /// damping ratio of each flexible mode. The effects are those of [`Scene::for_unknown_forces`].
+    pub fn under_unknown_forces(&self, scene: &Scene) -> (Physics, Vec<SharedLoad>, Vec<f64>) {
+        let mut physics = self.physics.clone();
+        for effect in scene.on_under_unknown_forces() {
+            physics.effects[effect] = true;
+        }
+        (physics, self.all_loads.clone(), self.all_damping_ratios.clone())
+    }
+
+    /// True if the stress of loads or of a drive stiffens the body.
+    pub fn is_stressed(&self) -> bool {
+        self.physics.drive_stiffness.is_some() || self.loads.iter().any(|load| load.matrix_entries() > 0)
+    }
+
+    /// The small vibrations of the body under the loads that stay as they are, seen from it: about its rest under them with
+    /// large modes, otherwise they are the same about the undeformed body.
+    ///
+    /// # Errors
+    /// [`LoadedError`].
+    pub fn loaded_modes(&self, scene: &Scene) -> Result<Vec<LoadedMode>, LoadedError> {
+        let turns = self.physics.drive.is_some() || !self.body.motion.rotations().is_empty();
+        let is_steady = |load: &&SharedLoad| {
+            let follows = load.pattern().is_some_and(|pattern| pattern.frame != LoadFrame::Global);
+            matches!(load.history(), Some(History::Constant)) && (follows || !turns)
+        };
+        let steady = self.loads.iter().filter(is_steady).cloned().collect();
+        let physics = Physics { drive: None, drive_stiffness: None, ..self.physics.clone() };
+        let body = ConservativeBody::new(&self.body, &self.damping_ratios, steady, &physics)?;
+        let amplitudes: Vec<f64> = self.size.peaks.iter().map(|peak| SMALL * self.size.length / peak).collect();
+        body.loaded_modes(&self.initial(scene), &amplitudes)
+    }
+
+    /// How many static shapes follow the natural modes.
+    pub fn static_shapes(&self) -> usize {
+        self.body.flexible() - self.body.natural_modes
+    }
+
+    /// Which modes are large, numbered from 0; none without large deflection.
+    pub fn large_modes(&self) -> &[usize] {
+        self.physics.large_deflection.as_ref().map_or(&[], Manifold::large)
+    }
+
+    /// The coordinates of the modes and of the shapes that follow them: u is their sum with [`Meshed::modes`] and then
+    /// [`Meshed::following`].
+    pub fn coordinates(&self, modal_displacement: &[f64]) -> Vec<f64> {
+        let Some(manifold) = &self.physics.large_deflection else { return modal_displacement.to_vec() };
+        let mut xi = vec![0.0; manifold.body().flexible()];
+        manifold.coordinates(modal_displacement, &mut xi);
+        xi
+    }
+
+    /// How the frequency of each of the first modes goes with its amplitude, of those that may bend the body far.
+    pub fn backbones(&self) -> &[Option<Backbone>] {
+        &self.backbones
+    }
+
+    /// Largest displacement by deformation over the length of the body, bounded above by the sum over the modes.
+    pub fn deflection(&self, modal_displacement: &[f64]) -> f64 {
+        modal_displacement.iter().zip(&self.size.peaks).map(|(q, peak)| (q * peak).abs()).sum::<f64>()
+            / self.size.length
+    }
+
+    /// The state that a scene begins with, its lists padded with zeros.
+    pub fn initial(&self, scene: &Scene) -> Initial {
+        initial(scene, &self.body)
+    }
+
+    /// The run as [`advice`] sees it, which begins with `initial`.
+    pub fn case<'a>(&'a self, scene: &Scene, initial: &'a Initial) -> Case<'a> {
+        Case {
+            body: &self.body,
+            damping_ratios: &self.damping_ratios,
+            loads: &self.loads,
+            is_gravity: &[],
+            drive: self.physics.drive.as_ref(),
+            initial,
+            end: scene.time.end,
+            length: self.size.length,
+            peaks: &self.size.peaks,
+            static_compliances: &[],
+            centrifugal_remainders: &self.left_out,
+            backbones: &self.backbones,
+            manifold: self.physics.large_deflection.as_ref(),
+        }
+    }
+
+    /// The motion of a scene from its beginning.
+    ///
+    /// # Errors
+    /// [`StartError`], e.g. a step beyond the stability limit.
+    pub fn start(&self, scene: &Scene) -> Result<Simulation, StartError> {
+        let started = self.start_with(scene, scene.time.method, scene.time.control, scene.output.rows);
+        started.map_err(|error| error.at_key(scene))
+    }
+
+    /// The motion of a scene by another method, in other steps or with other rows than its own.
+    ///
+    /// # Errors
+    /// As [`Model::start`].
+    pub fn start_with(
+        &self,
+        scene: &Scene,
+        method: dynamics::Method,
+        control: StepControl,
+        rows: Rows,
+    ) -> Result<Simulation, StartError> {
+        if let Some(refusal) = self.refusal.filter(|_| scene.effects.refuse) {
+            return Err(refusal.into());
+        }
+        let points: Vec<PointShapes> = self.points.iter().map(|(_, point)| point.clone()).collect();
+        let initial = self.initial(scene);
+        let method = self.paper.or(&method);
+        let setup = Setup { method, control, rows, points: &points, ..self.setup(scene, &initial) };
+        Ok(Simulation::new(&setup)?)
+    }
+
+    /// Estimated error of the length of the steps; nothing under step control.
+    ///
+    /// # Errors
+    /// As [`Model::start`].
+    pub fn step_estimate(&self, scene: &Scene) -> Result<Option<StepEstimate>, StartError> {
+        Ok(advice::step_estimate(&self.setup(scene, &self.initial(scene)))?)
+    }
+
+    /// The setup that [`Simulation::new`] needs for the run of a scene, without its points. Loads, steps or anything else
+    /// may be
+    /// replaced.
+    pub fn setup<'a>(&'a self, scene: &'a Scene, initial: &'a Initial) -> Setup<'a> {
+        Setup {
+            body: &self.body,
+            damping_ratios: &self.damping_ratios,
+            loads: &self.loads,
+            physics: &self.physics,
+            initial,
+            method: self.paper.or(&scene.time.method),
+            control: scene.time.control,
+            end: scene.time.end,
+            rows: scene.output.rows,
+            points: &[],
+        }
+    }
+}

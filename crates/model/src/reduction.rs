@@ -1,0 +1,13 @@
+//! From the finite-element model of a scene to the reduced body: a survey, a decision, and the reduction.
+
+pub(crate) mod backbones;
+mod damping;
+mod decide;
+pub(crate) mod manifold;
+pub(crate) mod mesh_model;
+pub(crate) mod meshed;
+pub(crate) mod modal_model;
+pub(crate) mod physics;
+mod reduce;
+pub(crate) mod rigid;
+mod survey;

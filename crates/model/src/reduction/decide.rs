@@ -1,0 +1,47 @@
+//! Second stage: what the scene leaves open is decided.
+
+use dynamics::{Effect, EffectMap};
+use scene::{Choice, Flexible, Scene};
+
+use crate::reduction::physics;
+use crate::reduction::survey::Survey;
+
+/// The parts that a body is to have.
+pub(crate) struct Decision {
+    /// How many of the modes are kept.
+    pub keep: usize,
+    /// True if static shapes are added to them.
+    pub has_static_shapes: bool,
+    /// Remainder of the static responses to the spin beside the modes (6), where static shapes for it are missing.
+    pub lacks: Option<Vec<f64>>,
+    pub effects: EffectMap<bool>,
+    /// Which of the modes that are kept are large, numbered from 0.
+    pub large: Vec<usize>,
+}
+
+impl Decision {
+    pub fn new(scene: &Scene, survey: &Survey) -> Self {
+        let Survey { modal, advice, statics, .. } = survey;
+        let flexible = modal.body.flexible();
+        let keep = match (scene.modes.flexible, scene.effects.choices[Effect::Flexibility]) {
+            (Flexible::Auto { .. }, Choice::On) => advice.keep.max(1).min(flexible),
+            (Flexible::Auto { .. }, Choice::Auto) => advice.keep,
+            _ => flexible,
+        };
+        let has_static_shapes = keep > 0
+            && match physics::static_correction(scene, flexible) {
+                Choice::On => true,
+                Choice::Off => false,
+                Choice::Auto => advice.static_correction.on,
+            };
+        let of_spin = statics.of_spin.as_ref().filter(|_| keep > 0 && !has_static_shapes);
+        let large = physics::large_modes(scene, advice, keep);
+        Self {
+            keep,
+            has_static_shapes,
+            lacks: of_spin.map(|of_spin| of_spin.remainders.clone()),
+            effects: physics::with_large_modes(scene, physics::effects(scene, advice, &modal.body, keep), &large),
+            large,
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! A body with a mesh: its modes, and the effects that its scene calls for.
+
+use frames_rk4::Paper;
+use std::sync::Arc;
+use std::time::Instant;
+
+use advice::{buckling, limits, unsteady};
+use dynamics::{Effect, LoadedError, Physics, PointShapes};
+use faer::Mat;
+use fem_tet10::{Location, Mesh};
+use modal::{BodyPoint, Modes, ReducedBody};
+use nalgebra::Vector3;
+use scene::{Choice, Frame, Scene};
+
+use crate::assembly::AssembledMesh;
+use crate::error::{BuildError, modal, refuse};
+use crate::load::mesh_load;
+use crate::model::points::{output_points, well_spread};
+use crate::model::{Meshed, Model};
+use crate::progress::{BuildProgress, BuildTimes, timed};
+use crate::reduction::decide::Decision;
+use crate::reduction::manifold::LargeDeflection;
+use crate::reduction::mesh_model::MeshModel;
+use crate::reduction::modal_model::ModalModel;
+use crate::reduction::reduce::Reduction;
+use crate::reduction::survey::Survey;
+use crate::stress::shapes::BodyStress;
+use crate::structure::Structure;
+use crate::structure::solved::Solved;
+use crate::support::reactions::SupportRows;
+
+/// The model of a scene, from its mesh and the modes that it asks for.
+pub(crate) fn reduce(
+    scene: &Scene,
+    assembled: &AssembledMesh,
+    solved: &Solved<'_>,
+    modes: Modes,
+    mut times: BuildTimes,
+    progress: &mut dyn FnMut(BuildProgress),
+) -> Result<Model, BuildError> {
+    let AssembledMesh { mesh, support, drive, .. } = assembled;
+    let dofs = assembled.dofs();
+    let loads = mesh_load::on_mesh(scene, mesh, dofs, &Arc::new(solved.unit_weight()?))?;
+    let model = MeshModel { scene, mesh, dofs, solver: solved, support, loads, drive: drive.clone() };
+
+    if !scene.time.method.abilities.any_mass && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {
+        let found = "a scheme of the paper's formulation, which knows no rotations of nodes, for a mass that is no scalar for each node";
+        let help = "set `formulation = \"conservative\"`";
+        return Err(scene.refuse("time", found, "the conservative form", help).into());
+    }
+
+    let on_all_modes = timed(&mut times.reduction, || ModalModel::new(&model, &modes))?;
+    let started = Instant::now();
+    let survey = Survey::new(&model, modes, on_all_modes, progress)?;
+    let has_statics = survey.statics.any();
+    let decision = Decision::new(scene, &survey);
+    let Reduction { modes, modal: reduced, large, backbones, stress, advice } =
+        Reduction::new(&model, survey, &decision)?;
+    if has_statics {
+        times.statics = started.elapsed();
+    }
+
+    let started = Instant::now();
+    let points = match &large {
+        Some(large) => points(scene, mesh, large.modes(), large.manifold.body())?,
+        None => points(scene, mesh, &modes, &reduced.body)?,
+    };
+    let reference_points = reference_points(scene, mesh, &reduced.body);
+    let extended = large.as_ref().map(|large| (&large.manifold, large.modes()));
+    let has_gravity = decision.effects[Effect::Gravity];
+    let body_stress = BodyStress::new(&model, &modes, extended, &reduced.body.origin, has_gravity)?;
+    let (manifold, shapes) = match &large {
+        Some(large) => (Some(&large.manifold), large.modes()),
+        None => (None, &modes),
+    };
+    let supports = SupportRows::new(&model, shapes, manifold, &decision.effects, has_gravity)?;
+    times.reduction += started.elapsed();
+
+    let Decision { mut effects, lacks, .. } = decision;
+    effects[Effect::LargeDeflection] = large.is_some();
+    let following = large.as_ref().map_or_else(Mat::new, LargeDeflection::following);
+    let large_deflection = large.map(|large| large.manifold);
+    let mut model = Model {
+        physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive, large_deflection },
+        points,
+        paper: Paper { reference_points },
+        advice,
+        refusal: None,
+        times,
+        all_loads: reduced.loads.loads.clone(),
+        loads: reduced.loads.acting(effects[Effect::Gravity]),
+        damping_ratios: if effects[Effect::Damping] {
+            reduced.damping_ratios.clone()
+        } else {
+            vec![0.0; reduced.body.flexible()]
+        },
+        all_damping_ratios: reduced.damping_ratios,
+        size: reduced.size,
+        // Who switches static shapes off is not warned again.
+        left_out: lacks.filter(|_| scene.modes.static_correction == Choice::Auto).unwrap_or_default(),
+        backbones,
+        stress: body_stress,
+        supports,
+        body: reduced.body,
+        meshed: Some(Meshed {
+            matrix_bytes: solved.matrix_bytes()?,
+            mesh: Arc::clone(mesh),
+            elements: assembled.elements().cloned(),
+            mesh_notes: assembled.mesh_notes.clone(),
+            checks: solved.checks(&modes)?,
+            modes,
+            following,
+        }),
+    };
+    let initial = model.initial(scene);
+    model.refusal = buckling(stress.buckling_ratio);
+    if model.refusal.is_none() && model.is_stressed() {
+        let least = model.damping_ratios.iter().copied().fold(f64::INFINITY, f64::min);
+        model.refusal = match model.loaded_modes(scene) {
+            Ok(modes) => unsteady(&modes, least),
+            // How far the run bends is watched while it runs.
+            Err(LoadedError::NoRest) => None,
+            Err(source) => return Err(BuildError::Loaded { scene: scene.path.clone(), source: Box::new(source) }),
+        };
+    }
+    if model.refusal.is_none() {
+        model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;
+    }
+    // What stresses the body may stiffen it beyond what the estimate knows.
+    if model.refusal.is_none() && !model.is_stressed() {
+        model.refusal = model.advice.refusal();
+    }
+    Ok(model)
+}
+
+/// The points of the output, by name.
+fn points(
+    scene: &Scene,
+    mesh: &Mesh,
+    modes: &Modes,
+    body: &ReducedBody,
+) -> Result<Vec<(String, PointShapes)>, BuildError> {
+    output_points(scene, |key: String, at: [f64; 3]| {
+        let Location { nodes, weights } = mesh.locate(at).map_err(|error| refuse(scene, &key, error))?;
+        let point = BodyPoint::new(modes, mesh.positions(), &nodes, &weights);
+        Ok(PointShapes::new(body, &point.map_err(modal(scene))?))
+    })
+}
+
+/// R, P and Q of the scene, or three nodes that lie far from each other, from the origin of the body.
+fn reference_points(scene: &Scene, mesh: &Mesh, body: &ReducedBody) -> [Vector3<f64>; 3] {
+    match scene.frame {
+        Some(Frame { r, p, q }) => [r, p, q],
+        None => well_spread(mesh.positions(), &body.center_of_mass),
+    }
+    .map(|x| Vector3::from(x) - body.origin)
+}

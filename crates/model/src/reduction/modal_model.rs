@@ -1,0 +1,96 @@
+//! A body and its loads in the coordinates of some modes.
+
+use advice::Case;
+use dynamics::Initial;
+use modal::{Modes, ReducedBody};
+use nalgebra::Vector3;
+
+use crate::error::{BuildError, modal};
+use crate::load::directed::Directed;
+use crate::load::mesh_load::{BodyLoads, MeshLoad};
+use crate::model::Size;
+use crate::model::initial::initial;
+use crate::reduction::damping::damping_ratios;
+use crate::reduction::mesh_model::MeshModel;
+use crate::stress::spin::SpinStress;
+
+/// A body and its loads in the coordinates of some modes.
+pub(crate) struct ModalModel {
+    pub body: ReducedBody,
+    pub loads: BodyLoads,
+    pub size: Size,
+    pub damping_ratios: Vec<f64>,
+    pub initial: Initial,
+}
+
+impl ModalModel {
+    /// Without the stress stiffness of the spin.
+    pub fn new(model: &MeshModel<'_>, modes: &Modes) -> Result<Self, BuildError> {
+        let &MeshModel { scene, mesh, .. } = model;
+        let body = model.solver.reduced_body(modes)?;
+        let loads = loads(model, &body, modes, &[])?;
+        let peak = |shape: faer::ColRef<'_, f64>| {
+            let at = |node: usize| Vector3::from_fn(|axis, _| shape[model.dofs * node + axis]).norm();
+            (0..shape.nrows() / model.dofs).map(at).fold(0.0, f64::max)
+        };
+        Ok(Self {
+            loads,
+            size: Size { length: mesh.diagonal(), peaks: modes.shapes.as_ref().col_iter().map(peak).collect() },
+            damping_ratios: damping_ratios(scene, &body),
+            initial: initial(scene, &body),
+            body,
+        })
+    }
+
+    /// The same model with a stress stiffness of the spin, or without any.
+    pub fn with_stress_stiffness(self, model: &MeshModel<'_>, spin: Option<&SpinStress>) -> Result<Self, BuildError> {
+        let body = self.body.with_stress_stiffness(spin.map(SpinStress::stiffness)).map_err(modal(model.scene))?;
+        Ok(Self { body, ..self })
+    }
+
+    /// The same model with loads in the modes of `body`, which may be the extended shapes of large modes, that stiffen it by
+    /// the stress of each.
+    pub fn with_stress(
+        self,
+        model: &MeshModel<'_>,
+        body: Option<&ReducedBody>,
+        modes: &Modes,
+        stress: &[Vec<Directed>],
+    ) -> Result<Self, BuildError> {
+        Ok(Self { loads: loads(model, body.unwrap_or(&self.body), modes, stress)?, ..self })
+    }
+
+    /// The run of the scene as [`advice`] sees it, where nothing is known of static responses and backbones.
+    pub fn case<'a>(&'a self, model: &'a MeshModel<'_>) -> Case<'a> {
+        Case {
+            body: &self.body,
+            damping_ratios: &self.damping_ratios,
+            loads: &self.loads.loads,
+            is_gravity: &self.loads.is_gravity,
+            drive: model.drive.as_ref(),
+            initial: &self.initial,
+            end: model.scene.time.end,
+            length: self.size.length,
+            peaks: &self.size.peaks,
+            static_compliances: &[],
+            centrifugal_remainders: &[],
+            backbones: &[],
+            manifold: None,
+        }
+    }
+}
+
+/// The loads on the modes of a body.
+fn loads(
+    model: &MeshModel<'_>,
+    body: &ReducedBody,
+    modes: &Modes,
+    stress: &[Vec<Directed>],
+) -> Result<BodyLoads, BuildError> {
+    let reduced = |(i, load): (usize, &MeshLoad)| {
+        let of_load = stress.get(i).map_or(&[][..], |of_load| of_load);
+        let has_load_stiffness = !of_load.is_empty();
+        Ok((load.reduced(model.scene, model.mesh, body, modes, of_load, has_load_stiffness)?, load.is_gravity()))
+    };
+    model.loads.iter().enumerate().map(reduced).collect()
+}

@@ -1,0 +1,99 @@
+//! Which effects a scene gets.
+
+use advice::Advice;
+use dynamics::{Drive, Effect, EffectMap, Method};
+use modal::{ReducedBody, RigidMotion};
+use scene::{Choice, Constraint, Large, Load, Scene};
+
+use crate::load::mesh_load::MeshLoad;
+use crate::load::turning::{Turning, turning};
+
+/// True if anything may set the body spinning.
+pub(crate) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
+    let set_off = drive.is_some() || scene.initial.angular_velocity != [0.0; 3] || !scene.loads.is_empty();
+    turning(scene, motion, drive) != Turning::Not && set_off
+}
+
+/// True if the stress of loads and drives may stiffen the body.
+pub(crate) fn may_stress(scene: &Scene) -> bool {
+    scene.body.has_elements()
+        && scene.effects.choices[Effect::GeometricStiffening] != Choice::Off
+        && scene.time.method.abilities.geometric_stiffening
+}
+
+/// True if a load stays as it is, seen from the body.
+pub(crate) fn is_steady(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
+    let turns = turning(scene, motion, drive) != Turning::Not;
+    matches!(load.history, dynamics::History::Constant) && (load.follows || !turns)
+}
+
+/// The choice to add static shapes to the `flexible` modes that there are.
+pub(crate) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
+    match scene.modes.static_correction {
+        _ if flexible == 0 => Choice::Off,
+        // The shapes are stiff, which only this scheme does not mind.
+        Choice::Auto if scene.time.method != Method::EXPONENTIAL => Choice::Off,
+        choice => choice,
+    }
+}
+
+/// The effects of the motion of a body of which `keep` modes are kept: what the scene leaves open is as advised.
+pub(crate) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: usize) -> EffectMap<bool> {
+    // The paper's formulation has the effects that it has; gravity is a load like others.
+    let in_any_case = |effect: Effect| !scene.time.method.abilities.switches_effects && effect != Effect::Gravity;
+    let has_weight = !body.motion.is_free() && bears_weight(scene, body.mass);
+    let mut effects = EffectMap::from_fn(|effect| match scene.effects.choices[effect] {
+        Choice::On => true,
+        Choice::Off => false,
+        Choice::Auto => in_any_case(effect) || advice.effects[effect].on || (effect == Effect::Gravity && has_weight),
+    });
+    effects[Effect::Flexibility] = keep > 0;
+    effects[Effect::GeometricStiffening] &=
+        keep > 0 && body.stress_stiffness.is_some() && effects[Effect::DeformedInertia];
+    effects
+}
+
+/// True if the constraint bears the weight of the body, however little that moves it: it is no less than `tolerance` of each
+/// force.
+fn bears_weight(scene: &Scene, mass: f64) -> bool {
+    let largest = |of: fn(&Load) -> Option<f64>| scene.loads.iter().filter_map(of).map(f64::abs).reduce(f64::max);
+    let force = largest(|load| if let Load::Force(force) = load { Some(force.amplitude) } else { None });
+    let gravity = largest(|load| if let Load::Gravity(gravity) = load { Some(gravity.amplitude) } else { None });
+    gravity.is_some_and(|gravity| mass * gravity >= scene.effects.tolerance * force.unwrap_or(0.0))
+}
+
+/// How many modes are large where the scene asks for large deflection and does not say of which.
+const DEFAULT_LARGE: usize = 4;
+
+/// Which of the modes that are kept are large, numbered from 0: those that the scene names, or what is advised. The paper's
+/// formulation has none, and nothing is advised for a body that is not to stiffen: the manifold stiffens its modes. Nor for one
+/// that is driven, whose expected amplitudes are bounds of hundreds of its length.
+pub(crate) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<usize> {
+    let first = |count: usize| (0..keep.min(count)).collect();
+    match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
+        (Choice::Off, _) => Vec::new(),
+        _ if !scene.body.has_elements() => Vec::new(),
+        (Choice::Auto, _) if !scene.time.method.abilities.large_deflection => Vec::new(),
+        (_, Some(Large::Count(count))) => first(*count),
+        (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),
+        (Choice::On, None) => first(DEFAULT_LARGE),
+        (Choice::Auto, None) if scene.effects.choices[Effect::GeometricStiffening] == Choice::Off => Vec::new(),
+        (Choice::Auto, None) if is_driven(scene) => Vec::new(),
+        (Choice::Auto, None) => advice.large_modes(keep).taken,
+    }
+}
+
+fn is_driven(scene: &Scene) -> bool {
+    matches!(
+        scene.constraint,
+        Some(Constraint::Hinge { motion: Some(_), .. } | Constraint::Slider { motion: Some(_), .. })
+    )
+}
+
+/// The effects with what large modes need: what follows them moves along the body, where turning acts on it.
+pub(crate) fn with_large_modes(scene: &Scene, mut effects: EffectMap<bool>, large: &[usize]) -> EffectMap<bool> {
+    for effect in [Effect::Coriolis, Effect::DeformedInertia] {
+        effects[effect] |= !large.is_empty() && scene.effects.choices[effect] == Choice::Auto;
+    }
+    effects
+}

@@ -1,0 +1,92 @@
+//! Third stage: the body that has what was decided.
+
+use advice::{Advice, Backbone, Findings, advise};
+use dynamics::Effect;
+use modal::Modes;
+
+use crate::error::BuildError;
+use crate::reduction::backbones::Backbones;
+use crate::reduction::decide::Decision;
+use crate::reduction::manifold::LargeDeflection;
+use crate::reduction::mesh_model::MeshModel;
+use crate::reduction::modal_model::ModalModel;
+use crate::reduction::survey::Survey;
+use crate::stress::Stress;
+use crate::structure::Structure;
+use crate::structure::statics::Statics;
+
+/// Sentence about effects that may matter but need elements.
+const WITHOUT_ELEMENTS: &str =
+    "By a bound it may matter; it cannot be computed, since the elements of a body of matrices are not known.";
+
+/// A body in the modes that it keeps and its static shapes.
+pub(crate) struct Reduction {
+    pub modes: Modes,
+    pub modal: ModalModel,
+    /// Backbones of the modes that are kept.
+    pub backbones: Vec<Option<Backbone>>,
+    pub stress: Stress,
+    /// The manifold of the large modes, if any are.
+    pub large: Option<LargeDeflection>,
+    /// With what only this body tells.
+    pub advice: Advice,
+}
+
+impl Reduction {
+    pub fn new(model: &MeshModel<'_>, survey: Survey, decision: &Decision) -> Result<Self, BuildError> {
+        let Survey { modes, modal, spin, statics, backbones, advice } = survey;
+        let Backbones { of_modes: mut backbones, derivatives } = backbones;
+        let tolerance = model.scene.effects.tolerance;
+        backbones.truncate(decision.keep);
+        let stiffens = decision.effects[Effect::GeometricStiffening];
+        let has_all = decision.keep == modal.body.flexible() && !decision.has_static_shapes;
+        let (modes, modal, spin, deflection) = if has_all {
+            (modes, modal, spin.filter(|_| stiffens), advice.deflection)
+        } else {
+            let modes = basis(model.solver, &modes, &statics, decision)?;
+            let modal = ModalModel::new(model, &modes)?;
+            let deflection = advise(&modal.case(model), tolerance)?.deflection;
+            let known = spin.map_or_else(Default::default, |spin| spin.of_first(decision.keep));
+            let spin = if stiffens { statics.stress_stiffness(model, &modes, &known)? } else { None };
+            (modes, modal, spin, deflection)
+        };
+        let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
+        let stress = Stress::new(model, &statics, &modes, &modal)?;
+        let (modal, stress, large) = if !decision.large.is_empty() {
+            let large = LargeDeflection::new(model, &modes, &decision.large, &derivatives, &statics, spin.as_ref())?;
+            // The frequencies of these follow their amplitudes. What others draw in is none of them.
+            for k in large.manifold.large() {
+                if let Some(backbone) = backbones.get_mut(*k) {
+                    *backbone = None;
+                }
+            }
+            let stress = large.stressed(model, &modes, &statics, stress)?;
+            let modal = modal.with_stress(model, Some(large.manifold.body()), large.modes(), &stress.of_loads)?;
+            (modal, stress, Some(large))
+        } else if stress.any() {
+            (modal.with_stress(model, None, &modes, &stress.of_loads)?, stress, None)
+        } else {
+            (modal, stress, None)
+        };
+        let findings = Findings { deflection, stress: stress.row.clone(), lacks_stretch: decision.lacks.is_some() };
+        let mut advice = advice.completed(findings);
+        if !model.scene.body.has_elements() {
+            for effect in [Effect::GeometricStiffening, Effect::LargeDeflection] {
+                let row = &mut advice.effects[effect];
+                if row.on {
+                    row.why = WITHOUT_ELEMENTS.to_owned();
+                }
+            }
+        }
+        Ok(Self { modes, modal, large, backbones, stress, advice })
+    }
+}
+
+/// The modes that are kept, and the static shapes.
+fn basis(solver: &dyn Structure, modes: &Modes, statics: &Statics, decision: &Decision) -> Result<Modes, BuildError> {
+    let kept = modes.truncated(decision.keep);
+    if !decision.has_static_shapes {
+        return Ok(kept);
+    }
+    statics.responses().try_fold(kept, |modes, responses| solver.with_static_shapes(modes, responses.as_ref()))
+}

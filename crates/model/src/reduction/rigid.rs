@@ -1,0 +1,79 @@
+//! A rigid body without a mesh.
+
+use advice::{Case, advise};
+use dynamics::{Effect, Physics, PointShapes};
+use faer::Mat;
+use frames_rk4::Paper;
+use modal::{BodyPoint, ReducedBody, Support};
+use nalgebra::{Matrix3, Vector3};
+use scene::{Frame, RigidBody, Scene};
+
+use crate::error::{BuildError, modal};
+use crate::load::mesh_load;
+use crate::model::initial::initial;
+use crate::model::points::output_points;
+use crate::model::{Model, Size};
+use crate::progress::BuildTimes;
+use crate::reduction::physics;
+use crate::support::support;
+
+pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildError> {
+    let (Support { motion, .. }, drive) = support(scene, None)?;
+    let center = Vector3::from(rigid.center_of_mass);
+    let about_center = Matrix3::from_fn(|i, j| rigid.inertia[i][j]);
+    let arm = center - motion.fixed_point().unwrap_or(center);
+    let inertia = about_center + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * rigid.mass;
+    let body = ReducedBody::rigid(rigid.mass, center, inertia, motion).map_err(modal(scene))?;
+    let point = |_: String, at: [f64; 3]| -> Result<PointShapes, BuildError> {
+        let position_body = Vector3::from(at) - body.origin;
+        Ok(PointShapes::new(&body, &BodyPoint { position_body, shapes: Mat::zeros(3, 0) }))
+    };
+    let points = output_points(scene, point)?;
+    let reference_points = match scene.frame {
+        Some(Frame { r, p, q }) => [r, p, q].map(|x| Vector3::from(x) - body.origin),
+        None => [Vector3::zeros(), Vector3::x(), Vector3::y()],
+    };
+    let loads = mesh_load::on_rigid(scene, &body)?;
+    // The radius of gyration stands for the size.
+    let inertia_trace: f64 = (0..3).map(|i| rigid.inertia[i][i]).sum();
+    let size = Size { length: (inertia_trace / rigid.mass).sqrt(), peaks: Vec::new() };
+    let initial = initial(scene, &body);
+    let advice = advise(
+        &Case {
+            body: &body,
+            damping_ratios: &[],
+            loads: &loads.loads,
+            is_gravity: &loads.is_gravity,
+            drive: drive.as_ref(),
+            initial: &initial,
+            end: scene.time.end,
+            length: size.length,
+            peaks: &[],
+            static_compliances: &[],
+            centrifugal_remainders: &[],
+            backbones: &[],
+            manifold: None,
+        },
+        scene.effects.tolerance,
+    )?;
+    let effects = physics::effects(scene, &advice, &body, 0);
+    Ok(Model {
+        meshed: None,
+        all_loads: loads.loads.clone(),
+        loads: loads.acting(effects[Effect::Gravity]),
+        physics: Physics { effects, drive, ..Physics::default() },
+        points,
+        paper: Paper { reference_points },
+        advice,
+        refusal: None,
+        times: BuildTimes::default(),
+        damping_ratios: Vec::new(),
+        all_damping_ratios: Vec::new(),
+        size,
+        body,
+        left_out: Vec::new(),
+        backbones: Vec::new(),
+        stress: None,
+        supports: None,
+    })
+}

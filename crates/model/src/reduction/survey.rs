@@ -1,0 +1,104 @@
+//! First stage: what is known of a body with all the modes that were searched for.
+
+use advice::{Advice, Case, advise, screen};
+use dynamics::Effect;
+use modal::Modes;
+use scene::Choice;
+
+use crate::error::BuildError;
+use crate::progress::BuildProgress;
+use crate::reduction::backbones::{Backbones, backbones};
+use crate::reduction::mesh_model::MeshModel;
+use crate::reduction::modal_model::ModalModel;
+use crate::reduction::physics;
+use crate::stress::spin::SpinStress;
+use crate::structure::statics::{Asked, Statics};
+
+/// Properties of a body with all the modes that were searched for. Those that cannot matter are not computed.
+pub(crate) struct Survey {
+    pub modes: Modes,
+    /// With the stress stiffness of the spin where it may matter.
+    pub modal: ModalModel,
+    /// The stress stiffness of the spin.
+    pub spin: Option<SpinStress>,
+    pub statics: Statics,
+    pub backbones: Backbones,
+    /// On all of the modes.
+    pub advice: Advice,
+}
+
+impl Survey {
+    pub fn new(
+        model: &MeshModel<'_>,
+        modes: Modes,
+        modal: ModalModel,
+        progress: &mut dyn FnMut(BuildProgress),
+    ) -> Result<Self, BuildError> {
+        let tolerance = model.scene.effects.tolerance;
+        let stiffens = may_stiffen(model, &modal)?;
+        let flexible = modal.body.flexible();
+        let has_shapes = physics::static_correction(model.scene, flexible) != Choice::Off;
+        let may_stress = flexible > 0 && physics::may_stress(model.scene);
+        let asked = Asked {
+            loads: (has_shapes || may_stress) && !model.loads.is_empty(),
+            spin: stiffens || may_stretch(model, &modal)?,
+            drive: may_stress && model.drive.is_some(),
+        };
+        if asked.any() {
+            progress(BuildProgress::Statics);
+        }
+        let statics = Statics::new(model, &modes, &modal.body.origin, asked)?;
+        let spin = if stiffens { statics.stress_stiffness(model, &modes, &Default::default())? } else { None };
+        let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
+
+        let case = Case {
+            static_compliances: if has_shapes { statics.compliances() } else { &[] },
+            centrifugal_remainders: statics.remainders(),
+            ..modal.case(model)
+        };
+        let first = advise(&case, tolerance)?;
+        let backbones = backbones(model, &modes, &first)?;
+        let advice = if backbones.of_modes.iter().any(Option::is_some) {
+            advise(&Case { backbones: &backbones.of_modes, ..case }, tolerance)?
+        } else {
+            first
+        };
+        Ok(Self { modes, modal, spin, statics, backbones, advice })
+    }
+}
+
+/// True if the stress of the spin may matter, and is to be computed.
+fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
+    let &MeshModel { scene, support, .. } = model;
+    let has_none = modal.body.flexible() == 0 || !scene.body.has_elements();
+    if has_none || scene.effects.choices[Effect::DeformedInertia] == Choice::Off {
+        return Ok(false);
+    }
+    Ok(match scene.effects.choices[Effect::GeometricStiffening] {
+        Choice::On => true,
+        Choice::Off => false,
+        Choice::Auto => {
+            scene.time.method.abilities.geometric_stiffening
+                && physics::may_spin(scene, support.motion, model.drive.as_ref())
+                && screen(&modal.case(model), scene.effects.tolerance)?.on
+        }
+    })
+}
+
+/// True if the modes may leave out something of the static response to the spin that matters, which is to be computed:
+/// for static shapes, or to tell that they are missing.
+fn may_stretch(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
+    let &MeshModel { scene, support, .. } = model;
+    let acts = modal.body.flexible() > 0
+        && scene.effects.choices[Effect::DeformedInertia] != Choice::Off
+        && physics::may_spin(scene, support.motion, model.drive.as_ref());
+    Ok(acts
+        && match scene.modes.static_correction {
+            Choice::On => true,
+            Choice::Off => false,
+            Choice::Auto => {
+                let tolerance = scene.effects.tolerance;
+                advise(&modal.case(model), tolerance)?.stretch >= tolerance
+            }
+        })
+}

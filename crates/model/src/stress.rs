@@ -1,0 +1,156 @@
+//! Stress of loads and of a drive, and the stiffness by it.
+
+pub(crate) mod left_out;
+pub(crate) mod shapes;
+pub(crate) mod site;
+pub(crate) mod spin;
+
+use advice::{Row, StressField, StressSource, stress, stress_row};
+use dynamics::Effect;
+use faer::{Mat, MatRef, Scale};
+use fem_tet10::GeometricTerms;
+use modal::{BucklingAccuracy, Modes};
+use scene::Choice;
+
+use crate::error::BuildError;
+use crate::load::directed::Directed;
+use crate::reduction::mesh_model::MeshModel;
+use crate::reduction::modal_model::ModalModel;
+use crate::reduction::physics;
+use crate::structure::statics::Statics;
+
+/// A load across a slender body bends it by more than its thickness long before it stresses it much, and the terms of the
+/// initial displacement are wrong there: see [`fem_tet10::reduced_geometric_stiffness`]. They are taken where none of them
+/// exceeds this part of √(λ_k λ_l): what they get wrong is of the size of its square.
+const SMALL: f64 = 0.03;
+/// Terms of the stress of a drive, and of a base that is accelerated alike.
+pub(crate) const DRIVE: GeometricTerms = GeometricTerms::InitialStress;
+/// Loads of which less than this part is at which the body buckles are far from it: an estimate will do.
+const FAR: f64 = 0.1;
+
+/// Stiffness in the modes (nf × nf) by the stress of what acts on a body, where it matters.
+#[derive(Default)]
+pub(crate) struct Stress {
+    /// Stiffness of each load, in the direction of each of its static responses; empty where it is left out.
+    pub of_loads: Vec<Vec<Directed>>,
+    /// Stiffness of a unit acceleration of the drive.
+    pub of_drive: Option<Mat<f64>>,
+    /// The advice on the one that matters most.
+    pub row: Option<Row>,
+    /// The steady dead loads over those at which the body buckles; 0 where they do not make it buckle.
+    pub buckling_ratio: f64,
+}
+
+impl Stress {
+    /// By the static responses to the loads and to the drive.
+    pub fn new(model: &MeshModel<'_>, statics: &Statics, modes: &Modes, body: &ModalModel) -> Result<Self, BuildError> {
+        if !physics::may_stress(model.scene) || modes.shapes.ncols() == 0 {
+            return Ok(Self::default());
+        }
+        let mut found = Self { buckling_ratio: buckling_ratio(model, statics, modes)?, ..Self::default() };
+        let (mut names, mut shown) = (Vec::new(), Vec::new());
+        if let Some(of_loads) = &statics.of_loads {
+            for (i, load) in model.loads.iter().enumerate() {
+                let (response, size) = (of_loads.of_unit(i), load.size());
+                // Gravity stresses no body that falls.
+                if response.norm_max() == 0.0 {
+                    found.of_loads.push(Vec::new());
+                    continue;
+                }
+                let (of_unit, terms) = if load.is_base_acceleration {
+                    (model.solver.stress_stiffness(response, modes, DRIVE, &[])?, DRIVE)
+                } else {
+                    of_load(model, response, modes, size * load.history.largest(model.scene.time.end))?
+                };
+                let mut directed = Vec::new();
+                for (unit, of_unit) in of_loads.vectors(i, load).into_iter().zip(of_unit) {
+                    let (vector, stiffness) = (unit * size, of_unit * Scale(size));
+                    names.push((StressSource::Load(i), load.name_along(&vector)));
+                    // A pressure that follows its surface has a stiffness of its own.
+                    shown.push(match load.follower_change(model.scene, model.mesh, &body.body, modes)? {
+                        Some(change) => &stiffness - change.load_stiffness,
+                        None => stiffness.clone(),
+                    });
+                    directed.push(Directed { vector, stiffness, terms });
+                }
+                found.of_loads.push(directed);
+            }
+        }
+        if let Some(response) = &statics.of_drive {
+            names.push((StressSource::Drive, "the acceleration of the drive".to_owned()));
+            found.of_drive = model.solver.stress_stiffness(response.as_ref(), modes, DRIVE, &[])?.pop();
+            shown.extend(found.of_drive.clone());
+        }
+        found.decided(model, body, &names, &shown)
+    }
+
+    /// Without what the scene leaves open and does not call for.
+    fn decided(
+        mut self,
+        model: &MeshModel<'_>,
+        body: &ModalModel,
+        names: &[(StressSource, String)],
+        stiffness: &[Mat<f64>],
+    ) -> Result<Self, BuildError> {
+        let effects = &model.scene.effects;
+        let fields: Vec<StressField<'_>> = names
+            .iter()
+            .zip(stiffness)
+            .map(|((source, name), stiffness)| StressField { name, source: *source, stiffness: stiffness.as_ref() })
+            .collect();
+        let influences = stress(&body.case(model), &fields, effects.tolerance)?;
+        self.row = stress_row(&fields, &influences, effects.tolerance);
+        let matters = |source: StressSource| {
+            let of_source = names.iter().zip(&influences).filter(|((s, _), _)| *s == source);
+            effects.choices[Effect::GeometricStiffening] == Choice::On
+                || of_source.into_iter().any(|(_, found)| found.influence >= effects.tolerance)
+        };
+        let kept: Vec<bool> = (0..self.of_loads.len()).map(|i| matters(StressSource::Load(i))).collect();
+        let drive_is_kept = matters(StressSource::Drive);
+        for (directed, _) in self.of_loads.iter_mut().zip(kept).filter(|(_, kept)| !kept) {
+            directed.clear();
+        }
+        self.of_drive = self.of_drive.filter(|_| drive_is_kept);
+        Ok(self)
+    }
+
+    /// True if there is any.
+    pub fn any(&self) -> bool {
+        self.of_drive.is_some() || self.of_loads.iter().any(|directed| !directed.is_empty())
+    }
+}
+
+/// The stiffness by each static response to a load of amplitude 1 that is `largest` at most: the initial stress, and the
+/// initial displacement where it is small.
+fn of_load(
+    model: &MeshModel<'_>,
+    responses: MatRef<'_, f64>,
+    modes: &Modes,
+    largest: f64,
+) -> Result<(Vec<Mat<f64>>, GeometricTerms), BuildError> {
+    let all = model.solver.stress_stiffness(responses, modes, GeometricTerms::All, &[])?;
+    let stress = model.solver.stress_stiffness(responses, modes, GeometricTerms::InitialStress, &[])?;
+    let is_small = all.iter().zip(&stress).all(|(all, stress)| {
+        (0..all.ncols()).all(|l| {
+            (0..=l).all(|k| {
+                let scale = (modes.eigenvalues[k] * modes.eigenvalues[l]).sqrt();
+                largest * (all[(k, l)] - stress[(k, l)]).abs() <= SMALL * scale
+            })
+        })
+    });
+    Ok(if is_small { (all, GeometricTerms::All) } else { (stress, GeometricTerms::InitialStress) })
+}
+
+/// The steady dead loads over those at which the body buckles, on the whole mesh: the modes that are kept do not hold the
+/// shape in which it does.
+fn buckling_ratio(model: &MeshModel<'_>, statics: &Statics, modes: &Modes) -> Result<f64, BuildError> {
+    let Some((response, size)) = statics.to_steady_loads(model).filter(|(response, _)| response.norm_max() > 0.0)
+    else {
+        return Ok(0.0);
+    };
+    let ratio = |accuracy| -> Result<f64, BuildError> {
+        Ok(-size * model.solver.lowest_buckling_ratio(response.as_ref(), modes, accuracy)?)
+    };
+    let estimate = ratio(BucklingAccuracy::Estimate)?;
+    if estimate < FAR { Ok(estimate) } else { ratio(BucklingAccuracy::Full) }
+}

@@ -1,0 +1,111 @@
+//! The stress that the modes leave out: of the static response to what acts on the body, less what the modes and static
+//! shapes of the motion have of it. Eq. (S4) of `docs/method/stress.md`:
+//!
+//! ```text
+//! u_j = K⁻¹ f_j (inertia relief)        r_j = u_j − Σ_k φ_k (φ_kᵀ K u_j)/λ_k        σ_left = Σ_j a_j σ(r_j)
+//! ```
+//!
+//! The forces f_j are the loads, in every direction that they may come to have in the body, the centrifugal force of the spin
+//! and the Euler force of its change. The inertia of the modes' own motion and the Coriolis force are not among them.
+
+use dynamics::{DrivenMotion, History, Observation};
+use faer::{Mat, MatRef};
+use modal::{Modes, ReducedBody};
+use nalgebra::Vector3;
+
+use crate::error::BuildError;
+use crate::reduction::mesh_model::MeshModel;
+use crate::stress::site::SiteStress;
+use crate::structure::StaticForces;
+use crate::structure::statics::{Asked, Statics};
+
+/// The stress that the modes leave out of each static response, and how much of each there is at a time.
+#[derive(Debug)]
+pub(crate) struct LeftOut {
+    pub stress: SiteStress,
+    /// Parts of the first columns of `stress`; those of the spin and of its change follow.
+    loads: Vec<LoadPart>,
+}
+
+/// A load, or one of its directions in the body.
+#[derive(Debug)]
+struct LoadPart {
+    history: History,
+    /// Size of the amplitude.
+    size: f64,
+    /// The load of an amplitude of 1 or −1 in global axes, and what stands for it in the body; none of a load whose direction
+    /// there stays.
+    turning: Option<[Vector3<f64>; 2]>,
+}
+
+impl LeftOut {
+    pub fn new(
+        model: &MeshModel<'_>,
+        modes: &Modes,
+        origin: &Vector3<f64>,
+        has_gravity: bool,
+    ) -> Result<Self, BuildError> {
+        let solver = model.solver;
+        let asked = Asked { loads: true, spin: true, drive: false };
+        let statics = Statics::new(model, modes, origin, asked)?;
+        let mut columns: Vec<Mat<f64>> = Vec::new();
+        let mut loads = Vec::new();
+        if let Some(of_loads) = &statics.of_loads {
+            for (i, load) in model.loads.iter().enumerate() {
+                if load.is_gravity() && !has_gravity {
+                    continue;
+                }
+                columns.push(of_loads.of_unit(i).to_owned());
+                let part = |turning| LoadPart { history: load.history.clone(), size: load.size(), turning };
+                let turned = of_loads.turned(i);
+                match load.dead_unit().filter(|_| !turned.is_empty()) {
+                    Some(unit) => loads.extend(turned.iter().map(|turned| part(Some([unit, *turned])))),
+                    None => loads.push(part(None)),
+                }
+            }
+        }
+        columns.extend(statics.of_spin.map(|of_spin| of_spin.responses));
+        for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+            let forces = StaticForces {
+                of_loads: Mat::zeros(modes.shapes.nrows(), 0),
+                spin: false,
+                drive: Some(DrivenMotion::Turn { axis }),
+                origin: *origin,
+            };
+            columns.push(solver.static_responses(modes, &forces)?);
+        }
+        let mut stress = Mat::zeros(6 * solver.stress_sites()?.len(), columns.iter().map(Mat::ncols).sum());
+        let mut first = 0;
+        for responses in columns {
+            let momenta = solver.stiffness_product(responses.as_ref())?;
+            let rest = rest(modes, responses.as_ref(), momenta.as_ref());
+            stress.subcols_mut(first, rest.ncols()).copy_from(solver.nodal_stress(rest.as_ref())?);
+            first += rest.ncols();
+        }
+        Ok(Self { stress: SiteStress::new(&stress), loads })
+    }
+
+    /// How much there is of each now.
+    pub fn amplitudes(&self, now: &Observation) -> Vec<f64> {
+        let of_load = |part: &LoadPart| {
+            let factor = part.history.at(now.time, now.time);
+            let direction = part
+                .turning
+                .map_or(1.0, |[unit, turned]| turned.dot(&now.attitude.to_body(&unit)) / turned.norm_squared());
+            part.size * factor * direction
+        };
+        let omega = &now.omega_body;
+        let of_pair = |(i, j): (usize, usize)| if i == j { 1.0 } else { 2.0 } * omega[i] * omega[j];
+        let spin = ReducedBody::PAIRS.into_iter().map(of_pair);
+        self.loads.iter().map(of_load).chain(spin).chain(now.alpha_body.iter().map(|alpha| -alpha)).collect()
+    }
+}
+
+/// Remainder of the responses beside the modes; `forces` are K times the responses.
+fn rest(modes: &Modes, responses: MatRef<'_, f64>, forces: MatRef<'_, f64>) -> Mat<f64> {
+    let mut parts = modes.shapes.transpose() * forces;
+    for (k, eigenvalue) in modes.eigenvalues.iter().enumerate() {
+        parts.row_mut(k).iter_mut().for_each(|part| *part /= eigenvalue);
+    }
+    responses - &modes.shapes * parts
+}

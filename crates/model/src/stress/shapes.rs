@@ -1,0 +1,169 @@
+//! The stress of a body in its modal coordinates.
+//!
+//! ```text
+//! σ = Σ_a ξ_a σ(ψ_a) + Σ_jk q_j q_k C:½ε₂(φ_j, φ_k)        j, k of the large modes
+//! ```
+//!
+//! Without large modes ξ is q, and the second sum is not there. With them the strain of the displacement alone is wrong:
+//! what draws a bent body in would count as compression, which the rotations of its parts balance. So the sum is the second
+//! Piola–Kirchhoff stress, complete to second order in the large modes; as long as strains are small, it is the true stress
+//! in axes that turn with the material.
+
+use dynamics::{Manifold, Observation};
+use faer::Mat;
+use fem_tet10::{StressSites, von_mises};
+use modal::{Modes, SecondOrderShapes};
+use nalgebra::Vector3;
+use scene::Output;
+
+use crate::error::{BuildError, refuse};
+use crate::reduction::mesh_model::{MeshModel, shapes_of};
+use crate::stress::left_out::LeftOut;
+use crate::stress::site::{SiteStress, combined};
+use crate::structure::Structure;
+
+/// The stress of a body in its coordinates ([`BodyStress::coordinates`]), force per area, body axes, in the order of
+/// [`fem_tet10::COMPONENTS`]: Eq. (S2) of `docs/method/stress.md`.
+#[derive(Debug)]
+pub struct BodyStress {
+    manifold: Option<Manifold>,
+    /// For each point of the output, for each material there, the stress of each coordinate; none if not asked for.
+    points: Vec<Vec<Vec<[f64; 6]>>>,
+    field: Option<Field>,
+    left_out: Option<LeftOut>,
+}
+
+/// The stress of the whole mesh.
+#[derive(Debug)]
+struct Field {
+    sites: StressSites,
+    shapes: SiteStress,
+}
+
+/// Where the von Mises stress is largest at some time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StressPeak {
+    /// The stress, force per area.
+    pub von_mises: f64,
+    /// The node.
+    pub node: u32,
+    /// The von Mises stress, there, of what the modes leave out of the static response to the loads and the spin.
+    pub left_out: f64,
+    /// Its largest one anywhere.
+    pub max_left_out: f64,
+}
+
+impl BodyStress {
+    /// The stress that the scene asks for, if any. `large` are the manifold of the large modes and its extended shapes.
+    pub(crate) fn new(
+        model: &MeshModel<'_>,
+        modes: &Modes,
+        large: Option<(&Manifold, &Modes)>,
+        origin: &Vector3<f64>,
+        has_gravity: bool,
+    ) -> Result<Option<Self>, BuildError> {
+        let &MeshModel { scene, mesh, solver, .. } = model;
+        let Output { stress, peak_stress, stress_field, .. } = scene.output;
+        if !scene.output.any_stress() {
+            return Ok(None);
+        }
+        let nodal = of_coordinates(solver, modes, large)?;
+        let sites = solver.stress_sites()?;
+        let mut points = Vec::new();
+        for (name, at) in scene.output.points.iter().filter(|_| stress) {
+            let location = mesh.locate(*at).map_err(|error| refuse(scene, &format!("output.points.{name}"), error))?;
+            let of_material = |weights: Vec<(usize, f64)>| -> Vec<[f64; 6]> {
+                let value = |k: usize, c: usize| weights.iter().map(|(site, w)| w * nodal[(6 * site + c, k)]).sum();
+                (0..nodal.ncols()).map(|k| std::array::from_fn(|c| value(k, c))).collect()
+            };
+            points.push(sites.at(&location).into_iter().map(of_material).collect());
+        }
+        let field =
+            (peak_stress || stress_field).then(|| Field { sites: sites.clone(), shapes: SiteStress::new(&nodal) });
+        let left_out = if peak_stress { Some(LeftOut::new(model, modes, origin, has_gravity)?) } else { None };
+        Ok(Some(Self { manifold: large.map(|(manifold, _)| manifold.clone()), points, field, left_out }))
+    }
+
+    /// Number of points of the output whose stress is known.
+    pub fn points(&self) -> usize {
+        self.points.len()
+    }
+
+    /// The stress at all points; where materials meet, that of the material with the larger von Mises stress.
+    pub fn at_points(&self, modal_displacement: &[f64]) -> impl Iterator<Item = [f64; 6]> + '_ {
+        let coordinates = self.coordinates(modal_displacement);
+        self.points.iter().map(move |materials| larger(materials.iter().map(|shapes| combined(shapes, &coordinates))))
+    }
+
+    /// The largest von Mises stress of the body as it is now; none if it was not asked for. Its work goes with the mesh.
+    pub fn peak(&self, now: &Observation) -> Option<StressPeak> {
+        let (Field { sites, shapes }, left_out) = (self.field.as_ref()?, self.left_out.as_ref()?);
+        let coordinates = self.coordinates(&now.modal_displacement);
+        let (site, peak) = shapes.largest(&coordinates)?;
+        let missing = left_out.amplitudes(now);
+        let max_left_out = left_out.stress.largest(&missing).map_or(0.0, |(_, largest)| largest);
+        let node = sites.nodes()[site];
+        Some(StressPeak { von_mises: peak, node, left_out: left_out.stress.at(site, &missing), max_left_out })
+    }
+
+    /// The nodes that stress is known at (m), once for each material there, and the stress of a unit of each coordinate, one
+    /// after the other (each m × 6); none without [`Output::stress_field`].
+    pub(crate) fn field(&self) -> Option<(&[u32], Vec<Vec<f64>>)> {
+        let Field { sites, shapes } = self.field.as_ref()?;
+        let of_coordinate = |k: usize| (0..sites.len()).flat_map(|site| shapes.of_site(site)[k]).collect();
+        Some((sites.nodes(), (0..shapes.coordinates()).map(of_coordinate).collect()))
+    }
+
+    /// The stress of a unit of each coordinate at a node, once for each material there.
+    fn at_node(&self, node: u32) -> impl Iterator<Item = &[[f64; 6]]> {
+        let of_field = |field: &'_ Field| field.sites.of_node(node);
+        let sites = self.field.as_ref().map_or(0..0, of_field);
+        sites.filter_map(|site| Some(self.field.as_ref()?.shapes.of_site(site)))
+    }
+
+    /// The stress at a node in these [`coordinates`](Self::coordinates), of the material with the larger von Mises stress; zero
+    /// without [`Output::stress_field`].
+    ///
+    /// # Panics
+    /// Where there is no such node.
+    pub fn in_coordinates(&self, node: u32, coordinates: &[f64]) -> [f64; 6] {
+        larger(self.at_node(node).map(|shapes| combined(shapes, coordinates)))
+    }
+
+    /// The coordinates of the stress: those of the modes and of the shapes that follow them
+    /// ([`Model::coordinates`](crate::Model::coordinates)), then the products of the large modes.
+    pub fn coordinates(&self, modal_displacement: &[f64]) -> Vec<f64> {
+        let q = modal_displacement;
+        let Some(manifold) = &self.manifold else { return q.to_vec() };
+        let mut coordinates = vec![0.0; manifold.body().flexible()];
+        manifold.coordinates(q, &mut coordinates);
+        let large = manifold.large();
+        let product = |[i, j]: [usize; 2]| q[large[i]] * q[large[j]];
+        coordinates.extend(SecondOrderShapes::pairs(large.len()).into_iter().map(product));
+        coordinates
+    }
+}
+
+/// The one with the larger von Mises stress.
+fn larger(stresses: impl Iterator<Item = [f64; 6]>) -> [f64; 6] {
+    stresses.max_by(|a, b| von_mises(a).total_cmp(&von_mises(b))).unwrap_or_default()
+}
+
+/// The stress (6m × …) of each coordinate at the sites.
+fn of_coordinates(
+    solver: &dyn Structure,
+    modes: &Modes,
+    large: Option<(&Manifold, &Modes)>,
+) -> Result<Mat<f64>, BuildError> {
+    let Some((manifold, extended)) = large else { return solver.nodal_stress(modes.shapes.as_ref()) };
+    let linear = solver.nodal_stress(extended.shapes.as_ref())?;
+    let large = manifold.large();
+    let pairs = SecondOrderShapes::pairs(large.len());
+    let second = solver.second_order_nodal_stress(shapes_of(modes, large).as_ref(), &pairs)?;
+    // A product of two modes stands for both orders of its pair.
+    let factor = |[j, k]: [usize; 2]| if j == k { 1.0 } else { 2.0 };
+    let first = linear.ncols();
+    Ok(Mat::from_fn(linear.nrows(), first + second.ncols(), |i, j| {
+        if j < first { linear[(i, j)] } else { factor(pairs[j - first]) * second[(i, j - first)] }
+    }))
+}

@@ -1,0 +1,32 @@
+//! How much work of the mesh's size a body takes, so that it does not grow unseen.
+
+use model::{BuildWork, Builder};
+
+use crate::bar;
+
+const SPIN: &str = "[initial]\nangular_velocity = [3.0, 5.0, 40.0]";
+
+fn work(modes: &str, effects: &str) -> BuildWork {
+    let scene = bar(modes, &format!("[effects]\n{effects}\n{SPIN}"), "end = 1e-4\nstep = 1e-5");
+    let assembly = Builder::default().assemble(&scene, |_| ()).unwrap();
+    let mut variants = assembly.variants().unwrap();
+    variants.build(&scene, |_| ()).unwrap();
+    variants.work()
+}
+
+#[test]
+fn four_large_modes_and_the_stress_of_the_spin_take_so_much() {
+    let none = "geometric_stiffening = false\nlarge_deflection = false\nrefuse = false";
+    let plain = work("flexible = 10", none);
+    assert_eq!(plain.element_passes, 0);
+    let spin = "geometric_stiffening = true\ndeformed_inertia = true\nrefuse = false";
+    let large = work("flexible = 10\nlarge = [1, 2, 3, 4]", &format!("{spin}\nlarge_deflection = true"));
+    // The spin has its static responses in both. Ten pairs of modes take three solutions each (a plate takes two). Of the
+    // elements: the stiffness of the spin in the modes, then in the static shapes, each by all terms and by the initial
+    // stress; that of the large modes by the initial stress; the forces and the energies of the pairs.
+    println!("{plain:?}, {large:?}");
+    assert!(plain.columns > 0 && large.columns > plain.columns && large.element_passes > 0, "{plain:?}, {large:?}");
+    assert!(large.columns - plain.columns <= 30, "{plain:?}, {large:?}");
+    assert!(large.blocks - plain.blocks <= 3, "{plain:?}, {large:?}");
+    assert!(large.element_passes <= 7, "{large:?}");
+}
