@@ -20,8 +20,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::array::{Kind, bytes};
-use crate::digest::{Digest, Hash};
 use crate::error::BodyFileError;
+use keys::{Digest, Hash};
 
 const MAGIC: &[u8; 16] = b"flexframe body \n";
 /// The version of the format that is written and read.

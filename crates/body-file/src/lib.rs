@@ -10,14 +10,12 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod array;
-mod digest;
 mod error;
 mod head;
 mod reader;
 mod writer;
 
 pub use array::{Array, Kind, Number};
-pub use digest::{Digest, Hash, HashedReader};
 pub use error::BodyFileError;
 pub use reader::BodyFile;
 pub use writer::{Declared, Writer};

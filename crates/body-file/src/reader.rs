@@ -6,9 +6,9 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use crate::array::{Array, Kind, Number, bytes};
-use crate::digest::Hash;
 use crate::error::BodyFileError;
 use crate::head::Description;
+use keys::Hash;
 
 /// An open body file.
 #[derive(Debug)]

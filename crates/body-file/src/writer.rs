@@ -11,9 +11,9 @@ use hdf5::types::VarLenUnicode;
 use whole_file::TemporaryFile;
 
 use crate::array::{Kind, Number};
-use crate::digest::Hash;
 use crate::error::BodyFileError;
 use crate::head::{Description, StoredArray};
+use keys::Hash;
 
 /// A dataset that is going to be written.
 #[derive(Debug, Clone, PartialEq)]

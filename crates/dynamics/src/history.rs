@@ -8,6 +8,7 @@ mod table;
 use std::f64::consts::{PI, TAU};
 
 pub use expression::Expression;
+use keys::{Key, Keyed};
 use serde::Deserialize;
 pub use table::Table;
 
@@ -295,5 +296,34 @@ pub(crate) fn positive(what: &'static str, found: f64) -> Result<(), SetupError>
         Ok(())
     } else {
         Err(SetupError::Value { what, found, expected: "a positive number" })
+    }
+}
+
+impl Keyed for History {
+    fn key(&self, key: Key) -> Key {
+        match self {
+            Self::Constant => key.of("constant", 1),
+            Self::Step { at } => key.of("step", 1).with("at", at),
+            Self::Ramp { start, duration } => key.of("ramp", 1).with("start", start).with("duration", duration),
+            Self::HalfSine { start, duration } => {
+                key.of("half-sine", 1).with("start", start).with("duration", duration)
+            }
+            Self::Sine { frequency, phase, start, duration } => {
+                let key = key.of("sine", 1).with("frequency", frequency).with("phase", phase);
+                key.with("start", start).with("duration", duration)
+            }
+            Self::Sweep { from, to, start, duration } => {
+                key.of("sweep", 1).with("from", from).with("to", to).with("start", start).with("duration", duration)
+            }
+            Self::Table(table) => table.key(key),
+            Self::Expression(expression) => {
+                let key = key.of("expression", 1).with("text", expression.text());
+                key.with("discontinuities", expression.discontinuities())
+            }
+            Self::Product { factors } => {
+                let key = key.of("product", 1).with("factors", &factors.len());
+                factors.iter().fold(key, |key, factor| factor.key(key))
+            }
+        }
     }
 }

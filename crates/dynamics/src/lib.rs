@@ -67,4 +67,5 @@ pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 
 /// Crates whose types are in the interface.
+pub use keys::{Key, Keyed};
 pub use {faer, modal, nalgebra, rigid_kin};

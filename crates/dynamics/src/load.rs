@@ -15,6 +15,7 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
+use keys::{Key, Keyed};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::body::second_order::SecondOrder;
@@ -34,7 +35,7 @@ pub use scaled::ScaledLoad;
 /// It sees the motion and adds forces and moments to what is applied. It is evaluated several times a step, so it must
 /// not allocate, and it must depend on nothing but the motion, or steps would not converge.
 ///
-/// A checkpoint knows a load by what [`fmt::Debug`] prints of it, so that must be its data, the same in every process.
+/// A checkpoint knows a load by its [`key`](Self::key).
 pub trait Load: fmt::Debug + Send + Sync + Any {
     /// Adds what the load does to the body in this motion.
     fn apply(&self, motion: &Kinematics, applied: &mut Applied);
@@ -70,6 +71,12 @@ pub trait Load: fmt::Debug + Send + Sync + Any {
     /// Numbers in the matrices that an evaluation reads for it.
     fn matrix_entries(&self) -> usize {
         0
+    }
+
+    /// The key with the data of the load, by which a checkpoint knows it: the same in every process. By default with what
+    /// [`fmt::Debug`] prints.
+    fn key(&self, key: Key) -> Key {
+        key.of("load", 1).with("debug", &*format!("{self:?}"))
     }
 
     /// Refuses numbers that are not finite, and shapes of another body than one with `flexible` modes.
@@ -427,4 +434,15 @@ fn check_vector(
         return Err(SetupError::Length { what: "the point of a load", expected: flexible, found: modes });
     }
     Ok(())
+}
+
+impl Keyed for LoadFrame {
+    fn key(&self, key: Key) -> Key {
+        match self {
+            Self::Global => "global",
+            Self::Body => "body",
+            Self::Material => "material",
+        }
+        .key(key)
+    }
 }

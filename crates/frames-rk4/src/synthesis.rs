@@ -8,7 +8,7 @@
 use dynamics::modal::ReducedBody;
 use dynamics::nalgebra::{Matrix3, Vector3};
 use dynamics::rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
-use dynamics::{Abilities, Begin, Beginning, Initial, Method, Setup, SetupError, StepError, StepLimit, Work};
+use dynamics::{Abilities, Begin, Beginning, Initial, Key, Method, Setup, SetupError, StepError, StepLimit, Work};
 
 use crate::modal_rotation::ModalRotation;
 use crate::model::{LinearMotion, ModalModel};
@@ -253,6 +253,10 @@ impl Begin for Paper {
         let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
         let scheme = PaperScheme::new(setup.body, model, self.reference_points, setup.initial)?;
         Ok(Beginning { motion: Box::new(scheme), energy_of_loads: setup.energy_of_loads()? })
+    }
+
+    fn key(&self, key: Key) -> Key {
+        PAPER.key(key).with("reference points", self.reference_points.as_slice())
     }
 }
 

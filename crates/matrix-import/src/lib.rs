@@ -13,8 +13,8 @@ mod source;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use body_file::{Digest, Hash};
 use faer::sparse::SparseColMat;
+use keys::{Digest, Hash};
 
 use dofs::{Order, read_dofs};
 use entries::{Form, Index, Rows};

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
-use body_file::{Digest, Hash, HashedReader};
+use keys::{Digest, Hash, HashedReader};
 
 use crate::error::{MatrixError, Which};
 

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use body_file::{Digest, Hash};
 use fem_tet10::{Mesh, MeshError, msh_bytes, parse_msh};
+use keys::{Hash, Key};
 use whole_file::TemporaryFolder;
 
 use crate::contents::{Copies, ReadFile, contents, opened};
@@ -77,11 +77,12 @@ impl MeshFile {
             return Some(Hash::of(bytes));
         }
         // Whoever wrote it is trusted or not, the mesh is the same.
-        let settings = ImportSettings { trust_geometry: false, ..self.settings };
-        let start = Digest::new().text(&format!("{:?} {settings:?}", self.reader));
-        let with = |digest: Digest, file: &ReadFile| match &file.bytes {
-            Some(bytes) => digest.text(&file.name).numbers(bytes),
-            None => digest,
+        let ImportSettings { mesh_size, raise_order, trust_geometry: _ } = &self.settings;
+        let start = Key::new().of("mesh", 1).with("reader", self.reader.name());
+        let start = start.with("mesh size", mesh_size).with("raise order", raise_order);
+        let with = |key: Key, file: &ReadFile| match &file.bytes {
+            Some(bytes) => key.with("name", file.name.as_str()).with("bytes", &Hash::of(bytes)),
+            None => key,
         };
         Some(files.iter().fold(start, with).finish())
     }

@@ -19,6 +19,18 @@ pub enum Reader {
     Meshio,
 }
 
+impl Reader {
+    /// Its name in keys.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::GmshMesher => "gmsh, meshing",
+            Self::GmshConverter => "gmsh, converting",
+            Self::Meshio => "meshio",
+        }
+    }
+}
+
 /// Geometry.
 const MESHED: [&str; 7] = ["geo", "geo_unrolled", "step", "stp", "iges", "igs", "brep"];
 /// Meshes that meshio does not know.

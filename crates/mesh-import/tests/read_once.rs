@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use body_file::Hash;
+use keys::Hash;
 use mesh_import::{ImportSettings, MeshFile};
 
 /// A bar of this length along x.

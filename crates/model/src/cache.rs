@@ -16,7 +16,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use body_file::{BodyFileError, Declared, Digest, Hash, Writer};
+use body_file::{BodyFileError, Declared, Writer};
+use keys::{Hash, Key};
 
 /// Bytes that the user's cache may have.
 const LIMIT: u64 = 4 << 30;
@@ -262,20 +263,25 @@ fn entries(folder: &Path) -> impl Iterator<Item = fs::DirEntry> {
 /// of the program, and what its processor can do.
 fn program(file: Option<&Path>) -> String {
     let file = file.map_or_else(std::env::current_exe, |file| Ok(file.to_owned()));
-    let built = file.and_then(fs::metadata).map(|file| (file.len(), file.modified().ok()));
-    let text = format!("{} {} {built:?} {}", env!("CARGO_PKG_VERSION"), std::env::consts::ARCH, features());
-    let digits = Digest::new().text(&text).finish().to_string();
+    let built = file.and_then(fs::metadata).ok();
+    let changed = built.as_ref().and_then(|file| file.modified().ok()?.duration_since(UNIX_EPOCH).ok());
+    let key = Key::new().of("program", 1).with("version", env!("CARGO_PKG_VERSION"));
+    let key = key.with("size", &built.map(|file| file.len()));
+    let key = key.with("seconds", &changed.map(|time| time.as_secs()));
+    let key = key.with("nanoseconds", &changed.map(|time| time.subsec_nanos()));
+    let key = key.with("processor", std::env::consts::ARCH).with("instructions", &features());
+    let digits = key.finish().to_string();
     digits[..PROGRAM_DIGITS].to_owned()
 }
 
-/// Sets of instructions that faer chooses from.
-fn features() -> String {
+/// Sets of instructions that faer chooses from: 1 for each that is there.
+fn features() -> Vec<u32> {
     #[cfg(target_arch = "x86_64")]
     {
-        let has =
-            [is_x86_feature_detected!("avx512f"), is_x86_feature_detected!("avx2"), is_x86_feature_detected!("fma")];
-        format!("{has:?}")
+        [is_x86_feature_detected!("avx512f"), is_x86_feature_detected!("avx2"), is_x86_feature_detected!("fma")]
+            .map(u32::from)
+            .to_vec()
     }
     #[cfg(not(target_arch = "x86_64"))]
-    String::new()
+    Vec::new()
 }

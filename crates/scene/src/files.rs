@@ -1,9 +1,9 @@
 //! The files that a scene itself is read from.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::constraint::Constraint;
-use crate::history::History;
+use crate::history::{History, TablePoints};
 use crate::load::Load;
 use crate::scene::Scene;
 
@@ -11,8 +11,13 @@ impl Scene {
     /// The scene file, and the tables of its histories: what is read to know the scene. Those of its body are read later.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut files = vec![self.path.clone()];
-        files.extend(self.histories().flat_map(tables).map(Path::to_owned));
+        files.extend(self.tables().filter_map(|table| table.file.clone()));
         files
+    }
+
+    /// The tables of its histories, with their points as they were read.
+    pub fn tables(&self) -> impl Iterator<Item = &TablePoints> {
+        self.histories().flat_map(tables)
     }
 
     /// The histories of the loads and of what drives the body.
@@ -34,9 +39,9 @@ impl Scene {
 }
 
 /// The tables of a history.
-fn tables(history: &History) -> Vec<&Path> {
+fn tables(history: &History) -> Vec<&TablePoints> {
     match history {
-        History::Table(table) => table.file.iter().map(PathBuf::as_path).collect(),
+        History::Table(table) => vec![table],
         History::Product { factors } => factors.iter().flat_map(tables).collect(),
         _ => Vec::new(),
     }

@@ -1,5 +1,7 @@
 //! The effects that a motion can have or leave out.
 
+use keys::{Key, Keyed};
+
 use std::ops::{Index, IndexMut};
 
 /// Declares [`Effect`]: a line for each, with its name in a scene and what it is.
@@ -79,5 +81,13 @@ impl<T> Index<Effect> for EffectMap<T> {
 impl<T> IndexMut<Effect> for EffectMap<T> {
     fn index_mut(&mut self, effect: Effect) -> &mut T {
         &mut self.0[effect as usize]
+    }
+}
+
+/// The names of those that are on.
+impl Keyed for EffectMap<bool> {
+    fn key(&self, key: Key) -> Key {
+        let on = || Effect::ALL.into_iter().filter(|effect| self[*effect]);
+        on().fold(key.of("effects", 1).with("count", &on().count()), |key, effect| effect.name().key(key))
     }
 }

@@ -1,5 +1,6 @@
 //! How a motion begins.
 
+use keys::{Key, Keyed};
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
@@ -59,5 +60,18 @@ impl Initial {
             Some(found) => Err(SetupError::Value { what: "an initial value", found, expected: "a finite number" }),
             None => Ok(()),
         }
+    }
+}
+
+impl Keyed for Initial {
+    fn key(&self, key: Key) -> Key {
+        let Self { attitude, origin, velocity, omega, modal_displacement, modal_velocity } = self;
+        key.of("start", 1)
+            .with("attitude", &attitude.wxyz())
+            .with("origin", origin)
+            .with("velocity", velocity)
+            .with("omega", omega)
+            .with("modal displacement", modal_displacement)
+            .with("modal velocity", modal_velocity)
     }
 }

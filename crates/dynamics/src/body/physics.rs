@@ -1,6 +1,7 @@
 //! The physics that a motion is to have.
 
 use faer::Mat;
+use keys::{Key, Keyed};
 use nalgebra::Vector3;
 use serde::Deserialize;
 
@@ -115,5 +116,34 @@ impl Default for Physics {
     /// All effects; nothing drives or stresses the body.
     fn default() -> Self {
         Self { effects: EffectMap::all(), drive: None, drive_stiffness: None, large_deflection: None }
+    }
+}
+
+impl Keyed for Drive {
+    fn key(&self, key: Key) -> Key {
+        let Self { motion, speed: DrivenSpeed { amplitude, history }, added } = self;
+        let key = key.of("drive", 1).with("motion", motion).with("amplitude", amplitude).with("history", history);
+        // Who sets it keeps it.
+        key.with("has added speed", &added.is_some())
+    }
+}
+
+impl Keyed for DrivenMotion {
+    fn key(&self, key: Key) -> Key {
+        match self {
+            Self::Turn { axis } => key.of("turn", 1).with("axis", axis),
+            Self::Slide { direction } => key.of("slide", 1).with("direction", direction),
+        }
+    }
+}
+
+impl Keyed for Physics {
+    fn key(&self, key: Key) -> Key {
+        let Self { effects, drive, drive_stiffness, large_deflection } = self;
+        key.of("physics", 1)
+            .with("effects", effects)
+            .with("drive", drive)
+            .with("drive stiffness", drive_stiffness)
+            .with("large deflection", large_deflection)
     }
 }

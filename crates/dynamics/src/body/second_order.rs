@@ -11,6 +11,7 @@
 use std::sync::Arc;
 
 use faer::Mat;
+use keys::{Key, Keyed};
 use nalgebra::Vector3;
 
 use crate::body::physics::check_unit;
@@ -124,5 +125,13 @@ impl SecondOrder {
 impl Term {
     fn new((direction, stiffness): (Vector3<f64>, Mat<f64>)) -> Self {
         Self { direction, blocked: BlockedMatrix::new(stiffness.as_ref()), stiffness }
+    }
+}
+
+impl Keyed for SecondOrder {
+    fn key(&self, key: Key) -> Key {
+        self.terms.iter().fold(key.of("second order", 1).with("terms", &self.terms.len()), |key, term| {
+            key.with("direction", &term.direction).with("stiffness", &term.stiffness)
+        })
     }
 }

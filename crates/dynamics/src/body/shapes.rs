@@ -1,6 +1,7 @@
 //! A place of the body with what the modes do there.
 
 use faer::MatRef;
+use keys::{Key, Keyed};
 use modal::{BodyPoint, ReducedBody};
 use nalgebra::Vector3;
 
@@ -129,5 +130,20 @@ impl RotationShapes {
     /// Columns of all modes, rigid and flexible (6+nf).
     pub fn columns(&self) -> &[Vector3<f64>] {
         &self.columns
+    }
+}
+
+impl Keyed for PointShapes {
+    fn key(&self, key: Key) -> Key {
+        let Self { position_body, columns, second_order, components: _ } = self;
+        let key = key.of("point", 1).with("position", position_body).with("columns", columns.as_slice());
+        key.with("second order", second_order)
+    }
+}
+
+impl Keyed for RotationShapes {
+    fn key(&self, key: Key) -> Key {
+        let Self { columns, second_order } = self;
+        key.of("rotation", 1).with("columns", columns.as_slice()).with("second order", second_order)
     }
 }

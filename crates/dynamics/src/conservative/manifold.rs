@@ -22,6 +22,7 @@
 use std::sync::Arc;
 
 use faer::{Mat, MatRef};
+use keys::{Hash, Key, Keyed};
 use modal::{ReducedBody, SecondOrderShapes};
 
 use crate::error::SetupError;
@@ -58,6 +59,8 @@ pub struct Manifold(Arc<Constants>);
 struct Constants {
     /// The body in the extended shapes.
     body: ReducedBody,
+    /// By what it was made of.
+    hash: Hash,
     /// Number of modes of the motion.
     modes: usize,
     /// Which of them are large.
@@ -102,6 +105,8 @@ impl Manifold {
     /// finite.
     pub fn new(body: ReducedBody, shapes: &SecondOrderShapes, energies: &[f64]) -> Result<Self, SetupError> {
         let SecondOrderShapes { dynamic, large, slopes, cubic, relief, .. } = shapes;
+        let key = Key::new().of("manifold", 1).with("body", &body).with("modes", dynamic).with("large", large);
+        let key = key.with("slopes", slopes).with("cubic", cubic).with("relief", relief).with("energies", energies);
         let (count, pairs) = (large.len(), SecondOrderShapes::pairs(large.len()));
         for (what, found, expected) in [
             ("the list of energies of second order", energies.len(), pairs.len() * pairs.len()),
@@ -170,6 +175,7 @@ impl Manifold {
             BlockedMatrix::new(MatRef::from_column_major_slice(entries, entries.len() / pairs.len(), pairs.len()))
         };
         Ok(Self(Arc::new(Constants {
+            hash: key.finish(),
             slopes: BlockedMatrix::new(
                 Mat::from_fn(of_slopes.len(), count, |row, k| slope(of_slopes[row][0], of_slopes[row][1], k)).as_ref(),
             ),
@@ -493,4 +499,10 @@ fn large_of(large: &[usize], q: &[f64], x: &mut [f64; MAX_LARGE]) {
 /// Where a triangle row by row has the entry i ≥ j.
 fn entry(i: usize, j: usize) -> usize {
     i * (i + 1) / 2 + j
+}
+
+impl Keyed for Manifold {
+    fn key(&self, key: Key) -> Key {
+        self.0.hash.key(key)
+    }
 }

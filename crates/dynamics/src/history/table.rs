@@ -1,5 +1,7 @@
 //! Histories given by rows of times and values.
 
+use keys::{Key, Keyed};
+
 use crate::error::SetupError;
 
 /// Values at rising times, joined by straight lines; the first value holds before the first time, the last one after
@@ -97,4 +99,10 @@ fn discontinuities(times: &[f64], values: &[f64]) -> Vec<f64> {
         before = after;
     }
     discontinuities
+}
+
+impl Keyed for Table {
+    fn key(&self, key: Key) -> Key {
+        key.of("table", 1).with("times", &self.times).with("values", &self.values)
+    }
 }

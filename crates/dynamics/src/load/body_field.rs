@@ -1,5 +1,6 @@
 //! A field of forces in modal coordinates.
 
+use keys::{Key, Keyed};
 use nalgebra::Vector3;
 
 use crate::body::second_order::SecondOrder;
@@ -21,4 +22,18 @@ pub struct BodyField {
     pub load_stiffness: Vec<f64>,
     /// The geometric stiffness of the field's own stress, along x.
     pub second_order: Option<SecondOrder>,
+}
+
+impl Keyed for BodyField {
+    fn key(&self, key: Key) -> Key {
+        let Self { force_body, moment_body, modal, force_change, moment_change, load_stiffness, second_order } = self;
+        key.of("body field", 1)
+            .with("force", force_body)
+            .with("moment", moment_body)
+            .with("modal", modal)
+            .with("force change", force_change.as_slice())
+            .with("moment change", moment_change.as_slice())
+            .with("load stiffness", load_stiffness)
+            .with("second order", second_order)
+    }
 }

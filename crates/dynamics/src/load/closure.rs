@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use keys::Key;
+
 use super::{Applied, Kinematics, Load};
 
 /// A load from a closure that sees the motion and adds what it does.
@@ -56,6 +58,12 @@ where
 {
     fn apply(&self, motion: &Kinematics, applied: &mut Applied) {
         (self.law)(motion, applied);
+    }
+
+    fn key(&self, key: Key) -> Key {
+        let Self { name, discontinuities, longest_step, law: _ } = self;
+        let key = key.of("closure", 1).with("name", name.as_str()).with("discontinuities", discontinuities);
+        key.with("longest step", longest_step)
     }
 
     fn discontinuities(&self) -> Vec<f64> {

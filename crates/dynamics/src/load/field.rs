@@ -1,5 +1,6 @@
 //! Forces on many nodes that are fixed in body axes, such as a pressure.
 
+use keys::Key;
 use nalgebra::Vector3;
 
 use super::{Applied, BodyField, Kinematics, Load, LoadFrame, Pattern, check_vector};
@@ -22,6 +23,10 @@ impl Load for FieldLoad {
 
     fn history(&self) -> Option<&History> {
         Some(&self.history)
+    }
+
+    fn key(&self, key: Key) -> Key {
+        key.of("field load", 1).with("field", &self.field).with("history", &self.history)
     }
 
     fn is_same(&self, time: f64, branch_times: [f64; 2]) -> bool {

@@ -1,5 +1,6 @@
 //! A force at a point.
 
+use keys::Key;
 use nalgebra::Vector3;
 
 use super::{Applied, Kinematics, Load, LoadFrame, Pattern, check_vector};
@@ -43,6 +44,12 @@ impl Load for PointForce {
 
     fn history(&self) -> Option<&History> {
         Some(&self.history)
+    }
+
+    fn key(&self, key: Key) -> Key {
+        let Self { point, force, frame, turning, history } = self;
+        let key = key.of("point force", 1).with("point", point).with("force", force).with("frame", frame);
+        key.with("turning", turning).with("history", history)
     }
 
     fn is_same(&self, time: f64, branch_times: [f64; 2]) -> bool {

@@ -1,5 +1,6 @@
 //! A moment at a place of the body.
 
+use keys::Key;
 use nalgebra::Vector3;
 
 use super::{Applied, Kinematics, Load, LoadFrame, Pattern, check_vector};
@@ -28,6 +29,12 @@ impl Load for PointMoment {
 
     fn history(&self) -> Option<&History> {
         Some(&self.history)
+    }
+
+    fn key(&self, key: Key) -> Key {
+        let Self { rotation, moment, frame, history } = self;
+        let key = key.of("point moment", 1).with("rotation", rotation).with("moment", moment);
+        key.with("frame", frame).with("history", history)
     }
 
     fn is_same(&self, time: f64, branch_times: [f64; 2]) -> bool {

@@ -1,5 +1,7 @@
 //! A load times a factor from outside.
 
+use keys::Key;
+
 use super::{Applied, Kinematics, Load, Pattern, SharedLoad};
 use crate::error::SetupError;
 use crate::history::History;
@@ -24,6 +26,11 @@ impl Load for ScaledLoad {
         applied.weight *= factor;
         self.load.apply(motion, applied);
         applied.weight = weight;
+    }
+
+    fn key(&self, key: Key) -> Key {
+        // Who sets the factor keeps it.
+        self.load.key(key.of("scaled load", 1))
     }
 
     fn discontinuities(&self) -> Vec<f64> {

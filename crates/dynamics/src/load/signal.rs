@@ -1,6 +1,5 @@
 //! Numbers that a program sets while a run stands between two steps.
 
-use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -8,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 ///
 /// Copies are the same signal. After it has been set, [`Simulation::loads_have_changed`](crate::Simulation::loads_have_changed)
 /// has to be told. A checkpoint does not hold it: who sets it keeps it.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Signal(Arc<[AtomicU64; 3]>);
 
 impl Signal {
@@ -49,12 +48,5 @@ impl Signal {
         for (word, number) in self.0.iter().zip(numbers) {
             word.store(number.to_bits(), Ordering::Relaxed);
         }
-    }
-}
-
-/// It is the same in every process and at all times, so that checkpoints fit runs whose signals differ.
-impl fmt::Debug for Signal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Signal")
     }
 }

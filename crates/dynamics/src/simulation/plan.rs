@@ -1,5 +1,6 @@
 //! Which steps lead through a run: they end exactly at output times and at the discontinuities of load histories.
 
+use keys::{Key, Keyed};
 use serde::{Deserialize, Serialize};
 
 use crate::simulation::checkpoint::{CheckpointError, counts, expect, finite};
@@ -287,6 +288,24 @@ impl HalvedSteps {
         self.level += halvings;
         self.done <<= halvings;
         true
+    }
+}
+
+impl Keyed for StepControl {
+    fn key(&self, key: Key) -> Key {
+        match self {
+            Self::Fixed(step) => key.of("step", 1).with("length", step),
+            Self::Tolerance(tolerance) => key.of("tolerance", 1).with("error", tolerance),
+        }
+    }
+}
+
+impl Keyed for Rows {
+    fn key(&self, key: Key) -> Key {
+        match self {
+            Self::EverySteps(steps) => key.of("every steps", 1).with("steps", steps),
+            Self::Interval(interval) => key.of("interval", 1).with("time", interval),
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use keys::Key;
 use modal::ReducedBody;
 
 use crate::body::initial::Initial;
@@ -64,6 +65,12 @@ pub trait Begin: fmt::Debug + Send + Sync {
     /// # Errors
     /// [`SetupError`].
     fn begin(&self, setup: &Setup) -> Result<Beginning, SetupError>;
+
+    /// The key with its names, and with data of its own if it has any, by which a checkpoint knows it.
+    fn key(&self, key: Key) -> Key {
+        let Method { formulation, scheme, .. } = self.method();
+        key.of("method", 1).with("formulation", formulation).with("scheme", scheme)
+    }
 }
 
 /// A formulation with a scheme that a scene can name.

@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-use body_file::Hash;
+use keys::Hash;
 use model::{Assembly, BuildProgress, Builder, Model, Variants};
 use results::{ColumnTable, Results};
 use scene::Scene;

@@ -1,7 +1,8 @@
 //! The hash by which a body file is known to have the shapes of a run.
 
-use body_file::{BodyFile, Digest, Hash};
+use body_file::BodyFile;
 use faer::MatRef;
+use keys::{Digest, Hash};
 use model::Meshed;
 
 /// The datasets of a body file that are hashed.

@@ -18,6 +18,7 @@
 
 use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatRef};
+use keys::{Key, Keyed};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::ModalError;
@@ -299,5 +300,48 @@ impl BodyPoint {
     /// A point of a rigid body, at a position from its origin.
     pub fn rigid(position_body: Vector3<f64>) -> Self {
         Self { position_body, shapes: Mat::zeros(3, 0) }
+    }
+}
+
+/// By the names that its fields have in a body file.
+impl Keyed for ReducedBody {
+    fn key(&self, key: Key) -> Key {
+        let Constants {
+            mass,
+            center_of_mass,
+            motion,
+            origin,
+            inertia,
+            translation_basis,
+            rotation_basis,
+            circular_frequencies,
+            natural_modes,
+            rotation_products,
+            position_products,
+            inertia_first,
+            inertia_second,
+            gyroscopic,
+            translation_first,
+            rotation_first,
+            stress_stiffness,
+        } = &self.0;
+        key.of("reduced body", 1)
+            .with("mass", mass)
+            .with("center_of_mass", center_of_mass)
+            .with("motion", motion)
+            .with("origin", origin)
+            .with("inertia", inertia)
+            .with("translation_basis", translation_basis)
+            .with("rotation_basis", rotation_basis)
+            .with("circular_frequencies", circular_frequencies)
+            .with("natural_modes", natural_modes)
+            .with("rotation_products", rotation_products.as_flattened())
+            .with("position_products", position_products.as_flattened())
+            .with("inertia_first", inertia_first.as_slice())
+            .with("inertia_second", inertia_second.as_slice())
+            .with("gyroscopic", gyroscopic.as_slice())
+            .with("translation_first", translation_first.as_slice())
+            .with("rotation_first", rotation_first.as_slice())
+            .with("stress_stiffness", &stress_stiffness.as_ref().map(|matrices| matrices.as_slice()))
     }
 }

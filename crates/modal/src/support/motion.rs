@@ -1,5 +1,6 @@
 //! Supports of a body, and the rigid motions that they leave.
 
+use keys::{Key, Keyed};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::ModalError;
@@ -292,5 +293,27 @@ impl std::fmt::Display for RigidMotion {
                 write!(f, "{} and {}", counted(translations, "translation"), counted(rotations, "rotation"))
             }
         }
+    }
+}
+
+impl Keyed for Twist {
+    fn key(&self, key: Key) -> Key {
+        key.of("twist", 1).with("velocity", &self.velocity).with("rotation", &self.rotation)
+    }
+}
+
+impl Keyed for RigidMotion {
+    fn key(&self, key: Key) -> Key {
+        let key = key.of("rigid motion", 1).with("translations", self.translations());
+        let key = key.with("rotations", self.rotations()).with("fixed point", &self.fixed_point);
+        let others = &self.others.list[..self.others.count];
+        others.iter().fold(key.with("others", &others.len()), |key, twist| twist.key(key))
+    }
+}
+
+impl Keyed for Support {
+    fn key(&self, key: Key) -> Key {
+        let dofs: Vec<usize> = self.dofs.iter().flat_map(|(node, dof)| [*node as usize, *dof]).collect();
+        key.of("support", 1).with("motion", &self.motion).with("nodes", &self.nodes).with("dofs", &dofs)
     }
 }

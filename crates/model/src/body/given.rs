@@ -37,13 +37,13 @@ pub(crate) fn read_body_file(
             return Err(refuse(found, "one of the mesh of the scene").into());
         }
     }
-    let of_file: Materials = origin.materials();
+    let of_file: Materials = origin.elements.materials();
     if materials.as_ref().is_some_and(|materials| *materials != of_file) {
         let found = format!("a body file of another material: {of_file:?}");
         return Err(refuse(found, "one of the materials of the scene").into());
     }
-    if point_masses.as_ref().is_some_and(|masses| *masses != origin.point_masses) {
-        let found = format!("a body file with other point masses ({} of them)", origin.point_masses.len());
+    if point_masses.as_ref().is_some_and(|masses| *masses != origin.elements.point_masses) {
+        let found = format!("a body file with other point masses ({} of them)", origin.elements.point_masses.len());
         return Err(refuse(found, "one of the point masses of the scene").into());
     }
     let body = MeshedBody {
@@ -51,7 +51,7 @@ pub(crate) fn read_body_file(
         mesh_size: *mesh_size,
         raise_order: *raise_order,
         materials: of_file,
-        point_masses: origin.point_masses,
+        point_masses: origin.elements.point_masses,
     };
     Ok((file, body))
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use body_file::{BodyFile, BodyFileError};
 use fem_tet10::{Material, Materials, PointMass};
+use scene::MeshedBody;
 use serde::{Deserialize, Serialize};
 
 /// Name of this text in the file.
@@ -11,7 +12,6 @@ pub(crate) const ORIGIN: &str = "origin";
 
 /// Origin of a body file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub(crate) struct Origin {
     /// The version of flexframe that made it.
     pub program_version: String,
@@ -19,14 +19,21 @@ pub(crate) struct Origin {
     pub mesh: String,
     /// BLAKE3 of the mesh file, in hexadecimal digits.
     pub mesh_hash: String,
-    pub material: Option<Material>,
-    /// By group, where there is no one material.
-    pub materials: BTreeMap<String, Material>,
-    pub point_masses: Vec<PointMass>,
+    #[serde(flatten)]
+    pub elements: ElementKeys,
     /// How many modes were searched for.
     pub modes: usize,
-    /// The support.
+    /// The key of the support, in hexadecimal digits.
     pub support: String,
+}
+
+/// Materials and point masses, by their keys in a scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ElementKeys {
+    material: Option<Material>,
+    /// By group, where there is no one material.
+    materials: BTreeMap<String, Material>,
+    pub point_masses: Vec<PointMass>,
 }
 
 impl Origin {
@@ -46,11 +53,26 @@ impl Origin {
         // All its keys are texts: it cannot fail.
         serde_json::to_string(self).unwrap_or_default()
     }
+}
+
+impl ElementKeys {
+    pub fn of(body: &MeshedBody) -> Self {
+        let (material, materials) = match &body.materials {
+            Materials::Uniform(material) => (Some(*material), BTreeMap::new()),
+            Materials::ByGroup(materials) => (None, materials.clone()),
+        };
+        Self { material, materials, point_masses: body.point_masses.clone() }
+    }
 
     pub fn materials(&self) -> Materials {
         match self.material {
             Some(material) => Materials::Uniform(material),
             None => Materials::ByGroup(self.materials.clone()),
         }
+    }
+
+    /// Numbers are what they are to the last bit.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
     }
 }

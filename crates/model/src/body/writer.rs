@@ -3,17 +3,18 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use body_file::{BodyFile, BodyFileError, Declared, Hash, Kind, Number, Writer};
+use body_file::{BodyFile, BodyFileError, Declared, Kind, Number, Writer};
 use dynamics::Manifold;
 use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatRef};
-use fem_tet10::{Materials, Mesh};
+use fem_tet10::Mesh;
+use keys::Hash;
 use modal::{Modes, SecondOrderShapes};
-use scene::{Body, MeshedBody, Scene};
+use scene::{Body, Scene};
 use whole_file::TemporaryFolder;
 
 use crate::assembly::Assembled;
-use crate::body::origin::{ORIGIN, Origin};
+use crate::body::origin::{ElementKeys, ORIGIN, Origin};
 use crate::builder::Builder;
 use crate::cache::Cache;
 use crate::cache::answer::by_columns;
@@ -114,7 +115,14 @@ impl Builder {
             named.add_matrix("stiffness", matrices.stiffness());
             named.add_matrix("mass", matrices.mass());
         }
-        let origin = origin(body, store.mesh_hash(), crate::variants::requested(scene), solved.support_text());
+        let origin = Origin {
+            program_version: env!("CARGO_PKG_VERSION").to_owned(),
+            mesh: body.mesh.display().to_string(),
+            mesh_hash: store.mesh_hash().to_string(),
+            elements: ElementKeys::of(body),
+            modes: crate::variants::requested(scene),
+            support: solved.support_hash(),
+        };
         let mut texts = BTreeMap::from(arrays.texts());
         texts.extend([
             (ORIGIN.to_owned(), origin.to_json()),
@@ -142,23 +150,6 @@ fn without_store(cache: &Cache, scene: &Scene, folder: &Path) -> BuildError {
         "a mesh file that names others which cannot be known before: what the body is made of cannot be told later";
     let help = "write it as one MSH 4.1 file first: gmsh -3 -order 2 -format msh41 BODY.geo -o BODY.msh";
     scene.refuse("body.mesh", found, "a mesh in one file", help).into()
-}
-
-fn origin(body: &MeshedBody, mesh_hash: &Hash, modes: usize, support: String) -> Origin {
-    let (material, materials) = match &body.materials {
-        Materials::Uniform(material) => (Some(*material), BTreeMap::new()),
-        Materials::ByGroup(materials) => (None, materials.clone()),
-    };
-    Origin {
-        program_version: env!("CARGO_PKG_VERSION").to_owned(),
-        mesh: body.mesh.display().to_string(),
-        mesh_hash: mesh_hash.to_string(),
-        material,
-        materials,
-        point_masses: body.point_masses.clone(),
-        modes,
-        support,
-    }
 }
 
 /// Writes the file. An answer that is there by name already is a second name of it.

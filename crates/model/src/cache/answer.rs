@@ -61,7 +61,7 @@ pub(crate) fn by_columns(matrix: MatRef<'_, f64>) -> Vec<f64> {
 }
 
 /// The path of the arrays of an answer.
-pub(crate) fn group(question: &body_file::Hash) -> String {
+pub(crate) fn group(question: &keys::Hash) -> String {
     format!("answers/{question}")
 }
 

@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use body_file::{BodyFile, BodyFileError, Declared, Digest, Hash, Kind, Writer};
+use body_file::{BodyFile, BodyFileError, Declared, Kind, Writer};
+use keys::{Hash, Key};
 use mesh_import::{Imported, MeshFile};
 use scene::{MeshedBody, Scene};
 
-use crate::body::origin::Origin;
+use crate::body::origin::{ElementKeys, Origin};
 use crate::cache::answer::{Answer, Kept, group};
 use crate::cache::{Cache, touch};
 use crate::error::BuildError;
@@ -27,7 +28,7 @@ pub(crate) struct Store {
     /// The hash of what was read of the mesh, or of the matrices.
     mesh: Hash,
     /// The start of all questions about the body.
-    body: Digest,
+    body: Key,
     /// Questions that were asked, for who writes a body file.
     asked: Mutex<BTreeSet<Hash>>,
 }
@@ -51,9 +52,7 @@ impl Store {
         if folder.is_none() && given.is_none() {
             return Ok(None);
         }
-        // Written out, numbers are what they are to the last bit.
-        let about = format!("{:?} {:?}", body.materials, body.point_masses);
-        let body = Digest::new().hash(&mesh).text(&about);
+        let body = Key::new().of("body", 1).with("mesh", &mesh).with("elements", &*ElementKeys::of(body).to_json());
         Ok(Some(Self { cache, given, folder, mesh, body, asked: Mutex::default() }))
     }
 
@@ -61,12 +60,12 @@ impl Store {
     pub fn of_matrices(cache: &Cache, mesh: Hash) -> Option<Self> {
         let cache = cache.clone();
         let folder = Some(cache.of_mesh(&mesh)?);
-        let body = Digest::new().hash(&mesh).text("matrices");
+        let body = Key::new().of("matrices", 1).with("files", &mesh);
         Some(Self { cache, given: None, folder, mesh, body, asked: Mutex::default() })
     }
 
     /// The start of a question about the body.
-    pub fn question(&self) -> Digest {
+    pub fn question(&self) -> Key {
         self.body.clone()
     }
 

@@ -1,7 +1,7 @@
 //! A body of mass and stiffness matrices from another program.
 
-use body_file::Hash;
 use fem_tet10::{Mesh, NodeGroup};
+use keys::Hash;
 use matrix_import::{BodyMatrices, MatrixError, MatrixFiles, Which};
 use modal::{MassMatrix, ModalError, RigidModes, RigidMotion};
 use scene::Scene;

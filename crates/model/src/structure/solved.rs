@@ -3,16 +3,17 @@
 use std::cell::{Cell, OnceCell, RefCell};
 use std::path::{Path, PathBuf};
 
-use body_file::{BodyFileError, Digest, Hash};
+use body_file::BodyFileError;
 use dynamics::DrivenMotion;
 use faer::{ColRef, Mat, MatRef};
 use fem_tet10::{
     AssemblyError, GeometricTerms, StressRecovery, StressSites, extended_geometric_stiffness,
     geometric_stiffness_product, second_order_energies, second_order_forces,
 };
+use keys::{Key, Keyed};
 use modal::{
-    BucklingAccuracy, ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, StaticAccuracy, Support,
-    acceleration_fields, centrifugal_fields, mass_left_out, turning_field,
+    BucklingAccuracy, ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, StaticAccuracy, acceleration_fields,
+    centrifugal_fields, mass_left_out, turning_field,
 };
 use slepc::write_folder;
 
@@ -143,13 +144,13 @@ impl<'a> Solved<'a> {
     /// Answer to a question, which is written out only where something is kept.
     fn ask<T>(
         &self,
-        question: impl FnOnce() -> Digest,
+        question: impl FnOnce() -> Key,
         recall: impl Fn(&Kept<'_>) -> Result<T, BodyFileError>,
         compute: impl FnOnce() -> Result<T, BuildError>,
         keep: impl FnOnce(&T) -> Answer,
     ) -> Result<T, BuildError> {
         let Some(store) = &self.assembled.store else { return compute() };
-        let question = store.question().hash(&question().finish()).finish();
+        let question = store.question().with("question", &question().finish()).finish();
         if let Some(answer) = store.recall(&question, &recall)? {
             return Ok(answer);
         }
@@ -167,7 +168,7 @@ impl<'a> Solved<'a> {
 
     fn ask_fields(
         &self,
-        question: impl FnOnce() -> Digest,
+        question: impl FnOnce() -> Key,
         columns: usize,
         compute: impl FnOnce() -> Result<Mat<f64>, BuildError>,
     ) -> Result<Mat<f64>, BuildError> {
@@ -177,7 +178,7 @@ impl<'a> Solved<'a> {
 
     fn ask_stress(
         &self,
-        question: impl FnOnce() -> Digest,
+        question: impl FnOnce() -> Key,
         columns: usize,
         compute: impl FnOnce(&StressRecovery<'a>) -> Result<Mat<f64>, AssemblyError>,
     ) -> Result<Mat<f64>, BuildError> {
@@ -188,7 +189,7 @@ impl<'a> Solved<'a> {
 
     fn ask_list(
         &self,
-        question: impl FnOnce() -> Digest,
+        question: impl FnOnce() -> Key,
         length: usize,
         compute: impl FnOnce() -> Result<Vec<f64>, BuildError>,
     ) -> Result<Vec<f64>, BuildError> {
@@ -198,7 +199,7 @@ impl<'a> Solved<'a> {
 
     fn ask_count(
         &self,
-        question: impl FnOnce() -> Digest,
+        question: impl FnOnce() -> Key,
         compute: impl FnOnce() -> Result<usize, BuildError>,
     ) -> Result<usize, BuildError> {
         let recall = |kept: &Kept<'_>| Ok(kept.counts::<1>("count")?[0] as usize);
@@ -211,7 +212,7 @@ impl<'a> Solved<'a> {
         let origin = Origin::read(file)?;
         let help = "give the scene what the file was made for, or make the file again: flexframe reduce SCENE -o FILE, from a \
                     scene without `file`";
-        let support = self.support_text();
+        let support = self.support_hash();
         let (found, expected) = if origin.support != support {
             (
                 "a body file of a body that is held otherwise".to_owned(),
@@ -223,20 +224,19 @@ impl<'a> Solved<'a> {
         Err(self.assembled.scene.refuse("body.file", found, expected, help).into())
     }
 
-    /// Text of the support. Its numbers are exact to the last bit.
-    pub fn support_text(&self) -> String {
-        let Support { motion, nodes, dofs } = &self.assembled.support;
-        format!("{motion:?} {dofs:?} {}", Hash::of(nodes))
+    /// Hash of the support, in hexadecimal digits.
+    pub fn support_hash(&self) -> String {
+        self.assembled.support.key(Key::new()).finish().to_string()
     }
 
     /// A question about the body whatever holds it.
-    fn about_the_body(&self, what: &str) -> Digest {
-        Digest::new().text(what)
+    fn about_the_body(&self, what: &str) -> Key {
+        Key::new().of(what, 1)
     }
 
     /// A question about the body with its support.
-    fn about_the_held_body(&self, what: &str) -> Digest {
-        Digest::new().text(what).text(&self.support_text())
+    fn about_the_held_body(&self, what: &str) -> Key {
+        self.about_the_body(what).with("support", &self.assembled.support)
     }
 
     fn rows(&self) -> usize {
@@ -247,7 +247,7 @@ impl<'a> Solved<'a> {
 impl Structure for Solved<'_> {
     fn modes(&self, flexible: usize, progress: &mut dyn FnMut(BuildProgress)) -> Result<Modes, BuildError> {
         self.ask(
-            || self.about_the_held_body("modes").text(&flexible.to_string()),
+            || self.about_the_held_body("modes").with("flexible", &flexible),
             |kept| answers::modes(kept, self.rows(), self.assembled.support.motion),
             || {
                 self.refuse_other_body(flexible)?;
@@ -281,12 +281,12 @@ impl Structure for Solved<'_> {
     }
 
     fn mass_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
-        let question = || with_matrix(self.about_the_body("mass product"), fields);
+        let question = || self.about_the_body("mass product").with("fields", &fields);
         self.ask_fields(question, fields.ncols(), || Ok(self.solver()?.mass().product(fields)))
     }
 
     fn stiffness_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
-        let question = || with_matrix(self.about_the_body("stiffness product"), fields);
+        let question = || self.about_the_body("stiffness product").with("fields", &fields);
         self.ask_fields(question, fields.ncols(), || Ok(self.matrices()?.stiffness() * fields))
     }
 
@@ -297,8 +297,12 @@ impl Structure for Solved<'_> {
         accuracy: StaticAccuracy,
     ) -> Result<Mat<f64>, BuildError> {
         let question = || {
-            let question = self.about_the_held_body("static response").text(&format!("{accuracy:?}"));
-            with_matrix(with_natural(question, modes), forces)
+            let accuracy = match accuracy {
+                StaticAccuracy::Full => "full",
+                StaticAccuracy::Shapes => "shapes",
+            };
+            let question = self.about_the_held_body("static response").with("accuracy", accuracy);
+            with_natural(question, modes).with("forces", &forces)
         };
         self.ask_fields(question, forces.ncols(), || {
             self.solver()?.static_response_from(modes, forces, accuracy).map_err(modal(&self.assembled.scene))
@@ -309,7 +313,7 @@ impl Structure for Solved<'_> {
         let StaticForces { of_loads, spin, drive, origin } = forces;
         let question = || {
             let question = with_natural(self.about_the_held_body("static responses"), modes);
-            with_matrix(question, of_loads.as_ref()).text(&format!("{spin} {drive:?} {origin:?}"))
+            question.with("loads", of_loads).with("spin", spin).with("drive", drive).with("origin", origin)
         };
         self.ask_fields(question, forces.count(), || {
             let solver = self.solver()?;
@@ -341,8 +345,8 @@ impl Structure for Solved<'_> {
     fn with_static_shapes(&self, modes: Modes, responses: MatRef<'_, f64>) -> Result<Modes, BuildError> {
         let natural = modes.natural();
         let question = || {
-            let question = with_modes(self.about_the_held_body("static shapes"), &modes).text(&natural.to_string());
-            with_matrix(question, responses)
+            let question = with_modes(self.about_the_held_body("static shapes"), &modes);
+            question.with("natural", &natural).with("responses", &responses)
         };
         self.ask(
             question,
@@ -362,7 +366,7 @@ impl Structure for Solved<'_> {
         let question = || {
             let question = with_modes(self.about_the_held_body("shapes of second order"), &modes);
             // The last bits of the responses depend on those that were computed with them.
-            with_matrix(with_matrix(question.text(&format!("{large:?}")), forces), responses)
+            question.with("large", large).with("forces", &forces).with("responses", &responses)
         };
         self.ask(
             question,
@@ -388,7 +392,7 @@ impl Structure for Solved<'_> {
     }
 
     fn remainders(&self, modes: &Modes, responses: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError> {
-        let question = || with_matrix(with_modes(self.about_the_body("remainders"), modes), responses);
+        let question = || with_modes(self.about_the_body("remainders"), modes).with("responses", &responses);
         self.ask_list(question, responses.ncols(), || {
             let momenta = self.solver()?.mass().product(responses);
             let of = |(u, mu): (ColRef<'_, f64>, ColRef<'_, f64>)| {
@@ -408,9 +412,12 @@ impl Structure for Solved<'_> {
     ) -> Result<Vec<Mat<f64>>, BuildError> {
         let shapes = modes.shapes.as_ref();
         let question = || {
-            let question = with_matrix(self.about_the_body("stress stiffness"), displacements);
-            let question = with_matrix(question, shapes).text(&format!("{terms:?}"));
-            known.iter().fold(question, |question, known| with_matrix(question, known.as_ref()))
+            let terms = match terms {
+                GeometricTerms::All => "all",
+                GeometricTerms::InitialStress => "initial stress",
+            };
+            let question = self.about_the_body("stress stiffness").with("displacements", &displacements);
+            question.with("shapes", &shapes).with("terms", terms).with("known", known)
         };
         self.ask(
             question,
@@ -431,8 +438,7 @@ impl Structure for Solved<'_> {
     }
 
     fn second_order_forces(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError> {
-        let question =
-            || with_matrix(self.about_the_body("forces of second order"), fields).text(&format!("{pairs:?}"));
+        let question = || self.about_the_body("forces of second order").with("fields", &fields).with("pairs", pairs);
         self.ask_fields(question, pairs.len(), || {
             self.pass_elements();
             Ok(second_order_forces(&self.assembled.mesh, self.assembled.materials()?, fields, pairs)?)
@@ -445,7 +451,7 @@ impl Structure for Solved<'_> {
         quadruples: &[[usize; 4]],
     ) -> Result<Vec<f64>, BuildError> {
         let question =
-            || with_matrix(self.about_the_body("energies of second order"), fields).text(&format!("{quadruples:?}"));
+            || self.about_the_body("energies of second order").with("fields", &fields).with("quadruples", quadruples);
         self.ask_list(question, quadruples.len(), || {
             self.pass_elements();
             Ok(second_order_energies(&self.assembled.mesh, self.assembled.materials()?, fields, quadruples)?)
@@ -457,13 +463,13 @@ impl Structure for Solved<'_> {
     }
 
     fn nodal_stress(&self, displacements: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
-        let question = || with_matrix(self.about_the_body("nodal stress"), displacements);
+        let question = || self.about_the_body("nodal stress").with("displacements", &displacements);
         self.ask_stress(question, displacements.ncols(), |recovery| recovery.nodal_stress(displacements))
     }
 
     fn second_order_nodal_stress(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError> {
         let question =
-            || with_matrix(self.about_the_body("nodal stress of second order"), fields).text(&format!("{pairs:?}"));
+            || self.about_the_body("nodal stress of second order").with("fields", &fields).with("pairs", pairs);
         self.ask_stress(question, pairs.len(), |recovery| recovery.second_order_nodal_stress(fields, pairs))
     }
 
@@ -475,8 +481,12 @@ impl Structure for Solved<'_> {
     ) -> Result<f64, BuildError> {
         let shapes = modes.shapes.as_ref();
         let question = || {
-            let question = self.about_the_held_body("buckling").text(&format!("{accuracy:?}"));
-            with_matrix(with_matrix(question, response), shapes)
+            let accuracy = match accuracy {
+                BucklingAccuracy::Estimate => "estimate",
+                BucklingAccuracy::Full => "full",
+            };
+            let question = self.about_the_held_body("buckling").with("accuracy", accuracy);
+            question.with("response", &response).with("shapes", &shapes)
         };
         let found = self.ask_list(question, 1, || {
             let materials = self.assembled.materials()?;
@@ -503,22 +513,13 @@ enum BucklingError {
     Assembly(#[from] AssemblyError),
 }
 
-/// A question with a matrix.
-fn with_matrix(question: Digest, matrix: MatRef<'_, f64>) -> Digest {
-    let question = question.numbers(&[matrix.nrows() as u64, matrix.ncols() as u64]);
-    matrix.col_iter().fold(question, |question, column| match column.try_as_col_major() {
-        Some(column) => question.numbers(column.as_slice()),
-        None => question.numbers(&column.iter().copied().collect::<Vec<f64>>()),
-    })
-}
-
 /// A question with modes; the rigid ones follow from the body and its support.
-fn with_modes(question: Digest, modes: &Modes) -> Digest {
-    with_matrix(question.numbers(&modes.eigenvalues), modes.shapes.as_ref())
+fn with_modes(question: Key, modes: &Modes) -> Key {
+    question.with("eigenvalues", &modes.eigenvalues).with("modes", &modes.shapes)
 }
 
 /// A question with the natural ones of some modes.
-fn with_natural(question: Digest, modes: &Modes) -> Digest {
+fn with_natural(question: Key, modes: &Modes) -> Key {
     let natural = modes.natural();
-    with_matrix(question.numbers(&modes.eigenvalues[..natural]), modes.shapes.get(.., ..natural))
+    question.with("eigenvalues", &modes.eigenvalues[..natural]).with("modes", &modes.shapes.get(.., ..natural))
 }

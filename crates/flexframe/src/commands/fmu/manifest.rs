@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use body_file::{Digest, Hash};
+use keys::{Digest, Hash};
 use serde::{Deserialize, Serialize};
 
 use super::error::FmuError;

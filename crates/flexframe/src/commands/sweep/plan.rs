@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use body_file::{Digest, Hash};
 use foreign_program::read_at_most;
+use keys::{Digest, Hash, Key};
 use model::files_of_body;
 use scene::{AssignError, Body, Scene, SceneError, assign};
 use serde::Deserialize;
@@ -192,10 +192,11 @@ fn identities(rows: &[Result<Scene, String>]) -> Vec<u64> {
 
 /// A number for the text of a scene, the tables as they were read, and what its body is read from.
 fn identity(scene: &Scene, body: &Hash) -> u64 {
-    // Written out, numbers are what they are to the last bit.
-    let tables = format!("{:?} {:?}", scene.loads, scene.constraint);
-    let digits = Digest::new().text(&scene.source).text(&tables).hash(body).finish().to_string();
-    u64::from_str_radix(&digits[..16], 16).unwrap_or(0)
+    let key = Key::new().of("row", 1).with("scene", scene.source.as_str());
+    let key = scene.tables().fold(key, |key, table| key.with("table", table.points.as_flattened()));
+    let mut first = [0; 8];
+    first.copy_from_slice(&key.with("body", body).finish().as_bytes()[..8]);
+    u64::from_be_bytes(first)
 }
 
 /// Hash of the files of a body.

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use body_file::{BodyFile, BodyFileError, Declared, Digest, Kind, Writer};
+use body_file::{BodyFile, BodyFileError, Declared, Kind, Writer};
+use keys::Digest;
 use serde::de::DeserializeOwned;
 use toml::Value;
 
