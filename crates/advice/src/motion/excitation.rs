@@ -219,7 +219,7 @@ impl Spin {
 const DEFORMED: f64 = 1.05;
 
 /// Largest |ω| of a free rigid body that begins at `omega`: its squares x_i along the principal axes keep Σ J_i x_i and
-/// Σ J_i² x_i, so that the largest sum is at a discontinuity, where one of them is zero.
+/// Σ J_i² x_i, so that the largest sum is at a corner, where one of them is zero.
 fn polhode(inertia: &Matrix3<f64>, omega: &Vector3<f64>) -> f64 {
     let j = inertia.symmetric_eigenvalues();
     let energy = omega.dot(&(inertia * omega));

@@ -28,11 +28,11 @@ pub fn plate() -> &'static Specimen {
 
 /// The plate on another mesh, or with another number of modes.
 pub fn plate_of(mesh: &str, flexible: usize) -> Specimen {
-    let discontinuities = [-500.0, 500.0]
+    let corners = [-500.0, 500.0]
         .into_iter()
         .flat_map(|x| [-25.0, 25.0].map(|y| (x, y)))
         .flat_map(|(x, y)| [0.0, 10.0].map(|z| [x, y, z]));
-    let masses: Vec<PointMass> = discontinuities.map(|at| PointMass { at, mass: 0.001, spread: None }).collect();
+    let masses: Vec<PointMass> = corners.map(|at| PointMass { at, mass: 0.001, spread: None }).collect();
     let reference_points = [[-500.0, -25.0, 0.0], [500.0, -25.0, 0.0], [500.0, 25.0, 0.0]];
     Specimen::solve(mesh, &masses, reference_points, flexible)
 }
