@@ -22,6 +22,7 @@ mod observation;
 mod scheme;
 mod simulation;
 mod state;
+mod system;
 mod vibration;
 
 pub use body::center_of_mass::CenterOfMass;
@@ -63,6 +64,10 @@ pub use simulation::plan::{Rows, StepControl};
 pub use simulation::setup::{Begin, Beginning, Method, Setup, StepLimit};
 pub use simulation::{Reached, Simulation, Stats};
 pub use state::{Layout, Rotation, State, attitude_at, vector_at};
+pub use system::System;
+pub use system::joint::{Joint, Row};
+pub use system::marker::Marker;
+pub use system::radau::{Failed, SystemMotion, Tried};
 pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 

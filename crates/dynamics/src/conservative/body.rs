@@ -7,6 +7,7 @@ use crate::body::center_of_mass::CenterOfMass;
 use crate::body::initial::Initial;
 use crate::body::physics::Drive;
 use crate::conservative::manifold::Manifold;
+use crate::conservative::rates::evaluation::Evaluation;
 use crate::conservative::state::BodyList;
 use crate::load::SharedLoad;
 use crate::matrix::four::{Group, Padded};
@@ -116,6 +117,37 @@ impl ConservativeBody {
     #[inline(always)]
     pub(crate) fn list<'s>(&self, state: &'s State) -> BodyList<&'s [f64]> {
         BodyList { values: &state.values, flexible: self.flexible() }
+    }
+
+    /// True if it moves and turns freely, is not driven and has no large modes.
+    pub(crate) fn is_free(&self) -> bool {
+        self.translation == Translation::Free
+            && self.axes.len() == 3
+            && self.drive.is_none()
+            && self.manifold.is_none()
+    }
+
+    /// Its mass.
+    pub(crate) fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// J₀ about the origin, body axes.
+    pub(crate) fn undeformed_inertia(&self) -> &Matrix3<f64> {
+        &self.inertia
+    }
+
+    /// Copies S where `e` is, a list (nf) for each axis; zeros where it is zero.
+    pub(crate) fn copy_coupling(&self, e: &Evaluation, out: &mut [Vec<f64>; 3]) {
+        for (axis, list) in out.iter_mut().enumerate().take(self.s_count) {
+            let values = self.s_lists(&e.products).rows().flat_map(|row| row[axis]);
+            list.iter_mut().zip(values).for_each(|(s, value)| *s = value);
+        }
+    }
+
+    /// The numbers of a state, to be changed.
+    pub(crate) fn list_mut<'s>(&self, state: &'s mut State) -> BodyList<&'s mut [f64]> {
+        BodyList { values: &mut state.values, flexible: self.flexible() }
     }
 
     /// The loads.

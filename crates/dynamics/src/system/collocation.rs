@@ -1,0 +1,142 @@
+//! Collocation at three times in a step: Radau IIA of order 5, in the form of its structured Newton.
+//!
+//! Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5 and IV.8; Eqs. (J5)–(J7) of `docs/method/systems.md`.
+
+use nalgebra::{Complex, Matrix3, Vector3};
+
+/// Stages of a step.
+pub(crate) const STAGES: usize = 3;
+
+/// The constants of the scheme.
+#[derive(Debug, Clone)]
+pub(crate) struct Collocation {
+    /// c: times of the stages, as fractions of the step. The last is its end.
+    pub times: [f64; STAGES],
+    /// b: the weights of their rates.
+    pub weights: [f64; STAGES],
+    /// A⁻¹
+    pub inverse: Matrix3<f64>,
+    /// κ_r, and one of the two complex κ: the eigenvalues of A⁻¹.
+    pub real: f64,
+    pub complex: Complex<f64>,
+    /// Rows of T⁻¹ for the two.
+    pub to_real: Vector3<f64>,
+    pub to_complex: Vector3<Complex<f64>>,
+    /// Columns of T for the two; the third is the conjugate of the second.
+    pub from_real: Vector3<f64>,
+    pub from_complex: Vector3<Complex<f64>>,
+    /// Values at the start of the step of the polynomials that are 1 at one stage and 0 at the others.
+    pub at_start: [f64; STAGES],
+}
+
+impl Collocation {
+    /// Radau IIA with three stages.
+    pub fn radau() -> Self {
+        let root = 6.0_f64.sqrt();
+        let times = [(4.0 - root) / 10.0, (4.0 + root) / 10.0, 1.0];
+        let a = Matrix3::new(
+            (88.0 - 7.0 * root) / 360.0,
+            (296.0 - 169.0 * root) / 1800.0,
+            (-2.0 + 3.0 * root) / 225.0,
+            (296.0 + 169.0 * root) / 1800.0,
+            (88.0 + 7.0 * root) / 360.0,
+            (-2.0 - 3.0 * root) / 225.0,
+            (16.0 - root) / 36.0,
+            (16.0 + root) / 36.0,
+            1.0 / 9.0,
+        );
+        let weights = [a[(2, 0)], a[(2, 1)], a[(2, 2)]];
+        let inverse = a.try_inverse().unwrap_or_else(Matrix3::zeros);
+        let real = real_eigenvalue(&inverse);
+        // The other two are the roots of κ² − (tr − κ_r) κ + det/κ_r.
+        let half = 0.5 * (inverse.trace() - real);
+        let complex = Complex::new(half, (inverse.determinant() / real - half * half).sqrt());
+        let from_real = eigenvector(&inverse, Complex::new(real, 0.0)).map(|entry| entry.re);
+        let from_complex = eigenvector(&inverse, complex);
+        let columns = [from_real.map(Complex::from), from_complex, from_complex.map(|entry| entry.conj())];
+        let back = Matrix3::from_columns(&columns).try_inverse().unwrap_or_else(Matrix3::zeros);
+        let at_start = std::array::from_fn(|i| {
+            let others = (0..STAGES).filter(|j| *j != i);
+            others.map(|j| times[j] / (times[j] - times[i])).product()
+        });
+        Self {
+            times,
+            weights,
+            inverse,
+            real,
+            complex,
+            to_real: back.row(0).transpose().map(|entry| entry.re),
+            to_complex: back.row(1).transpose(),
+            from_real,
+            from_complex,
+            at_start,
+        }
+    }
+
+    /// Factors of the increments at the stages of one step in those at a time of the next, both counted from their own
+    /// starts: `time` is counted in steps of the last from its start.
+    pub fn continued(&self, time: f64) -> [f64; STAGES] {
+        std::array::from_fn(|i| {
+            let at = |time: f64| {
+                let others = (0..STAGES).filter(|j| *j != i);
+                time / self.times[i]
+                    * others.map(|j| (time - self.times[j]) / (self.times[i] - self.times[j])).product::<f64>()
+            };
+            at(time) - at(1.0)
+        })
+    }
+}
+
+/// The real eigenvalue of a matrix that has only one.
+fn real_eigenvalue(matrix: &Matrix3<f64>) -> f64 {
+    let trace = matrix.trace();
+    let minors = 0.5 * (trace * trace - (matrix * matrix).trace());
+    let determinant = matrix.determinant();
+    let mut x = trace / 3.0;
+    for _ in 0..100 {
+        let value = ((x - trace) * x + minors) * x - determinant;
+        let slope = (3.0 * x - 2.0 * trace) * x + minors;
+        x -= value / slope;
+    }
+    x
+}
+
+/// The vector that a matrix less an eigenvalue makes zero: at right angles to two of its rows.
+fn eigenvector(matrix: &Matrix3<f64>, eigenvalue: Complex<f64>) -> Vector3<Complex<f64>> {
+    let shifted = matrix.map(Complex::from) - Matrix3::identity() * eigenvalue;
+    let row = |i: usize| -> Vector3<Complex<f64>> { shifted.row(i).transpose() };
+    row(0).cross(&row(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Published constants: Hairer and Wanner, RADAU5 (γ = 3.6378342527444957, α = 2.6810828736277521, β = 3.0504301992474105).
+    #[test]
+    fn the_eigenvalues_are_those_of_the_literature() {
+        let scheme = Collocation::radau();
+        assert!((scheme.real - 3.637_834_252_744_495_7).abs() < 1e-13);
+        assert!((scheme.complex - Complex::new(2.681_082_873_627_752, 3.050_430_199_247_410_5)).norm() < 1e-13);
+    }
+
+    #[test]
+    fn the_transform_makes_the_inverse_diagonal() {
+        let Collocation { inverse, real, complex, to_real, to_complex, from_real, from_complex, .. } = Collocation::radau();
+        let made = Matrix3::from_fn(|i, j| {
+            from_real[i] * real * to_real[j] + 2.0 * (from_complex[i] * complex * to_complex[j]).re
+        });
+        assert!((made - inverse).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_polynomial_is_continued() {
+        let scheme = Collocation::radau();
+        let x = |time: f64| 2.0 * time - 3.0 * time * time + 0.7 * time * time * time;
+        let factors = scheme.continued(1.4);
+        let found: f64 = factors.iter().zip(scheme.times).map(|(factor, time)| factor * x(time)).sum();
+        assert!((found - (x(1.4) - x(1.0))).abs() < 1e-13);
+        let start: f64 = scheme.at_start.iter().zip(scheme.times).map(|(factor, time)| factor * (1.0 + time * time)).sum();
+        assert!((start - 1.0).abs() < 1e-13);
+    }
+}

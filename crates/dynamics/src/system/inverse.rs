@@ -1,0 +1,166 @@
+//! The inverse of Z = κ M + D + Λ/κ of one body, by a 3×3 matrix: Eq. (J8) of `docs/method/systems.md`.
+
+use nalgebra::{ComplexField, Matrix3, Vector3};
+
+/// A number of the structured elimination, real or complex.
+pub(crate) trait Number: ComplexField<RealField = f64> + Copy {}
+impl<T: ComplexField<RealField = f64> + Copy> Number for T {}
+
+/// The inertia of a body where it is.
+#[derive(Debug, Clone)]
+pub(crate) struct Inertia {
+    pub mass: f64,
+    /// J − SᵀS.
+    pub locked: Matrix3<f64>,
+    pub locked_inverse: Matrix3<f64>,
+    /// S, a list (nf) for each axis.
+    pub coupling: [Vec<f64>; 3],
+}
+
+impl Inertia {
+    pub fn new(flexible: usize) -> Self {
+        let coupling = std::array::from_fn(|_| vec![0.0; flexible]);
+        Self { mass: 1.0, locked: Matrix3::identity(), locked_inverse: Matrix3::identity(), coupling }
+    }
+
+    /// Turns generalised forces (F, τ, Q) into the velocities M⁻¹ of them.
+    pub fn solve<T: Number>(&self, x: &mut [T]) {
+        let (rigid, modal) = x.split_at_mut(6);
+        rigid[..3].iter_mut().for_each(|force| *force = force.unscale(self.mass));
+        let mut right = Vector3::new(rigid[3], rigid[4], rigid[5]);
+        for (right, s) in right.iter_mut().zip(&self.coupling) {
+            s.iter().zip(&*modal).for_each(|(s, q)| *right -= q.scale(*s));
+        }
+        let spin = product(&self.locked_inverse, &right);
+        rigid[3..].copy_from_slice(spin.as_slice());
+        for (s, w) in self.coupling.iter().zip(spin.iter()) {
+            modal.iter_mut().zip(s).for_each(|(q, s)| *q -= w.scale(*s));
+        }
+    }
+
+    /// Turns velocities (V, ω, q̇) into the momenta M of them.
+    pub fn multiply<T: Number>(&self, x: &mut [T]) {
+        let (rigid, modal) = x.split_at_mut(6);
+        rigid[..3].iter_mut().for_each(|velocity| *velocity = velocity.scale(self.mass));
+        let spin = Vector3::new(rigid[3], rigid[4], rigid[5]);
+        for (s, w) in self.coupling.iter().zip(spin.iter()) {
+            modal.iter_mut().zip(s).for_each(|(q, s)| *q += w.scale(*s));
+        }
+        let mut moment = product(&self.locked, &spin);
+        for (moment, s) in moment.iter_mut().zip(&self.coupling) {
+            s.iter().zip(&*modal).for_each(|(s, q)| *moment += q.scale(*s));
+        }
+        rigid[3..].copy_from_slice(moment.as_slice());
+    }
+}
+
+/// A x of a real matrix.
+pub(crate) fn product<T: Number>(a: &Matrix3<f64>, x: &Vector3<T>) -> Vector3<T> {
+    Vector3::from_fn(|i, _| x[0].scale(a[(i, 0)]) + x[1].scale(a[(i, 1)]) + x[2].scale(a[(i, 2)]))
+}
+
+/// Z⁻¹ of a body.
+#[derive(Debug, Clone)]
+pub(crate) struct Inverse<T> {
+    kappa: T,
+    mass: T,
+    /// z⁻¹ of each mode (nf).
+    modes: Vec<T>,
+    coupling: [Vec<f64>; 3],
+    /// (κ J − κ² Sᵀ z⁻¹ S)⁻¹
+    spin: Matrix3<T>,
+}
+
+impl<T: Number> Inverse<T> {
+    pub fn new(flexible: usize) -> Self {
+        let one = T::from_real(1.0);
+        let coupling = std::array::from_fn(|_| vec![0.0; flexible]);
+        Self { kappa: one, mass: one, modes: vec![one; flexible], coupling, spin: Matrix3::identity() }
+    }
+
+    /// Finds it for κ; `oscillators` are Λ_k and D_k of each mode. False where Z is singular.
+    pub fn find(&mut self, kappa: T, inertia: &Inertia, oscillators: impl Iterator<Item = [f64; 2]>) -> bool {
+        (self.kappa, self.mass) = (kappa, kappa * T::from_real(inertia.mass));
+        for (inverse, [stiffness, damping]) in self.modes.iter_mut().zip(oscillators) {
+            *inverse = (kappa + T::from_real(damping) + T::from_real(stiffness) / kappa).recip();
+        }
+        // J = (J − SᵀS) + SᵀS, so that the sum is κ (J − SᵀS) + κ Sᵀ (1 − κ z⁻¹) S.
+        let mut spin = inertia.locked.map(|entry| kappa * T::from_real(entry));
+        for (i, a) in inertia.coupling.iter().enumerate() {
+            self.coupling[i].copy_from_slice(a);
+            for (j, b) in inertia.coupling.iter().enumerate().take(i + 1) {
+                let mut sum = T::from_real(0.0);
+                for ((a, b), inverse) in a.iter().zip(b).zip(&self.modes) {
+                    sum += (T::from_real(1.0) - kappa * *inverse).scale(a * b);
+                }
+                sum *= kappa;
+                spin[(i, j)] += sum;
+                if i != j {
+                    spin[(j, i)] += sum;
+                }
+            }
+        }
+        match spin.try_inverse() {
+            Some(inverse) => self.spin = inverse,
+            None => return false,
+        }
+        self.spin.iter().all(|entry| entry.is_finite())
+    }
+
+    /// Turns (F, τ, Q) into (V, ω, q̇).
+    pub fn apply(&self, x: &mut [T]) {
+        let (rigid, modal) = x.split_at_mut(6);
+        let inverse_mass = self.mass.recip();
+        rigid[..3].iter_mut().for_each(|force| *force *= inverse_mass);
+        let mut right = Vector3::new(rigid[3], rigid[4], rigid[5]);
+        for (q, inverse) in modal.iter_mut().zip(&self.modes) {
+            *q *= *inverse;
+        }
+        for (i, s) in self.coupling.iter().enumerate() {
+            let mut sum = T::from_real(0.0);
+            s.iter().zip(&*modal).for_each(|(s, q)| sum += q.scale(*s));
+            right[i] -= self.kappa * sum;
+        }
+        let spin = self.spin * right;
+        rigid[3..].copy_from_slice(spin.as_slice());
+        for (s, w) in self.coupling.iter().zip(spin.iter()) {
+            let w = self.kappa * *w;
+            for ((q, s), inverse) in modal.iter_mut().zip(s).zip(&self.modes) {
+                *q -= *inverse * w.scale(*s);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Complex;
+
+    use super::*;
+
+    /// Z Z⁻¹ = 1, with Z applied term by term.
+    #[test]
+    fn the_inverse_is_that_of_the_sum() {
+        let locked = Matrix3::new(2.0, 0.1, -0.2, 0.1, 3.0, 0.3, -0.2, 0.3, 1.5);
+        let coupling = [vec![0.3, -0.2], vec![0.1, 0.5], vec![-0.4, 0.2]];
+        let inertia = Inertia { mass: 2.5, locked, locked_inverse: locked.try_inverse().unwrap(), coupling };
+        let oscillators = [[9.0, 0.1], [4e6, 3.0]];
+        let kappa = Complex::new(20.0, 30.0);
+        let mut inverse = Inverse::new(2);
+        assert!(inverse.find(kappa, &inertia, oscillators.into_iter()));
+        let start: Vec<Complex<f64>> = (0..8).map(|k| Complex::new(f64::from(k) - 3.0, 0.5 * f64::from(k))).collect();
+        let mut velocity = start.clone();
+        inverse.apply(&mut velocity);
+        let mut back = velocity.clone();
+        inertia.multiply(&mut back);
+        back.iter_mut().for_each(|x| *x *= kappa);
+        for (k, [stiffness, damping]) in oscillators.into_iter().enumerate() {
+            back[6 + k] += velocity[6 + k] * (damping + stiffness / kappa);
+        }
+        start.iter().zip(&back).for_each(|(a, b)| assert!((a - b).norm() < 1e-12, "{a} {b}"));
+        let mut there = start.clone();
+        inertia.solve(&mut there);
+        inertia.multiply(&mut there);
+        start.iter().zip(&there).for_each(|(a, b)| assert!((a - b).norm() < 1e-13));
+    }
+}

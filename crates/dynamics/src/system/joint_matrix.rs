@@ -1,0 +1,304 @@
+//! G Z⁻¹ Gᵀ over the rows of all joints, and its factor L D Lᵀ.
+//!
+//! The matrix is sparse in blocks of joints: two of them meet where they share a body. Joints are eliminated in an order of
+//! least degree, so a chain or a tree costs in proportion to its joints. Rows that others imply have pivots of nought; they
+//! are left out, and their multipliers are zero.
+
+use nalgebra::Complex;
+
+use crate::system::constraints::Constraints;
+use crate::system::inverse::{Inverse, Number};
+
+/// A pivot below this part of its diagonal entry belongs to a row that others imply.
+const DEPENDENT: f64 = 1e-8;
+
+/// Which blocks there are, and in which order they are eliminated: constants of a system.
+#[derive(Debug, Clone)]
+pub(crate) struct Pattern {
+    /// First row of each joint, and the number of rows.
+    first: Vec<usize>,
+    /// Joints in the order of elimination.
+    order: Vec<usize>,
+    /// Of each joint, those that are eliminated later and meet it, in order, and their blocks.
+    below: Vec<Vec<(usize, usize)>>,
+    /// First entry of each block; the diagonal blocks come first, by joints.
+    blocks: Vec<usize>,
+    /// For a pair of joints that meet a third one: their block, by the third and the places among those below it.
+    updates: Vec<Vec<usize>>,
+    /// Of each body, the rows that it has an end of, with the place among the ends.
+    rows_of_body: Vec<Vec<(usize, usize)>>,
+    joint_of_row: Vec<usize>,
+    entries: usize,
+}
+
+impl Pattern {
+    /// The pattern of joints with these numbers of rows, whose rows have the ends of `constraints`.
+    pub fn new(rows: &[usize], constraints: &Constraints, bodies: usize) -> Self {
+        let mut first = vec![0];
+        rows.iter().for_each(|rows| first.push(first[first.len() - 1] + rows));
+        let joint_of_row: Vec<usize> =
+            rows.iter().enumerate().flat_map(|(joint, rows)| std::iter::repeat_n(joint, *rows)).collect();
+        let mut rows_of_body = vec![Vec::new(); bodies];
+        for (row, ends) in constraints.ends.iter().enumerate() {
+            ends.iter().enumerate().for_each(|(k, end)| rows_of_body[end.body].push((row, k)));
+        }
+        let mut meets = vec![std::collections::BTreeSet::new(); rows.len()];
+        for rows in &rows_of_body {
+            let joints: Vec<usize> = rows.iter().map(|(row, _)| joint_of_row[*row]).collect();
+            for a in &joints {
+                meets[*a].extend(joints.iter().copied().filter(|b| b != a));
+            }
+        }
+        let (mut order, mut below) = (Vec::new(), vec![Vec::new(); rows.len()]);
+        let mut left: std::collections::BTreeSet<usize> = (0..rows.len()).collect();
+        while let Some(next) = left.iter().copied().min_by_key(|joint| meets[*joint].len()) {
+            left.remove(&next);
+            let neighbours: Vec<usize> = std::mem::take(&mut meets[next]).into_iter().collect();
+            for joint in &neighbours {
+                meets[*joint].remove(&next);
+                meets[*joint].extend(neighbours.iter().copied().filter(|other| other != joint));
+            }
+            order.push(next);
+            below[next] = neighbours;
+        }
+        let mut place = vec![0; rows.len()];
+        order.iter().enumerate().for_each(|(at, joint)| place[*joint] = at);
+        let (mut blocks, mut entries, mut number) = (Vec::new(), 0, std::collections::BTreeMap::new());
+        let mut add = |a: usize, b: usize| {
+            number.insert((a, b), blocks.len());
+            blocks.push(entries);
+            entries += rows[a] * rows[b];
+            blocks.len() - 1
+        };
+        (0..rows.len()).for_each(|joint| {
+            add(joint, joint);
+        });
+        let below: Vec<Vec<(usize, usize)>> = below
+            .into_iter()
+            .enumerate()
+            .map(|(joint, mut others)| {
+                others.sort_by_key(|other| place[*other]);
+                others.into_iter().map(|other| (other, add(other, joint))).collect()
+            })
+            .collect();
+        let updates = below
+            .iter()
+            .map(|others| {
+                let pairs = others.iter().enumerate().flat_map(|(at, (a, _))| others[..=at].iter().map(move |(b, _)| (*a, *b)));
+                pairs.filter_map(|pair| number.get(&pair).copied()).collect()
+            })
+            .collect();
+        Self { first, order, below, blocks, updates, rows_of_body, joint_of_row, entries }
+    }
+
+    fn rows(&self, joint: usize) -> usize {
+        self.first[joint + 1] - self.first[joint]
+    }
+
+    /// Number of rows of all joints.
+    pub fn len(&self) -> usize {
+        self.joint_of_row.len()
+    }
+
+    /// The block of a row and a column, its row and column within, where the row's joint is eliminated last or the same.
+    fn entry(&self, row: usize, column: usize) -> Option<usize> {
+        let [of_row, of_column] = [row, column].map(|row| self.joint_of_row[row]);
+        let block = if of_row == of_column {
+            of_row
+        } else {
+            self.below[of_column].iter().find(|(other, _)| *other == of_row)?.1
+        };
+        let [i, j] = [row - self.first[of_row], column - self.first[of_column]];
+        Some(self.blocks[block] + i * self.rows(of_column) + j)
+    }
+}
+
+/// The factor.
+#[derive(Debug, Clone)]
+pub(crate) struct JointMatrix<T> {
+    entries: Vec<T>,
+    /// 1/D; zero for rows that are left out.
+    inverse_pivots: Vec<T>,
+    diagonal: Vec<f64>,
+    /// A column of Z⁻¹ Gᵀ.
+    column: Vec<T>,
+    /// A block before it is divided by the pivots.
+    scratch: Vec<T>,
+}
+
+impl<T: Number> JointMatrix<T> {
+    pub fn new(pattern: &Pattern, coordinates: usize) -> Self {
+        let zero = T::from_real(0.0);
+        let widest = (0..pattern.order.len()).map(|joint| pattern.rows(joint)).max().unwrap_or(0);
+        let most_below = pattern.below.iter().map(Vec::len).max().unwrap_or(0);
+        Self {
+            entries: vec![zero; pattern.entries],
+            inverse_pivots: vec![zero; pattern.len()],
+            diagonal: vec![0.0; pattern.len()],
+            column: vec![zero; coordinates],
+            scratch: vec![zero; most_below * widest * widest],
+        }
+    }
+
+    /// Assembles G Z⁻¹ Gᵀ.
+    pub fn assemble(&mut self, pattern: &Pattern, constraints: &Constraints, inverses: &[Inverse<T>]) {
+        self.entries.fill(T::from_real(0.0));
+        for (rows, inverse) in pattern.rows_of_body.iter().zip(inverses) {
+            for (column, k) in rows {
+                let end = &constraints.ends[*column][*k];
+                let z_g = &mut self.column[..end.entries.len()];
+                z_g.iter_mut().zip(&end.entries).for_each(|(z, g)| *z = T::from_real(*g));
+                inverse.apply(z_g);
+                for (row, k) in rows {
+                    if let Some(entry) = pattern.entry(*row, *column) {
+                        let mut sum = T::from_real(0.0);
+                        let g = &constraints.ends[*row][*k].entries;
+                        g.iter().zip(&*z_g).for_each(|(g, z)| sum += z.scale(*g));
+                        self.entries[entry] += sum;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Finds the factor. Rows whose `is_left_out` is true are left out; with `find_them`, those that others imply become so.
+    pub fn factor(&mut self, pattern: &Pattern, is_left_out: &mut [bool], find_them: bool) {
+        for joint in 0..pattern.order.len() {
+            let n = pattern.rows(joint);
+            for i in 0..n {
+                self.diagonal[pattern.first[joint] + i] = self.entries[pattern.blocks[joint] + i * n + i].modulus();
+            }
+        }
+        for &joint in &pattern.order {
+            let (n, first, block) = (pattern.rows(joint), pattern.first[joint], pattern.blocks[joint]);
+            for k in 0..n {
+                let mut pivot = self.entries[block + k * n + k];
+                for c in 0..k {
+                    let l = self.entries[block + k * n + c];
+                    let d = self.entries[block + c * n + c];
+                    pivot -= l * l * d;
+                }
+                let row = first + k;
+                if find_them {
+                    // A NaN is left out, too.
+                    is_left_out[row] = !(pivot.real() > DEPENDENT * self.diagonal[row]);
+                }
+                self.entries[block + k * n + k] = pivot;
+                let inverse = if is_left_out[row] { T::from_real(0.0) } else { pivot.recip() };
+                self.inverse_pivots[row] = inverse;
+                for i in k + 1..n {
+                    let mut sum = self.entries[block + i * n + k];
+                    for c in 0..k {
+                        let d = self.entries[block + c * n + c];
+                        sum -= self.entries[block + i * n + c] * d * self.entries[block + k * n + c];
+                    }
+                    self.entries[block + i * n + k] = sum * inverse;
+                }
+            }
+            self.eliminate(pattern, joint);
+        }
+    }
+
+    /// Divides the blocks below a joint by its factor, and takes their products from those that they meet.
+    fn eliminate(&mut self, pattern: &Pattern, joint: usize) {
+        let (n, first, diagonal) = (pattern.rows(joint), pattern.first[joint], pattern.blocks[joint]);
+        let below = &pattern.below[joint];
+        let mut kept = 0;
+        for (other, block) in below {
+            let at = pattern.blocks[*block];
+            for i in 0..pattern.rows(*other) {
+                for k in 0..n {
+                    let mut sum = self.entries[at + i * n + k];
+                    for c in 0..k {
+                        sum -= self.entries[at + i * n + c] * self.entries[diagonal + k * n + c];
+                    }
+                    self.entries[at + i * n + k] = sum;
+                }
+                for k in 0..n {
+                    self.scratch[kept + i * n + k] = self.entries[at + i * n + k];
+                    self.entries[at + i * n + k] *= self.inverse_pivots[first + k];
+                }
+            }
+            kept += pattern.rows(*other) * n;
+        }
+        let mut updates = pattern.updates[joint].iter();
+        for (at, (a, block_a)) in below.iter().enumerate() {
+            let mut kept = 0;
+            for (b, _) in &below[..=at] {
+                let Some(target) = updates.next() else { return };
+                let (target, of_a, n_b) = (pattern.blocks[*target], pattern.blocks[*block_a], pattern.rows(*b));
+                for i in 0..pattern.rows(*a) {
+                    for j in 0..n_b {
+                        let mut sum = T::from_real(0.0);
+                        for k in 0..n {
+                            sum += self.entries[of_a + i * n + k] * self.scratch[kept + j * n + k];
+                        }
+                        self.entries[target + i * n_b + j] -= sum;
+                    }
+                }
+                kept += n_b * n;
+            }
+        }
+    }
+
+    /// Turns a right-hand side, which may be complex where the matrix is real, into the solution.
+    pub fn solve<U: Number>(&self, pattern: &Pattern, x: &mut [U])
+    where
+        T: Times<U>,
+    {
+        for &joint in &pattern.order {
+            let (n, first, block) = (pattern.rows(joint), pattern.first[joint], pattern.blocks[joint]);
+            for i in 0..n {
+                for c in 0..i {
+                    let known = x[first + c];
+                    x[first + i] -= self.entries[block + i * n + c].times(known);
+                }
+            }
+            for (other, block) in &pattern.below[joint] {
+                let (at, to) = (pattern.blocks[*block], pattern.first[*other]);
+                for i in 0..pattern.rows(*other) {
+                    for c in 0..n {
+                        let known = x[first + c];
+                        x[to + i] -= self.entries[at + i * n + c].times(known);
+                    }
+                }
+            }
+        }
+        x.iter_mut().zip(&self.inverse_pivots).for_each(|(x, inverse)| *x = inverse.times(*x));
+        for &joint in pattern.order.iter().rev() {
+            let (n, first, block) = (pattern.rows(joint), pattern.first[joint], pattern.blocks[joint]);
+            for (other, block) in &pattern.below[joint] {
+                let (at, from) = (pattern.blocks[*block], pattern.first[*other]);
+                for i in 0..pattern.rows(*other) {
+                    for c in 0..n {
+                        let known = x[from + i];
+                        x[first + c] -= self.entries[at + i * n + c].times(known);
+                    }
+                }
+            }
+            for i in (0..n).rev() {
+                for c in 0..i {
+                    let known = x[first + i];
+                    x[first + c] -= self.entries[block + i * n + c].times(known);
+                }
+            }
+        }
+    }
+}
+
+/// A product that is a number of the second kind.
+pub(crate) trait Times<U> {
+    fn times(self, other: U) -> U;
+}
+
+impl<U: Number> Times<U> for f64 {
+    fn times(self, other: U) -> U {
+        other.scale(self)
+    }
+}
+
+impl Times<Self> for Complex<f64> {
+    fn times(self, other: Self) -> Self {
+        self * other
+    }
+}

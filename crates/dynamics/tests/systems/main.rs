@@ -1,0 +1,5 @@
+//! Systems of bodies and joints.
+
+mod andrews;
+mod mechanism;
+mod rigid;
