@@ -4,7 +4,10 @@
 mod common;
 
 use allocation_counter::measure;
-use dynamics::{Expression, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl, Table};
+use dynamics::{
+    ConservativeBody, Expression, History, Initial, Joint, Marker, Method, MotionState, Physics, Reached, Rows, Setup,
+    Simulation, StepControl, System, SystemMotion, Table,
+};
 use frames_rk4::Paper;
 use nalgebra::Vector3;
 
@@ -69,4 +72,34 @@ fn histories_allocate_nothing() {
     let memory = measure(|| sum = (0..1000).map(|k| 0.01 * f64::from(k)).map(|t| history.at(t, t + 0.005)).sum());
     assert_eq!(memory.count_total, 0);
     assert!(sum.is_finite() && sum != 0.0);
+}
+
+#[test]
+fn steps_of_a_system_with_joints_allocate_nothing() {
+    let ring = common::ring();
+    let body = ConservativeBody::new(&ring.body, &[0.0; 10], Vec::new(), &Physics::default()).unwrap();
+    let axes = nalgebra::Matrix3::identity();
+    let pin = Marker::on_rigid(0, Vector3::new(-100.0, 0.0, 0.0), axes);
+    let joints = vec![
+        Joint::revolute("hinge", [Marker::on_ground(Vector3::zeros(), axes), pin]),
+        Joint::spherical(
+            "between",
+            [Marker::on_rigid(0, Vector3::x() * 90.0, axes), Marker::on_rigid(1, Vector3::y(), axes)],
+        ),
+    ];
+    let system = System::new(vec![body.clone(), body], joints).unwrap();
+    let start = |x: f64| MotionState {
+        time: 0.0,
+        attitude: rigid_kin::Attitude::identity(),
+        origin_global: Vector3::new(x, 0.0, 0.0),
+        velocity_global: Vector3::zeros(),
+        omega_body: Vector3::new(0.0, 0.0, 3.0),
+        modal_displacement: vec![0.0; 10],
+        modal_velocity: vec![0.0; 10],
+    };
+    let mut motion = SystemMotion::new(system, &[start(100.0), start(190.0)]).unwrap();
+    motion.assemble().unwrap();
+    let mut h = 1e-5;
+    motion.advance(1e-3, 1e-8, &mut h).unwrap();
+    assert_eq!(measure(|| assert!(motion.advance(1.0, 1e-8, &mut h).unwrap() > 10)).count_total, 0);
 }

@@ -4,5 +4,6 @@ pub(crate) mod coupling;
 pub(crate) mod lumped;
 pub(crate) mod matrices;
 pub(crate) mod mean_rotation;
+pub(crate) mod patch;
 pub(crate) mod point_mass;
 pub(crate) mod surface;

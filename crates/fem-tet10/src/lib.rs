@@ -33,6 +33,7 @@ mod stress;
 pub use assembly::lumped::{LumpedInertia, centroid_lumped_inertia};
 pub use assembly::matrices::{Matrices, assemble};
 pub use assembly::mean_rotation::MeanRotation;
+pub use assembly::patch::Patch;
 pub use assembly::point_mass::PointMass;
 pub use element::quadrature;
 pub use element::shape::{shape_functions, shape_gradients};

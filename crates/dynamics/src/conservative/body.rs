@@ -7,7 +7,6 @@ use crate::body::center_of_mass::CenterOfMass;
 use crate::body::initial::Initial;
 use crate::body::physics::Drive;
 use crate::conservative::manifold::Manifold;
-use crate::conservative::rates::evaluation::Evaluation;
 use crate::conservative::state::BodyList;
 use crate::load::SharedLoad;
 use crate::matrix::four::{Group, Padded};
@@ -121,10 +120,7 @@ impl ConservativeBody {
 
     /// True if it moves and turns freely, is not driven and has no large modes.
     pub(crate) fn is_free(&self) -> bool {
-        self.translation == Translation::Free
-            && self.axes.len() == 3
-            && self.drive.is_none()
-            && self.manifold.is_none()
+        self.translation == Translation::Free && self.axes.len() == 3 && self.drive.is_none() && self.manifold.is_none()
     }
 
     /// Its mass.
@@ -135,14 +131,6 @@ impl ConservativeBody {
     /// J₀ about the origin, body axes.
     pub(crate) fn undeformed_inertia(&self) -> &Matrix3<f64> {
         &self.inertia
-    }
-
-    /// Copies S where `e` is, a list (nf) for each axis; zeros where it is zero.
-    pub(crate) fn copy_coupling(&self, e: &Evaluation, out: &mut [Vec<f64>; 3]) {
-        for (axis, list) in out.iter_mut().enumerate().take(self.s_count) {
-            let values = self.s_lists(&e.products).rows().flat_map(|row| row[axis]);
-            list.iter_mut().zip(values).for_each(|(s, value)| *s = value);
-        }
     }
 
     /// The numbers of a state, to be changed.

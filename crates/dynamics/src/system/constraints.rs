@@ -10,7 +10,7 @@ pub(crate) struct End {
     pub body: usize,
     /// First coordinate of the body.
     first: usize,
-    /// Entries: force (global), moment about the origin (body), modal forces.
+    /// Entries: force and moment about the origin, both in body axes, and modal forces.
     pub entries: Vec<f64>,
 }
 
@@ -19,6 +19,8 @@ pub(crate) struct End {
 pub(crate) struct Constraints {
     /// g (m).
     pub residuals: Vec<f64>,
+    /// g_t: rates of the residuals by drives alone (m).
+    pub own_rates: Vec<f64>,
     /// The ends of each row that are on bodies.
     pub ends: Vec<Vec<End>>,
 }
@@ -36,43 +38,31 @@ impl Constraints {
                     .collect()
             })
             .collect();
-        Self { residuals: vec![0.0; ends.len()], ends }
+        Self { residuals: vec![0.0; ends.len()], own_rates: vec![0.0; ends.len()], ends }
     }
 
-    /// Finds g and G.
-    pub fn find<'a>(&mut self, joints: &[Joint], place: impl Fn(usize) -> BodyPlace<'a>) {
-        let mut rows = self.residuals.iter_mut().zip(&mut self.ends);
+    /// Finds g, its own rate and G at a time, by the branch of another.
+    pub fn find<'a>(&mut self, joints: &[Joint], times: [f64; 2], place: impl Fn(usize) -> BodyPlace<'a>) {
+        let mut row = 0;
         for joint in joints {
             let places: [MarkerPlace; 2] =
                 joint.markers.each_ref().map(|marker| marker.place(marker.body().map(&place).as_ref()));
-            for (row, (residual, ends)) in joint.rows.iter().zip(&mut rows) {
-                let wrench = row.wrench(places.each_ref());
-                *residual = wrench.residual;
+            joint.wrenches(places.each_ref(), times, |wrench| {
+                (self.residuals[row], self.own_rates[row]) = (wrench.residual, wrench.own_rate);
                 let forces = [-wrench.force, wrench.force];
                 let on_bodies = (0..2).filter(|end| joint.markers[*end].body().is_some());
-                for (end, k) in ends.iter_mut().zip(on_bodies) {
+                for (end, k) in self.ends[row].iter_mut().zip(on_bodies) {
                     end.entries.fill(0.0);
                     joint.markers[k].add_wrench(&places[k], [&forces[k], &wrench.moments[k]], &mut end.entries);
                 }
-            }
+                row += 1;
+            });
         }
     }
 
-    /// The residuals alone.
-    pub fn find_residuals<'a>(&mut self, joints: &[Joint], place: impl Fn(usize) -> BodyPlace<'a>) {
-        let mut residuals = self.residuals.iter_mut();
-        for joint in joints {
-            let places: [MarkerPlace; 2] =
-                joint.markers.each_ref().map(|marker| marker.place(marker.body().map(&place).as_ref()));
-            for (row, residual) in joint.rows.iter().zip(&mut residuals) {
-                *residual = row.wrench(places.each_ref()).residual;
-            }
-        }
-    }
-
-    /// out = G v (m)
+    /// out = G v + g_t (m)
     pub fn rates(&self, velocities: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
+        out.copy_from_slice(&self.own_rates);
         self.add_rates(1.0, velocities, out);
     }
 

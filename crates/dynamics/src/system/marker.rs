@@ -26,7 +26,13 @@ pub struct Marker {
 impl Marker {
     /// A place on the ground: its position and its axes as columns, global.
     pub fn on_ground(position_global: Vector3<f64>, axes_global: Matrix3<f64>) -> Self {
-        Self { body: None, position: position_global, displacement: Vec::new(), rotation: Vec::new(), axes: axes_global }
+        Self {
+            body: None,
+            position: position_global,
+            displacement: Vec::new(),
+            rotation: Vec::new(),
+            axes: axes_global,
+        }
     }
 
     /// A place that a body carries as if it were rigid: its position from the body's origin and its axes as columns, body axes.
@@ -79,18 +85,13 @@ impl Marker {
         }
     }
 
-    /// Adds a force and a moment (global, at the marker) to generalised forces of its body: force (global), moment about the
-    /// origin (body), modal forces.
-    pub(crate) fn add_wrench(
-        &self,
-        place: &MarkerPlace,
-        [force, moment]: [&Vector3<f64>; 2],
-        generalised: &mut [f64],
-    ) {
+    /// Adds a force and a moment (global, at the marker) to generalised forces of its body: force, moment about the origin, both
+    /// in body axes, modal forces.
+    pub(crate) fn add_wrench(&self, place: &MarkerPlace, [force, moment]: [&Vector3<f64>; 2], generalised: &mut [f64]) {
         let [force_body, moment_body] = [force, moment].map(|vector| place.body_from_global * vector);
         let about_origin = place.arm.cross(&force_body) + moment_body;
         for i in 0..3 {
-            generalised[i] += force[i];
+            generalised[i] += force_body[i];
             generalised[3 + i] += about_origin[i];
         }
         let turning = place.tangent.tr_mul(&moment_body);
@@ -154,14 +155,15 @@ mod tests {
             axes: Matrix3::identity(),
         };
         let at = |delta: f64, direction: usize| {
+            let start = transformation_matrix(&Vector3::new(0.2, -0.5, 0.3));
             let mut q = [0.3, -0.2, 0.4];
             let (mut origin, mut theta) = (Vector3::new(1.0, 2.0, 3.0), Vector3::zeros());
             match direction {
-                0..3 => origin[direction] += delta,
+                // Along the axes of the body.
+                0..3 => origin += start.row(direction).transpose() * delta,
                 3..6 => theta[direction - 3] += delta,
                 _ => q[direction - 6] += delta,
             }
-            let start = transformation_matrix(&Vector3::new(0.2, -0.5, 0.3));
             let body_from_global = transformation_matrix(&theta) * start;
             marker.place(Some(&BodyPlace { origin, body_from_global, q: &q }))
         };

@@ -10,19 +10,21 @@
 use nalgebra::{Complex, Vector3};
 
 use crate::body::motion_state::MotionState;
-use crate::conservative::{ConservativeBody, get, part};
+use crate::conservative::{get, part};
 use crate::equations::Equations;
 use crate::error::{RateError, SetupError, StepError};
 use crate::state::{State, attitude_at};
-use crate::system::System;
 use crate::system::collocation::{Collocation, STAGES};
-use crate::system::inverse::{Inverse, Number};
-use crate::system::joint_matrix::{JointMatrix, Pattern, Times};
-use crate::system::stage::{BodyStart, Stage, Start, about_body_origin, about_global_origin, put, vector};
+use crate::system::description::System;
+use crate::system::inverse::Inverse;
+use crate::system::joint_matrix::{JointMatrix, Pattern};
+use crate::system::matrices::{Matrices, oscillators};
+use crate::system::newton::{Frozen, Solution, sizes};
+use crate::system::stage::{BodyStart, Stage, Start, about_global_origin, put, vector};
 
-/// Error of Newton's method over the tolerance. The velocities that it leaves add up over the steps: ten times as much costs
-/// a sixth less work, and up to a hundred times the error (Andrews' squeezer).
-const EXACTNESS: f64 = 5e-3;
+/// Error of Newton's method over the tolerance: of positions relative to the bodies, and in the norm of the energy. Ten times as
+/// much costs a fifth less work, but the multipliers of stiff bodies, and the work of drives, are then off by per cents.
+const EXACTNESS: f64 = 1e-3;
 /// A change of positions that is rounding.
 const ROUNDING: f64 = 1e-13;
 /// Passes of Newton's method before a step is given up.
@@ -59,36 +61,28 @@ impl From<RateError> for Failed {
 /// A system on its way.
 #[derive(Debug, Clone)]
 pub struct SystemMotion {
-    system: System,
+    pub(super) system: System,
     scheme: Collocation,
-    pattern: Pattern,
+    pub(super) pattern: Pattern,
     time: f64,
     /// The list of each body, as in a [`State`] of it.
-    bodies: Vec<State>,
-    start: Start,
-    first: Stage,
-    stages: [Stage; STAGES],
+    pub(super) bodies: Vec<State>,
+    pub(super) start: Start,
+    pub(super) first: Stage,
+    pub(super) stages: [Stage; STAGES],
     /// λ and μ at the stages.
     multipliers: [Vec<f64>; STAGES],
     velocity_multipliers: [Vec<f64>; STAGES],
     /// Increments of the stages of the last step, and its length; zero before the first.
     last: [[Vec<f64>; 2]; STAGES],
     last_length: f64,
-    matrices: Matrices,
+    pub(super) matrices: Matrices,
     room: Room,
+    /// The largest energy so far.
+    largest_energy: f64,
+    /// Work of the drives of joints since the beginning.
+    drive_work: f64,
     evaluations: u64,
-}
-
-/// Factors of a step.
-#[derive(Debug, Clone)]
-struct Matrices {
-    is_left_out: Vec<bool>,
-    mass: Vec<Inverse<f64>>,
-    real: Vec<Inverse<f64>>,
-    complex: Vec<Inverse<Complex<f64>>>,
-    of_mass: JointMatrix<f64>,
-    of_real: JointMatrix<f64>,
-    of_complex: JointMatrix<Complex<f64>>,
 }
 
 /// Room for one solution of the Newton system.
@@ -97,32 +91,8 @@ struct Room {
     real: Solution<f64>,
     complex: Solution<Complex<f64>>,
     y_rates: [Vec<f64>; STAGES],
-}
-
-/// Right-hand sides, which become changes.
-#[derive(Debug, Clone)]
-struct Solution<T> {
-    x: Vec<T>,
-    y: Vec<T>,
-    lambda: Vec<T>,
-    mu: Vec<T>,
-    /// dV, and a list of the same length.
-    velocity: Vec<T>,
-    of_mu: Vec<T>,
-}
-
-impl<T: Number> Solution<T> {
-    fn new(coordinates: usize, rows: usize) -> Self {
-        let zeros = |n| vec![T::from_real(0.0); n];
-        Self {
-            x: zeros(coordinates),
-            y: zeros(coordinates),
-            lambda: zeros(rows),
-            mu: zeros(rows),
-            velocity: zeros(coordinates),
-            of_mu: zeros(coordinates),
-        }
-    }
+    /// Residuals or changes of a stage.
+    change: [Vec<f64>; 2],
 }
 
 impl SystemMotion {
@@ -169,10 +139,13 @@ impl SystemMotion {
                 real: Solution::new(coordinates, rows),
                 complex: Solution::new(coordinates, rows),
                 y_rates: std::array::from_fn(|_| zeros()),
+                change: [zeros(), zeros()],
             },
             pattern,
             bodies,
             system,
+            largest_energy: 0.0,
+            drive_work: 0.0,
             evaluations: 0,
         })
     }
@@ -203,6 +176,11 @@ impl SystemMotion {
             sum += energies.map_or(0.0, |energies| energies.internal + energies.translation);
         }
         Ok(sum)
+    }
+
+    /// Work of the drives of joints since the beginning.
+    pub fn drive_work(&self) -> f64 {
+        self.drive_work
     }
 
     /// Linear momentum, and angular momentum about the global origin, of all bodies, global.
@@ -256,14 +234,11 @@ impl SystemMotion {
     pub fn assemble(&mut self) -> Result<[f64; 2], Failed> {
         self.begin();
         self.evaluate_first()?;
-        if !self.factor(None, ASSEMBLY) {
-            return Err(Failed::Newton);
-        }
-        let [x, y] = [self.first.x.clone(), self.first.y.clone()];
-        self.stages[STAGES - 1].x.copy_from_slice(&x);
-        self.stages[STAGES - 1].y.copy_from_slice(&y);
-        let left = self.end(self.time)?;
-        Ok(left)
+        let [.., last] = &mut self.stages;
+        last.x.copy_from_slice(&self.first.x);
+        last.y.copy_from_slice(&self.first.y);
+        last.inertia.clone_from(&self.first.inertia);
+        self.end(self.time, ASSEMBLY)
     }
 
     /// Tries a step of length `h` that ends at `end`, with Newton's method as exact as `exactness`, and goes on where
@@ -284,7 +259,8 @@ impl SystemMotion {
             }
             self.last_length = h;
             self.add_work(h);
-            self.end(end)?;
+            self.sum_momenta(h);
+            self.end(end, h)?;
         }
         Ok(Tried { error, passes })
     }
@@ -336,8 +312,7 @@ impl SystemMotion {
             let list = body.list(state);
             let slow = list.slow();
             let body_from_global = list.attitude().global_to_body();
-            let [position, momentum, pi] =
-                [part::POSITION, part::MOMENTUM, part::PI].map(|part| get(slow, part));
+            let [position, momentum, pi] = [part::POSITION, part::MOMENTUM, part::PI].map(|part| get(slow, part));
             let angular_momentum = position.cross(&momentum) + body_from_global.tr_mul(&pi);
             self.start.bodies.push(BodyStart { position, body_from_global, momentum, angular_momentum });
             let modes = self.system.first[b] + 6..self.system.first[b + 1];
@@ -354,7 +329,8 @@ impl SystemMotion {
         first.x.fill(0.0);
         first.y.fill(0.0);
         first.evaluate(system, start, [start.time, start.time])?;
-        first.x_rates.copy_from_slice(&first.velocities);
+        self.velocity_multipliers[0].fill(0.0);
+        first.find_x_rates(system, &self.velocity_multipliers[0])?;
         self.evaluations += 1;
         Ok(())
     }
@@ -375,36 +351,25 @@ impl SystemMotion {
                 stage.y.iter_mut().zip(&self.first.y_rates).for_each(|(y, rate)| *y = c * h * rate);
             }
         }
-        let last = self.multipliers[STAGES - 1].clone();
-        self.multipliers.iter_mut().for_each(|lambda| lambda.copy_from_slice(&last));
+        self.largest_energy = self.largest_energy.max(self.first.energy(&self.system, h));
+        let [others @ .., last] = &mut self.multipliers;
+        others.iter_mut().for_each(|lambda| lambda.copy_from_slice(last));
         self.velocity_multipliers.iter_mut().for_each(|mu| mu.fill(0.0));
     }
 
-    /// Factors of the Newton matrix with the geometry of stage `of`, or of the start.
-    fn factor(&mut self, of: Option<usize>, h: f64) -> bool {
-        let Self { matrices, system, stages, first, scheme, pattern, .. } = self;
-        let stage = of.map_or(&*first, |of| &stages[of]);
-        let Matrices { is_left_out, mass, real, complex, of_mass, of_real, of_complex } = matrices;
-        let mut is_regular = true;
-        for (b, body) in system.bodies.iter().enumerate() {
-            let inertia = &stage.inertia[b];
-            let oscillators = || {
-                body.circular_frequencies
-                    .iter()
-                    .zip(&body.damping_ratios)
-                    .map(|(omega, zeta)| [omega * omega, 2.0 * zeta * omega])
-            };
-            is_regular &= mass[b].find(1.0, inertia, oscillators().map(|_| [0.0; 2]));
-            is_regular &= real[b].find(scheme.real / h, inertia, oscillators());
-            is_regular &= complex[b].find(scheme.complex / h, inertia, oscillators());
-        }
-        if !is_regular {
+    /// Factors of the Newton matrix with the geometry of a stage.
+    fn factor(&mut self, of: usize, h: f64) -> bool {
+        let Self { matrices, system, stages, scheme, pattern, .. } = self;
+        if !matrices.factor_real(system, pattern, &stages[of], scheme.real / h) {
             return false;
         }
-        of_mass.assemble(pattern, &stage.constraints, mass);
-        of_mass.factor(pattern, is_left_out, true);
-        of_real.assemble(pattern, &stage.constraints, real);
-        of_real.factor(pattern, is_left_out, false);
+        let Matrices { is_left_out, complex, of_complex, .. } = matrices;
+        let stage = &stages[of];
+        for ((body, inertia), inverse) in system.bodies.iter().zip(&stage.inertia).zip(&mut *complex) {
+            if !inverse.find(scheme.complex / h, inertia, oscillators(body)) {
+                return false;
+            }
+        }
         of_complex.assemble(pattern, &stage.constraints, complex);
         of_complex.factor(pattern, is_left_out, false);
         true
@@ -415,7 +380,7 @@ impl SystemMotion {
         let mut last = f64::INFINITY;
         for pass in 1..=MAX_PASSES {
             self.evaluate_stages(h)?;
-            if pass == 1 && !self.factor(Some(1), h) {
+            if pass == 1 && !self.factor(1, h) {
                 return Err(Failed::Newton);
             }
             let change = self.improve(h);
@@ -450,23 +415,40 @@ impl SystemMotion {
 
     /// One pass. Returns the size of the change of positions.
     fn improve(&mut self, h: f64) -> f64 {
-        let Self { stages, scheme, system, room, matrices, pattern, multipliers, velocity_multipliers, .. } = self;
-        let Room { real, complex, y_rates } = room;
-        // Residuals, transformed.
-        for k in 0..system.coordinates() {
-            let (mut of_real, mut of_complex) = ([0.0; 2], [Complex::new(0.0, 0.0); 2]);
-            for i in 0..STAGES {
+        let Self {
+            stages,
+            scheme,
+            system,
+            room,
+            matrices,
+            pattern,
+            multipliers,
+            velocity_multipliers,
+            largest_energy,
+            ..
+        } = self;
+        let Room { real, complex, y_rates, change: residuals } = room;
+        // Residuals in the axes of the bodies at each stage, transformed.
+        real.clear();
+        complex.clear();
+        for i in 0..STAGES {
+            let [x, y] = residuals;
+            for k in 0..system.coordinates() {
                 let sum = |of: fn(&Stage) -> &Vec<f64>| -> f64 {
                     (0..STAGES).map(|j| scheme.inverse[(i, j)] * of(&stages[j])[k]).sum::<f64>() / h
                 };
-                let residuals = [stages[i].x_rates[k] - sum(|stage| &stage.x), y_rates[i][k] - sum(|stage| &stage.y)];
-                for (which, residual) in residuals.into_iter().enumerate() {
-                    of_real[which] += scheme.to_real[i] * residual;
-                    of_complex[which] += scheme.to_complex[i] * residual;
+                x[k] = stages[i].x_rates[k] - sum(|stage| &stage.x);
+                y[k] = y_rates[i][k] - sum(|stage| &stage.y);
+            }
+            stages[i].to_body_axes(system, x, y);
+            for k in 0..x.len() {
+                for (residual, of_real, of_complex) in
+                    [(x[k], &mut real.x[k], &mut complex.x[k]), (y[k], &mut real.y[k], &mut complex.y[k])]
+                {
+                    *of_real += scheme.to_real[i] * residual;
+                    *of_complex += scheme.to_complex[i] * residual;
                 }
             }
-            [real.x[k], real.y[k]] = of_real;
-            [complex.x[k], complex.y[k]] = of_complex;
         }
         for row in 0..pattern.len() {
             let (mut of_real, mut of_complex) = ([0.0; 2], [Complex::new(0.0, 0.0); 2]);
@@ -488,13 +470,13 @@ impl SystemMotion {
             let change = |real: f64, complex: Complex<f64>| {
                 scheme.from_real[i] * real + 2.0 * (scheme.from_complex[i] * complex).re
             };
-            let Stage { x, y, .. } = &mut stages[i];
-            for k in 0..x.len() {
-                real.velocity[k] = change(real.x[k], complex.x[k]);
-                x[k] += real.velocity[k];
-                y[k] += change(real.y[k], complex.y[k]);
+            let [dx, dy] = residuals;
+            for k in 0..dx.len() {
+                (dx[k], dy[k]) = (change(real.x[k], complex.x[k]), change(real.y[k], complex.y[k]));
             }
-            largest = largest.max(size(system, &real.velocity));
+            let [position, energy] = sizes(system, dx, h);
+            largest = largest.max(position).max((energy / *largest_energy).sqrt());
+            stages[i].add_in_body_axes(system, dx, dy);
             for row in 0..multipliers[i].len() {
                 multipliers[i][row] += change(real.lambda[row], complex.lambda[row]);
                 velocity_multipliers[i][row] += change(real.mu[row], complex.mu[row]);
@@ -510,22 +492,40 @@ impl SystemMotion {
         for k in 0..system.coordinates() {
             let mut difference = [first.x_rates[k], first.y_rates[k]];
             for i in 0..STAGES {
-                let rate =
-                    (0..STAGES).map(|j| scheme.inverse[(i, j)] * stages[j].x[k]).sum::<f64>() / h;
+                let rate = (0..STAGES).map(|j| scheme.inverse[(i, j)] * stages[j].x[k]).sum::<f64>() / h;
                 difference[0] -= scheme.at_start[i] * rate;
                 difference[1] -= scheme.at_start[i] * stages[i].y_rates[k];
             }
             [real.x[k], real.y[k]] = difference;
         }
+        stages[1].to_body_axes(system, &mut real.x, &mut real.y);
         real.lambda.fill(0.0);
         real.mu.fill(0.0);
         let frozen = Frozen { system, stage: &stages[1], pattern, of_mass: &matrices.of_mass };
         frozen.solve(real, scheme.real / h, &matrices.real, &matrices.of_real);
-        size(system, &real.x)
+        sizes(system, &real.x, h)[0]
+    }
+
+    /// Gives what flies freely the momenta that the loads have given it.
+    fn sum_momenta(&mut self, h: f64) {
+        let Self { stages, system, multipliers, scheme, room, .. } = self;
+        for (i, stage) in stages.iter_mut().enumerate() {
+            stage.find_y_rates(system, &multipliers[i], &mut room.y_rates[i]);
+        }
+        let [.., last] = stages;
+        let rates = &room.y_rates;
+        last.correct_momenta(system, |k| {
+            h * rates.iter().zip(scheme.weights).map(|(rates, weight)| weight * rates[k]).sum::<f64>()
+        });
     }
 
     /// Adds the integrals over a step: works, impulses, dissipation.
     fn add_work(&mut self, h: f64) {
+        let stages = self.stages.iter().zip(&self.multipliers).zip(self.scheme.weights);
+        for ((stage, lambda), weight) in stages {
+            let power: f64 = lambda.iter().zip(&stage.constraints.own_rates).map(|(lambda, rate)| -lambda * rate).sum();
+            self.drive_work += h * weight * power;
+        }
         for (b, state) in self.bodies.iter_mut().enumerate() {
             let body = &self.system.bodies[b];
             let mut slow = *body.list(state).slow();
@@ -540,13 +540,18 @@ impl SystemMotion {
     }
 
     /// Projects the end of a step, and takes it for the state. Returns the largest residual and rate that are left.
-    fn end(&mut self, end: f64) -> Result<[f64; 2], Failed> {
-        let Self { stages: [.., last], system, start, matrices, pattern, room, .. } = self;
+    fn end(&mut self, end: f64, h: f64) -> Result<[f64; 2], Failed> {
+        let Self { stages: [.., last], system, start, matrices, pattern, room, scheme, .. } = self;
+        last.place(system, start);
+        last.find_constraints(system, [end, end]);
+        if !matrices.factor_real(system, pattern, last, scheme.real / h) {
+            return Err(Failed::Rates(RateError::Inertia));
+        }
         // Positions.
         let (mut left, real) = (f64::INFINITY, &mut room.real);
         for _ in 0..MAX_PROJECTIONS {
             last.place(system, start);
-            last.find_constraints(system, true);
+            last.find_constraints(system, [end, end]);
             let largest = last.constraints.residuals.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
             if largest >= 0.5 * left || largest == 0.0 {
                 left = largest.min(left);
@@ -561,7 +566,8 @@ impl SystemMotion {
                 let (first, end) = (system.first[b], system.first[b + 1]);
                 inverse.apply(&mut real.x[first..end]);
             }
-            last.x.iter_mut().zip(&real.x).for_each(|(x, change)| *x += change);
+            real.y.fill(0.0);
+            last.add_in_body_axes(system, &mut real.x, &mut real.y);
         }
         // Velocities.
         last.evaluate(system, start, [end, end])?;
@@ -597,74 +603,4 @@ impl SystemMotion {
         self.time = end;
         Ok([left, rates])
     }
-}
-
-/// What both solutions of a Newton pass share.
-#[derive(Clone, Copy)]
-struct Frozen<'a> {
-    system: &'a System,
-    stage: &'a Stage,
-    pattern: &'a Pattern,
-    of_mass: &'a JointMatrix<f64>,
-}
-
-impl Frozen<'_> {
-    /// The Newton system of one κ, Eqs. (J8): right-hand sides become changes.
-    fn solve<T: Number>(self, solution: &mut Solution<T>, kappa: T, inverses: &[Inverse<T>], of_z: &JointMatrix<T>)
-    where
-        T: Times<T>,
-    {
-        let Self { system, stage: Stage { constraints, inertia, positions, attitudes, .. }, pattern, of_mass } = self;
-        let Solution { x, y, lambda, mu, velocity, of_mu } = solution;
-        let bodies = || (0..system.bodies.len()).map(|b| (b, system.first[b]..system.first[b + 1]));
-        // t = κ Rg − G RX, and A μ = t − Rv
-        lambda.iter_mut().for_each(|lambda| *lambda *= kappa);
-        constraints.add_rates(-1.0, x, lambda);
-        mu.iter_mut().zip(&*lambda).for_each(|(mu, t)| *mu = *t - *mu);
-        of_mass.solve(pattern, mu);
-        // b = RY − Λ RX/κ + D (M⁻¹Gᵀμ)
-        of_mu.fill(T::from_real(0.0));
-        constraints.add_forces(mu, of_mu);
-        velocity.copy_from_slice(of_mu);
-        for (b, own) in bodies() {
-            let body = &system.bodies[b];
-            about_body_origin(&mut y[own.clone()], &positions[b], &attitudes[b]);
-            inertia[b].solve(&mut velocity[own.clone()]);
-            for (k, at) in own.skip(6).enumerate() {
-                let (omega, zeta) = (body.circular_frequencies[k], body.damping_ratios[k]);
-                let forces = velocity[at].scale(2.0 * zeta * omega) - x[at].scale(omega * omega) / kappa;
-                y[at] += forces;
-            }
-        }
-        // (G Z⁻¹ Gᵀ) λ' = t − G Z⁻¹ b
-        velocity.copy_from_slice(y);
-        bodies().for_each(|(b, own)| inverses[b].apply(&mut velocity[own]));
-        constraints.add_rates(-1.0, velocity, lambda);
-        of_z.solve(pattern, lambda);
-        // dV = Z⁻¹ (b + Gᵀλ'), dX = (RX + dV)/κ, dY = M dV − Gᵀμ
-        constraints.add_forces(lambda, y);
-        for (b, own) in bodies() {
-            inverses[b].apply(&mut y[own.clone()]);
-            own.clone().for_each(|k| x[k] = (x[k] + y[k]) / kappa);
-            inertia[b].multiply(&mut y[own.clone()]);
-            own.clone().for_each(|k| y[k] -= of_mu[k]);
-            about_global_origin(&mut y[own], &positions[b], &attitudes[b]);
-        }
-        lambda.iter_mut().zip(&*mu).for_each(|(lambda, mu)| *lambda -= kappa * *mu);
-    }
-}
-
-/// Size of a change of positions: the largest root mean square of a body, with its mass, relative to its radius of gyration.
-fn size(system: &System, x: &[f64]) -> f64 {
-    let of_body = |(b, body): (usize, &ConservativeBody)| {
-        let own = &x[system.first[b]..system.first[b + 1]];
-        let [moved, turned] = [0, 3].map(|first| vector(own, first));
-        let inertia = body.undeformed_inertia();
-        let square = body.mass() * moved.norm_squared()
-            + turned.dot(&(inertia * turned))
-            + own[6..].iter().map(|q| q * q).sum::<f64>();
-        (square / (0.5 * inertia.trace())).sqrt()
-    };
-    // A NaN stays one.
-    system.bodies.iter().enumerate().map(of_body).fold(0.0, |most, size| if size <= most { most } else { size })
 }

@@ -1,15 +1,15 @@
 //! The bodies and rows of a system at one time within a step.
 
 use nalgebra::{Matrix3, Vector3};
-use rigid_kin::{cross_matrix, f_inverse, transformation_matrix};
+use rigid_kin::{f_inverse, transformation_matrix};
 
 use crate::conservative::Evaluation;
 use crate::conservative::{get, part, set};
 use crate::equations::Equations;
 use crate::error::RateError;
-use crate::system::System;
 use crate::system::constraints::Constraints;
-use crate::system::inverse::{Inertia, Number, product};
+use crate::system::description::System;
+use crate::system::inverse::Inertia;
 use crate::system::marker::BodyPlace;
 
 /// The start of a step: the numbers that its increments are counted from.
@@ -42,9 +42,9 @@ pub(crate) struct Stage {
     pub y: Vec<f64>,
     pub evaluations: Vec<Evaluation>,
     pub constraints: Constraints,
-    /// G v (m).
+    /// G v + g_t (m).
     pub constraint_rates: Vec<f64>,
-    /// V, ω, q̇ of each body.
+    /// V and ω in body axes, and q̇, of each body.
     pub velocities: Vec<f64>,
     /// x' and y' by the forces beside those of the joints.
     pub x_rates: Vec<f64>,
@@ -56,6 +56,7 @@ pub(crate) struct Stage {
     /// q of all bodies.
     q: Vec<f64>,
     forces: Vec<f64>,
+    scratch: Vec<f64>,
 }
 
 impl Stage {
@@ -77,6 +78,7 @@ impl Stage {
             positions: vec![Vector3::zeros(); system.bodies.len()],
             q: zeros(),
             forces: zeros(),
+            scratch: zeros(),
         }
     }
 
@@ -93,30 +95,14 @@ impl Stage {
         }
     }
 
-    /// The place of a body.
-    pub fn body_place<'a>(
-        system: &System,
-        positions: &[Vector3<f64>],
-        attitudes: &[Matrix3<f64>],
-        q: &'a [f64],
-        b: usize,
-    ) -> BodyPlace<'a> {
-        BodyPlace {
+    /// Finds g and G where the bodies have been placed, at a time by the branch of another.
+    pub fn find_constraints(&mut self, system: &System, times: [f64; 2]) {
+        let Self { constraints, positions, attitudes, q, .. } = self;
+        constraints.find(&system.joints, times, |b| BodyPlace {
             origin: positions[b],
             body_from_global: attitudes[b],
             q: &q[system.first[b] + 6..system.first[b + 1]],
-        }
-    }
-
-    /// Finds g and, with `all`, G where the bodies have been placed.
-    pub fn find_constraints(&mut self, system: &System, all: bool) {
-        let Self { constraints, positions, attitudes, q, .. } = self;
-        let place = |b| Self::body_place(system, positions, attitudes, q, b);
-        if all {
-            constraints.find(&system.joints, place);
-        } else {
-            constraints.find_residuals(&system.joints, place);
-        }
+        });
     }
 
     /// Finds velocities, rates, g and G at a time; laws with branches are taken as they are at the branch time.
@@ -143,7 +129,7 @@ impl Stage {
             body.evaluate(times, &from.body_from_global, e)?;
             let e = &*e;
             let rates = e.rates.slow();
-            put(&mut self.velocities, first, &get(rates, part::POSITION));
+            put(&mut self.velocities, first, &(attitude * get(rates, part::POSITION)));
             put(&mut self.velocities, first + 3, &e.omega_body);
             self.velocities[first + 6..end].copy_from_slice(&e.modal_velocity);
             let force = get(rates, part::MOMENTUM);
@@ -159,9 +145,59 @@ impl Stage {
             inertia.locked_inverse = e.locked_inertia.try_inverse().ok_or(RateError::Inertia)?;
             body.copy_coupling(e, &mut inertia.coupling);
         }
-        self.find_constraints(system, true);
+        self.find_constraints(system, times);
         self.constraints.rates(&self.velocities, &mut self.constraint_rates);
         Ok(())
+    }
+
+    /// Kinetic and strain energy, or that which the forces give bodies at rest within a time, whichever is larger.
+    pub fn energy(&mut self, system: &System, time: f64) -> f64 {
+        let (mut moving, mut pushed) = (0.0, 0.0);
+        for (b, body) in system.bodies.iter().enumerate() {
+            let own = system.first[b]..system.first[b + 1];
+            let own_velocities = &self.velocities[own.clone()];
+            self.forces[own.clone()].copy_from_slice(own_velocities);
+            self.inertia[b].multiply(&mut self.forces[own.clone()]);
+            moving += 0.5 * own_velocities.iter().zip(&self.forces[own.clone()]).map(|(v, p)| v * p).sum::<f64>();
+            let strained = self.q[own.start + 6..own.end].iter().zip(&body.circular_frequencies);
+            moving += 0.5 * strained.map(|(q, omega)| (omega * q).powi(2)).sum::<f64>();
+            let [force, impulse] = [&mut self.scratch, &mut self.forces];
+            for list in [&mut *force, &mut *impulse] {
+                list[own.clone()].copy_from_slice(&self.y_rates[own.clone()]);
+                about_body_origin(&mut list[own.clone()], &self.positions[b], &self.attitudes[b]);
+            }
+            self.inertia[b].solve(&mut impulse[own.clone()]);
+            let power = impulse[own.clone()].iter().zip(&force[own]).map(|(v, f)| v * f).sum::<f64>();
+            pushed += 0.5 * time * time * power;
+        }
+        f64::max(moving, pushed)
+    }
+
+    /// Turns changes of x and y to the axes and origins of the bodies.
+    pub fn to_body_axes(&self, system: &System, x: &mut [f64], y: &mut [f64]) {
+        for (b, (position, attitude)) in self.positions.iter().zip(&self.attitudes).enumerate() {
+            let first = system.first[b];
+            let moved = attitude * vector(x, first);
+            put(x, first, &moved);
+            about_body_origin(&mut y[first..first + 6], position, attitude);
+        }
+    }
+
+    /// Adds changes in the axes and about the origins of the bodies to x and y.
+    pub fn add_in_body_axes(&mut self, system: &System, dx: &mut [f64], dy: &mut [f64]) {
+        for (b, (position, attitude)) in self.positions.iter().zip(&self.attitudes).enumerate() {
+            let first = system.first[b];
+            let moved = attitude.tr_mul(&vector(dx, first));
+            put(dx, first, &moved);
+            about_global_origin(&mut dy[first..first + 6], position, attitude);
+        }
+        self.x.iter_mut().zip(dx).for_each(|(x, change)| *x += *change);
+        self.y.iter_mut().zip(dy).for_each(|(y, change)| *y += *change);
+    }
+
+    /// ω of each body, body axes.
+    pub fn velocities_of_turns<'s>(&'s self, system: &'s System) -> impl Iterator<Item = Vector3<f64>> + 's {
+        (0..system.bodies.len()).map(|b| vector(&self.velocities, system.first[b] + 3))
     }
 
     /// Finds x' of the velocities and M⁻¹Gᵀ of `multipliers`.
@@ -174,6 +210,8 @@ impl Stage {
             for k in first..end {
                 self.x_rates[k] = self.velocities[k] + self.forces[k];
             }
+            let velocity = self.attitudes[b].tr_mul(&vector(&self.x_rates, first));
+            put(&mut self.x_rates, first, &velocity);
             let [theta, omega] = [&self.x, &self.x_rates].map(|list| vector(list, first + 3));
             let rate = f_inverse(&theta, &omega).map_err(RateError::Turn)?;
             put(&mut self.x_rates, first + 3, &rate);
@@ -194,12 +232,7 @@ impl Stage {
 
     /// Removes the part of the velocities that the rows forbid, and the momenta that go with it, by `solve` of A λ = G v.
     /// Returns the largest rate that was left.
-    pub fn project_velocities(
-        &mut self,
-        system: &System,
-        momenta: &mut [f64],
-        solve: impl Fn(&mut [f64]),
-    ) -> f64 {
+    pub fn project_velocities(&mut self, system: &System, momenta: &mut [f64], solve: impl Fn(&mut [f64])) -> f64 {
         let mut left = f64::INFINITY;
         for _ in 0..MAX_PROJECTIONS {
             self.constraints.rates(&self.velocities, &mut self.constraint_rates);
@@ -227,22 +260,18 @@ impl Stage {
 /// Passes of a projection before it is left as it is.
 const MAX_PROJECTIONS: usize = 20;
 
-/// Turns a generalised force (moment about the body's origin, body axes) into one about the global origin, global.
-pub(crate) fn about_global_origin<T: Number>(
-    force: &mut [T],
-    position: &Vector3<f64>,
-    body_from_global: &Matrix3<f64>,
-) {
-    let [f, moment] = [0, 3].map(|first| Vector3::new(force[first], force[first + 1], force[first + 2]));
-    let turned = product(&body_from_global.transpose(), &moment) + product(&cross_matrix(position), &f);
-    force[3..6].copy_from_slice(turned.as_slice());
+/// Turns a force and a moment about the body's origin (body axes) into a force and a moment about the global origin (global).
+pub(crate) fn about_global_origin(force: &mut [f64], position: &Vector3<f64>, body_from_global: &Matrix3<f64>) {
+    let [f, moment] = [0, 3].map(|first| body_from_global.tr_mul(&vector(force, first)));
+    put(force, 0, &f);
+    put(force, 3, &(position.cross(&f) + moment));
 }
 
 /// The inverse of [`about_global_origin`].
-pub(crate) fn about_body_origin<T: Number>(force: &mut [T], position: &Vector3<f64>, body_from_global: &Matrix3<f64>) {
-    let [f, moment] = [0, 3].map(|first| Vector3::new(force[first], force[first + 1], force[first + 2]));
-    let turned = product(body_from_global, &(moment - product(&cross_matrix(position), &f)));
-    force[3..6].copy_from_slice(turned.as_slice());
+pub(crate) fn about_body_origin(force: &mut [f64], position: &Vector3<f64>, body_from_global: &Matrix3<f64>) {
+    let [f, moment] = [vector(force, 0), vector(force, 3)];
+    put(force, 0, &(body_from_global * f));
+    put(force, 3, &(body_from_global * (moment - position.cross(&f))));
 }
 
 pub(crate) fn vector(list: &[f64], first: usize) -> Vector3<f64> {

@@ -1,5 +1,6 @@
 //! Systems of bodies and joints.
 
 mod andrews;
+mod flexible;
 mod mechanism;
 mod rigid;

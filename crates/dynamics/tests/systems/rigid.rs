@@ -48,9 +48,10 @@ fn a_pendulum_has_its_period() {
         let mut motion = pendulum(amplitude);
         let steps = motion.advance(period, tolerance, &mut 1e-3).unwrap();
         let error = (angle(&motion, 0) - amplitude).abs() + motion.state(0).unwrap().omega_body.norm();
-        let [residuals, rates] = motion.residuals().unwrap().map(|list| list.iter().fold(0.0_f64, |a, b| a.max(b.abs())));
+        let [residuals, rates] =
+            motion.residuals().unwrap().map(|list| list.iter().fold(0.0_f64, |a, b| a.max(b.abs())));
         println!("{tolerance:e}: {steps} steps, error {error:e}, residual {residuals:e}, rate {rates:e}");
-        assert!(error < 30.0 * tolerance && error < 0.1 * last);
+        assert!(error < 30.0 * tolerance && error < 0.3 * last);
         assert!(residuals < 1e-14 && rates < 1e-12);
         last = error;
     }

@@ -90,6 +90,14 @@ impl ConservativeBody {
         e.locked_inertia + self.inertia_of_modes(simd, e)
     }
 
+    /// Copies S where `e` is, a list (nf) for each axis; zeros where it is zero.
+    pub(crate) fn copy_coupling(&self, e: &Evaluation, out: &mut [Vec<f64>; 3]) {
+        for (axis, list) in out.iter_mut().enumerate().take(self.s_count) {
+            let values = self.s_lists(&e.products).rows().flat_map(|row| row[axis]);
+            list.iter_mut().zip(values).for_each(|(s, value)| *s = value);
+        }
+    }
+
     /// (J − SᵀS)⁻¹ x in the axes of rotation.
     #[inline(always)]
     pub(in crate::conservative) fn solve_locked(

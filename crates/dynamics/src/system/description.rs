@@ -1,0 +1,72 @@
+//! Bodies and the joints between them.
+
+use crate::conservative::ConservativeBody;
+use crate::equations::Equations;
+use crate::error::SetupError;
+use crate::system::groups::free_groups;
+use crate::system::joint::Joint;
+
+/// Bodies and joints.
+#[derive(Debug, Clone)]
+pub struct System {
+    pub(crate) bodies: Vec<ConservativeBody>,
+    pub(crate) joints: Vec<Joint>,
+    /// First coordinate of each body, and the number of coordinates: six and the modes of each.
+    pub(crate) first: Vec<usize>,
+    /// Groups of bodies that joints connect with each other and not with the ground.
+    pub(crate) free_groups: Vec<Vec<usize>>,
+}
+
+impl System {
+    /// Bodies that move freely but for the joints.
+    ///
+    /// # Errors
+    /// [`SetupError`] for a body that is held, driven or has large modes, and for a marker on a body that is not there or has
+    /// other modes.
+    pub fn new(bodies: Vec<ConservativeBody>, joints: Vec<Joint>) -> Result<Self, SetupError> {
+        let mut first = vec![0];
+        for body in &bodies {
+            if !body.is_free() {
+                return Err(SetupError::NotInFormulation {
+                    formulation: "systems with joints",
+                    what: "a body that is held, driven or has large modes",
+                });
+            }
+            first.push(first[first.len() - 1] + 6 + body.flexible());
+        }
+        for marker in joints.iter().flat_map(|joint| &joint.markers) {
+            let Some(number) = marker.body() else { continue };
+            let expected = bodies.get(number).map_or(0, Equations::flexible);
+            let found = marker.flexible();
+            if number >= bodies.len() {
+                let what = "the number of a marker's body";
+                return Err(SetupError::Value { what, found: number as f64, expected: "that of a body, from 0" });
+            }
+            if found != 0 && found != expected {
+                return Err(SetupError::Length { what: "the shapes of a marker", expected, found });
+            }
+        }
+        let free_groups = free_groups(bodies.len(), &joints);
+        Ok(Self { bodies, joints, first, free_groups })
+    }
+
+    /// The bodies.
+    pub fn bodies(&self) -> &[ConservativeBody] {
+        &self.bodies
+    }
+
+    /// The joints.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Number of coordinates of all bodies.
+    pub(crate) fn coordinates(&self) -> usize {
+        self.first[self.bodies.len()]
+    }
+
+    /// Number of rows of all joints.
+    pub(crate) fn rows(&self) -> usize {
+        self.joints.iter().map(|joint| joint.rows.len()).sum()
+    }
+}

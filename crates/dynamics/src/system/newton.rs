@@ -1,0 +1,114 @@
+//! One pass of Newton's method: Eqs. (J8) of `docs/method/systems.md`.
+
+use crate::system::description::System;
+use crate::system::inverse::{Inverse, Number};
+use crate::system::joint_matrix::{JointMatrix, Pattern, Times};
+use crate::system::stage::{Stage, vector};
+
+/// Right-hand sides, which become changes.
+#[derive(Debug, Clone)]
+pub(super) struct Solution<T> {
+    pub x: Vec<T>,
+    pub y: Vec<T>,
+    pub lambda: Vec<T>,
+    pub mu: Vec<T>,
+    /// dV, and a list of the same length.
+    velocity: Vec<T>,
+    of_mu: Vec<T>,
+}
+
+impl<T: Number> Solution<T> {
+    pub fn new(coordinates: usize, rows: usize) -> Self {
+        let zeros = |n| vec![T::from_real(0.0); n];
+        Self {
+            x: zeros(coordinates),
+            y: zeros(coordinates),
+            lambda: zeros(rows),
+            mu: zeros(rows),
+            velocity: zeros(coordinates),
+            of_mu: zeros(coordinates),
+        }
+    }
+
+    /// Makes the right-hand sides of positions and momenta zero.
+    pub fn clear(&mut self) {
+        self.x.fill(T::from_real(0.0));
+        self.y.fill(T::from_real(0.0));
+    }
+}
+
+/// What both solutions of a Newton pass share.
+#[derive(Clone, Copy)]
+pub(super) struct Frozen<'a> {
+    pub system: &'a System,
+    pub stage: &'a Stage,
+    pub pattern: &'a Pattern,
+    pub of_mass: &'a JointMatrix<f64>,
+}
+
+impl Frozen<'_> {
+    /// The Newton system of one κ, Eqs. (J8): right-hand sides become changes.
+    pub fn solve<T: Number + Times<T>>(
+        self,
+        solution: &mut Solution<T>,
+        kappa: T,
+        inverses: &[Inverse<T>],
+        of_z: &JointMatrix<T>,
+    ) {
+        let Self { system, stage: Stage { constraints, inertia, .. }, pattern, of_mass } = self;
+        let Solution { x, y, lambda, mu, velocity, of_mu } = solution;
+        let bodies = || (0..system.bodies.len()).map(|b| (b, system.first[b]..system.first[b + 1]));
+        // t = κ Rg − G RX, and A μ = t − Rv
+        lambda.iter_mut().for_each(|lambda| *lambda *= kappa);
+        constraints.add_rates(-1.0, x, lambda);
+        mu.iter_mut().zip(&*lambda).for_each(|(mu, t)| *mu = *t - *mu);
+        of_mass.solve(pattern, mu);
+        // b = RY − Λ RX/κ + D (M⁻¹Gᵀμ)
+        of_mu.fill(T::from_real(0.0));
+        constraints.add_forces(mu, of_mu);
+        velocity.copy_from_slice(of_mu);
+        for (b, own) in bodies() {
+            let body = &system.bodies[b];
+            inertia[b].solve(&mut velocity[own.clone()]);
+            for (k, at) in own.skip(6).enumerate() {
+                let (omega, zeta) = (body.circular_frequencies[k], body.damping_ratios[k]);
+                let forces = velocity[at].scale(2.0 * zeta * omega) - x[at].scale(omega * omega) / kappa;
+                y[at] += forces;
+            }
+        }
+        // (G Z⁻¹ Gᵀ) λ' = t − G Z⁻¹ b
+        velocity.copy_from_slice(y);
+        bodies().for_each(|(b, own)| inverses[b].apply(&mut velocity[own]));
+        constraints.add_rates(-1.0, velocity, lambda);
+        of_z.solve(pattern, lambda);
+        // dV = Z⁻¹ (b + Gᵀλ'), dX = (RX + dV)/κ, dY = M dV − Gᵀμ
+        constraints.add_forces(lambda, y);
+        for (b, own) in bodies() {
+            inverses[b].apply(&mut y[own.clone()]);
+            own.clone().for_each(|k| x[k] = (x[k] + y[k]) / kappa);
+            inertia[b].multiply(&mut y[own.clone()]);
+            own.for_each(|k| y[k] -= of_mu[k]);
+        }
+        lambda.iter_mut().zip(&*mu).for_each(|(lambda, mu)| *lambda -= kappa * *mu);
+    }
+}
+
+/// Sizes of a change of positions: the largest root mean square of a body, with its mass, relative to its radius of gyration;
+/// and the energy of the change, if it comes about within a step, and of its strain.
+pub(super) fn sizes(system: &System, x: &[f64], h: f64) -> [f64; 2] {
+    let (mut largest, mut energy) = (0.0, 0.0);
+    for (b, body) in system.bodies.iter().enumerate() {
+        let own = &x[system.first[b]..system.first[b + 1]];
+        let [moved, turned] = [0, 3].map(|first| vector(own, first));
+        let inertia = body.undeformed_inertia();
+        let square = body.mass() * moved.norm_squared()
+            + turned.dot(&(inertia * turned))
+            + own[6..].iter().map(|q| q * q).sum::<f64>();
+        let size = (square / (0.5 * inertia.trace())).sqrt();
+        // A NaN stays one.
+        largest = if size <= largest { largest } else { size };
+        let strain = own[6..].iter().zip(&body.circular_frequencies).map(|(q, omega)| (omega * q).powi(2)).sum::<f64>();
+        energy += 0.5 * (square / (h * h) + strain);
+    }
+    [largest, energy]
+}

@@ -1,0 +1,120 @@
+//! A start without ringing: each body is deformed as the forces of its motion and of its joints ask.
+//!
+//! With accelerations and multipliers of the bodies as if they were rigid,
+//!
+//! ```text
+//! G M⁻¹ (f + Gᵀλ) = −Ġ v − ġ_t      over the rows with a rigid meaning
+//! q = Λ⁻¹ (forces + G_qᵀ λ),        q̇ = 0
+//! ```
+//!
+//! Eqs. (J9) of `docs/method/systems.md`.
+
+use crate::conservative::{get, part};
+use crate::system::inverse::Inverse;
+use crate::system::joint_matrix::JointMatrix;
+use crate::system::radau::{Failed, SystemMotion};
+use crate::system::stage::{put, vector};
+
+/// Passes: the deformation changes the forces a little.
+const PASSES: usize = 6;
+/// Time over which the rows are looked at before and after, relative to a turn of the fastest body by one radian.
+const SHORT: f64 = 1e-4;
+
+impl SystemMotion {
+    /// Deforms the bodies so that an undeformed start does not ring, and assembles them again. Returns the largest residual and
+    /// the largest rate that are left.
+    ///
+    /// # Errors
+    /// [`Failed`] where the inertia of a body is singular, or the joints do not fit.
+    pub fn relax(&mut self) -> Result<[f64; 2], Failed> {
+        let mut left = self.assemble()?;
+        for _ in 0..PASSES {
+            let multipliers = self.rigid_multipliers()?;
+            self.deform(&multipliers);
+            left = self.assemble()?;
+        }
+        Ok(left)
+    }
+
+    /// λ of rigid bodies where the system is.
+    fn rigid_multipliers(&mut self) -> Result<Vec<f64>, Failed> {
+        let fastest = self.first.velocities_of_turns(&self.system).map(|omega| omega.norm()).fold(0.0, f64::max);
+        let short = SHORT / fastest.max(1.0);
+        let mut change = vec![0.0; self.pattern.len()];
+        // Ġ v + ġ_t, by differences along the motion of rigid bodies.
+        let mut velocities = self.first.velocities.clone();
+        for (b, first) in self.system.first[..self.system.bodies.len()].iter().enumerate() {
+            velocities[first + 6..self.system.first[b + 1]].fill(0.0);
+        }
+        for sign in [1.0, -1.0] {
+            let stage = &mut self.stages[0];
+            stage.x.iter_mut().zip(&velocities).for_each(|(x, v)| *x = sign * short * v);
+            for (first, attitude) in self.system.first.iter().zip(&self.first.attitudes) {
+                let moved = attitude.tr_mul(&vector(&stage.x, *first));
+                put(&mut stage.x, *first, &moved);
+            }
+            stage.place(&self.system, &self.start);
+            let time = self.start.time + sign * short;
+            stage.find_constraints(&self.system, [time, self.start.time + short]);
+            stage.constraints.rates(&velocities, &mut stage.constraint_rates);
+            change.iter_mut().zip(&stage.constraint_rates).for_each(|(sum, rate)| *sum += sign * rate / (2.0 * short));
+        }
+        let Self { first, system, pattern, matrices, .. } = self;
+        let mut acceleration = vec![0.0; system.coordinates()];
+        let mut inverses: Vec<Inverse<f64>> = Vec::new();
+        for (b, inertia) in first.inertia.iter().enumerate() {
+            let own = system.first[b]..system.first[b + 1];
+            let mut rigid = inertia.clone();
+            // J of the body as it is deformed, without its modes.
+            for (i, a) in inertia.coupling.iter().enumerate() {
+                for (j, b) in inertia.coupling.iter().enumerate() {
+                    rigid.locked[(i, j)] += a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+                }
+            }
+            rigid.coupling.iter_mut().for_each(|s| s.fill(0.0));
+            let mut inverse = Inverse::new(own.len() - 6);
+            if !inverse.find(1.0, &rigid, std::iter::repeat_n([f64::INFINITY, 0.0], own.len() - 6)) {
+                return Err(Failed::Newton);
+            }
+            let rates = &first.evaluations[b].rates;
+            let force = first.attitudes[b] * get(rates.slow(), part::MOMENTUM);
+            let [velocity, omega] = [0, 3].map(|at| vector(&first.velocities, own.start + at));
+            // With π × ω.
+            let moment = get(rates.slow(), part::PI);
+            let acceleration = &mut acceleration[own];
+            put(acceleration, 0, &force);
+            put(acceleration, 3, &moment);
+            inverse.apply(acceleration);
+            // V has the axes of the body, which turn.
+            let turned = vector(acceleration, 0) - omega.cross(&velocity);
+            put(acceleration, 0, &turned);
+            inverses.push(inverse);
+        }
+        first.constraints.add_rates(1.0, &acceleration, &mut change);
+        change.iter_mut().for_each(|sum| *sum = -*sum);
+        let mut of_rigid = JointMatrix::new(pattern, system.coordinates());
+        of_rigid.assemble(pattern, &first.constraints, &inverses);
+        of_rigid.factor(pattern, &mut matrices.is_left_out, true);
+        of_rigid.solve(pattern, &mut change);
+        Ok(change)
+    }
+
+    /// Sets q by these multipliers, and p so that q̇ is zero.
+    fn deform(&mut self, multipliers: &[f64]) {
+        let Self { first, system, bodies, .. } = self;
+        let mut forces = vec![0.0; system.coordinates()];
+        first.constraints.add_forces(multipliers, &mut forces);
+        for (b, (body, state)) in system.bodies.iter().zip(bodies).enumerate() {
+            let modes = system.first[b] + 6..system.first[b + 1];
+            let omega = vector(&first.velocities, system.first[b] + 3);
+            let inertia = &first.inertia[b];
+            let mut list = body.list_mut(state);
+            let [q, p] = list.modes_mut();
+            for (k, at) in modes.enumerate() {
+                let stiffness = body.circular_frequencies[k] * body.circular_frequencies[k];
+                q[k] += (first.y_rates[at] + forces[at]) / stiffness;
+                p[k] = inertia.coupling.iter().zip(omega.iter()).map(|(s, w)| s[k] * w).sum();
+            }
+        }
+    }
+}
