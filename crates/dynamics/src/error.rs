@@ -1,5 +1,9 @@
 //! Errors of a motion that cannot start, or cannot go on.
 
+use std::error::Error;
+use std::fmt;
+use std::sync::Arc;
+
 /// A motion that cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -152,6 +156,9 @@ pub enum SetupError {
         /// The physics.
         what: &'static str,
     },
+    /// An error of a method or a load from outside.
+    #[error(transparent)]
+    Custom(#[from] CustomError),
     /// The reference points lie on a line.
     #[error(transparent)]
     CollinearPoints(#[from] rigid_kin::CollinearPoints),
@@ -160,8 +167,43 @@ pub enum SetupError {
     Inertia(#[from] rigid_kin::InertiaError),
 }
 
+/// Somebody else's error: of equations, schemes, methods and observers from outside. Two of them are equal if they are copies of
+/// one.
+#[derive(Debug, Clone)]
+pub struct CustomError(Arc<dyn Error + Send + Sync>);
+
+impl CustomError {
+    /// Any error, or a text.
+    pub fn new(error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        Self(Arc::from(error.into()))
+    }
+
+    /// The error itself.
+    pub fn get(&self) -> &(dyn Error + Send + Sync + 'static) {
+        &*self.0
+    }
+}
+
+impl fmt::Display for CustomError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl Error for CustomError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.0.source()
+    }
+}
+
+impl PartialEq for CustomError {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
 /// A step that failed. The state before it is kept.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StepError {
     /// The body turns by more than a full turn within a step.
@@ -240,6 +282,14 @@ pub enum StepError {
         /// Value that it gives.
         found: f64,
     },
+    /// An error of equations, a scheme or an observer from outside.
+    #[error("at time {time}: {error}")]
+    Custom {
+        /// Start of the step.
+        time: f64,
+        /// The error.
+        error: CustomError,
+    },
     /// A NaN or an overflow.
     #[error(
         "at time {time}: {what} is no longer a finite number; the motion has blown up: take a smaller step, and check loads and initial velocities"
@@ -253,13 +303,15 @@ pub enum StepError {
 }
 
 /// Rates that cannot be evaluated, before it is known in which step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum RateError {
     /// The rotation vector left the domain of f⁻¹.
     Turn(rigid_kin::BeyondFullTurn),
     /// The inertia of the deformed body has no inverse.
     Inertia,
+    /// An error of equations, a scheme or an observer from outside.
+    Custom(CustomError),
 }
 
 impl RateError {
@@ -271,6 +323,7 @@ impl RateError {
             }
             Self::Turn(_) => StepError::NotFinite { time, what: "the angular velocity" },
             Self::Inertia => StepError::NotFinite { time, what: "the inverse of the deformed inertia" },
+            Self::Custom(error) => StepError::Custom { time, error },
         }
     }
 }

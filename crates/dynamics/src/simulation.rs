@@ -31,7 +31,7 @@ use crate::simulation::checkpoint::{
 };
 use crate::simulation::events::{Event, Events, LastStep};
 use crate::simulation::fingerprint::Fingerprint;
-use crate::simulation::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, StepControl};
+use crate::simulation::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, Segment, StepControl};
 use crate::simulation::setup::{Beginning, Setup};
 
 /// Cost of a run.
@@ -80,16 +80,9 @@ pub struct Simulation {
     rows: Rows,
     end: f64,
     steps_since_row: u64,
-    /// True if a row falls on the event or the stop that has been reached.
-    row_due: bool,
-    /// True if the segment ends at a discontinuity that has not been passed.
-    discontinuity_ahead: bool,
+    phase: Phase,
     points: Vec<PointShapes>,
     stats: Stats,
-    /// True if the iterator has failed: it gives nothing more.
-    failed: bool,
-    /// True if a step has been tried, or the row at the start been given.
-    begun: bool,
     events: Events,
     /// Kept where events or times between steps are asked for.
     last_step: Option<LastStep>,
@@ -100,36 +93,62 @@ pub struct Simulation {
     may_miss_work: bool,
 }
 
-/// The way through the segment of the moment.
+/// The next thing that a run gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+enum Phase {
+    /// The row at the start, for who takes rows one by one; no step has been tried.
+    Start,
+    /// Steps.
+    Steps,
+    /// The row that falls on the event or the stop that has been reached.
+    Row,
+    /// Nothing, for who takes rows one by one: one of them has failed.
+    Failed,
+}
+
+/// The way through the present segment.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 enum Walk {
     Equal {
         step: f64,
         #[serde(with = "equal_room")]
-        steps: Option<(EqualSteps, bool)>,
+        steps: Option<EqualSteps>,
     },
     Halved {
         tolerance: f64,
         allowance: Allowance,
         longest_try: f64,
         #[serde(with = "equal_room")]
-        steps: Option<(HalvedSteps, bool)>,
+        steps: Option<HalvedSteps>,
     },
 }
 
 impl Walk {
+    /// The segment, if there is one, and whether all its steps are done.
+    fn segment(&self) -> Option<(&Segment, bool)> {
+        match self {
+            Self::Equal { steps, .. } => steps.as_ref().map(|steps| (&steps.segment, steps.is_done())),
+            Self::Halved { steps, .. } => steps.as_ref().map(|steps| (&steps.segment, steps.next_step().is_none())),
+        }
+    }
+
+    /// True at the end of a segment that a rule holds for.
+    fn is_at_end(&self, of: impl Fn(&Segment) -> bool) -> bool {
+        self.segment().is_some_and(|(segment, is_done)| is_done && of(segment))
+    }
+
     /// Refuses what a run of this one cannot leave.
     fn check_saved(&self, saved: &Self) -> Result<(), CheckpointError> {
         match (self, saved) {
             (Self::Equal { step, .. }, Self::Equal { step: found, steps }) => {
                 expect("the step", step == found)?;
-                steps.iter().try_for_each(|(steps, _)| steps.check())
+                steps.iter().try_for_each(EqualSteps::check)
             }
             (Self::Halved { tolerance, .. }, Self::Halved { tolerance: found, allowance, longest_try, steps }) => {
                 expect("the tolerance", tolerance == found)?;
                 allowance.check()?;
                 expect("the longest step to try", *longest_try > 0.0)?;
-                steps.iter().try_for_each(|(steps, _)| steps.check())
+                steps.iter().try_for_each(HalvedSteps::check)
             }
             _ => expect("the kind of step control", false),
         }
@@ -144,9 +163,7 @@ struct Saved {
     walk: Walk,
     #[serde(with = "postcard::fixint::le")]
     steps_since_row: u64,
-    row_due: bool,
-    discontinuity_ahead: bool,
-    begun: bool,
+    phase: Phase,
     account: EnergyAccount,
     #[serde(with = "postcard::fixint::le")]
     accepted: u64,
@@ -202,12 +219,9 @@ impl Simulation {
             rows: setup.rows,
             end: setup.end,
             steps_since_row: 0,
-            row_due: false,
-            discontinuity_ahead: false,
+            phase: Phase::Start,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
-            failed: false,
-            begun: false,
         })
     }
 
@@ -231,7 +245,9 @@ impl Simulation {
     pub fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
         let stays = self.plan.are_same(state.time, self.time());
         self.motion.set_state(state)?;
-        self.row_due &= stays;
+        if self.phase == Phase::Row && !stays {
+            self.phase = Phase::Steps;
+        }
         let account = &mut self.observers.energy;
         *account = EnergyAccount::new(self.motion.energies(), account.of_loads());
         self.events.forget();
@@ -312,7 +328,6 @@ impl Simulation {
             Walk::Equal { steps, .. } => *steps = None,
             Walk::Halved { steps, .. } => *steps = None,
         }
-        self.discontinuity_ahead = false;
     }
 
     /// Goes back to the first event in a step, and shows the step's end, which may be there, to the observers.
@@ -346,12 +361,12 @@ impl Simulation {
 
     /// True if a row falls on the event or the stop that has been reached, and comes next.
     pub fn row_is_due(&self) -> bool {
-        self.row_due
+        self.phase == Phase::Row
     }
 
     /// True if neither a step nor a row is to come.
     pub fn is_over(&self) -> bool {
-        !self.row_due && self.plan.is_over(self.time())
+        self.phase != Phase::Row && self.plan.is_over(self.time())
     }
 
     /// Time at which the run ends.
@@ -404,9 +419,7 @@ impl Simulation {
             plan: self.plan.progress(),
             walk: self.walk.clone(),
             steps_since_row: self.steps_since_row,
-            row_due: self.row_due,
-            discontinuity_ahead: self.discontinuity_ahead,
-            begun: self.begun,
+            phase: self.phase,
             account: self.observers.energy,
             accepted,
             rejected,
@@ -434,8 +447,8 @@ impl Simulation {
         self.motion.restore(&saved.motion)?;
         self.plan.set_progress(&saved.plan)?;
         self.stats = Stats { accepted, rejected, shortest, longest, ..self.stats };
-        (self.walk, self.observers.energy, self.steps_since_row) = (saved.walk, saved.account, steps_since_row);
-        (self.row_due, self.discontinuity_ahead, self.begun) = (saved.row_due, saved.discontinuity_ahead, saved.begun);
+        (self.walk, self.observers.energy) = (saved.walk, saved.account);
+        (self.phase, self.steps_since_row) = (saved.phase, steps_since_row);
         Ok(self)
     }
 
@@ -460,8 +473,7 @@ impl Simulation {
     /// # Errors
     /// As [`Self::advance`].
     pub fn advance_watched(&mut self, max_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
-        self.begun = true;
-        if std::mem::take(&mut self.row_due) {
+        if std::mem::replace(&mut self.phase, Phase::Steps) == Phase::Row {
             return Ok(Reached::Row);
         }
         if self.events.is_stale() {
@@ -471,13 +483,12 @@ impl Simulation {
         for _ in 0..max_steps {
             match self.next_step() {
                 None => return Ok(Reached::End),
-                Some((h, end, row_at_end)) => {
+                Some((h, end)) => {
                     if !self.try_step(h, end)? {
                         continue;
                     }
                     watch(&self.motion.moment());
-                    if self.discontinuity_ahead && self.segment_is_done() {
-                        self.discontinuity_ahead = false;
+                    if self.walk.is_at_end(|segment| segment.discontinuity) {
                         self.motion.pass_discontinuity()?;
                     }
                     // Under step control, steps are tried in pairs.
@@ -486,15 +497,15 @@ impl Simulation {
                     self.stats.shortest = self.stats.shortest.min(length);
                     self.stats.longest = self.stats.longest.max(length);
                     self.steps_since_row += count;
-                    let ends_at_row = row_at_end && self.segment_is_done();
+                    let ends_at_row = self.walk.is_at_end(|segment| segment.row);
                     let event = self.look_at_step();
                     // An event may have cut the step short; where one has failed, the step is done all the same.
-                    self.row_due = match self.rows {
+                    let is_row = match self.rows {
                         Rows::EverySteps(steps) => self.steps_since_row >= steps || self.plan.is_over(self.time()),
                         Rows::Interval(_) => ends_at_row && self.plan.are_same(self.time(), end),
                     };
-                    if self.row_due {
-                        self.steps_since_row = 0;
+                    if is_row {
+                        (self.phase, self.steps_since_row) = (Phase::Row, 0);
                     }
                     let stopped = self.plan.is_at_stop(self.time());
                     if stopped {
@@ -506,7 +517,8 @@ impl Simulation {
                     if stopped {
                         return Ok(Reached::Stop);
                     }
-                    if std::mem::take(&mut self.row_due) {
+                    if is_row {
+                        self.phase = Phase::Steps;
                         return Ok(Reached::Row);
                     }
                 }
@@ -515,19 +527,18 @@ impl Simulation {
         Ok(Reached::Between)
     }
 
-    /// Length and end of the next step, and whether its segment ends at an output time; `None` at the end.
-    fn next_step(&mut self) -> Option<(f64, f64, bool)> {
+    /// Length and end of the next step; `None` at the end.
+    fn next_step(&mut self) -> Option<(f64, f64)> {
         loop {
             let next = match &mut self.walk {
-                Walk::Equal { steps: Some((steps, row)), .. } => steps.next_step().map(|(h, end)| (h, end, *row)),
-                Walk::Halved { steps: Some((steps, row)), .. } => steps.next_step().map(|(h, end)| (h, end, *row)),
+                Walk::Equal { steps: Some(steps), .. } => steps.next_step(),
+                Walk::Halved { steps: Some(steps), .. } => steps.next_step(),
                 _ => None,
             };
             if next.is_some() {
                 return next;
             }
             let segment = self.plan.next_segment()?;
-            self.discontinuity_ahead = segment.discontinuity;
             // Step control does not see what swings within a step either, where all its stages fall on like phases.
             let branch_time = segment.start + 0.5 * segment.length;
             let of_loads = self.loads.iter().map(|load| load.longest_step(branch_time));
@@ -535,10 +546,10 @@ impl Simulation {
             let longest = of_loads.chain(of_drive).fold(self.formula_steps.longest_step(branch_time), f64::min);
             match &mut self.walk {
                 Walk::Equal { step, steps } => {
-                    *steps = Some((EqualSteps::new(segment, step.min(longest)), segment.row));
+                    *steps = Some(EqualSteps::new(segment, step.min(longest)));
                 }
                 Walk::Halved { longest_try, steps, .. } => {
-                    *steps = Some((HalvedSteps::new(segment, *longest_try, longest), segment.row));
+                    *steps = Some(HalvedSteps::new(segment, *longest_try, longest));
                 }
             }
         }
@@ -546,14 +557,6 @@ impl Simulation {
 
     fn is_controlled(&self) -> bool {
         matches!(self.walk, Walk::Halved { .. })
-    }
-
-    fn segment_is_done(&self) -> bool {
-        match &self.walk {
-            Walk::Equal { steps: Some((steps, _)), .. } => steps.is_done(),
-            Walk::Halved { steps: Some((steps, _)), .. } => steps.next_step().is_none(),
-            _ => true,
-        }
     }
 
     /// Does a step; under step control, `false` where it was rejected.
@@ -564,7 +567,7 @@ impl Simulation {
             step.begin(&*self.motion, end, halved);
         }
         match &mut self.walk {
-            Walk::Halved { tolerance, allowance, longest_try, steps: Some((steps, _)) } => {
+            Walk::Halved { tolerance, allowance, longest_try, steps: Some(steps) } => {
                 let allowed = allowance.of_step(*tolerance, h / self.end);
                 let estimate = match self.motion.controlled_step(h, end, allowed) {
                     Ok(estimate) => estimate,
@@ -599,12 +602,13 @@ impl Iterator for Simulation {
     /// The motion at the next row, the first of which is the start where no step has been tried yet; `None` at the end
     /// and after an error.
     fn next(&mut self) -> Option<Self::Item> {
-        if self.failed {
-            return None;
-        }
-        let row = match std::mem::replace(&mut self.begun, true) {
-            false => self.observation(),
-            true => loop {
+        let row = match self.phase {
+            Phase::Failed => return None,
+            Phase::Start => {
+                self.phase = Phase::Steps;
+                self.observation()
+            }
+            Phase::Steps | Phase::Row => loop {
                 match self.advance(u64::MAX) {
                     Ok(Reached::Between | Reached::Stop | Reached::Event(_)) => {}
                     Ok(Reached::End) => return None,
@@ -613,7 +617,9 @@ impl Iterator for Simulation {
                 }
             },
         };
-        self.failed = row.is_err();
+        if row.is_err() {
+            self.phase = Phase::Failed;
+        }
         Some(row)
     }
 }

@@ -223,7 +223,7 @@ impl Simulation {
 }
 
 fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
-    exception(py, &flexframe::run::RunFailure::Step(*error))
+    exception(py, &flexframe::run::RunFailure::Step(error.clone()))
 }
 
 #[pymethods]

@@ -180,7 +180,7 @@ impl Plan {
 /// Equal steps through a segment.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct EqualSteps {
-    segment: Segment,
+    pub segment: Segment,
     #[serde(with = "postcard::fixint::le")]
     count: u64,
     #[serde(with = "postcard::fixint::le")]
@@ -223,7 +223,7 @@ impl EqualSteps {
 /// few different lengths occur.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct HalvedSteps {
-    segment: Segment,
+    pub segment: Segment,
     /// Steps are `length / 2^level` long.
     level: u32,
     /// Level of the longest step allowed.

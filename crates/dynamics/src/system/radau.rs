@@ -44,7 +44,7 @@ pub struct Tried {
 }
 
 /// A step that was not done.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Failed {
     /// Newton's method does not converge.
     Newton,

@@ -3,8 +3,9 @@
 use std::sync::{Arc, Mutex};
 
 use dynamics::{
-    Applied, Crossing, Event, History, Initial, Kinematics, LoadFn, LoadFrame, Method, Observation, PointForce,
-    PointShapes, Reached, Rows, SetupError, SharedLoad, Simulation, StepControl, StepError,
+    Applied, Crossing, CustomError, Event, History, Initial, Kinematics, LoadFn, LoadFrame, Method, Observation,
+    Observer, PointForce, PointShapes, Reached, Rows, SetupError, SharedLoad, Simulation, StepControl, StepEnd,
+    StepError,
 };
 use faer::Mat;
 use modal::{BodyPoint, RigidMotion};
@@ -322,4 +323,38 @@ fn jumps_that_a_closure_does_not_name_are_passed_within_the_tolerance() {
         println!("{tolerance:e}: {steps} steps, {named} with discontinuities, {error:e}");
         assert!(error < 2.0 * tolerance && steps < named + 600, "{tolerance:e}: {steps} {named} {error:e}");
     }
+}
+
+/// An observer's own error ends the run, keeps its text and its source, and rows end with it.
+#[test]
+fn an_error_of_an_observer_comes_back_as_it_was() {
+    #[derive(Debug, thiserror::Error)]
+    #[error("{degrees} degrees are too hot")]
+    struct TooHot {
+        degrees: f64,
+    }
+
+    struct Thermometer;
+
+    impl Observer for Thermometer {
+        fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
+            let time = now.motion().time();
+            if time < 0.55 {
+                return Ok(());
+            }
+            Err(StepError::Custom { time, error: CustomError::new(TooHot { degrees: 451.0 }) })
+        }
+    }
+
+    let body = body(RigidMotion::free(), &OMEGA);
+    let mut simulation = Run::new(&body, 1.0).start(EXPONENTIAL, StepControl::Fixed(0.1), Rows::Interval(0.1));
+    simulation.watch(Arc::new(Mutex::new(Thermometer)));
+    let rows: Vec<_> = simulation.collect();
+    // The start and five steps; the sixth ends at 0.6.
+    assert_eq!(rows.len(), 7);
+    let Err(StepError::Custom { time, error }) = rows.last().unwrap() else { panic!("{:?}", rows.last()) };
+    assert!((time - 0.6).abs() < 1e-12);
+    let TooHot { degrees } = error.get().downcast_ref().unwrap();
+    assert_eq!(*degrees, 451.0);
+    assert!(rows.last().unwrap().as_ref().unwrap_err().to_string().ends_with("451 degrees are too hot"));
 }
