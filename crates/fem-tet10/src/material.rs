@@ -109,6 +109,7 @@ impl Materials {
 mod tests {
     use super::*;
 
+    /// Conserved: E and ν from λ and μ.
     #[test]
     fn lame_constants_give_back_young_and_poisson() {
         let (lambda, mu) = Material { young_modulus: 70e3, poisson_ratio: 0.33, density: 1.0 }.lame();

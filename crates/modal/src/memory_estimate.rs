@@ -215,6 +215,7 @@ mod tests {
     use super::*;
     use crate::factor::supernodes::Supernodes;
 
+    /// Closed form: Σ j²/2 multiplications over the columns.
     #[test]
     fn a_dense_factor_takes_a_sixth_of_the_cube_of_its_size() {
         let n = 240;

@@ -197,7 +197,8 @@ fn regular_determinant(positions: &[[f64; 3]; 10]) -> f64 {
 mod tests {
     use super::*;
 
-    /// The node on the edge from corner 0 to corner 1 moves along it by δ: there J = I − 4δ e_x (1, 1, 1)ᵀ at corner 1.
+    /// Closed form: the node on the edge from corner 0 to corner 1 moves along it by δ: there J = I − 4δ e_x (1, 1,
+    /// 1)ᵀ at corner 1.
     #[test]
     fn a_node_that_slides_along_its_edge_scales_the_jacobian_as_in_closed_form() {
         let straight = NODES;

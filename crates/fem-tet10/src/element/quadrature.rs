@@ -83,6 +83,7 @@ mod tests {
         worst
     }
 
+    /// Closed form: ∫ ξⁱ ηʲ ζᵏ over the reference tetrahedron.
     #[test]
     fn rules_are_exact_to_their_degree_and_no_further() {
         assert!(worst_error(&degree_2(), 2) < 1e-14);
@@ -93,6 +94,7 @@ mod tests {
         assert!(worst_error(&degree_5(), 6) > 1e-3);
     }
 
+    /// Closed form: ∫ L₁ⁱ L₂ʲ over the reference triangle.
     #[test]
     fn the_triangle_is_exact_to_degree_six_and_no_further() {
         // ∫ L₁ⁱ L₂ʲ over the reference triangle = i! j! / (i + j + 2)!

@@ -60,6 +60,7 @@ pub fn shape_gradients(at: [f64; 3]) -> [[f64; 3]; 10] {
 mod tests {
     use super::*;
 
+    /// Closed form: N_i(x_j) = δ_ij.
     #[test]
     fn each_function_is_one_at_its_node_and_zero_at_the_others() {
         for (j, node) in NODES.into_iter().enumerate() {
@@ -69,6 +70,7 @@ mod tests {
         }
     }
 
+    /// Independent reference: central differences, exact for quadratic functions.
     #[test]
     fn gradients_are_the_differences_of_the_functions() {
         let at = [0.21, 0.17, 0.33];
@@ -85,6 +87,7 @@ mod tests {
         }
     }
 
+    /// Conserved: the sum of the functions is one.
     #[test]
     fn functions_sum_to_one_and_gradients_to_zero() {
         let at = [0.4, 0.05, 0.3];

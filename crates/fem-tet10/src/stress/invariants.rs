@@ -22,6 +22,7 @@ pub fn principal_stresses(stress: &[f64; 6]) -> [f64; 3] {
 mod tests {
     use super::*;
 
+    /// Closed form: von Mises stress and principal stresses of tension, pressure and shear.
     #[test]
     fn tension_shear_and_pressure_are_what_they_are_in_books() {
         assert_eq!(von_mises(&[-7.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 7.0);
@@ -33,6 +34,7 @@ mod tests {
         }
     }
 
+    /// Conserved: the trace and the von Mises stress do not depend on the axes.
     #[test]
     fn the_von_mises_stress_is_that_of_the_principal_stresses() {
         let stress = [3.0, -1.0, 4.0, 1.5, -2.5, 0.7];

@@ -360,6 +360,7 @@ mod tests {
         [on(1), on(3), is_definite.then(|| of_faer(factor, &values))]
     }
 
+    /// Independent reference: the factor by faer.
     #[test]
     fn the_factor_is_that_of_faer_and_the_same_on_any_number_of_threads() {
         let [one, three, expected] = factors(&grid(18), 2.0).map(Option::unwrap);
@@ -367,6 +368,7 @@ mod tests {
         assert!(one.iter().zip(&expected).all(|(l, expected)| (l - expected).abs() < 1e-13));
     }
 
+    /// Independent reference: faer has no factor either.
     #[test]
     fn a_matrix_that_is_not_definite_has_no_factor() {
         assert!(factors(&grid(18), -25.0).iter().all(Option::is_none));

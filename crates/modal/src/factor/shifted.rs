@@ -306,6 +306,7 @@ mod tests {
     use crate::support::motion::{RigidMotion, Support};
 
     /// A block on a hinge: the held rows have an unknown of their own.
+    /// Conserved: the same answers in the factor's order and in the order of the nodes.
     #[test]
     fn answers_in_the_factor_s_own_order_are_those_of_the_nodes() {
         let block = Block::new([6, 5, 4]);

@@ -275,6 +275,7 @@ pub(crate) mod tests {
         factorize_symbolic_cholesky(a.symbolic(), Side::Lower, order, params).unwrap()
     }
 
+    /// Independent reference: the solutions by faer.
     #[test]
     fn it_gives_what_faer_gives_for_any_number_of_columns_and_threads() {
         let a = grid(18);

@@ -48,6 +48,7 @@ pub(crate) fn whitening(matrix: &Mat<f64>) -> Result<Mat<f64>, LltError> {
 mod tests {
     use super::*;
 
+    /// Conserved: A v = λ v, and the vectors are orthonormal.
     #[test]
     fn eigenpairs_are_accurate_at_every_scale() {
         // A band matrix with falling entries, as block Lanczos makes them.
@@ -66,6 +67,7 @@ mod tests {
         }
     }
 
+    /// Closed form: the eigenvalues of the zero matrix are 0.
     #[test]
     fn nothing_and_zero_have_eigenvalues_too() {
         assert!(symmetric_eigen(&Mat::zeros(0, 0)).unwrap().0.is_empty());

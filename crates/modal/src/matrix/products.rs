@@ -214,6 +214,7 @@ mod tests {
     use super::*;
     use faer::sparse::{SparseColMat, Triplet};
 
+    /// Independent reference: the products of the dense matrix by faer.
     #[test]
     fn products_equal_the_dense_ones_for_any_number_of_columns() {
         let nodes = 700;

@@ -222,6 +222,7 @@ impl WithSimd for AddProducts<'_> {
 mod tests {
     use super::*;
 
+    /// Independent reference: the products of the whole matrices by faer.
     #[test]
     fn products_in_pieces_equal_the_whole() {
         let n = 2 * ROWS + 77;

@@ -363,6 +363,7 @@ pub(crate) mod tests {
         [k, m]
     }
 
+    /// Independent reference: a dense P made from the elements.
     #[test]
     fn what_goes_to_all_nodes_and_to_the_corners_is_transposed() {
         let block = Block::new([3, 2, 4]);
@@ -384,6 +385,7 @@ pub(crate) mod tests {
         assert_eq!(corners.at_corners(in_double.as_ref()), x);
     }
 
+    /// Closed form: a linear field.
     #[test]
     fn linear_displacements_are_kept() {
         let block = Block::new([3, 2, 4]);
@@ -401,6 +403,7 @@ pub(crate) mod tests {
         assert_eq!(block.corners.at_corners(everywhere.as_ref()), of_corners);
     }
 
+    /// Independent reference: the dense products Pᵀ K P and Pᵀ M P.
     #[test]
     fn matrices_over_corners_are_the_products_with_the_prolongation() {
         // The second has the corners of two tasks.
@@ -421,6 +424,7 @@ pub(crate) mod tests {
         const { assert!(67 * 4 > PER_TASK, "there is one task only") };
     }
 
+    /// Conserved: no force of rigid motions; mass, centre of mass and inertia of the fine matrices.
     #[test]
     fn rigid_motions_of_the_corners_meet_no_stiffness_and_all_of_the_mass() {
         let block = Block::new([4, 3, 5]);

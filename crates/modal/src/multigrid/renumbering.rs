@@ -127,6 +127,7 @@ mod tests {
     use crate::multigrid::coarse::tests::Block;
     use crate::multigrid::spatial_order::spatial_order;
 
+    /// Conserved: the products do not depend on the order of the nodes.
     #[test]
     fn matrices_in_another_order_are_the_same() {
         let block = Block::new([3, 4, 2]);

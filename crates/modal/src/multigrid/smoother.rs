@@ -398,6 +398,7 @@ mod tests {
         if i == j { 3e11 } else { 1e10 * ((i.min(j) * 7 + i.max(j) * 13) as f64).cos() }
     }
 
+    /// Conserved: f − K x of the dense matrix, and the symmetry of the smoothing.
     #[test]
     fn a_smoothing_is_symmetric_and_leaves_what_it_says() {
         let nodes = 2 * NODES_PER_TASK + 11;

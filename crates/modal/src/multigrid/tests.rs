@@ -86,6 +86,7 @@ fn applied(cycle: &mut Multigrid<'_>, forces: &Mat<f64>) -> Mat<f64> {
     x
 }
 
+/// Conserved: symmetry.
 #[test]
 fn the_cycle_is_symmetric_and_positive() {
     let levels = Levels::new([5, 6, 4], 1.0);
@@ -103,6 +104,7 @@ fn the_cycle_is_symmetric_and_positive() {
     }
 }
 
+/// Conserved: each column alone gives the same.
 #[test]
 fn columns_do_not_depend_on_those_beside_and_before_them() {
     let levels = Levels::new([3, 4, 3], 1.0);
@@ -138,6 +140,7 @@ fn left_by_steps(levels: &Levels, cycle: &mut Multigrid<'_>, exact: &Mat<f64>, s
     left
 }
 
+/// Conserved: the part of a known error that a step leaves does not depend on the number of elements.
 #[test]
 fn the_cycle_is_near_to_the_inverse_for_any_size_of_the_elements() {
     // With the shift of the search, which is about the lowest eigenvalue, and with next to none: there a step to the corners
@@ -171,6 +174,7 @@ fn solver_by_cycles(block: &Block) -> Solver<'_> {
     solver
 }
 
+/// Independent reference: the modes by the factor.
 #[test]
 fn modes_by_cycles_are_those_by_the_factor() {
     let block = Block::new([6, 5, 4]);
@@ -188,6 +192,7 @@ fn modes_by_cycles_are_those_by_the_factor() {
     }
 }
 
+/// Independent reference: the static responses by the factor.
 #[test]
 fn static_answers_by_cycles_are_those_by_the_factor() {
     let block = Block::new([6, 5, 4]);
@@ -213,6 +218,7 @@ fn static_answers_by_cycles_are_those_by_the_factor() {
 /// Rounding in K, of a body of 400 times its thickness.
 const ROUNDING_IN_K: f64 = 1e-6;
 
+/// Independent reference: the modes and the static response by the factor.
 #[test]
 fn cycles_end_where_rounding_leaves_no_more() {
     let block = Block::new([400, 1, 1]);

@@ -64,6 +64,7 @@ fn column(values: &[f64]) -> Mat<f64> {
     Mat::from_fn(values.len(), 1, |i, _| values[i])
 }
 
+/// Independent reference: the definitions, node by node.
 #[test]
 fn constants_equal_their_definitions() {
     for (support, _) in supports::supports(&supports::body().positions) {
@@ -95,6 +96,7 @@ fn assert_definitions(case: &Case) {
     }
 }
 
+/// Conserved: the symmetries of the constants.
 #[test]
 fn symmetries_hold() {
     let Constants { rotation_products, inertia_second, gyroscopic, rotation_basis, inertia, .. } =
@@ -112,6 +114,7 @@ fn symmetries_hold() {
     assert!((product - Matrix3::identity()).norm() < 1e-12);
 }
 
+/// Conserved: modes have no momentum along the motions that the support allows.
 #[test]
 fn first_moments_are_those_of_the_motions_that_the_support_prevents() {
     for (support, _) in supports::supports(&supports::body().positions) {
@@ -143,6 +146,7 @@ fn first_moments_are_those_of_the_motions_that_the_support_prevents() {
     }
 }
 
+/// Independent reference: the inertia of the deformed body, node by node.
 #[test]
 fn inertia_of_the_deformed_body_is_quadratic_in_the_modes() {
     let case = case();
@@ -159,6 +163,7 @@ fn inertia_of_the_deformed_body_is_quadratic_in_the_modes() {
     assert!(largest > 0.1, "deformed by {largest} only");
 }
 
+/// Conserved: the rows of the modes.
 #[test]
 fn points_and_rigid_shapes_are_rows_of_the_modes() {
     let case = case();
@@ -177,6 +182,7 @@ fn points_and_rigid_shapes_are_rows_of_the_modes() {
     assert!((middle.position_body + case.modes.rigid.center_of_mass - place).norm() < 1e-12);
 }
 
+/// Conserved: the body of the truncated modes.
 #[test]
 fn a_truncated_body_is_the_body_of_the_truncated_modes() {
     let case = case();

@@ -81,6 +81,7 @@ fn tetrahedra_that_share_a_node() {
     message(joint.try_modes(4), &["mechanism", "3 mode(s)"]);
 }
 
+/// Conserved: λ/t² of a thin strip does not depend on its thickness t.
 #[test]
 fn a_strip_so_thin_that_rounding_hides_its_stiffness() {
     // Eigenvalues of bending go with the square of the thickness, and rounding not at all.
@@ -191,6 +192,7 @@ fn numbers_that_are_none() {
     assert!(matches!(error, ModalError::NotFinite { index: 7, .. }));
 }
 
+/// Conserved: the same eigenvalues with and without stored zeros.
 #[test]
 fn patterns_that_differ_are_no_reason_to_refuse() {
     let body = small();

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::held::supports::{body, supports};
 
+/// Conserved: the same constants from a mesh and from a rigid body.
 #[test]
 fn constants_equal_those_of_a_mesh_whatever_holds_it() {
     let body = body();
@@ -45,6 +46,7 @@ fn constants_equal_those_of_a_mesh_whatever_holds_it() {
     }
 }
 
+/// Conserved: the rigid modes are orthonormal in the mass metric.
 #[test]
 fn energy_of_rigid_modal_velocities_is_half_their_square() {
     let inertia = Matrix3::new(5.0, 0.3, -0.2, 0.3, 4.0, 0.5, -0.2, 0.5, 3.0);

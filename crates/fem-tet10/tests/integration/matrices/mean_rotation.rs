@@ -30,6 +30,7 @@ fn patches() -> Vec<(Mesh, MeanRotation)> {
         .into()
 }
 
+/// Closed form: the rotation of a rigid motion.
 #[test]
 fn a_rigid_motion_has_its_rotation() {
     let (turn, shift) = (Vector3::new(0.3, -0.7, 1.1), Vector3::new(5.0, -3.0, 2.0));
@@ -42,6 +43,7 @@ fn a_rigid_motion_has_its_rotation() {
     assert!(worst < 1e-12, "{worst:e}");
 }
 
+/// Conserved: resultant 0, and the moment.
 #[test]
 fn a_moment_becomes_forces_without_resultant_and_with_its_moment() {
     let (mut worst_force, mut worst_moment) = (0.0_f64, 0.0_f64);
@@ -59,6 +61,7 @@ fn a_moment_becomes_forces_without_resultant_and_with_its_moment() {
     assert!(worst_force < 1e-13 && worst_moment < 1e-12, "{worst_force:e} {worst_moment:e}");
 }
 
+/// Conserved: the sum of squares rises on either side.
 #[test]
 fn no_other_rotation_fits_better() {
     let mut random = Random(3);

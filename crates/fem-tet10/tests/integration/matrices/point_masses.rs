@@ -34,6 +34,7 @@ fn assert_moments(mesh: &Mesh, point: PointMass, tolerance: f64) {
     }
 }
 
+/// Conserved: mass, first and second moments of the point mass.
 #[test]
 fn on_a_node_the_mass_is_on_the_diagonal_alone() {
     let mesh = data_mesh("two_materials.msh");
@@ -46,6 +47,7 @@ fn on_a_node_the_mass_is_on_the_diagonal_alone() {
     assert_eq!(changed, 3);
 }
 
+/// Conserved: mass, first and second moments of the point mass.
 #[test]
 fn inside_an_element() {
     for at in [[3.3, 4.1, 2.9], [21.7, 9.3, 0.4], [20.0, 5.5, 5.2], [11.0, 0.0, 3.0]] {
@@ -53,11 +55,13 @@ fn inside_an_element() {
     }
 }
 
+/// Conserved: mass, first and second moments of the point mass.
 #[test]
 fn inside_a_curved_element() {
     assert_moments(&workspace_mesh("ring.msh"), PointMass { at: [0.0, -91.0, 7.0], mass: 2.0, spread: None }, 1e-12);
 }
 
+/// Conserved: mass, first and second moments of the point mass.
 #[test]
 fn on_a_curved_surface_just_outside_of_the_elements() {
     for angle in [0.7_f64, 1.9, 3.3, 5.0] {
@@ -66,6 +70,7 @@ fn on_a_curved_surface_just_outside_of_the_elements() {
     }
 }
 
+/// Conserved: mass, first and second moments of the point mass.
 #[test]
 fn spread_on_a_corner_an_edge_a_face_and_inside() {
     let plate = workspace_mesh("plate.msh");
@@ -79,12 +84,14 @@ fn spread_on_a_corner_an_edge_a_face_and_inside() {
     }
 }
 
+/// Conserved: mass, first and second moments of the point mass.
 #[test]
 fn spread_over_one_node_on_it() {
     let point = PointMass { at: [28.0, 10.0, 10.0], mass: 0.001, spread: Some(1e-3) };
     assert_moments(&data_mesh("two_materials.msh"), point, 1e-14);
 }
 
+/// Conserved: mass, first and second moments of the point mass.
 #[test]
 fn spread_over_nodes_in_one_plane_serves_points_of_that_plane_only() {
     // Within 5 of these points are four nodes, all with z = 0.
@@ -94,6 +101,7 @@ fn spread_over_nodes_in_one_plane_serves_points_of_that_plane_only() {
     assert!(matches!(error, Err(AssemblyError::Spread { count: 4, .. })), "{error:?}");
 }
 
+/// Conserved: mass, first and second moments of the point mass.
 #[test]
 fn spread_over_more_than_the_whole_body() {
     for radius in [100.0, 1e6, 1e12] {
@@ -102,6 +110,7 @@ fn spread_over_more_than_the_whole_body() {
     }
 }
 
+/// Conserved: mass, first and second moments of the point mass.
 #[test]
 fn the_unit_of_length_does_not_matter() {
     let mut parts = crate::fixtures::parts(&data_mesh("two_materials.msh"));
@@ -112,6 +121,7 @@ fn the_unit_of_length_does_not_matter() {
     assert_moments(&mesh, PointMass { at, mass: 0.3, spread: Some(9e-6) }, 1e-10);
 }
 
+/// Conserved: one mass and its parts at one place give the same M.
 #[test]
 fn masses_at_one_place_add_up() {
     let mesh = data_mesh("two_materials.msh");

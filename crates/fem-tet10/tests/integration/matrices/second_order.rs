@@ -28,7 +28,7 @@ fn turned(w: &Vector3<f64>, u: &[f64]) -> Vec<f64> {
     u.chunks_exact(3).flat_map(|u| <[f64; 3]>::from(w.cross(&Vector3::new(u[0], u[1], u[2])))).collect()
 }
 
-/// A body that is turned, its displacement too, meets turned forces: to first order in the turn θ this is
+/// Conserved: a body that is turned, its displacement too, meets turned forces: to first order in the turn θ this is
 /// `K (θ × u) + g(θ × X, u) = θ × K u`, to second order in θ alone `g(θ × X, θ × X) = −K (θ × (θ × X))`.
 #[test]
 fn a_turned_body_meets_turned_forces() {
@@ -55,7 +55,7 @@ fn a_turned_body_meets_turned_forces() {
     }
 }
 
-/// Fields u = A x have one gradient everywhere.
+/// Closed form: fields u = A x have one gradient everywhere.
 #[test]
 fn of_homogeneous_fields_they_are_what_the_formulas_say() {
     let mesh = workspace_mesh("plate.msh");
@@ -86,6 +86,7 @@ fn of_homogeneous_fields_they_are_what_the_formulas_say() {
     assert_close("ε₂:C:ε₂", energies[1], volume * product_of(second(0, 0), second(0, 0)), 1e-11);
 }
 
+/// Conserved: the product and the reduced matrix are the same.
 #[test]
 fn the_product_with_the_geometric_stiffness_is_the_reduced_one() {
     for mesh in [data_mesh("cube.msh"), workspace_mesh("ring.msh")] {
@@ -135,6 +136,7 @@ fn energy_written_out(mesh: &Mesh, [a, b, c, d]: [&[f64]; 4]) -> f64 {
     energy
 }
 
+/// Independent reference: the sums in plain loops.
 #[test]
 fn energies_are_the_sums_in_plain_loops() {
     // The quarter of a cylinder has curved elements at its surface.
@@ -154,7 +156,7 @@ fn energies_are_the_sums_in_plain_loops() {
     }
 }
 
-/// All are sums over the elements, each with its own material.
+/// Conserved: all are sums over the elements, each with its own material.
 #[test]
 fn each_element_has_its_own_material() {
     let mesh = data_mesh("two_materials.msh");

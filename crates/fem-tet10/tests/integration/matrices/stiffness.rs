@@ -14,6 +14,7 @@ fn energy_density(strain: Matrix3<f64>) -> f64 {
     0.5 * lambda * strain.trace().powi(2) + mu * strain.norm_squared()
 }
 
+/// Conserved: K r = 0 of rigid motions.
 #[test]
 fn rigid_motions_cause_no_forces() {
     for name in ["plate.msh", "ring.msh"] {
@@ -25,6 +26,7 @@ fn rigid_motions_cause_no_forces() {
     }
 }
 
+/// Conserved: symmetry, to the bit.
 #[test]
 fn both_matrices_are_symmetric_to_the_last_bit() {
     let mesh = workspace_mesh("ring.msh");
@@ -58,6 +60,7 @@ fn both_matrices_share_one_sorted_pattern() {
     assert_eq!(matrices.bytes(), 84 * pairs.len() + 8 * (mesh.positions().len() + 1));
 }
 
+/// Closed form: ½ ε : D : ε V, and no force inside.
 #[test]
 fn a_linear_displacement_has_the_energy_of_its_strain() {
     let mesh = workspace_mesh("plate.msh");
@@ -86,6 +89,7 @@ fn a_linear_displacement_has_the_energy_of_its_strain() {
     assert!(outside > 1e10 * worst, "forces on the surface are {outside:e} of |K||u|");
 }
 
+/// Closed form: Σ e(A_k) V L_k²/12.
 #[test]
 fn quadratic_displacements_have_the_energy_of_their_strain() {
     // u = x_j x_k e_i (and sums): strain is ε = Σ A_k x_k with x from the middle, so the energy is Σ e(A_k) V L_k²/12.
@@ -112,6 +116,7 @@ fn quadratic_displacements_have_the_energy_of_their_strain() {
     assert_close("½uᵀKu", 0.5 * form(&u, matrices.stiffness(), &u), exact, 1e-13);
 }
 
+/// Conserved: six zero eigenvalues, and no negative one.
 #[test]
 fn a_free_body_has_six_motions_without_energy_and_no_negative_one() {
     for name in ["cube.msh", "quarter.msh"] {
@@ -131,6 +136,7 @@ fn a_free_body_has_six_motions_without_energy_and_no_negative_one() {
     }
 }
 
+/// Conserved: the same bits on one, two and three threads.
 #[test]
 fn the_number_of_threads_does_not_change_a_bit() {
     let mesh = workspace_mesh("ring.msh");

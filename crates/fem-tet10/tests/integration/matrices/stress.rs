@@ -25,6 +25,7 @@ fn stress(material: &Material, gradient: &Matrix3<f64>) -> [f64; 6] {
     [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(2, 0)]]
 }
 
+/// Closed form: C:ε of quadratic displacements.
 #[test]
 fn the_stress_of_quadratic_displacements_is_exact_on_straight_elements() {
     let mesh = workspace_mesh("plate.msh");
@@ -50,6 +51,7 @@ fn the_stress_of_quadratic_displacements_is_exact_on_straight_elements() {
     }
 }
 
+/// Conserved: a finite rotation has no stress.
 #[test]
 fn a_finite_rotation_has_no_stress_of_second_order() {
     let mesh = data_mesh("cylinder.msh");
@@ -63,6 +65,7 @@ fn a_finite_rotation_has_no_stress_of_second_order() {
     assert!((&first + &second).norm_max() < 1e-10 * first.norm_max(), "{:e}", (&first + &second).norm_max());
 }
 
+/// Closed form: σ = E ε in each material.
 #[test]
 fn a_node_between_two_materials_has_the_stress_of_each() {
     let mesh = data_mesh("two_materials.msh");
@@ -96,6 +99,7 @@ fn a_node_between_two_materials_has_the_stress_of_each() {
     assert_eq!(sites.len(), mesh.positions().len() + between);
 }
 
+/// Conserved: the same numbers among all nodes and among some.
 #[test]
 fn the_stress_at_some_nodes_is_that_of_these_nodes_among_all() {
     let mesh = data_mesh("two_materials.msh");
@@ -144,6 +148,7 @@ fn the_estimate_is_zero_for_a_stress_that_the_elements_have_and_not_for_another(
     assert!(relative[0] < 1e-7 && relative[1] > 1e-5 && relative[1] < 1e-4, "{relative:?}");
 }
 
+/// Independent reference: ½ uᵀKu of the stiffness matrix.
 #[test]
 fn the_energy_of_the_estimate_is_that_of_the_stiffness_matrix() {
     let mesh = data_mesh("cylinder.msh");

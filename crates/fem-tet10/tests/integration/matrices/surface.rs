@@ -64,6 +64,7 @@ fn with_skin(mesh: &Mesh) -> Mesh {
     Mesh::new(parts).unwrap()
 }
 
+/// Closed form: a square of side 10.
 #[test]
 fn a_plane_surface_has_its_area_its_centroid_and_its_normal() {
     for name in ["two_materials.msh", "two_materials_binary.msh"] {
@@ -83,6 +84,7 @@ fn a_plane_surface_has_its_area_its_centroid_and_its_normal() {
     }
 }
 
+/// Closed form: ∫∫ y² dy dz.
 #[test]
 fn a_quadratic_field_is_integrated_exactly_over_plane_faces() {
     let mesh = data_mesh("two_materials.msh");
@@ -92,6 +94,7 @@ fn a_quadratic_field_is_integrated_exactly_over_plane_faces() {
     assert_close("second moment", integral, 1e4 / 3.0, 1e-13);
 }
 
+/// Closed form: areas of a cylinder.
 #[test]
 fn a_cylinder_has_its_ends_and_its_side() {
     let (disc, side) = (PI * RADIUS * RADIUS, 2.0 * PI * RADIUS * HEIGHT);
@@ -133,6 +136,7 @@ fn a_cylinder_has_its_ends_and_its_side() {
     }
 }
 
+/// Conserved: order 4, against 4π.
 #[test]
 fn the_sphere_is_approached_with_fourth_order() {
     let errors: Vec<f64> =
@@ -142,6 +146,7 @@ fn the_sphere_is_approached_with_fourth_order() {
     assert!(orders[2] > 3.8 && errors[3] < 1e-4, "{errors:?}, orders {orders:.2?}");
 }
 
+/// Conserved: no resultant, and ∮ X·n dA = 3 V.
 #[test]
 fn a_pressure_all_round_has_no_resultant_and_does_the_work_of_the_volume() {
     for mesh in [ball(1), workspace_mesh("ring.msh"), data_mesh("quarter.msh")].map(|mesh| with_skin(&mesh)) {
@@ -172,6 +177,7 @@ fn at(displacement: &Col<f64>, node: u32) -> Vector3<f64> {
     Vector3::from_fn(|axis, _| displacement[3 * node as usize + axis])
 }
 
+/// Conserved: no resultant and no moment.
 #[test]
 fn a_pressure_all_round_has_no_resultant_on_the_deformed_body_either() {
     for mesh in [ball(1), workspace_mesh("ring.msh"), data_mesh("quarter.msh")].map(|mesh| with_skin(&mesh)) {
@@ -191,6 +197,7 @@ fn a_pressure_all_round_has_no_resultant_on_the_deformed_body_either() {
     }
 }
 
+/// Independent reference: central differences between moved meshes, exact for quadratic forces.
 #[test]
 fn the_change_of_a_pressure_is_that_on_the_moved_mesh() {
     let mesh = with_skin(&data_mesh("cylinder.msh"));
@@ -220,6 +227,7 @@ fn the_change_of_a_pressure_is_that_on_the_moved_mesh() {
     }
 }
 
+/// Conserved: the same weights from text and bytes.
 #[test]
 fn text_and_bytes_give_the_same_surfaces() {
     let (text, bytes) = (data_mesh("cylinder.msh"), data_mesh("cylinder_binary.msh"));
@@ -239,6 +247,7 @@ fn single_with(triangles: Vec<[u64; 6]>) -> MeshParts {
     parts
 }
 
+/// Closed form: −n dA of each face, a third at each middle of an edge.
 #[test]
 fn every_face_of_an_element_either_way_round_is_pushed_inwards() {
     // Faces z = 0, y = 0, x + y + z = 1, x = 0; −n dA of each.
@@ -260,6 +269,7 @@ fn every_face_of_an_element_either_way_round_is_pushed_inwards() {
     }
 }
 
+/// Closed form: the area of the triangle, ½.
 #[test]
 fn a_face_that_a_group_has_twice_counts_once() {
     let mesh = Mesh::new(single_with(vec![[1, 2, 3, 5, 6, 7], [1, 3, 2, 7, 6, 5]])).unwrap();
@@ -302,6 +312,7 @@ fn elements_of_another_order_in_a_group_are_refused() {
     assert!(matches!(error, MeshError::NotAFace { .. }) && message.contains(&format!("element {first} ")), "{message}");
 }
 
+/// Closed form: the area of two triangles.
 #[test]
 fn a_face_inside_the_body_has_an_area_and_no_outside() {
     // Two elements on either side of x = 0.

@@ -12,6 +12,7 @@ fn unit_density() -> Materials {
     Materials::Uniform(Material { density: 1.0, ..ALUMINIUM })
 }
 
+/// Conserved: order 4, against 4π/3 and 4π/15.
 #[test]
 fn the_ball_is_approached_with_fourth_order() {
     let (mut volumes, mut inertias) = (Vec::new(), Vec::new());
@@ -33,6 +34,7 @@ fn the_ball_is_approached_with_fourth_order() {
     }
 }
 
+/// Conserved: K r = 0 of rigid motions.
 #[test]
 fn rigid_motions_of_the_ball_cause_no_forces() {
     let mesh = ball(2);
@@ -77,6 +79,7 @@ fn volume_by_divergence(mesh: &Mesh) -> f64 {
     volume
 }
 
+/// Closed form: the tube less its notch; the volume by the divergence theorem.
 #[test]
 fn the_ring_has_the_volume_inside_its_surface() {
     let mesh = workspace_mesh("ring.msh");
@@ -93,6 +96,7 @@ fn the_ring_has_the_volume_inside_its_surface() {
     assert_close("volume, of the geometry", volume, exact, 2e-6);
 }
 
+/// Conserved: symmetry of the ring.
 #[test]
 fn the_ring_has_no_first_moment_across_its_plane_of_symmetry() {
     let mesh = workspace_mesh("ring.msh");

@@ -30,6 +30,7 @@ fn corners_have_themselves_and_other_nodes_two_corners_of_their_own() {
     }
 }
 
+/// Closed form: the middle of two corners.
 #[test]
 fn nodes_of_a_straight_mesh_lie_in_the_middle_of_their_ends() {
     for mesh in [workspace_mesh("plate.msh"), data_mesh("two_materials.msh")] {

@@ -26,6 +26,7 @@ fn worst_error(mesh: &Mesh, count: usize, field: impl Fn([f64; 3]) -> f64) -> f6
         .fold(0.0, |m, e| if m >= e { m } else { e })
 }
 
+/// Closed form: a quadratic field.
 #[test]
 fn straight_elements_reproduce_quadratic_fields() {
     // Scaled by the sides, so that all terms are of order one.
@@ -37,6 +38,7 @@ fn straight_elements_reproduce_quadratic_fields() {
     assert!(worst < 1e-12, "{worst:e}");
 }
 
+/// Closed form: a linear field.
 #[test]
 fn curved_elements_reproduce_linear_fields() {
     for mesh in [workspace_mesh("ring.msh"), data_mesh("quarter.msh")] {
@@ -47,6 +49,7 @@ fn curved_elements_reproduce_linear_fields() {
     }
 }
 
+/// Conserved: the weights give the point back.
 #[test]
 fn what_is_found_in_strongly_curved_elements_is_where_it_was_asked_for() {
     let mut random = Random(17);
@@ -107,6 +110,7 @@ fn barycentric(weights: &[f64]) -> [f64; 4] {
     l
 }
 
+/// Closed form: a linear field.
 #[test]
 fn points_of_the_true_curved_surface_are_found() {
     let mesh = workspace_mesh("ring.msh");
@@ -143,6 +147,7 @@ fn points_of_the_true_curved_surface_are_found() {
     }
 }
 
+/// Closed form: the shape functions at the point.
 #[test]
 fn a_point_just_outside_is_extrapolated_to_a_thousandth() {
     let mesh = Mesh::new(single([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])).unwrap();
@@ -179,6 +184,7 @@ fn a_point_outside_is_given_to_the_element_it_is_least_outside_of() {
     }
 }
 
+/// Conserved: the weights give the point back.
 #[test]
 fn points_of_a_true_cylinder_are_found_on_coarse_meshes_too() {
     // Eight elements round the cylinder of `cylinder.geo`, sixteen, and a quarter of a disc with three.

@@ -29,6 +29,7 @@ fn assert_same(a: &Mesh, b: &Mesh) {
     }
 }
 
+/// Closed form: the diagonal of the box.
 #[test]
 fn the_plate_is_the_one_of_the_paper() {
     let mesh = workspace_mesh("plate.msh");
@@ -78,6 +79,7 @@ fn sections_of_other_programs_are_passed_over() {
     assert_same(&parse_msh(more.as_bytes(), "more.msh").unwrap(), &data_mesh("cube.msh"));
 }
 
+/// Closed form: Σ ρV of the two blocks.
 #[test]
 fn groups_carry_materials_by_name() {
     for name in ["two_materials.msh", "two_materials_binary.msh"] {
@@ -141,6 +143,7 @@ fn an_element_is_in_every_group_of_its_volume_in_partitioned_meshes_too() {
     }
 }
 
+/// Closed form: Σ ρV of the two blocks.
 #[test]
 fn every_group_of_a_volume_can_carry_its_material() {
     let other = Material { density: 7.85e-9, ..ALUMINIUM };

@@ -113,6 +113,7 @@ fn masses_that_are_no_positive_numbers_are_refused() {
     }
 }
 
+/// Closed form: √(3² + 4² + 12²) = 13.
 #[test]
 fn a_mass_off_the_body_is_told_with_the_distance() {
     // The nearest point of the body is the corner (28, 10, 10), √(3² + 4² + 12²) = 13 away.

@@ -86,6 +86,7 @@ fn places_pick_what_lies_in_them() {
     assert!(corners.iter().all(|corner| diagonal.contains(corner)));
 }
 
+/// Independent reference: a plain search over all nodes.
 #[test]
 fn the_nearest_node_is_the_nearest() {
     let mesh = workspace_mesh("ring.msh");

@@ -39,6 +39,7 @@ fn assert_near(found: f64, expected: f64, tolerance: f64) {
     assert!(off.abs() < tolerance, "{found} instead of {expected}: {off:e}");
 }
 
+/// Closed form: Euler–Bernoulli, clamped and free: βL of cosh x cos x = −1.
 #[test]
 fn a_clamped_bar_bends_as_beam_theory_says() {
     let bar = bar();
@@ -54,6 +55,7 @@ fn a_clamped_bar_bends_as_beam_theory_says() {
     }
 }
 
+/// Closed form: Euler–Bernoulli, pinned and free: βL of tan x = tanh x; clamped and free in the other plane.
 #[test]
 fn a_hinged_bar_swings_freely_in_one_plane_and_is_clamped_in_the_other() {
     let bar = bar();
@@ -67,6 +69,7 @@ fn a_hinged_bar_swings_freely_in_one_plane_and_is_clamped_in_the_other() {
     assert_near(along(&modes, 1)[0], bending(1.875_104_068_711_961, WIDTH), 1e-4);
 }
 
+/// Closed form: Euler–Bernoulli, pinned and free: βL of tan x = tanh x.
 #[test]
 fn a_bar_pinned_at_its_end_bends_as_pinned_and_free() {
     let bar = bar();
@@ -79,6 +82,7 @@ fn a_bar_pinned_at_its_end_bends_as_pinned_and_free() {
     }
 }
 
+/// Closed form: Euler–Bernoulli, clamped and free, of half the length.
 #[test]
 fn a_bar_pinned_at_its_middle_bends_as_two_clamped_ones_or_as_if_free() {
     let bar = bar();

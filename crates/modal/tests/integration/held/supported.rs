@@ -7,6 +7,7 @@ use crate::modes::oracles::dense_eigenvalues_of;
 
 const NF: usize = 10;
 
+/// Independent reference: the dense problem of the allowed displacements, by faer.
 #[test]
 fn eigenvalues_and_rigid_modes_are_those_of_the_reduced_dense_problem() {
     let body = body();
@@ -28,6 +29,7 @@ fn eigenvalues_and_rigid_modes_are_those_of_the_reduced_dense_problem() {
     }
 }
 
+/// Conserved: ΦᵀMΦ = 1 and Kφ = λMφ.
 #[test]
 fn modes_are_m_orthonormal_and_in_balance_without_reactions() {
     let body = body();
@@ -56,6 +58,7 @@ fn modes_are_m_orthonormal_and_in_balance_without_reactions() {
     }
 }
 
+/// Conserved: no displacement that the support forbids.
 #[test]
 fn held_nodes_move_with_the_support_only() {
     let body = body();

@@ -25,6 +25,7 @@ fn with_entry(body: &Body, entry: usize, change: impl Fn(f64) -> f64) -> Result<
     modes(body, &stiffness, body.matrices.mass_by_nodes(), &Support::free())
 }
 
+/// Conserved: both storages of the matrices give the same modes.
 #[test]
 fn they_give_the_same_modes_from_the_same_shift() {
     let body = small();
@@ -56,6 +57,7 @@ fn they_give_the_same_modes_from_the_same_shift() {
     }
 }
 
+/// Conserved: the same modes with and without the zeros of K stored.
 #[test]
 fn mass_may_couple_nodes_that_stiffness_does_not() {
     let body = block([10.0, 8.0, 6.0], [6, 5, 4]);

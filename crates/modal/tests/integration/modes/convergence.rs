@@ -77,6 +77,7 @@ fn assert_converges(what: &str, errors: &[f64; 4], golden: [f64; 4], expected: f
     }
 }
 
+/// Closed form: u = sin(πx/L). The errors on each mesh are figures of this program.
 #[test]
 fn displacements_converge_with_the_third_power_of_the_element_length_and_energies_with_the_fourth() {
     let (mut mean, mut energy) = ([0.0; 4], [0.0; 4]);
@@ -95,6 +96,7 @@ fn displacements_converge_with_the_third_power_of_the_element_length_and_energie
     assert_converges("energy", &energy, [1.5518e-2, 1.0800e-3, 2.1813e-4, 6.9659e-5], 4.0);
 }
 
+/// Closed form: ω = (π/L) √(E/ρ). The errors on each mesh are figures of this program.
 #[test]
 fn frequencies_converge_with_the_fourth_power_of_the_element_length() {
     let errors = CELLS.map(|cells| {

@@ -15,6 +15,7 @@ fn assert_same_frequencies(a: &Modes, b: &Modes, tolerance: f64) {
     }
 }
 
+/// Conserved: frequencies do not depend on the units.
 #[test]
 fn metres_and_millimetres_give_the_same_frequencies() {
     let in_mm = block(SIZE, CELLS).modes(12);
@@ -25,6 +26,7 @@ fn metres_and_millimetres_give_the_same_frequencies() {
     assert!((in_m.rigid.mass / (1e3 * in_mm.rigid.mass) - 1.0).abs() < 1e-12);
 }
 
+/// Conserved: frequencies and inertia do not depend on the place.
 #[test]
 fn a_body_far_from_the_origin_has_the_same_frequencies() {
     let mesh = block_mesh(SIZE, CELLS);
@@ -38,6 +40,7 @@ fn a_body_far_from_the_origin_has_the_same_frequencies() {
     assert!((far.rigid.inertia - near.rigid.inertia).norm() < 1e-8 * near.rigid.inertia.norm());
 }
 
+/// Conserved: modes do not depend on the numbering.
 #[test]
 fn the_numbering_of_the_nodes_changes_neither_frequencies_nor_shapes() {
     let body = block(SIZE, CELLS);

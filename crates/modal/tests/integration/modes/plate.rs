@@ -8,10 +8,11 @@ use modal::{Modes, ReducedBody};
 
 use crate::bodies::{free_modes, mesh_file};
 
-/// Independent finite-element code (C3D10) and ARPACK on this mesh, given with the project: four decimals.
+/// Independent reference: a finite-element code (C3D10) and ARPACK on this mesh, given with the project: four
+/// decimals.
 const REFERENCE: [f64; 10] =
     [24.5284, 86.1726, 93.2686, 117.3730, 206.1779, 359.9787, 387.9791, 536.7789, 545.4214, 582.0931];
-/// Table 1 of the paper, modes 7 to 16; its mesh is not given.
+/// Independent reference: Table 1 of the paper, modes 7 to 16; its mesh is not given.
 const TABLE_1: [f64; 10] =
     [24.5282, 85.8433, 93.2656, 117.3671, 206.1601, 359.8918, 387.63, 534.3499, 544.946, 579.7381];
 
@@ -49,6 +50,7 @@ fn frequencies_are_near_table_1() {
     assert!([0, 2, 3, 4].iter().all(|i| off[*i] < 1e-4), "{off:?}");
 }
 
+/// Closed form: a box and eight point masses.
 #[test]
 fn mass_and_inertia_are_those_of_the_box_with_point_masses() {
     let rigid = &PLATE.modes.rigid;
@@ -62,6 +64,7 @@ fn mass_and_inertia_are_those_of_the_box_with_point_masses() {
     assert!(center.x.abs() < 1e-8 && center.y.abs() < 1e-8 && (center.z - 5.0).abs() < 1e-8, "{center}");
 }
 
+/// Conserved: ΨᵀKΨ = 0 of rigid modes, ΨᵀMΨ = 1 of all.
 #[test]
 fn rigid_modes_have_no_energy_and_all_modes_are_orthonormal() {
     let Plate { matrices, modes, .. } = &*PLATE;
@@ -76,6 +79,7 @@ fn rigid_modes_have_no_energy_and_all_modes_are_orthonormal() {
     assert!(off < 1e-12, "{off:e}");
 }
 
+/// Conserved: Kφ = λMφ.
 #[test]
 fn residuals_are_small_and_true() {
     let Plate { matrices, modes, mesh } = &*PLATE;
@@ -89,6 +93,7 @@ fn residuals_are_small_and_true() {
     }
 }
 
+/// Conserved: the same body from matrices without stored zeros.
 #[test]
 fn plain_matrices_give_the_same_reduced_body() {
     let Plate { matrices, modes, mesh } = &*PLATE;

@@ -43,6 +43,7 @@ fn assert_identical(a: &Modes, b: &Modes, what: &str) {
     }
 }
 
+/// Conserved: the same bits on one and two threads.
 #[test]
 fn runs_agree_bit_for_bit_on_one_and_two_threads() {
     let plate = crate::bodies::Body::new(&mesh_file("plate.msh"), crate::bodies::STEEL);

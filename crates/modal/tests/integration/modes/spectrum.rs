@@ -18,11 +18,13 @@ fn multiplicities(eigenvalues: &[f64]) -> Vec<usize> {
     eigenvalues.chunk_by(|a, b| (b / a - 1.0).abs() < 1e-9).map(<[f64]>::len).collect()
 }
 
+/// Independent reference: the dense eigenvalues by faer.
 #[test]
 fn a_coarse_block_has_the_eigenvalues_of_the_dense_problem() {
     assert_equals_dense(&block([30.0, 20.0, 12.0], [3, 2, 2]), 20, 1e-9);
 }
 
+/// Independent reference: the dense eigenvalues by faer.
 #[test]
 fn one_element_gives_all_of_its_24_flexible_modes() {
     for flexible in [1, 5, 8, 9, 17, 23, 24] {
@@ -30,6 +32,7 @@ fn one_element_gives_all_of_its_24_flexible_modes() {
     }
 }
 
+/// Independent reference: the dense eigenvalues by faer; the multiplicities of the cubic group.
 #[test]
 fn a_cube_has_its_repeated_eigenvalues_in_full() {
     let cube = block([10.0; 3], [2, 2, 2]);
@@ -40,6 +43,7 @@ fn a_cube_has_its_repeated_eigenvalues_in_full() {
     assert!([1, 2, 3].iter().all(|size| groups[..groups.len() - 1].contains(size)), "{groups:?}");
 }
 
+/// Independent reference: the dense eigenvalues by faer.
 #[test]
 fn a_square_bar_bends_in_pairs() {
     let bar = block([60.0, 5.0, 5.0], [8, 2, 2]);
@@ -49,6 +53,7 @@ fn a_square_bar_bends_in_pairs() {
     assert_eq!(groups[..2], [2, 2], "{groups:?}");
 }
 
+/// Independent reference: the negative pivots of K − σM, by faer.
 #[test]
 fn the_notched_ring_has_no_eigenvalue_between_those_found() {
     let ring = Body::new(&mesh_file("ring.msh"), STEEL);

@@ -84,6 +84,7 @@ impl Engine for Dense {
     }
 }
 
+/// Independent reference: dense solutions by faer.
 #[test]
 fn modes_and_static_answers_are_those_of_this_program() {
     let body = body();

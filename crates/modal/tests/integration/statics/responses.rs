@@ -56,6 +56,7 @@ pub fn work(force: &Mat<f64>, displacement: &Mat<f64>) -> f64 {
     (force.transpose() * displacement)[(0, 0)]
 }
 
+/// Closed form: PL³/(3EI) + PL/(κGA).
 #[test]
 fn a_clamped_bar_bends_under_a_tip_force_as_beam_theory_says() {
     let bar = Bar::new(200.0);
@@ -73,6 +74,7 @@ fn a_clamped_bar_bends_under_a_tip_force_as_beam_theory_says() {
     }
 }
 
+/// Closed form: u = Fx/(EA).
 #[test]
 fn a_clamped_bar_stretches_exactly() {
     let bar = Bar::new(200.0);
@@ -85,6 +87,7 @@ fn a_clamped_bar_stretches_exactly() {
     }
 }
 
+/// Closed form: a uniform strain, and the tension of a bar that one end pulls.
 #[test]
 fn a_free_bar_answers_balanced_and_unbalanced_forces() {
     let bar = Bar::new(200.0);
@@ -108,6 +111,7 @@ fn a_free_bar_answers_balanced_and_unbalanced_forces() {
     assert!(worst < 1e-9, "{worst:e}");
 }
 
+/// Conserved: the same response with and without the modes.
 #[test]
 fn from_the_modes_on_the_answers_are_the_same_and_take_fewer_solutions() {
     let body = body();
@@ -144,6 +148,7 @@ fn from_the_modes_on_the_answers_are_the_same_and_take_fewer_solutions() {
     }
 }
 
+/// Conserved: the forces on each node are in balance.
 #[test]
 fn any_force_is_balanced_by_stress_reactions_and_inertia() {
     let body = body();
@@ -188,6 +193,7 @@ fn forces_of_another_size_or_without_a_number_are_refused() {
 }
 
 /// Answers for shapes end where the steps so far promise enough. Where a step gains less, they go on.
+/// Conserved: the response to full accuracy.
 #[test]
 fn forces_of_second_order_of_a_ring_are_answered() {
     let mesh = mesh_file("ring.msh");
@@ -204,7 +210,7 @@ fn forces_of_second_order_of_a_ring_are_answered() {
     }
 }
 
-/// With K_σ = −M the lowest ratio is −1/λ₁, whatever it is measured in. An estimate lies above it.
+/// Closed form: with K_σ = −M the lowest ratio is −1/λ₁, whatever it is measured in. An estimate lies above it.
 #[test]
 fn the_lowest_buckling_ratio_is_found_to_1e_4_whatever_the_size_of_the_loads() {
     let bar = Bar::new(60.0);

@@ -39,6 +39,7 @@ fn completed(solver: &Solver<'_>, natural: usize, forces: &Mat<f64>) -> (Modes, 
     (modes, completed)
 }
 
+/// Conserved: the static response itself.
 #[test]
 fn three_modes_and_a_static_shape_give_the_exact_tip_deflection() {
     let bar = Bar::new(100.0);
@@ -66,6 +67,7 @@ fn three_modes_and_a_static_shape_give_the_exact_tip_deflection() {
     }
 }
 
+/// Conserved: ΨᵀMΨ = 1, and ΨᵀKΨ is diagonal.
 #[test]
 fn modes_and_several_static_shapes_are_orthogonal_whatever_holds_the_body() {
     let body = body();
@@ -82,6 +84,7 @@ fn modes_and_several_static_shapes_are_orthogonal_whatever_holds_the_body() {
     }
 }
 
+/// Conserved: the same in one go and in two.
 #[test]
 fn shapes_that_come_in_two_goes_are_those_that_come_in_one() {
     let body = body();
@@ -125,7 +128,7 @@ fn answers_that_add_nothing_are_left_out() {
     }
 }
 
-/// Gravity on a body that is free to fall is balanced by the fall: no answer, and so no shape.
+/// Closed form: gravity on a body that is free to fall is balanced by the fall: no answer, and so no shape.
 #[test]
 fn what_falls_is_not_strained() {
     let body = body();
