@@ -55,6 +55,7 @@ impl AttitudeAccount {
 mod tests {
     use super::*;
 
+    /// Closed form: the surplus over the inertia times the time.
     #[test]
     fn momentum_from_nowhere_adds_up_to_an_angle_and_what_loads_put_in_does_not() {
         let mut account = AttitudeAccount::default();

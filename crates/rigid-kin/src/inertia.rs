@@ -138,6 +138,7 @@ mod tests {
     use super::*;
     use crate::samples::Samples;
 
+    /// Conserved: A Λ Aᵀ is the matrix.
     #[test]
     fn principal_axes_diagonalise() {
         let mut samples = Samples::new(6);

@@ -155,6 +155,7 @@ mod tests {
         .take(2000)
     }
 
+    /// Closed form: the unit vectors along p, q and p×q.
     #[test]
     fn rows_of_b_are_the_oblique_unit_vectors() {
         for Case { points, p, q, .. } in cases() {
@@ -167,6 +168,7 @@ mod tests {
         }
     }
 
+    /// Closed form: ω of a rigid motion.
     #[test]
     fn g_recovers_the_angular_velocity_of_a_rigid_motion() {
         for Case { points, p, q, omega, .. } in cases() {
@@ -175,6 +177,7 @@ mod tests {
         }
     }
 
+    /// Closed form: α of a rigid motion.
     #[test]
     fn h_recovers_the_angular_acceleration_of_a_rigid_motion() {
         for Case { points, p, q, omega, alpha } in cases() {
@@ -185,6 +188,7 @@ mod tests {
         }
     }
 
+    /// Closed form: Euler's equation of a lamina.
     #[test]
     fn h_takes_every_body_for_a_lamina_in_the_plane_of_the_points() {
         for Case { points, p, q, omega, alpha } in cases() {
@@ -212,6 +216,7 @@ mod tests {
         }
     }
 
+    /// Closed form: α×p.
     #[test]
     fn relative_velocity_rate_is_the_time_derivative_of_body_components() {
         for Case { p, omega, alpha, .. } in cases().take(50) {
@@ -227,6 +232,7 @@ mod tests {
         (16.0 * (f(h) + f(-h)) - f(2.0 * h) - f(-2.0 * h) - 30.0 * f(0.0)) / (12.0 * h * h)
     }
 
+    /// Closed form: a free sphere has no angular acceleration.
     #[test]
     fn a_free_sphere_keeps_its_spin_but_not_by_h_of_modal_accelerations() {
         let sphere = Inertia::new(0.4 * Matrix3::identity()).unwrap();
@@ -247,6 +253,7 @@ mod tests {
         assert_eq!(euler_angular_acceleration(&none, &sphere, &omega), none);
     }
 
+    /// Independent reference: differences in time of the torque-free motion.
     #[test]
     fn euler_is_the_time_derivative_of_the_angular_velocity() {
         let mut samples = Samples::new(8);

@@ -224,6 +224,7 @@ mod tests {
         Wrench::dead_force(attitude, &Vector3::new(0.5, -0.3, 0.8), &force)
     }
 
+    /// Conserved: order 4.
     #[test]
     fn order_is_four_under_a_dead_force() {
         let body = RigidBody::new(2.0, Samples::new(9).inertia_matrix()).unwrap();
@@ -254,6 +255,7 @@ mod tests {
         RigidState { attitude, omega_body, position_global: Vector3::zeros(), velocity_global: Vector3::zeros() }
     }
 
+    /// Closed form: the torque-free motion in elliptic functions.
     #[test]
     fn free_motion_follows_the_closed_form_and_conserves() {
         let mut samples = Samples::new(10);
@@ -277,6 +279,7 @@ mod tests {
         }
     }
 
+    /// Conserved: order 4 of the momentum.
     #[test]
     fn momentum_drift_is_of_fourth_order_and_energy_drift_above() {
         let body = RigidBody::new(1.0, diagonal(1.0, 2.0, 3.0)).unwrap();
@@ -293,8 +296,8 @@ mod tests {
         assert!(orders[1] > 5.0, "{orders:?}");
     }
 
-    /// Heavy symmetrical top of Simo & Wong (1991): the inertia is about the fixed point, and
-    /// the translation of the body is not used.
+    /// Conserved: energy, spin and vertical momentum of the heavy symmetrical top of Simo & Wong (1991): the inertia
+    /// is about the fixed point, and the translation of the body is not used.
     #[test]
     fn heavy_top_keeps_energy_spin_and_vertical_momentum() {
         let top = RigidBody::new(20.0, diagonal(5.0, 5.0, 1.0)).unwrap();
@@ -320,6 +323,7 @@ mod tests {
         assert!((tilt(&end) - tilt(&start)).abs() > 1e-3, "the top must nutate");
     }
 
+    /// Closed form: a parabola, and ½ I θ'² = F sin θ.
     #[test]
     fn a_constant_force_gives_a_parabola_and_a_dead_force_a_pendulum() {
         let body = RigidBody::new(2.0, diagonal(1.0, 2.0, 2.5)).unwrap();
@@ -338,6 +342,7 @@ mod tests {
         assert!((0.5 * 2.5 * spin.z * spin.z - 4.0 * x_axis.y).abs() < 1e-12);
     }
 
+    /// Independent reference: differences in time.
     #[test]
     fn angular_acceleration_is_the_derivative_of_angular_velocity() {
         let body = RigidBody::new(2.0, Samples::new(11).inertia_matrix()).unwrap();

@@ -187,6 +187,7 @@ mod tests {
         (0..=260).map(|k| 1e-12 * 10_f64.powf(f64::from(k) / 20.0)).filter(|&angle| angle < TAU)
     }
 
+    /// Independent reference: the series of the exponential.
     #[test]
     fn transformation_matrix_is_the_exponential_at_every_angle() {
         let mut samples = Samples::new(1);
@@ -203,6 +204,7 @@ mod tests {
         }
     }
 
+    /// Closed form: the first terms of sin θ/θ and (1 − cos θ)/θ².
     #[test]
     fn transformation_matrix_holds_relative_accuracy_for_tiny_angles() {
         let theta = Vector3::new(2.0, -3.0, 6.0);
@@ -219,6 +221,7 @@ mod tests {
         assert_eq!(transformation_matrix(&Vector3::zeros()), Matrix3::identity());
     }
 
+    /// Closed form: a quarter turn about z.
     #[test]
     fn transformation_matrix_is_passive() {
         // A body turned by +90° about z has its x axis along global y.
@@ -226,6 +229,7 @@ mod tests {
         assert!((a * Vector3::y() - Vector3::x()).norm() < 1e-15);
     }
 
+    /// Conserved: the rotation vector of its own matrix.
     #[test]
     fn rotation_vector_inverts_up_to_half_a_turn() {
         let mut samples = Samples::new(2);
@@ -262,6 +266,7 @@ mod tests {
         (1..=150).rev().map(|k| 2.0 * zeta(2 * k) * (angle / TAU).powi(2 * k - 2) / TAU.powi(2)).sum()
     }
 
+    /// Independent reference: the series in ζ(2k).
     #[test]
     fn factor_of_the_double_cross_product_is_exact_and_has_no_jump() {
         for angle in angles().filter(|&angle| angle < 5.0).chain([0.0, 0.999_999, 1.000_001]) {
@@ -288,6 +293,7 @@ mod tests {
         capital_omega - half * ad_omega - (half / half.tan() - 1.0) * ad(&ad_omega)
     }
 
+    /// Independent reference: (20)–(22) in matrices.
     #[test]
     fn vector_form_is_the_papers_matrix_form() {
         let mut samples = Samples::new(3);
@@ -301,6 +307,7 @@ mod tests {
         }
     }
 
+    /// Independent reference: sixth-order differences of the exponential.
     #[test]
     fn signs_as_printed_are_those_of_the_exponential() {
         let mut samples = Samples::new(4);

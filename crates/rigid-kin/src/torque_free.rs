@@ -331,6 +331,7 @@ mod tests {
         momentum_error.max((energy(&now) / energy(&start) - 1.0).abs())
     }
 
+    /// Independent reference: mpmath at 50 digits.
     #[test]
     fn benchmark_numbers() {
         let inertia = diagonal(1.0, 2.0, 3.0);
@@ -345,6 +346,7 @@ mod tests {
         assert!((near_separatrix.period().unwrap() - 71.014_506_079_317).abs() < 1e-12);
     }
 
+    /// Conserved: the state at time zero.
     #[test]
     fn starts_where_it_is_told() {
         let mut samples = Samples::new(12);
@@ -358,6 +360,7 @@ mod tests {
         }
     }
 
+    /// Conserved: angular momentum and energy.
     #[test]
     fn momentum_and_energy_are_constant_and_the_period_returns() {
         let mut samples = Samples::new(13);
@@ -389,8 +392,8 @@ mod tests {
         ((a_rate + w(0.0).cross_matrix() * a(0.0)).norm(), (w_rate - euler).norm())
     }
 
-    /// At scattered times, so that the precession angle is right, not the direction of the
-    /// angular momentum alone.
+    /// Conserved: dA/dt = −[ω×]A and Euler's equation, at scattered times, so that the precession angle is right, not
+    /// the direction of the angular momentum alone.
     #[test]
     fn kinematics_and_eulers_equation_hold() {
         let mut samples = Samples::new(14);
@@ -406,6 +409,7 @@ mod tests {
         assert!(worst[0] < 3e-11 && worst[1] < 3e-11, "{worst:?}");
     }
 
+    /// Independent reference: the fourth-order integrator.
     #[test]
     fn every_regime_agrees_with_the_integrator() {
         let inertia = diagonal(1.0, 2.0, 3.0);
@@ -437,9 +441,9 @@ mod tests {
         }
     }
 
-    /// The first 40 s hold the passage from the middle axis to its opposite and half the way
-    /// back. Every later pass multiplies the rounding of the integrator by 1/m₁ = 5e7 or so:
-    /// after the whole period of 71 s the two differ by 1e-8 to 1e-6, whatever the step.
+    /// Independent reference: the fourth-order integrator. The first 40 s hold the passage from the middle axis to
+    /// its opposite and half the way back. Every later pass multiplies the rounding of the integrator by 1/m₁ = 5e7
+    /// or so: after the whole period of 71 s the two differ by 1e-8 to 1e-6, whatever the step.
     #[test]
     fn near_the_separatrix_agrees_with_the_integrator() {
         let inertia = diagonal(1.0, 2.0, 3.0);
@@ -450,8 +454,8 @@ mod tests {
         assert!(omega_error < 1e-10, "{omega_error:e}");
     }
 
-    /// The same over two periods by what holds at each instant: dA/dt = −[ω×]A, Euler's
-    /// equation and the constants, also across the joints of the half-periods.
+    /// Conserved: the same over two periods by what holds at each instant: dA/dt = −[ω×]A, Euler's equation and the
+    /// constants, also across the joints of the half-periods.
     #[test]
     fn near_the_separatrix_the_equations_hold_at_every_instant() {
         let inertia = diagonal(1.0, 2.0, 3.0);
@@ -469,7 +473,8 @@ mod tests {
         assert!(worst[0] < 2e-10 && worst[1] < 5e-11 && worst[2] < 3e-15, "{worst:?}");
     }
 
-    /// (I3−I2) I3 ω3² = (I2−I1) I1 ω1² holds exactly for these numbers.
+    /// Independent reference: the fourth-order integrator. (I3−I2) I3 ω3² = (I2−I1) I1 ω1² holds exactly for these
+    /// numbers.
     #[test]
     fn on_the_separatrix_the_motion_is_hyperbolic() {
         let inertia = diagonal(1.5, 3.0, 4.0);
@@ -488,6 +493,7 @@ mod tests {
         }
     }
 
+    /// Closed form: the spin turns at (I3 − I1)/I1 ω3, the axis at L/I1.
     #[test]
     fn a_symmetric_body_precesses_steadily() {
         // I1 = I2 = 2, I3 = 3.2: the spin turns about the axis of symmetry at
@@ -511,8 +517,8 @@ mod tests {
         }
     }
 
-    /// Near the middle axis, near steady spin and for nearly equal moments the constants still
-    /// hold, and the attitude is smooth.
+    /// Conserved: near the middle axis, near steady spin and for nearly equal moments the constants still hold, and
+    /// the attitude is smooth.
     #[test]
     fn extreme_cases_keep_the_constants() {
         let mut worst = 0.0_f64;

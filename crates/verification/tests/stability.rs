@@ -26,21 +26,25 @@ fn hold(section: &str) {
     assert!(broken.is_empty(), "{}", broken.join("\n"));
 }
 
+/// Closed form: torque-free and free motions, in the bounds of each case; besides, energy and momenta.
 #[test]
 fn motion() {
     hold("Motion");
 }
 
+/// Closed form: vibrations of one mode, in the bounds of each case; besides, energy and momenta.
 #[test]
 fn time() {
     hold("Time");
 }
 
+/// Conserved: energy and angular momentum, in the bounds of each case; besides, closed forms.
 #[test]
 fn structure() {
     hold("Structure");
 }
 
+/// Conserved: energy and angular momentum, in the bounds of each case; besides, closed forms.
 #[test]
 fn mesh_and_material() {
     hold("Mesh and material");

@@ -101,6 +101,7 @@ mod tests {
         }
     }
 
+    /// Independent reference: the oscillator by RK4.
     #[test]
     fn the_shift_is_that_of_the_oscillator() {
         let omega = 3.0;
@@ -118,6 +119,7 @@ mod tests {
         }
     }
 
+    /// Conserved: the shift at the largest amplitude is the bound itself.
     #[test]
     fn the_largest_amplitude_is_a_quarter_off() {
         for backbone in

@@ -173,6 +173,7 @@ mod tests {
         assert!(!why(-0.008).contains("too long") && !why(0.01).contains("too long"));
     }
 
+    /// Closed form: the largest bound that is believed.
     #[test]
     fn bounds_that_nothing_can_reach_are_scaled_down() {
         assert_eq!(believed(0.2), 1.0);

@@ -87,7 +87,7 @@ fn stressed(ratio: f64, zeta: f64, history: History) -> Row {
     stress_row(&[field], &found, TOLERANCE).unwrap()
 }
 
-/// A single mode: |K|/ω² is twice the shift of its frequency, which adds up for as long as it rings.
+/// Closed form: a single mode: |K|/ω² is twice the shift of its frequency, which adds up for as long as it rings.
 #[test]
 fn the_stress_of_a_load_counts_as_the_phase_it_shifts() {
     let ratio = 1e-6;

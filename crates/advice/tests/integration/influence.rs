@@ -69,6 +69,7 @@ fn pulse(size: f64) -> [dynamics::SharedLoad; 1] {
 // along: inertia 0.175 0.167, Coriolis 5.3e-2 5.0e-3, stiffening 2.1e-4 8.1e-5;
 // gently driven: inertia 4.6e-4 3.8e-6, Coriolis 1.5e-5 2.1e-7, stiffening 2.5e-4 2.3e-5, damping 0.25 0.018.
 
+/// Independent reference: motions with and without the effect.
 #[test]
 fn estimates_are_above_what_an_effect_does_to_the_paper_s_pulse() {
     for (name, size, end, zeta) in [("pulse", 10.0, 0.2, 0.0), ("weak", 1e-4, 0.1, 0.02), ("faint", 1e-6, 0.05, 0.0)] {
@@ -77,6 +78,7 @@ fn estimates_are_above_what_an_effect_does_to_the_paper_s_pulse() {
     }
 }
 
+/// Independent reference: motions with and without the effect.
 #[test]
 fn estimates_are_above_what_an_effect_does_to_a_spinning_plate() {
     let zeta = [0.0; 10];
@@ -94,6 +96,7 @@ fn estimates_are_above_what_an_effect_does_to_a_spinning_plate() {
     }
 }
 
+/// Independent reference: motions with and without the effect.
 #[test]
 fn estimates_are_above_what_an_effect_does_in_resonance() {
     let history = History::Sine {
@@ -111,6 +114,7 @@ fn estimates_are_above_what_an_effect_does_in_resonance() {
     }
 }
 
+/// Independent reference: the motion with all modes.
 #[test]
 fn modes_that_are_not_worth_keeping_can_be_left_out() {
     let (zeta, initial) = ([0.02; 10], Initial::at_rest(10));
@@ -132,6 +136,7 @@ fn modes_that_are_not_worth_keeping_can_be_left_out() {
     }
 }
 
+/// Independent reference: motions with and without the effect.
 #[test]
 fn estimates_are_above_what_an_effect_does_to_a_driven_plate() {
     let (zeta, initial) = ([0.01; 10], Initial::at_rest(10));
@@ -151,6 +156,7 @@ fn estimates_are_above_what_an_effect_does_to_a_driven_plate() {
     }
 }
 
+/// Independent reference: the largest spin of the motion.
 #[test]
 fn the_spin_of_a_tumbling_plate_is_bounded_closely() {
     let (zeta, initial) = ([0.0; 10], spinning([3.0, 8.0, 5.0]));

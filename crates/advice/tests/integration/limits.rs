@@ -5,6 +5,7 @@ use dynamics::{Effect, EffectMap};
 
 use crate::plate::{plate, spinning};
 
+/// Closed form: across a bending direction the critical speed is ω₁ itself.
 #[test]
 fn the_plate_about_axis_2_is_refused_at_160_without_stiffening_and_not_about_axis_3() {
     let bare = EffectMap::all().without(Effect::GeometricStiffening);

@@ -67,6 +67,7 @@ fn rounding_is_no_deflection_and_the_help_names_what_is_off() {
     assert!(text.ends_with("set coriolis = true, geometric_stiffening = true in [effects]"), "{text}");
 }
 
+/// Closed form: the share of the remainder that was given.
 #[test]
 fn what_the_modes_leave_out_of_the_spin_is_weighed_by_the_spin_that_there_is() {
     let zeta = [0.0; 10];
@@ -136,6 +137,7 @@ const STILL: EffectMap<bool> = EffectMap::all()
     .without(Effect::Coriolis)
     .without(Effect::GeometricStiffening);
 
+/// Closed form: the amplitude that the mode was given.
 #[test]
 fn a_deflection_between_two_rows_or_two_steps_is_seen() {
     let (zeta, (initial, half)) = ([0.0; 10], swinging(0.18));
@@ -148,6 +150,7 @@ fn a_deflection_between_two_rows_or_two_steps_is_seen() {
     }
 }
 
+/// Closed form: the shift of the given backbone, times the periods.
 #[test]
 fn the_warning_tells_frequency_and_phase_by_the_modes_own_backbone() {
     let (zeta, (initial, half)) = ([0.0; 10], swinging(0.05));

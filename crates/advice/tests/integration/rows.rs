@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use crate::plate::{CORNER, plate, run, spinning};
 
+/// Closed form: (Ω/ω₁)², and the rise √(1 + Ω²K/ω₁²) − 1.
 #[test]
 fn the_stress_of_the_paper_s_plate_at_10_rad_per_s_is_not_called_0_4_per_cent() {
     let zeta = [0.0; 10];
@@ -27,6 +28,7 @@ fn the_stress_of_the_paper_s_plate_at_10_rad_per_s_is_not_called_0_4_per_cent() 
     assert!(row.value >= known.value);
 }
 
+/// Independent reference: the advice that knows the stiffness.
 #[test]
 fn the_screen_is_above_the_stiffness_of_each_mode_about_each_axis() {
     let zeta = [0.0; 10];
@@ -80,6 +82,7 @@ fn slow_loads_need_fewer_modes_than_fast_ones() {
     assert_eq!(keep(5e-4, 1e-6), (10, true));
 }
 
+/// Closed form: 1 − Σ (φᵀf)²/ω² over the whole compliance.
 #[test]
 fn the_static_answer_that_the_modes_leave_out_is_the_rest_of_the_compliance() {
     let zeta = [0.0; 10];
@@ -101,7 +104,8 @@ fn the_static_answer_that_the_modes_leave_out_is_the_rest_of_the_compliance() {
     assert!((row.value - rest).abs() < 1e-9, "{} {rest}", row.value);
 }
 
-/// The plate cannot be seen to stretch in ten modes that bend it.
+/// Closed form: the rest of the compliance, by the square of the angle. The plate cannot be seen to stretch in ten
+/// modes that bend it.
 #[test]
 fn other_directions_of_a_dead_load_count_as_far_as_the_body_may_turn() {
     let zeta = [0.0; 10];
@@ -128,6 +132,7 @@ fn other_directions_of_a_dead_load_count_as_far_as_the_body_may_turn() {
     assert!(once > 0.02 && twice < 0.2 && (twice / once - 4.0).abs() < 0.05, "{once} {twice}");
 }
 
+/// Closed form: the formulas of each row.
 #[test]
 fn deflection_foreshortening_and_gravity_follow_from_their_formulas() {
     let zeta = [0.0; 10];
@@ -176,6 +181,7 @@ fn lists_of_another_length_and_numbers_out_of_range_are_refused() {
     assert!(matches!(advise(&plate().case(&zeta, &[], &initial, f64::NAN), 1e-3), Err(AdviceError::Value { .. })));
 }
 
+/// Independent reference: the accelerations of the motion.
 #[test]
 fn flexibility_is_what_the_modes_add_to_the_rigid_acceleration() {
     let (zeta, initial) = ([0.0; 10], Initial::at_rest(10));

@@ -139,6 +139,7 @@ impl WithSimd for Push<'_> {
 mod tests {
     use super::*;
 
+    /// Independent reference: the sums column by column.
     #[test]
     fn a_force_does_its_work_on_the_displacement_for_any_number_of_modes() {
         for modes in 0..14_usize {

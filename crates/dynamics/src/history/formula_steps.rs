@@ -286,6 +286,7 @@ mod tests {
         )
     }
 
+    /// Closed form: parts of the period of the sine.
     #[test]
     fn a_sine_gets_some_nine_steps_a_period_wherever_the_step_falls() {
         let period = std::f64::consts::TAU / 1e4;
@@ -323,6 +324,7 @@ mod tests {
         assert_eq!(steps("sign(t - 0.123)", &[0.123], 1.0, 1e-2).unwrap().stops().count(), 0);
     }
 
+    /// Closed form: parts of the period of the sine.
     #[test]
     fn under_step_control_steps_are_as_long_as_the_formula_allows() {
         let controlled = |text: &str, discontinuities: &[f64]| steps(text, discontinuities, 1.0, None).unwrap();

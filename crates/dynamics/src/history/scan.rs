@@ -207,6 +207,7 @@ mod tests {
         History::Expression(Expression::new(&text, vec![]).unwrap())
     }
 
+    /// Closed form: ∫ e⁻ᵗ dt.
     #[test]
     fn a_long_formula_is_asked_for_few_values() {
         for (bytes, most) in [(30, 1_600_000), (900, 16_000)] {

@@ -138,6 +138,7 @@ fn plain_product(height: usize, block: &[f64], x: &[f64]) -> [f64; HEIGHT] {
 mod tests {
     use super::*;
 
+    /// Independent reference: the products row by row.
     #[test]
     fn products_equal_the_dense_ones_for_any_size() {
         for (rows, columns) in

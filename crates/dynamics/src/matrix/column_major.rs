@@ -153,6 +153,7 @@ fn add_column<S: Simd, const N: usize>(simd: S, column: &[f64], row: usize, x: S
 mod tests {
     use super::*;
 
+    /// Independent reference: the sum term by term.
     #[test]
     fn weighted_squares_are_summed_to_the_last() {
         for length in 0..13_usize {
@@ -163,6 +164,7 @@ mod tests {
         }
     }
 
+    /// Independent reference: the products row by row.
     #[test]
     fn products_of_any_length_have_all_their_rows() {
         let x = [0.3, -1.1, 2.0];

@@ -236,6 +236,7 @@ mod tests {
         }
     }
 
+    /// Independent reference: the products row by row.
     #[test]
     fn products_equal_the_dense_ones_for_any_size() {
         for count in [1, 2, 3, 6, 9] {
@@ -246,6 +247,7 @@ mod tests {
         }
     }
 
+    /// Independent reference: the sums list by list.
     #[test]
     fn sums_of_lists_side_by_side_are_those_of_the_lists() {
         let lists: Vec<Vec<f64>> = (0..9).map(|k| (0..10).map(|i| ((k * 10 + i) as f64).sin()).collect()).collect();

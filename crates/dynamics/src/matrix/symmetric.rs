@@ -36,6 +36,7 @@ pub(crate) fn solve(a: &Matrix3<f64>, x: &Vector3<f64>) -> Vector3<f64> {
 mod tests {
     use super::*;
 
+    /// Conserved: A x = b.
     #[test]
     fn the_solution_solves_and_a_singular_matrix_has_none() {
         let a = Matrix3::new(2.0, -0.3, 0.7, -0.3, 1.5, 0.2, 0.7, 0.2, 3.0);

@@ -59,6 +59,7 @@ fn amplification(lambda: f64, damping: f64) -> f64 {
 mod tests {
     use super::*;
 
+    /// Closed form: √8/ω, and 2.7853 on the negative axis.
     #[test]
     fn rk4_is_stable_to_two_root_two_over_omega_and_to_2_785_on_the_negative_axis() {
         for omega in [1e-3, 1.0, 3659.0] {

@@ -93,6 +93,7 @@ mod tests {
         std::array::from_fn(|k| exp.fixed_view::<2, 2>(0, 2 * k).into())
     }
 
+    /// Independent reference: blocks of the exponential of an augmented matrix, by nalgebra.
     #[test]
     fn phis_equal_those_of_the_augmented_exponential() {
         for zeta in [0.0, 0.002, 0.05, 0.5, 0.999, 1.0, 1.0 + 1e-9, 1.3, 5.0] {
@@ -108,6 +109,7 @@ mod tests {
         }
     }
 
+    /// Closed form: q = (f e^{−sωt} − s e^{−fωt})/(f − s).
     #[test]
     fn the_slow_solution_of_a_strongly_damped_mode_keeps_its_rate() {
         // From rest, q = (f e^{−sωt} − s e^{−fωt})/(f − s), with f, s = ζ ± √(ζ² − 1).
@@ -121,6 +123,7 @@ mod tests {
         }
     }
 
+    /// Conserved: A φ₁ = φ₀ − 1.
     #[test]
     fn fast_modes_keep_their_static_answer() {
         // φ_1(A) (−A)⁻¹-like limits: A φ_1 = φ_0 − I exactly, at h ω = 1e7.

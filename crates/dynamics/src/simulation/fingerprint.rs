@@ -57,8 +57,8 @@ mod tests {
         SharedLoad, StepControl, Table,
     };
 
-    /// Written down: checkpoints of users have them. Who gives a field another name changes none of them; who changes what a
-    /// part means raises its version and writes down another.
+    /// Regression only: checkpoints of users have these keys. Who gives a field another name changes none of them;
+    /// who changes what a part means raises its version and writes down another.
     const KNOWN: [&str; 4] = ["f7b305f6253577a0", "9014f39bdcbb152b", "9686e52d64aa21ea", "00a4d3ccdc0f6198"];
 
     #[test]

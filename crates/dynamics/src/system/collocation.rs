@@ -112,7 +112,8 @@ fn eigenvector(matrix: &Matrix3<f64>, eigenvalue: Complex<f64>) -> Vector3<Compl
 mod tests {
     use super::*;
 
-    /// Published constants: Hairer and Wanner, RADAU5 (γ = 3.6378342527444957, α = 2.6810828736277521, β = 3.0504301992474105).
+    /// Independent reference: RADAU5 of Hairer and Wanner (γ = 3.6378342527444957, α = 2.6810828736277521, β =
+    /// 3.0504301992474105).
     #[test]
     fn the_eigenvalues_are_those_of_the_literature() {
         let scheme = Collocation::radau();
@@ -120,6 +121,7 @@ mod tests {
         assert!((scheme.complex - Complex::new(2.681_082_873_627_752, 3.050_430_199_247_410_5)).norm() < 1e-13);
     }
 
+    /// Conserved: T Λ T⁻¹ = A⁻¹.
     #[test]
     fn the_transform_makes_the_inverse_diagonal() {
         let Collocation { inverse, real, complex, to_real, to_complex, from_real, from_complex, .. } =
@@ -130,6 +132,7 @@ mod tests {
         assert!((made - inverse).norm() < 1e-12);
     }
 
+    /// Closed form: a polynomial of degree 3.
     #[test]
     fn a_polynomial_is_continued() {
         let scheme = Collocation::radau();

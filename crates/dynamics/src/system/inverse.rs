@@ -138,7 +138,7 @@ mod tests {
 
     use super::*;
 
-    /// Z Z⁻¹ = 1, with Z applied term by term.
+    /// Conserved: Z Z⁻¹ = 1, with Z applied term by term.
     #[test]
     fn the_inverse_is_that_of_the_sum() {
         let locked = Matrix3::new(2.0, 0.1, -0.2, 0.1, 3.0, 0.3, -0.2, 0.3, 1.5);

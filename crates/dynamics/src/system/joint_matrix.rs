@@ -342,6 +342,7 @@ mod tests {
         (Pattern::new(&rows, &constraints, bodies), constraints, vec![inverse; bodies])
     }
 
+    /// Conserved: A A⁻¹ x = x.
     #[test]
     fn the_solution_solves() {
         for (bodies, closes) in [(1, false), (5, false), (6, true)] {

@@ -141,7 +141,8 @@ fn tangent(theta: &Vector3<f64>) -> Matrix3<f64> {
 mod tests {
     use super::*;
 
-    /// The virtual work of a force and a moment is that of their generalised forces, by differences of the place.
+    /// Independent reference: central differences of the place: the virtual work of a force and a moment is that of
+    /// their generalised forces.
     #[test]
     fn generalised_forces_do_the_work_of_their_wrench() {
         let shapes = |seed: f64| -> Vec<Vector3<f64>> {

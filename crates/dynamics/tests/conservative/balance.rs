@@ -15,6 +15,7 @@ fn with_vibration(flexible: usize) -> Initial {
     initial
 }
 
+/// Conserved: energy and angular momentum.
 #[test]
 fn ten_seconds_of_tumbling_keep_energy_and_angular_momentum() {
     let initial = Initial { omega: Vector3::new(0.01, 10.0, 0.01), ..Initial::at_rest(10) };
@@ -54,6 +55,7 @@ fn gaps(run: &Run, impulse: &Vector3<f64>, method: Method, step: f64) -> [f64; 3
     ]
 }
 
+/// Conserved: the balances of energy and momenta; orders 4.
 #[test]
 fn balances_close_with_loads_and_damping() {
     let (run, impulse) = loaded();
@@ -72,6 +74,7 @@ fn balances_close_with_loads_and_damping() {
     }
 }
 
+/// Regression only: the gaps of the paper's scheme and its limit; order 1.
 #[test]
 fn the_limit_of_the_paper_s_scheme_does_not_close_its_balances() {
     let (run, impulse) = loaded();
@@ -114,6 +117,7 @@ fn inertia(body: &ReducedBody, q: &DVector<f64>) -> Matrix3<f64> {
     })
 }
 
+/// Conserved: a steady spin with its own deformation stays.
 #[test]
 fn a_deformed_body_that_spins_as_a_whole_is_not_damped() {
     let ring = ring();

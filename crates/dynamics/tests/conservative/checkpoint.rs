@@ -34,6 +34,7 @@ fn run() -> Run<'static> {
     Run { damping_ratio: 0.02, loads, points, ..Run::free(plate, initial, 0.03) }
 }
 
+/// Conserved: the same bits with and without a checkpoint.
 #[test]
 fn every_method_goes_on_bit_for_bit() {
     let fixed = StepControl::Fixed(1e-5);

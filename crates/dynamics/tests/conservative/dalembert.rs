@@ -78,6 +78,7 @@ fn dot(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.dot(b)).sum()
 }
 
+/// Independent reference: sums over the nodes by d'Alembert's principle.
 #[test]
 fn accelerations_balance_all_forces_at_the_nodes() {
     let ring = ring();
@@ -132,6 +133,7 @@ fn accelerations_balance_all_forces_at_the_nodes() {
     assert!(modes < 1e-12, "{modes:e}");
 }
 
+/// Independent reference: ΦᵀM v at the nodes.
 #[test]
 fn modal_momenta_are_projections_of_the_velocities() {
     let ring = ring();
@@ -154,6 +156,7 @@ fn rate(rows: &[Observation; 5], h: f64, of: impl Fn(&Observation) -> Vec<f64>) 
     (0..a.len()).map(|i| (a[i] - e[i] + 8.0 * (d[i] - b[i])) / (12.0 * h)).collect()
 }
 
+/// Independent reference: five-point differences in time.
 #[test]
 fn rates_are_those_of_what_is_observed() {
     let ring = ring();

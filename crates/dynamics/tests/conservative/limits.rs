@@ -19,6 +19,7 @@ fn refusal(run: &Run, method: Method, control: StepControl) -> SetupError {
     run.try_start(method, control, Rows::Interval(0.1)).map(|_| ()).unwrap_err()
 }
 
+/// Closed form: √8/ω of the highest mode.
 #[test]
 fn a_step_beyond_the_limit_of_the_highest_mode() {
     let run = spinning(plate(), 1.0);
@@ -34,6 +35,7 @@ fn a_step_beyond_the_limit_of_the_highest_mode() {
     assert!(run.try_start(EXPONENTIAL, StepControl::Fixed(100.0 * most), Rows::Interval(0.1)).is_ok());
 }
 
+/// Closed form: √2/ω of the spin.
 #[test]
 fn a_step_beyond_the_limit_of_the_spin() {
     let run = spinning(plate(), 50.0);
@@ -78,8 +80,8 @@ fn numbers_out_of_range() {
     }
 }
 
-/// One step across a half-sine would give 4/6 of its length for 2/π of it, 4.7 % too much; the paper's, which sees the
-/// ends only, nothing.
+/// Closed form: the impulse 2FT/π. One step across a half-sine would give 4/6 of its length for 2/π of it, 4.7 % too
+/// much; the paper's, which sees the ends only, nothing.
 #[test]
 fn a_pulse_shorter_than_the_step_is_not_missed() {
     let duration = 1e-6;
@@ -95,7 +97,8 @@ fn a_pulse_shorter_than_the_step_is_not_missed() {
     }
 }
 
-/// A spin that fades by itself, as the paper's scheme has it, is found out when half of its energy is gone.
+/// Closed form: a spin fades by itself at the rate ω²Δt/2, as the paper's scheme has it, and is found out when half
+/// of its energy is gone.
 #[test]
 fn the_paper_s_scheme_stops_when_its_attitude_is_lost() {
     let body = ReducedBody::rigid(
@@ -149,8 +152,8 @@ fn a_motion_that_blows_up_ends_with_an_error_and_not_with_nan() {
     assert!(error.unwrap().to_string().contains("take a smaller step"));
 }
 
-/// 1 kg that a force swings to and fro 15000 times, in steps of a sixteenth of a period: the error of the summed work adds
-/// up to 0.75 of the largest energy, and the motion is right.
+/// Closed form: v = F sin ωt/(mω). A force swings 1 kg to and fro 15000 times, in steps of a sixteenth of a period:
+/// the error of the summed work adds up to 0.75 of the largest energy, and the motion is right.
 #[test]
 fn a_long_shaking_is_not_stopped() {
     let body = ReducedBody::rigid(1.0, Vector3::zeros(), Matrix3::identity(), RigidMotion::free()).unwrap();

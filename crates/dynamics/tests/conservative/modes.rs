@@ -29,6 +29,7 @@ fn tumbling(plate: &Specimen, part: f64) -> Run<'_> {
     Run::free(plate, initial, 1.0)
 }
 
+/// Conserved: ten modes move as forty.
 #[test]
 fn ten_modes_move_as_forty() {
     let forty = plate_of("plate", 40);

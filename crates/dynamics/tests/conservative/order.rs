@@ -32,6 +32,7 @@ fn fitted<const N: usize>(
     (fitted_order(steps, attitude), fitted_order(steps, modal), errors)
 }
 
+/// Conserved: order of convergence.
 #[test]
 fn each_scheme_has_its_order() {
     let plate = plate().truncated(4);
@@ -50,6 +51,7 @@ fn each_scheme_has_its_order() {
     }
 }
 
+/// Conserved: order of convergence.
 #[test]
 fn a_load_that_ends_between_the_steps_costs_no_order() {
     let plate = plate().truncated(4);
@@ -67,6 +69,7 @@ fn a_load_that_ends_between_the_steps_costs_no_order() {
     }
 }
 
+/// Conserved: order of convergence.
 #[test]
 fn the_limit_of_the_paper_s_scheme_is_met_with_fourth_order_and_by_the_paper_s_scheme_with_first() {
     let plate = plate().truncated(4);

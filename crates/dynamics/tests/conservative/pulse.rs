@@ -35,6 +35,7 @@ fn row(observation: &Observation) -> Vec<f64> {
         .collect()
 }
 
+/// Independent reference: Exudyn 1.13.6 (header of the data file).
 #[test]
 fn the_pulsed_plate_equals_the_reference() {
     let plate = plate();

@@ -120,6 +120,7 @@ impl Held {
 
 const POINT: Vector3<f64> = Vector3::new(-95.0, 3.0, 10.0);
 
+/// Independent reference: M a of the particles less the loads.
 #[test]
 fn a_pin_gives_no_moment_and_all_else_is_that_of_the_particles() {
     let pinned = held(RigidMotion::pin(POINT));
@@ -131,6 +132,7 @@ fn a_pin_gives_no_moment_and_all_else_is_that_of_the_particles() {
     assert!(found.moment_body.norm() < 1e-9 * force.norm() * 200.0, "{found:?}");
 }
 
+/// Independent reference: M a of the particles less the loads.
 #[test]
 fn a_hinge_gives_no_moment_about_its_axis() {
     let now = held(RigidMotion::hinge(POINT, axis())).check(None);
@@ -142,6 +144,7 @@ fn a_hinge_gives_no_moment_about_its_axis() {
     assert_eq!([found.drive, found.drive_power, found.slider_position, found.slider_velocity], [0.0; 4]);
 }
 
+/// Independent reference: M a of the particles less the loads.
 #[test]
 fn a_slider_gives_no_force_along_its_direction() {
     let slider = held(RigidMotion::slider(axis()));
@@ -157,12 +160,14 @@ fn a_slider_gives_no_force_along_its_direction() {
     );
 }
 
+/// Independent reference: M a of the particles less the loads.
 #[test]
 fn a_clamp_gives_what_the_particles_need() {
     let now = held(RigidMotion::clamp(POINT)).check(None);
     assert_eq!([now.reaction.hinge_angle, now.reaction.slider_position], [0.0; 2]);
 }
 
+/// Independent reference: M a of the particles less the loads.
 #[test]
 fn a_drive_gives_what_is_along_its_axis() {
     let history = History::Ramp { start: 0.0, duration: 0.02 };

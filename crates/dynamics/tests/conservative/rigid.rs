@@ -13,6 +13,7 @@ fn body() -> ReducedBody {
     ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap()
 }
 
+/// Closed form: the torque-free motion in elliptic functions.
 #[test]
 fn periods_are_those_of_the_closed_form() {
     let body = body();

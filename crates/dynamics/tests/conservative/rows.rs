@@ -33,6 +33,7 @@ fn by_signal(signal: &Signal) -> SharedLoad {
     }))
 }
 
+/// Conserved: the same bits with and without rows.
 #[test]
 fn rows_leave_every_bit_of_a_run_as_it_is() {
     // Discontinuities that fall on ends of steps, and between them.

@@ -13,6 +13,7 @@ fn errors(found: &Observation, expected: &Observation, start: &Observation) -> [
     [error.attitude, error.modal, (energy(found) / energy(start) - 1.0).abs(), momentum]
 }
 
+/// Independent reference: the table of errors of the prototype that was given with the project.
 #[test]
 fn errors_are_those_of_the_prototype() {
     let plate = plate_of("plate_lc12", 10);

@@ -6,6 +6,7 @@ use dynamics::{Expression, History};
 
 use crate::{at, formula, sides};
 
+/// Independent reference: the same formulas in Rust.
 #[test]
 fn formulas_mean_what_they_mean_in_mathematics() {
     type Law = fn(f64) -> f64;
@@ -63,6 +64,7 @@ fn the_sign_of_zero_is_one_whatever_its_sign() {
     }
 }
 
+/// Closed form: the saw at its jumps.
 #[test]
 fn discontinuities_that_are_named_split_the_law() {
     let saw = Expression::new("10*t - floor(10*t)", vec![0.3, 0.2, 0.1, 0.2]).unwrap();
@@ -85,6 +87,7 @@ fn expressions_are_equal_when_written_alike_and_go_to_other_threads() {
     assert_eq!(there, 2f64.sin());
 }
 
+/// Closed form: the derivatives.
 #[test]
 fn rates_are_the_closed_forms() {
     type Law = fn(f64) -> f64;
@@ -135,7 +138,8 @@ fn rates_are_the_closed_forms() {
     }
 }
 
-/// However many cycles there are: differences over a part of the run would see nothing of them.
+/// Closed form: ω cos ωt, however many cycles there are: differences over a part of the run would see nothing of
+/// them.
 #[test]
 fn the_rate_of_a_fast_formula_is_as_exact() {
     let history = formula("sin(1e9*t)");
@@ -145,6 +149,7 @@ fn the_rate_of_a_fast_formula_is_as_exact() {
     }
 }
 
+/// Closed form: the mean of both derivatives.
 #[test]
 fn at_a_kink_without_a_discontinuity_the_rate_is_the_mean_of_both_sides() {
     let cases = [("abs(t - 1)", 0.0), ("min(t, 1)", 0.5), ("max(3 t, t + 2)", 2.0), ("hypot(t - 1, 0)", 0.0)];

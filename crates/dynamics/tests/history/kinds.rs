@@ -6,12 +6,14 @@ use dynamics::{Expression, History};
 
 use crate::{at, formula, sides, table};
 
+/// Closed form: one.
 #[test]
 fn a_constant_is_one_and_has_no_discontinuity() {
     assert_eq!([-1e9, 0.0, 1e9].map(|t| at(&History::Constant, t)), [1.0; 3]);
     assert!(History::Constant.discontinuities().is_empty());
 }
 
+/// Closed form: zero and one.
 #[test]
 fn a_step_is_seen_from_its_side() {
     let step = History::Step { at: 2.0 };
@@ -20,6 +22,7 @@ fn a_step_is_seen_from_its_side() {
     assert_eq!(step.discontinuities(), [2.0]);
 }
 
+/// Closed form: (t − t₀)/T.
 #[test]
 fn a_ramp_rises_straight_and_stays() {
     let ramp = History::Ramp { start: 1.0, duration: 4.0 };
@@ -28,6 +31,7 @@ fn a_ramp_rises_straight_and_stays() {
     assert_eq!(ramp.discontinuities(), [1.0, 5.0]);
 }
 
+/// Closed form: sin π(t − t₀)/T.
 #[test]
 fn a_half_sine_rises_falls_and_ends() {
     let pulse = History::HalfSine { start: 1.0, duration: 0.5 };
@@ -38,6 +42,7 @@ fn a_half_sine_rises_falls_and_ends() {
     assert_eq!(pulse.discontinuities(), [1.0, 1.5]);
 }
 
+/// Closed form: sin(2πf(t − t₀) + φ).
 #[test]
 fn a_sine_begins_with_its_phase_and_ends_with_its_duration() {
     let sine = |duration| History::Sine { frequency: 3.0, phase: FRAC_PI_6, start: 0.5, duration };
@@ -54,7 +59,7 @@ fn a_sine_begins_with_its_phase_and_ends_with_its_duration() {
     assert_eq!(burst.discontinuities(), [0.5, end]);
 }
 
-/// The frequency is the rate of the phase, from h = sin φ and h' = φ' cos φ where cos φ is not small.
+/// Closed form: the frequency is the rate of the phase, from h = sin φ and h' = φ' cos φ where cos φ is not small.
 #[test]
 fn a_sweep_goes_straight_from_one_frequency_to_the_other() {
     for (from, to) in [(2.0, 20.0), (20.0, 0.0)] {
@@ -78,6 +83,7 @@ fn a_sweep_goes_straight_from_one_frequency_to_the_other() {
     }
 }
 
+/// Conserved: the product of the factors.
 #[test]
 fn a_product_is_that_of_its_factors_with_all_their_discontinuities() {
     let factors = vec![
@@ -97,7 +103,7 @@ fn a_product_is_that_of_its_factors_with_all_their_discontinuities() {
     assert_eq!(nested.discontinuities(), [0.0, 0.5, 1.0, 2.0, 3.0, 4.0]);
 }
 
-/// Each rate against a difference of values, and at a discontinuity on either side.
+/// Independent reference: five-point differences of values, and at a discontinuity on either side.
 #[test]
 fn rates_are_those_of_the_values() {
     let sine = History::Sine { frequency: 3.0, phase: 0.4, start: 0.1, duration: Some(2.0) };
@@ -127,7 +133,7 @@ fn rates_are_those_of_the_values() {
     }
 }
 
-/// A formula's rate at its discontinuity and just beside it looks only to the side of `inside`.
+/// Closed form: ±cos, at a formula's discontinuity and just beside it, only to the side of `inside`.
 #[test]
 fn the_rate_of_a_formula_does_not_look_across_its_discontinuity() {
     let kinked = History::Expression(Expression::new("abs(sin(t - 1))", vec![1.0]).unwrap());

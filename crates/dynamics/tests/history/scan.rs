@@ -15,6 +15,7 @@ fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { (PI * x).sin() / (PI * x) }
 }
 
+/// Closed form: ∫|h| dt.
 #[test]
 fn magnitudes_integrate_to_their_closed_forms() {
     let sine = History::Sine { frequency: 7.0, phase: 0.4, start: 0.0, duration: None };
@@ -38,6 +39,7 @@ fn magnitudes_integrate_to_their_closed_forms() {
     }
 }
 
+/// Closed form: max |h|.
 #[test]
 fn the_largest_magnitude_is_found_between_discontinuities() {
     let cases = [
@@ -67,7 +69,7 @@ fn same(history: &History, end: f64, expected: impl Fn(f64) -> f64, bound: f64) 
     }
 }
 
-/// |H| = 2T/π |cos πfT| / |1 − (2fT)²|
+/// Closed form: |H| = 2T/π |cos πfT| / |1 − (2fT)²|.
 #[test]
 fn the_spectrum_of_a_half_sine() {
     let duration = 0.8;
@@ -83,7 +85,7 @@ fn the_spectrum_of_a_half_sine() {
     assert!((found - 0.5 * duration).abs() < 1e-6, "{found}");
 }
 
-/// |H| = T |sinc fT| of a boxcar, and of one that the end cuts off.
+/// Closed form: |H| = T |sinc fT| of a boxcar, and of one that the end cuts off.
 #[test]
 fn the_spectrum_of_a_boxcar() {
     same(&boxcar(), 2.0, |f| 0.8 * sinc(0.8 * f).abs(), 1e-6);
@@ -93,7 +95,7 @@ fn the_spectrum_of_a_boxcar() {
     same(&table(&[0.0, 0.8, 1.6], &[0.0, 1.0, 0.0]), 2.0, |f| 0.8 * sinc(0.8 * f).powi(2), 1e-6);
 }
 
-/// A sine at its own frequency over whole cycles: T/2. At others e.g. by the difference of two sincs.
+/// Closed form: T/2 of a sine at its own frequency over whole cycles, at others e.g. by the difference of two sincs.
 #[test]
 fn the_spectrum_of_a_sine_peaks_at_half_its_length() {
     let (frequency, end) = (12.5, 4.0);
@@ -111,7 +113,8 @@ fn the_spectrum_of_a_sine_peaks_at_half_its_length() {
     }
 }
 
-/// A table finer than the sine it follows, and a product that shifts a spectrum: ½ (H(f − g) − H(f + g)).
+/// Closed form: a table finer than the sine it follows, and a product that shifts a spectrum: ½ (H(f − g) − H(f +
+/// g)).
 #[test]
 fn spectra_of_tables_and_products() {
     let times: Vec<f64> = (0..=10_000).map(|k| f64::from(k) * 4e-4).collect();
@@ -136,8 +139,8 @@ fn nothing_is_walked_without_a_length() {
     }
 }
 
-/// Ten billion cycles: a walk with 1e6 panels steps from zero to zero, and with sixteen panels a cycle for each of a
-/// thousand stretches it would not end.
+/// Closed form: bounds of a sine of ten billion cycles: a walk with 1e6 panels steps from zero to zero, and with
+/// sixteen panels a cycle for each of a thousand stretches it would not end.
 #[test]
 fn what_is_too_fast_to_be_walked_along_has_a_bound() {
     let sine = |frequency: f64| History::Sine { frequency, phase: 0.0, start: 0.0, duration: None };
@@ -151,6 +154,7 @@ fn what_is_too_fast_to_be_walked_along_has_a_bound() {
     assert!((product.largest(2.0) - 12.0).abs() < 0.01, "{}", product.largest(2.0));
 }
 
+/// Independent reference: central differences.
 #[test]
 fn the_rate_of_a_product_is_that_of_differences() {
     let factors: Vec<History> = (1..=5).map(|k| History::Ramp { start: -0.2 * f64::from(k), duration: 3.0 }).collect();

@@ -6,6 +6,7 @@ fn discontinuities_of(times: &[f64], values: &[f64]) -> Vec<f64> {
     table(times, values).discontinuities()
 }
 
+/// Closed form: straight lines between rows.
 #[test]
 fn a_table_goes_straight_between_rows_and_holds_its_ends() {
     let history = table(&[1.0, 2.0, 4.0], &[3.0, -1.0, 0.0]);
@@ -27,7 +28,7 @@ fn discontinuities_are_where_the_slope_changes() {
     assert_eq!(discontinuities_of(&[0.0, 1.0, 2.0], &[0.0, 1.0, 2.0 + 1e-9]), [0.0, 1.0, 2.0]);
 }
 
-/// Ten thousand rows of one line, rounded: a step may go from the first to the last.
+/// Closed form: a straight line. Ten thousand rows of it, rounded: a step may go from the first to the last.
 #[test]
 fn rounded_rows_of_a_line_have_no_discontinuities_between() {
     let times: Vec<f64> = (0..10_000).map(|k| 0.3 + f64::from(k) * 0.1).collect();
@@ -45,6 +46,7 @@ fn rounded_rows_of_a_line_have_no_discontinuities_between() {
     assert_eq!(table(&times, &moved).discontinuities(), [first, times[4999], times[5000], times[5001], last]);
 }
 
+/// Closed form: the sine, and h²ω²/8 of linear interpolation.
 #[test]
 fn ten_thousand_rows_of_a_sine_are_found_by_the_rows_beside() {
     let times: Vec<f64> = (0..10_000).map(|k| f64::from(k) * 1e-3).collect();
@@ -60,7 +62,7 @@ fn ten_thousand_rows_of_a_sine_are_found_by_the_rows_beside() {
     assert!(history.discontinuities().len() > 9_990, "{}", history.discontinuities().len());
 }
 
-/// What lies on the two sides of a step's ends does not matter, whatever the stage.
+/// Closed form: straight lines: what lies on the two sides of a step's ends does not matter, whatever the stage.
 #[test]
 fn a_step_between_rows_sees_one_line() {
     let history = table(&[0.0, 1.0, 2.0], &[0.0, 1.0, -1.0]);

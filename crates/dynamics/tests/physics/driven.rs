@@ -20,6 +20,7 @@ fn motions() -> [DrivenMotion; 2] {
     [DrivenMotion::Turn { axis: unit }, DrivenMotion::Slide { direction: unit }]
 }
 
+/// Conserved: the balance of energy; order 4.
 #[test]
 fn the_work_of_the_drive_closes_the_balance_of_energy_with_fourth_order() {
     for motion in motions() {
@@ -37,6 +38,7 @@ fn the_work_of_the_drive_closes_the_balance_of_energy_with_fourth_order() {
     }
 }
 
+/// Closed form: ∫v dt.
 #[test]
 fn a_driven_part_is_where_its_speed_has_taken_it() {
     let [turn, slide] = motions();
@@ -60,7 +62,8 @@ fn a_driven_part_is_where_its_speed_has_taken_it() {
     assert!((last.position_global - center - direction * way).norm() < 1e-9);
 }
 
-/// A slide by v(t) is, for the modes, a load −b v': the same motion as of a clamped body under a base acceleration.
+/// Conserved: a slide by v(t) is, for the modes, a load −b v': the same motion as of a clamped body under a base
+/// acceleration.
 #[test]
 fn a_driven_slide_is_a_base_acceleration() {
     let [_, slide] = motions();
@@ -94,6 +97,7 @@ fn a_driven_slide_is_a_base_acceleration() {
     }
 }
 
+/// Conserved: the same motion without effects that it does not need.
 #[test]
 fn what_is_driven_moves_whatever_is_off() {
     let body = clamped();
@@ -109,6 +113,7 @@ fn what_is_driven_moves_whatever_is_off() {
     }
 }
 
+/// Conserved: the balance of energy; order 4.
 #[test]
 fn a_jump_of_the_driven_speed_does_its_work_at_once() {
     for motion in motions() {

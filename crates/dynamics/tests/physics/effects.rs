@@ -14,6 +14,7 @@ fn all() -> [EffectMap<bool>; 16] {
     })
 }
 
+/// Conserved: energy.
 #[test]
 fn energy_is_conserved_whatever_is_off() {
     let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
@@ -43,6 +44,7 @@ fn what_is_off_takes_no_memory_and_no_multiplication() {
     assert_eq!(reduced.matrix_entries(), 2 * nf * nf);
 }
 
+/// Closed form: without turning each mode swings as q cos ωt + q̇/ω sin ωt.
 #[test]
 fn what_is_off_has_no_part_in_the_motion() {
     let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);

@@ -39,6 +39,7 @@ fn assert_reached(found: &[(Reached, f64)], expected: &[(Reached, f64)]) {
     }
 }
 
+/// Conserved: the same motion with and without the event.
 #[test]
 fn a_discontinuity_that_an_event_falls_on_is_passed() {
     let turned = body(RigidMotion::clamp(Vector3::zeros()), &[5.0, 8.0, 13.0]);

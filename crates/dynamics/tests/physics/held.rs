@@ -21,6 +21,7 @@ fn motions() -> [RigidMotion; 5] {
     ]
 }
 
+/// Conserved: energy and momenta.
 #[test]
 fn energy_and_what_is_left_of_the_momenta_are_conserved() {
     for motion in motions() {
@@ -36,6 +37,7 @@ fn energy_and_what_is_left_of_the_momenta_are_conserved() {
     }
 }
 
+/// Conserved: no motion that the support forbids.
 #[test]
 fn a_held_body_keeps_to_the_motions_that_it_has_left() {
     for motion in motions() {
@@ -72,6 +74,7 @@ fn pendulum_period(inertia: f64, weight_arm: f64, largest: f64) -> f64 {
     std::f64::consts::TAU * (inertia / weight_arm).sqrt() / a
 }
 
+/// Closed form: the period by the elliptic integral.
 #[test]
 fn a_compound_pendulum_has_the_period_of_the_elliptic_integral() {
     let hinge = RigidMotion::hinge(Vector3::zeros(), Vector3::z());
@@ -99,7 +102,8 @@ fn a_compound_pendulum_has_the_period_of_the_elliptic_integral() {
     assert!(whole.omega_body.norm() / rate < 1e-6 * period);
 }
 
-/// The heavy symmetrical top of Simo and Wong: M g l = 20, J = diag(5, 5, 1) about the fixed point, 50 rad/s.
+/// Conserved: energy and two momenta of the heavy symmetrical top of Simo and Wong: M g l = 20, J = diag(5, 5, 1)
+/// about the fixed point, 50 rad/s.
 #[test]
 fn a_heavy_top_keeps_its_energy_and_the_momenta_that_gravity_leaves() {
     let top = crate::sample::changed(body(RigidMotion::pin(Vector3::zeros()), &[]), |top| {

@@ -63,6 +63,7 @@ fn stiffening(frame: LoadFrame) -> [SharedLoad; 2] {
     ]
 }
 
+/// Conserved: the balances of energy and momenta; order 4.
 #[test]
 fn work_and_impulses_of_every_load_close_the_balances() {
     let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
@@ -89,8 +90,8 @@ fn work_and_impulses_of_every_load_close_the_balances() {
     }
 }
 
-/// A follower couple about a body axis of a rigid body spins it up as θ'' = M/J whatever its attitude, and a dead force
-/// and a follower force agree while the body does not turn.
+/// Closed form: a follower couple about a body axis of a rigid body spins it up as θ'' = M/J whatever its attitude; a
+/// follower force on a spinning body gives F/(mΩ) (sin Ωt, 1 − cos Ωt).
 #[test]
 fn followers_follow() {
     let inertia = nalgebra::Matrix3::from_diagonal(&Vector3::new(2.0, 3.0, 4.0));
@@ -116,7 +117,8 @@ fn followers_follow() {
     assert!((last.velocity_global - expected).norm() < 1e-10, "{}", last.velocity_global);
 }
 
-/// A load that jumps: steps end at the jump and see one law each, so nothing of the order is lost.
+/// Closed form: q = f/ω² (1 − cos ωt) after a load that jumps: steps end at the jump and see one law each, so nothing
+/// of the order is lost.
 #[test]
 fn a_jump_costs_no_accuracy() {
     let body = body(RigidMotion::clamp(Vector3::zeros()), &[5.0, 8.0, 13.0]);

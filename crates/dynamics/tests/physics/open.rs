@@ -32,6 +32,7 @@ fn largest(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
+/// Conserved: a state that is put back is the state.
 #[test]
 fn the_state_is_what_was_given_and_can_be_put_back() {
     for motion in motions() {
@@ -61,6 +62,7 @@ fn the_state_is_what_was_given_and_can_be_put_back() {
     }
 }
 
+/// Conserved: the same motion with and without the state put back.
 #[test]
 fn a_state_put_back_changes_nothing_of_the_motion() {
     let body = body(RigidMotion::free(), &OMEGA);
@@ -80,7 +82,7 @@ fn a_state_put_back_changes_nothing_of_the_motion() {
     assert!(whole.attitude.angle_to(&interrupted.attitude) < 1e-11);
 }
 
-/// A run that begins turned by R under loads that are turned by R is the run without R, turned.
+/// Conserved: a run that begins turned by R under loads that are turned by R is the run without R, turned.
 #[test]
 fn a_motion_does_not_depend_on_the_attitude_that_it_begins_at() {
     let turn = Attitude::from_wxyz([0.8, -0.2, 0.4, 0.3]).unwrap();
@@ -200,6 +202,7 @@ fn no_time_after_an_event_is_inside_the_last_step() {
     assert!(matches!(simulation.interpolate(0.508, &mut out), Err(StepError::OutsideLastStep { .. })));
 }
 
+/// Conserved: order 4.
 #[test]
 fn a_time_inside_a_step_is_as_accurate_as_the_scheme_and_observers_see_every_step() {
     let body = body(RigidMotion::free(), &OMEGA);
@@ -267,6 +270,7 @@ fn a_builder_starts_what_a_setup_does_and_refuses_what_it_refuses() {
     assert!(matches!(refused, Err(SetupError::Value { what: "the step", .. })));
 }
 
+/// Conserved: the place and velocity of the point at the origin.
 #[test]
 fn a_load_sees_the_origin_where_and_as_fast_as_it_is_with_every_scheme() {
     let body = body(RigidMotion::free(), &OMEGA);
@@ -291,7 +295,7 @@ fn a_load_sees_the_origin_where_and_as_fast_as_it_is_with_every_scheme() {
     }
 }
 
-/// A closure says nothing of its jumps. With the jumps as discontinuities the motion is right to rounding of the tolerance.
+/// Conserved: the same motion with the jumps as discontinuities, which a closure says nothing of.
 #[test]
 fn jumps_that_a_closure_does_not_name_are_passed_within_the_tolerance() {
     let body = body(RigidMotion::free(), &OMEGA);

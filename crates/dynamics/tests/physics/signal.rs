@@ -32,8 +32,8 @@ fn off(a: &Observation, b: &Observation) -> f64 {
         .max(a.attitude.angle_to(&b.attitude))
 }
 
-/// A factor that is set at a time is a history with a step then, in fixed steps and under control, whose steps begin with the
-/// rates of the last.
+/// Conserved: a factor that is set at a time is a history with a step then, in fixed steps and under control, whose
+/// steps begin with the rates of the last.
 #[test]
 fn a_factor_that_is_set_between_steps_is_a_step_of_its_history() {
     let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
@@ -55,6 +55,7 @@ fn a_factor_that_is_set_between_steps_is_a_step_of_its_history() {
     }
 }
 
+/// Conserved: the same motion by a table.
 #[test]
 fn a_drive_with_an_added_speed_is_one_by_a_table() {
     let body = body(RigidMotion::clamp(Vector3::zeros()), &[5.0, 8.0, 13.0]);

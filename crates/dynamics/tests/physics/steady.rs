@@ -16,6 +16,7 @@ fn round_spring(omega: f64) -> ReducedBody {
     })
 }
 
+/// Closed form: |ω ± Ω|.
 #[test]
 fn a_point_on_a_round_spring_circles_by_the_sum_and_the_difference_of_frequency_and_spin() {
     let spin = SteadySpin::new(&round_spring(3.0), &Vector3::z(), &EffectMap::all());
@@ -31,6 +32,7 @@ fn a_point_on_a_round_spring_circles_by_the_sum_and_the_difference_of_frequency_
     }
 }
 
+/// Closed form: |ω ∓ Ω| = nΩ.
 #[test]
 fn critical_speeds_of_a_round_spring_are_fractions_of_its_frequency() {
     let spin = SteadySpin::new(&round_spring(3.0), &Vector3::z(), &EffectMap::all());
@@ -45,6 +47,7 @@ fn critical_speeds_of_a_round_spring_are_fractions_of_its_frequency() {
     assert!((spin.critical_speed().unwrap() - 3.0).abs() < 1e-12);
 }
 
+/// Conserved: ω = nΩ at a critical speed.
 #[test]
 fn at_a_critical_speed_some_frequency_is_a_multiple_of_the_spin() {
     let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0, 14.0]);
@@ -62,6 +65,7 @@ fn at_a_critical_speed_some_frequency_is_a_multiple_of_the_spin() {
     }
 }
 
+/// Closed form: the growth √(Ω² − ω²).
 #[test]
 fn without_coriolis_terms_what_loses_definiteness_grows() {
     let effects = EffectMap::all().without(Effect::Coriolis);

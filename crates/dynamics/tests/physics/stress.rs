@@ -36,6 +36,7 @@ fn arm(body: &ReducedBody, at: [f64; 3], q: &[f64]) -> Vector3<f64> {
     Vector3::from(at) + modal + displacement(q)
 }
 
+/// Conserved: energy less the force times the way.
 #[test]
 fn a_constant_dead_force_has_a_potential() {
     let at = [0.5, -0.2, 0.4];
@@ -67,6 +68,7 @@ fn drive(motion: DrivenMotion) -> Drive {
     Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history }, added: None }
 }
 
+/// Conserved: the balance of energy; order 4.
 #[test]
 fn the_stress_of_a_driven_motion_closes_the_balance_of_energy() {
     let unit = Vector3::new(2.0, -1.0, 2.0) / 3.0;
@@ -87,7 +89,8 @@ fn the_stress_of_a_driven_motion_closes_the_balance_of_energy() {
     }
 }
 
-/// In the frame of a slide the body meets the inertia of its acceleration, which has the same stress as a weight.
+/// Conserved: in the frame of a slide the body meets the inertia of its acceleration, which has the same stress as a
+/// weight.
 #[test]
 fn a_driven_slide_stiffens_as_a_base_acceleration_does() {
     let direction = Vector3::new(2.0, -1.0, 2.0) / 3.0;
@@ -119,7 +122,8 @@ fn a_driven_slide_stiffens_as_a_base_acceleration_does() {
     assert!((with_stress[0] - free.modal_displacement[0]).abs() > 1e-3);
 }
 
-/// A body under a constant load of one direction vibrates at the frequencies of Λ + a K about its new rest.
+/// Closed form: a body under a constant load of one direction vibrates at the frequencies of Λ + a K about its new
+/// rest.
 #[test]
 fn a_steady_load_moves_the_frequencies_as_its_stiffness_says() {
     let body = body(RigidMotion::clamp(Vector3::zeros()), &[5.0]);
@@ -139,7 +143,7 @@ fn a_steady_load_moves_the_frequencies_as_its_stiffness_says() {
     }
 }
 
-/// Where the speed of a drive jumps, the body goes on as after a rise that is ever steeper.
+/// Conserved: where the speed of a drive jumps, the body goes on as after a rise that is ever steeper.
 #[test]
 fn a_jump_of_a_driven_speed_is_the_limit_of_steep_rises() {
     let unit = Vector3::new(2.0, -1.0, 2.0) / 3.0;

@@ -1,6 +1,4 @@
 //! Andrews' squeezer: seven bodies, ten hinges in space, a spring and a torque.
-//!
-//! Independent reference: the test set of initial value problems (Mazzia and Magherini, Bari), angles at 0.03 s.
 
 use std::sync::Arc;
 
@@ -106,6 +104,7 @@ fn squeezer() -> dynamics::SystemMotion {
     mechanism.starts(&[([0.0; 2], 0.0); 7])
 }
 
+/// Independent reference: angles at 0.03 s of the test set of initial value problems (Mazzia and Magherini, Bari).
 #[test]
 fn the_squeezer_ends_where_others_have_it() {
     let mut start = squeezer();

@@ -34,7 +34,7 @@ fn pendulum(amplitude: f64) -> SystemMotion {
     mechanism.starts(&[([0.0; 2], 0.0)])
 }
 
-/// The period of a pendulum of length 2/3 by the arithmetic-geometric mean (closed form).
+/// Closed form: the period of a pendulum of length 2/3 by the arithmetic-geometric mean.
 #[test]
 fn a_pendulum_has_its_period() {
     let amplitude: f64 = 2.0;
@@ -57,7 +57,8 @@ fn a_pendulum_has_its_period() {
     }
 }
 
-/// Two bars that a hinge joins fly and turn: momenta stay to rounding at any tolerance, energy at the tolerance.
+/// Conserved: two bars that a hinge joins fly and turn: momenta stay to rounding at any tolerance, energy at the
+/// tolerance.
 #[test]
 fn a_free_pair_keeps_its_momenta() {
     let bar = |x: f64| Link {
@@ -88,7 +89,7 @@ fn a_free_pair_keeps_its_momenta() {
     assert!(drifts[2] < 1e-8 && drifts[2] < 1e-3 * drifts[0].max(1e-7));
 }
 
-/// Order of the scheme, by halving a fixed step.
+/// Conserved: order 5, by halving a fixed step.
 #[test]
 fn the_error_falls_with_the_fifth_power_of_the_step() {
     let end = |steps: usize| {

@@ -36,6 +36,7 @@ fn at(field: &DVector<f64>, node: usize) -> Vector3<f64> {
     field.fixed_rows::<3>(3 * node).into()
 }
 
+/// Independent reference: sums over the nodes.
 #[test]
 fn energy_and_momenta_are_the_sums_over_the_nodes() {
     let ring = ring();
@@ -73,6 +74,7 @@ fn energy_and_momenta_are_the_sums_over_the_nodes() {
     assert!(errors.iter().all(|e| *e < 1e-11), "{errors:?}");
 }
 
+/// Independent reference: the fields at the node.
 #[test]
 fn a_point_moves_as_its_node() {
     let ring = ring();
@@ -93,7 +95,8 @@ fn a_point_moves_as_its_node() {
     }
 }
 
-/// `a + α×X + ω×(ω×X)` is the second derivative of the path of a point that turns at ω and α.
+/// Independent reference: central differences: `a + α×X + ω×(ω×X)` is the second derivative of the path of a point
+/// that turns at ω and α.
 #[test]
 fn rigid_accelerations_are_those_of_the_embedded_rigid_motion() {
     let ring = ring();

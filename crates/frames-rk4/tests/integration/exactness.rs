@@ -19,6 +19,7 @@ fn tumbling() -> Initial {
     }
 }
 
+/// Conserved: a body at rest.
 #[test]
 fn at_rest_it_stays_exactly_at_rest() {
     let mut scheme = ring().scheme(0.05, vec![], &Initial::at_rest(10), 5e-5);
@@ -30,6 +31,7 @@ fn at_rest_it_stays_exactly_at_rest() {
     assert_eq!(after, before);
 }
 
+/// Closed form: X + V t.
 #[test]
 fn a_body_that_flies_without_spin_goes_straight() {
     let velocity = Vector3::new(3.0, -4.0, 12.0) * 100.0;
@@ -44,7 +46,7 @@ fn a_body_that_flies_without_spin_goes_straight() {
     assert!(state.modal_displacement.iter().all(|q| q.abs() < 1e-12));
 }
 
-/// The sums of RK4 for a force with the mean of both ends in the middle: v by the trapezoidal rule, and
+/// Closed form: the sums of RK4 for a force with the mean of both ends in the middle: v by the trapezoidal rule, and
 /// `Δx = v Δt + (2 f_n + f_n+1) Δt²/6m`.
 #[test]
 fn a_force_at_the_centre_of_mass_gives_the_sums_of_rk4() {
@@ -67,8 +69,9 @@ fn a_force_at_the_centre_of_mass_gives_the_sums_of_rk4() {
     }
 }
 
-/// Momentum comes by the mean of the stages' forces in frame n, where their components are those of frames that have
-/// turned by half a step on the average: the impulse lags by ωΔt/2.
+/// Conserved: the impulse is the momentum gained, to first order. Momentum comes by the mean of the stages' forces in
+/// frame n, where their components are those of frames that have turned by half a step on the average: the impulse
+/// lags by ωΔt/2.
 #[test]
 fn the_impulse_of_a_load_is_the_momentum_gained_to_first_order() {
     let ring = ring();
@@ -88,8 +91,8 @@ fn the_impulse_of_a_load_is_the_momentum_gained_to_first_order() {
     assert!(errors[0] < 1.1e-4 && (errors[0] / errors[1] - 2.0).abs() < 0.01, "{errors:?}");
 }
 
-/// Momentum is kept, but the centre of mass leaves its line: velocities of stages that have turned are added in frame
-/// n, which turns the path by −ωΔt/2.
+/// Conserved: linear momentum. The centre of mass leaves its line: velocities of stages that have turned are added in
+/// frame n, which turns the path by −ωΔt/2.
 #[test]
 fn without_loads_linear_momentum_is_kept_to_rounding_and_the_path_leans() {
     let ring = ring();
@@ -125,6 +128,7 @@ fn turning_in_plane(reference_points: [[f64; 3]; 3]) -> (Specimen, SharedLoad, I
     (ring, load, spin)
 }
 
+/// Independent reference: the rigid body of rigid-kin by its own RK4.
 #[test]
 fn plane_motion_under_a_dead_force_tends_to_that_of_a_rigid_body() {
     let (ring, load, initial) = turning_in_plane([[-100.0, 0.0, 0.0], [-100.0, 0.0, 20.0], [-80.0, 0.0, 0.0]]);
@@ -165,8 +169,8 @@ fn plane_motion_under_a_dead_force_tends_to_that_of_a_rigid_body() {
     }
 }
 
-/// h of (37) takes the body for a lamina through R, P, Q. Even in plane motion it is Euler's equation only if the axis
-/// is e1, e3 or e3×e1 of the reference points; the scheme does not use it.
+/// Closed form: the lamina through R, P, Q that h of (37) takes the body for. Even in plane motion it is Euler's
+/// equation only if the axis is e1, e3 or e3×e1 of the reference points; the scheme does not use it.
 #[test]
 fn h_is_off_in_plane_motion_when_the_reference_points_are_oblique_to_the_axis() {
     let (ring, load, initial) = turning_in_plane(ring().reference_points);

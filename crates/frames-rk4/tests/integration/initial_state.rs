@@ -9,6 +9,7 @@ use crate::common::Synthesis as _;
 use crate::common::ring;
 use crate::literal::Csc;
 
+/// Independent reference: the projection ΨᵀM at the nodes.
 #[test]
 fn the_initial_state_is_the_projected_velocity_field() {
     let ring = ring();
@@ -54,8 +55,8 @@ fn the_initial_state_is_the_projected_velocity_field() {
     assert!(shift > 1e-3 && shift < 1e-2, "{shift}");
 }
 
-/// The states of the paper's formulation are of an inertial frame; read as a motion of the body they are what was given,
-/// and a run that begins turned is the same run, turned.
+/// Conserved: the states of the paper's formulation are of an inertial frame; read as a motion of the body they are
+/// what was given, and a run that begins turned is the same run, turned.
 #[test]
 fn states_of_the_paper_s_formulation_are_what_was_given_in_any_attitude() {
     let ring = ring();

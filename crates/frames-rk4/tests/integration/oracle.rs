@@ -99,6 +99,7 @@ fn after(specimen: &Specimen, reading: Reading, step: f64, steps: usize) -> Diff
     Differences::between(&literal, scheme.state())
 }
 
+/// Independent reference: the scheme as printed, node by node.
 #[test]
 fn condensed_equals_literal() {
     let reading = Reading { projected: true, reanchored: true };
@@ -112,8 +113,9 @@ fn condensed_equals_literal() {
     }
 }
 
-/// (38) as printed sums the total rotation vector, which is the same attitude in other coordinates: the difference is
-/// that of two fourth-order schemes, until (22) becomes singular at a full turn.
+/// Independent reference: the scheme as printed, node by node. (38) as printed sums the total rotation vector, which
+/// is the same attitude in other coordinates: the difference is that of two fourth-order schemes, until (22) becomes
+/// singular at a full turn.
 #[test]
 fn the_total_rotation_vector_differs_by_the_error_of_rk4() {
     let reading = Reading { projected: true, reanchored: false };
@@ -125,9 +127,9 @@ fn the_total_rotation_vector_differs_by_the_error_of_rk4() {
     assert!(fine.displacement < coarse.displacement / 8.0, "{coarse:?} {fine:?}");
 }
 
-/// Eq. (40) read with x_n kept as it is, instead of Ψ q_n, is another motion at any step: T turns the velocities
-/// `ω×X` of a spin out of the rigid modes, and their projection fades as the cosine of the whole angle. A free spin
-/// then obeys θ' = ω cos θ and stops at a quarter turn.
+/// Closed form: θ' = ω cos θ. Eq. (40) read with x_n kept as it is, instead of Ψ q_n, is another motion at any step:
+/// T turns the velocities `ω×X` of a spin out of the rigid modes, and their projection fades as the cosine of the
+/// whole angle. A free spin then stops at a quarter turn.
 #[test]
 fn without_projection_at_each_step_a_free_spin_stops_at_a_quarter_turn() {
     let ring = ring().truncated(0);

@@ -42,6 +42,7 @@ fn modal_force(specimen: &Specimen) -> impl Fn(f64, &Matrix3<f64>) -> DVector<f6
     }
 }
 
+/// Independent reference: the limit equation, written down a second time; order 1.
 #[test]
 fn converges_with_first_order_to_the_limit_equation() {
     let plate = plate().truncated(4);

@@ -17,6 +17,7 @@ fn rows() -> Vec<Vec<f64>> {
         .collect()
 }
 
+/// Independent reference: Exudyn 1.13.6 (header of the data file).
 #[test]
 fn the_pulsed_plate_follows_the_reference() {
     let plate = plate();

@@ -23,6 +23,7 @@ fn refusal(specimen: &Specimen, damping_ratio: f64) -> SetupError {
     .unwrap_err()
 }
 
+/// Closed form: √8/ω of the highest mode.
 #[test]
 fn a_millisecond_with_ten_modes_is_refused_by_mode_and_limit() {
     let error = refusal(plate(), 0.0);
@@ -47,6 +48,7 @@ fn amplitude(damping_ratio: f64, step: f64, steps: usize) -> f64 {
     scheme.state().modal_displacement[15].hypot(scheme.state().modal_velocity[15] / omega)
 }
 
+/// Closed form: the polynomial of RK4.
 #[test]
 fn below_the_limit_the_mode_decays_and_does_so_as_the_polynomial_of_rk4_says() {
     for damping_ratio in [0.0, 0.05] {

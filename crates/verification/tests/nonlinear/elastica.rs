@@ -82,7 +82,8 @@ fn fourth_order(alpha: f64) -> f64 {
     w.sum()
 }
 
-/// The error of large modes under a dead force is that of any strain energy of fourth order.
+/// Regression only: the error of large modes under a dead force is that of any strain energy of fourth order: the
+/// parts that the Ritz method in this file leaves of the elastica.
 #[test]
 fn an_energy_of_fourth_order_leaves_a_part_of_the_elastica() {
     for (alpha, expected) in [(0.31, 0.02), (0.59, 0.20), (0.9, 0.83)] {
@@ -112,6 +113,7 @@ fn tip_at_rest(alpha: f64, frame: &str) -> [f64; 2] {
     [last.points[0].displacement.z, left_out]
 }
 
+/// Independent reference: the elastica by shooting.
 #[test]
 fn a_dead_end_force_bends_it_as_the_elastica() {
     // Measured: -0.014, +0.174, +0.817 %. Of a thin beam, an energy of fourth order leaves +0.02, +0.20 and +0.83 %.
@@ -127,6 +129,7 @@ fn a_dead_end_force_bends_it_as_the_elastica() {
     }
 }
 
+/// Independent reference: the elastica by steps from the tip.
 #[test]
 fn an_end_force_that_turns_with_the_tip_bends_it_as_the_elastica() {
     // Measured: -0.028, +0.004, +0.070 %.
@@ -182,6 +185,7 @@ fn let_go(part: f64) -> [f64; 3] {
     [omega, tau * cases::cycles(&large, omega, None), nonlinear]
 }
 
+/// Independent reference: the nonlinear finite elements of this crate.
 #[test]
 #[ignore = "a minute: just nonlinear"]
 fn its_period_is_that_of_the_whole_mesh_at_a_fifth_of_its_length() {
@@ -193,7 +197,8 @@ fn its_period_is_that_of_the_whole_mesh_at_a_fifth_of_its_length() {
     }
 }
 
-/// Small vibrations about the rest of a bent column, in its plane and across it, are not those about the straight one.
+/// Independent reference: the nonlinear finite elements of this crate. Small vibrations about the rest of a bent
+/// column, in its plane and across it, are not those about the straight one.
 #[test]
 fn the_modes_of_a_bent_column_are_those_of_the_whole_mesh_about_its_rest() {
     let force = 0.6 * COLUMN_BENDING;
@@ -224,6 +229,7 @@ fn the_modes_of_a_bent_column_are_those_of_the_whole_mesh_about_its_rest() {
     }
 }
 
+/// Closed form: ¼ √(E/ρ)/L of a rod.
 #[test]
 fn a_mode_that_bending_draws_in_is_refused_as_a_large_one() {
     // The twelfth stretches the column: see the frequency of a rod, ¼ √(E/ρ)/L.

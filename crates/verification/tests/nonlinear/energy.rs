@@ -29,6 +29,7 @@ fn gap(rows: &[Observation]) -> f64 {
     gap / rows.iter().map(|row| row.energy()).fold(0.0, f64::max)
 }
 
+/// Conserved: the balance of energy.
 #[test]
 fn energy_is_kept_for_ten_seconds() {
     let found = gap(&rod("", 1e-4, 10.0));
@@ -36,6 +37,7 @@ fn energy_is_kept_for_ten_seconds() {
     assert!(found < 1e-9, "{found:e}");
 }
 
+/// Conserved: order 4.
 #[test]
 fn the_error_of_energy_is_of_fourth_order() {
     let [coarse, middle, fine] = [2e-3, 1e-3, 5e-4].map(|step| gap(&rod("", step, 0.2)));
@@ -44,6 +46,7 @@ fn the_error_of_energy_is_of_fourth_order() {
     assert!(coarse / fine > 12.0 * 12.0, "{coarse:e} {middle:e} {fine:e}");
 }
 
+/// Conserved: order 4.
 #[test]
 fn the_motion_is_of_fourth_order_with_large_amplitudes() {
     // Static shapes are far faster than these steps: what the scheme keeps of them is of lower order.
@@ -62,8 +65,8 @@ fn the_motion_is_of_fourth_order_with_large_amplitudes() {
     assert!(coarse[0] < 1e-10, "{coarse:?}");
 }
 
-/// The plate of examples/spinning_plate.toml. What limits the step is the mode that the large ones draw in, at 537 Hz:
-/// it rings from the beginning, and is coupled to them by its inertia.
+/// Conserved: energy of the plate of examples/spinning_plate.toml. What limits the step is the mode that the large
+/// ones draw in, at 537 Hz: it rings from the beginning, and is coupled to them by its inertia.
 #[test]
 fn the_plate_keeps_its_energy_for_ten_seconds_in_short_steps() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spinning_plate.toml");
@@ -79,7 +82,8 @@ fn the_plate_keeps_its_energy_for_ten_seconds_in_short_steps() {
     }
 }
 
-/// The eighth mode of that plate rings, which stretches: without it, and without the spin, there is little to keep.
+/// Conserved: energy. The eighth mode of that plate rings, which stretches: without it, and without the spin, there
+/// is little to keep.
 #[test]
 fn the_plate_keeps_its_energy_far_better_without_the_mode_that_stretches() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spinning_plate.toml");

@@ -5,6 +5,7 @@ use verification::nonlinear::{Solid, bodies, cases};
 const MANIFOLD: &str =
     "static_correction = false\nlarge = [IN_PLANE]\n[effects]\nlarge_deflection = true\nrefuse = false";
 
+/// Independent reference: the nonlinear finite elements of this crate.
 #[test]
 fn the_static_energy_of_the_first_mode_is_that_of_the_whole_mesh() {
     let (_, model) = cases::the_l("static_correction = false\n[time]\nend = 1e-3\nstep = 1e-3").unwrap();
@@ -25,6 +26,7 @@ fn the_static_energy_of_the_first_mode_is_that_of_the_whole_mesh() {
     }
 }
 
+/// Independent reference: the nonlinear finite elements of this crate.
 #[test]
 fn it_bends_as_the_whole_mesh_when_it_spins() {
     let (_, courses) = cases::spinning_l(0.1, 2.0, &[MANIFOLD]).unwrap();
@@ -33,6 +35,7 @@ fn it_bends_as_the_whole_mesh_when_it_spins() {
     assert!(off < 0.01, "{off}");
 }
 
+/// Independent reference: the nonlinear finite elements of this crate, and those of the prototype.
 #[test]
 #[ignore = "a minute: just nonlinear"]
 fn its_frequency_rises_with_the_spin() {

@@ -76,6 +76,7 @@ fn check(name: &str, scene: &Scene, large: usize) {
     assert!(off < 1e-3 && turned < 1e-3, "{name}: {off:e} {turned:e}");
 }
 
+/// Conserved: the same motion with and without large modes.
 #[test]
 #[ignore = "minutes: just nonlinear"]
 fn small_motions_of_the_examples_are_the_same_with_large_modes() {
@@ -88,8 +89,9 @@ fn small_motions_of_the_examples_are_the_same_with_large_modes() {
     check("accuracy/pulse", &made_small(changed("accuracy/pulse", &[])), 2);
 }
 
-/// Plates that spin, without what stretches them: a stretching mode, or a static shape, rings from the undeformed start. Large
-/// modes feel its stress as it swings, stiffening alone takes it as at rest, and that is no double count.
+/// Conserved: the same motion with and without large modes, of plates that spin, without what stretches them: a
+/// stretching mode, or a static shape, rings from the undeformed start. Large modes feel its stress as it swings,
+/// stiffening alone takes it as at rest, and that is no double count.
 #[test]
 #[ignore = "minutes: just nonlinear"]
 fn spinning_plates_are_the_same_with_large_modes() {
@@ -101,8 +103,8 @@ fn spinning_plates_are_the_same_with_large_modes() {
     }
 }
 
-/// The two beams that are spun up, in a time ten times as long, so that they lag by a tenth; at the end the spin has more
-/// than doubled their stiffness.
+/// Conserved: the same motion with and without large modes, of the two beams that are spun up, in a time ten times as
+/// long, so that they lag by a tenth; at the end the spin has more than doubled their stiffness.
 #[test]
 #[ignore = "minutes: just nonlinear"]
 fn beams_that_spin_up_slowly_are_the_same_with_large_modes() {

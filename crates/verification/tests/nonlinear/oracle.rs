@@ -23,6 +23,7 @@ fn moments(solid: &Solid, u: &[f64], forces: &[f64]) -> [Vector3<f64>; 2] {
     sums
 }
 
+/// Conserved: a rigid motion has no strain energy.
 #[test]
 fn turning_as_a_whole_strains_nothing() {
     let solid = l();
@@ -35,6 +36,7 @@ fn turning_as_a_whole_strains_nothing() {
     assert!(axes.displacement.iter().all(|u| u.abs() < 1e-12));
 }
 
+/// Closed form: (λ/2 + μ) E² V.
 #[test]
 fn a_homogeneous_strain_has_its_energy() {
     // E_xx of a stretch e of the whole body, whose sides may not move.
@@ -48,6 +50,7 @@ fn a_homogeneous_strain_has_its_energy() {
     assert!((solid.strain_energy(&u) / expected - 1.0).abs() < 1e-12);
 }
 
+/// Conserved: energy and momenta.
 #[test]
 fn it_keeps_energy_and_momenta_while_it_tumbles_and_bends() {
     let solid = l();
@@ -79,6 +82,7 @@ fn it_keeps_energy_and_momenta_while_it_tumbles_and_bends() {
     }
 }
 
+/// Closed form: 2/Δt atan(ωΔt/2) of the midpoint rule.
 #[test]
 fn small_vibrations_have_the_linear_frequency() {
     let solid = l();
@@ -102,6 +106,7 @@ fn small_vibrations_have_the_linear_frequency() {
     assert!((found / expected - 1.0).abs() < 1e-5);
 }
 
+/// Conserved: no resultant and no moment.
 #[test]
 fn a_pressure_all_round_has_neither_a_force_nor_a_moment() {
     let solid = l();

@@ -3,8 +3,9 @@
 use nalgebra::Vector3;
 use verification::nonlinear::{Motion, NodalState, Solid, bodies, cases};
 
-/// The centrifugal field of a body that is pinned at a corner bends it, and its static response stretches it besides. With static
-/// shapes, stiffening about that answer coupled bending to stretching, and the rod was far too soft.
+/// Independent reference: the nonlinear finite elements of this crate. The centrifugal field of a body that is pinned
+/// at a corner bends it, and its static response stretches it besides. With static shapes, stiffening about that
+/// answer coupled bending to stretching, and the rod was far too soft.
 #[test]
 fn a_rod_that_is_pinned_at_a_corner_swings_as_the_whole_mesh_does() {
     let (young_modulus, end, steps) = (1e8, 0.4, 800);

@@ -5,6 +5,7 @@ use model::Model;
 use scene::{Body, Choice, Effect, Large, Materials, Scene};
 use verification::nonlinear::{Solid, cases};
 
+/// Independent reference: the nonlinear finite elements of this crate.
 #[test]
 #[ignore = "minutes: just nonlinear"]
 fn the_static_energy_of_the_first_mode_is_that_of_the_whole_mesh() {

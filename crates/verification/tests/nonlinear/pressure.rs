@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use verification::nonlinear::cases::pressed;
 
+/// Independent reference: the nonlinear finite elements of this crate.
 #[test]
 #[ignore = "a minute: just nonlinear"]
 fn a_closed_tube_stiffens_under_inner_pressure_as_the_whole_mesh() {
@@ -18,7 +19,8 @@ fn a_closed_tube_stiffens_under_inner_pressure_as_the_whole_mesh() {
     }
 }
 
-/// 10 and 20 bar on all sides of a free rod of 2 GPa.
+/// Independent reference: the nonlinear finite elements of this crate. 10 and 20 bar on all sides of a free rod of 2
+/// GPa.
 #[test]
 #[ignore = "a minute: just nonlinear"]
 fn a_rod_under_pressure_on_all_sides_as_the_whole_mesh() {
@@ -30,7 +32,8 @@ fn a_rod_under_pressure_on_all_sides_as_the_whole_mesh() {
     }
 }
 
-/// A pressure on one end of a free rod: its thrust follows the rod.
+/// Independent reference: the nonlinear finite elements of this crate. A pressure on one end of a free rod: its
+/// thrust follows the rod.
 #[test]
 #[ignore = "a minute: just nonlinear"]
 fn a_rod_under_thrust_as_the_whole_mesh() {

@@ -18,6 +18,7 @@ fn off(young_modulus: f64, end: f64, steps: usize) -> (f64, [f64; 3]) {
     (peak, off)
 }
 
+/// Independent reference: the nonlinear finite elements of this crate.
 #[test]
 fn a_soft_rod_falls_as_the_whole_mesh_does() {
     let (peak, [_, stiffened, large]) = off(2e7, 0.32, 160);
@@ -25,6 +26,7 @@ fn a_soft_rod_falls_as_the_whole_mesh_does() {
     assert!(large < 0.02 && stiffened > 4.0 * large, "{stiffened} {large}");
 }
 
+/// Independent reference: the nonlinear finite elements of this crate.
 #[test]
 #[ignore = "minutes: just nonlinear"]
 fn a_soft_rod_swings_as_the_whole_mesh_does() {
@@ -55,7 +57,8 @@ fn heavy_rod(bending: f64, gravity: f64) -> Vec<f64> {
     found
 }
 
-/// A hinged rod that hangs at rest and bends a little: its weight stiffens it by a quarter.
+/// Independent reference: Ritz on polynomials for a heavy beam. A hinged rod that hangs at rest and bends a little:
+/// its weight stiffens it by a quarter.
 #[test]
 fn a_hanging_rod_has_the_frequency_of_a_heavy_beam() {
     let young_modulus = 2e7;

@@ -65,6 +65,7 @@ mod tests {
         discontinuities(&syntax::read(text).unwrap_or_else(|_| panic!("{text}")), end)
     }
 
+    /// Closed form: the zeros and multiples where each formula jumps or kinks.
     #[test]
     fn kinks_and_jumps_are_found_to_rounding() {
         let pi = std::f64::consts::PI;
