@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 page = (Path(__file__).parents[1] / "docs/reference/body.md").read_text()
+# Independent reference: energy, displacements and stresses by the formulas of the page, in NumPy.
 first, second = re.findall(r"```python\n(.*?)```", page, re.S)
 first = first.replace("ring.body.h5", sys.argv[1]).replace("out/ring/ring.h5", sys.argv[2])
 names = {}

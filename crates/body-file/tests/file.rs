@@ -32,6 +32,7 @@ fn write(path: &Path) {
 
 const SHAPES: [f64; 12] = [1.0, -0.0, 3.0, 1e-300, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.5];
 
+/// Independent reference: HDF5 reads the numbers.
 #[test]
 fn what_is_written_is_read_back_by_us_and_by_hdf5() {
     let folder = tempfile::tempdir().unwrap();

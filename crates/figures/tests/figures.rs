@@ -73,6 +73,7 @@ fn a_series_without_points_keeps_its_colour_and_is_not_in_the_legend() {
     assert_eq!(["#0072B2", "#D55E00", "#009E73"].map(|colour| text.contains(colour)), [true, false, true]);
 }
 
+/// Closed form: the heights of the spike and of the sine.
 #[test]
 fn a_long_history_keeps_its_peak_and_a_small_file() {
     let n = 200_000;
@@ -220,6 +221,7 @@ fn noise_is_called_so_and_does_not_fill_the_axis() {
     assert_eq!(count(&svg, "×10⁻¹²"), 1);
 }
 
+/// Closed form: lines of one to eight times a height.
 #[test]
 fn small_multiples_share_their_axes() {
     let line = |k: u32| {

@@ -171,7 +171,7 @@ mod tests {
         }
     }
 
-    /// Written down: files of users have it.
+    /// Regression only: the key of earlier versions: files of users have it.
     const KNOWN: &str = "d982656243773519f1a6600ec89ba05ca3f2c076195bf3a8c3bc9ba14106c621";
 
     #[test]

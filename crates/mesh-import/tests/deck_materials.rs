@@ -65,6 +65,7 @@ fn materials_of_abaqus_belong_to_the_sets_of_their_sections() {
     }
 }
 
+/// Closed form: the numbers on the cards, and ν = E/2G − 1.
 #[test]
 fn materials_of_nastran_belong_to_the_elements_of_their_properties() {
     let (folder, text) = deck("bdf");

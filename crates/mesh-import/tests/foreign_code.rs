@@ -204,7 +204,7 @@ fn geometry_that_runs_writes_or_names_what_it_likes_is_refused_unless_it_is_trus
     assert!(Path::new(&mark).is_file());
 }
 
-/// Words in comments, loops, blocks that are skipped, options.
+/// Closed form: the extent of the three boxes that words in comments, loops and blocks that are skipped leave.
 #[test]
 fn what_geometry_includes_is_found_and_looked_at() {
     let place = Place::new();

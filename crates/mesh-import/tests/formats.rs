@@ -101,6 +101,7 @@ fn surfaces(mesh: &Mesh) -> BTreeSet<String> {
     mesh.parts().surfaces.iter().map(|surface| surface.name.clone()).collect()
 }
 
+/// Independent reference: the same mesh written by gmsh and meshio in each format.
 #[test]
 fn every_format_gives_the_same_elements_and_its_groups() {
     let formats = formats();
@@ -275,6 +276,7 @@ fn what_cannot_be_read_is_said_with_its_help() {
     }
 }
 
+/// Closed form: the volume of the box.
 #[test]
 fn geometry_is_meshed_as_fine_as_asked_and_what_it_follows_from_is_known() {
     let formats = formats();
@@ -294,8 +296,9 @@ fn geometry_is_meshed_as_fine_as_asked_and_what_it_follows_from_is_known() {
     assert_ne!(hash(4.0), hash(5.0));
 }
 
-/// A tube of STEP with two elements across its wall and few around it: their curved edges run through their other faces.
-/// Each size was refused before gmsh's optimisation came by itself; the two fine meshes need none, and are not touched.
+/// Closed form: the volume of a tube of STEP with two elements across its wall and few around it: their curved edges
+/// run through their other faces. Each size was refused before gmsh's optimisation came by itself; the two fine
+/// meshes need none, and are not touched.
 #[test]
 fn curved_elements_that_would_be_inverted_are_optimized() {
     let formats = formats();

@@ -57,6 +57,7 @@ fn length(file: &MeshFile) -> f64 {
     file.mesh().unwrap_or_else(|error| panic!("{error}")).mesh.size()[0]
 }
 
+/// Closed form: the lengths of the bars.
 #[test]
 fn files_that_are_replaced_after_they_were_read_are_not_what_is_meshed() {
     let [one, two] = [(); 2].map(|()| tempfile::tempdir().unwrap());

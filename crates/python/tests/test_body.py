@@ -25,6 +25,7 @@ def bent(tmp_path_factory, program):
         yield flexframe.Body(flexframe.Scene(path)), file
 
 
+# Conserved: the numbers of the body file, bit for bit.
 def test_modes_and_constants_are_those_of_the_body_file_bit_for_bit(bent):
     body, file = bent
     shapes = np.concatenate([file["modes/shapes"], file["static_shapes/shapes"]])
@@ -47,6 +48,7 @@ def test_modes_and_constants_are_those_of_the_body_file_bit_for_bit(bent):
             assert isinstance(value, np.ndarray) and not value.flags.writeable, name
 
 
+# Independent reference: the sum over shapes and products by NumPy.
 def test_displacements_follow_large_modes(bent):
     body, file = bent
     q = 3.0 * np.linspace(1.0, 0.1, len(body.frequencies)) * body.mass**0.5
@@ -80,6 +82,7 @@ def test_an_array_keeps_its_body():
     assert np.array_equal(shapes, copy) and len(others) == 4
 
 
+# Conserved: the numbers of the scene.
 def test_a_rigid_body_has_mass_and_no_mesh(rigid):
     assert rigid.mass == 2.0
     assert np.array_equal(rigid.inertia, np.diag([0.2, 0.3, 0.4]))

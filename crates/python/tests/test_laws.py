@@ -17,6 +17,7 @@ def printed_by(example):
     return [float(number) for number in re.findall(r"-?\d+\.\d+(?:e-?\d+)?", said.stdout)]
 
 
+# Conserved: the same energy as of the example in Rust, and the balance of energy.
 def test_a_controller_is_that_of_the_example_in_rust():
     scene = flexframe.Scene(EXAMPLES / "plate.toml").with_values(
         {
@@ -43,6 +44,7 @@ def test_a_controller_is_that_of_the_example_in_rust():
     assert damped["energy/work"][-1] < -0.1 * energy(damped)[0]
 
 
+# Conserved: the same numbers as of the example in Rust, which are held against closed forms.
 def test_a_spring_and_a_thrust_are_those_of_the_example_in_rust():
     after_a_period, energy, circled, closed = printed_by("spring_to_ground")
     anchor, stiffness, mass = np.array([-0.1, 0.0, 0.0]), 50.0, 2.0
@@ -63,6 +65,7 @@ def test_a_spring_and_a_thrust_are_those_of_the_example_in_rust():
     assert circled == pytest.approx(closed, rel=1e-9)
 
 
+# Conserved: the same motion as by the load of a scene.
 def test_a_law_at_a_point_is_the_load_of_a_scene(ring):
     force = 200.0 * np.array([0.0, -1.0, 0.5]) / np.linalg.norm([0.0, -1.0, 0.5])
     half_sine = lambda motion: force * (np.sin(np.pi * motion.time / 0.002) if motion.time < 0.002 else 0.0)
@@ -74,6 +77,7 @@ def test_a_law_at_a_point_is_the_load_of_a_scene(ring):
         assert np.abs(by_law[path] - by_scene[path]).max() < 1e-10 * scale, path
 
 
+# Conserved: the balance of energy.
 def test_modal_forces_and_large_deflection_close_the_balance_of_energy():
     scene = flexframe.Scene(EXAMPLES / "thrown_plate.toml").with_values(
         {"time.end": 0.02, "output": {"interval": 1e-3, "points": {"tip": [-500.0, 0.0, 0.0]}}}
@@ -91,6 +95,7 @@ def test_modal_forces_and_large_deflection_close_the_balance_of_energy():
     assert np.abs(balance - balance[0]).max() < 1e-6 * energy.max()
 
 
+# Conserved: the numbers of the rows.
 def test_a_law_sees_the_motion_that_the_rows_have(ring):
     seen = {}
 
@@ -113,6 +118,7 @@ def test_a_law_sees_the_motion_that_the_rows_have(ring):
         assert np.array_equal(q, results["modal/displacement"][row])
 
 
+# Closed form: F t²/(2m).
 def test_what_is_left_to_the_program_is_on_with_a_law(rigid):
     """Nothing moves this body but the law, so that no estimate calls for its motion."""
     push = flexframe.Force("corner", lambda motion: [3.0, 0.0, 0.0])
@@ -123,6 +129,7 @@ def test_what_is_left_to_the_program_is_on_with_a_law(rigid):
     assert flexframe.Simulation(fixed, [push]).run()["position"][-1, 0] == 0.0
 
 
+# Closed form: a damped oscillator.
 def test_a_mode_that_a_law_has_struck_decays_as_its_damping_says():
     """e^(-zeta omega t) cos(omega sqrt(1 - zeta^2) t + phase), of a body that nothing moves but the law."""
     zeta, duration = 0.05, 1e-3
@@ -148,6 +155,7 @@ def test_a_mode_that_a_law_has_struck_decays_as_its_damping_says():
     assert np.abs(q - expected).max() < 1e-8 * np.abs(q).max()
 
 
+# Closed form: g t²/2.
 def test_gravity_that_a_force_of_the_scene_outweighs_acts_where_a_law_takes_the_force_away():
     loads = [
         {"kind": "gravity", "direction": [0.0, 0.0, -1.0], "amplitude": 1e-3},
@@ -161,6 +169,7 @@ def test_gravity_that_a_force_of_the_scene_outweighs_acts_where_a_law_takes_the_
     assert abs(position[0]) < 1e-9
 
 
+# Conserved: the same rows, bit for bit.
 def test_a_law_that_raised_may_be_mended_and_the_run_goes_on(rigid):
     broken = [False]
 
@@ -206,6 +215,7 @@ def test_a_row_where_a_drive_jumps_comes_after_a_law_that_raised_there():
     assert simulation.time == simulation.advance().time == pytest.approx(0.1, rel=1e-12)
 
 
+# Closed form: √(2h/g).
 def test_a_body_bounces_at_an_event():
     """A corner falls to a plane, and is thrown back: closed forms, as in examples/bounce.rs."""
     height, gravity = 1.5, 9.81

@@ -13,6 +13,7 @@ from conftest import EXAMPLES, RING, RIGID
 import flexframe
 
 
+# Conserved: the same rows on a body of its own, bit for bit.
 @pytest.mark.parametrize("values", [
     {"loads[0].amplitude": 350.0},
     {"loads[0].direction": [1.0, 0.0, 0.0], "initial.angular_velocity": [1.0, 2.0, 3.0]},
@@ -31,6 +32,7 @@ def test_another_scene_of_a_body_runs_as_on_a_body_of_its_own(ring, values):
         assert np.array_equal(found[path], own[path]), path
 
 
+# Closed form: F t²/(2m), and V t.
 def test_another_scene_with_a_law_and_of_a_rigid_body(rigid):
     law = flexframe.Force("center", lambda motion: [2.0, 0.0, 0.0])
     scene = rigid.scene.with_values({"time.end": 0.5, "initial": {"velocity": [0.0, 1.0, 0.0]}})

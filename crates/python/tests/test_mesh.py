@@ -35,6 +35,7 @@ def scene(**body):
     return {**RING, "body": body, "loads": loads, "initial": {}, "output": {"points": {"tip": [60.0, 5.0, 5.0]}}}
 
 
+# Closed form: Σ ρV, and pressure times area.
 def test_a_bar_of_arrays_has_its_mass_groups_and_surfaces(tmp_path):
     nodes, elements = bar()
     of_end = [[a, b, c] for element in elements for a, b, c in itertools.combinations(element, 3)

@@ -33,6 +33,7 @@ def same_as_file(results, path):
         assert file.attrs["complete"] == 1
 
 
+# Conserved: the numbers of the program's results file, bit for bit.
 @pytest.mark.parametrize("name", SCENES)
 def test_a_run_is_that_of_the_program_bit_for_bit(name, program, tmp_path):
     (tmp_path / "meshes").symlink_to(EXAMPLES.parent / "meshes")
@@ -59,6 +60,7 @@ def test_a_run_is_that_of_the_program_bit_for_bit(name, program, tmp_path):
         assert np.array_equal([row[path] for row in rows], results[path]), path
 
 
+# Conserved: the numbers of the run in memory, bit for bit.
 def test_a_file_is_written_as_by_the_program(program, tmp_path):
     scene = flexframe.Scene(RING, base=EXAMPLES, name="ring")
     results = flexframe.run(scene, tmp_path)
@@ -70,6 +72,7 @@ def test_a_file_is_written_as_by_the_program(program, tmp_path):
     assert results.scene == scene.text
 
 
+# Conserved: the numbers of the whole run, bit for bit.
 def test_a_run_in_parts_is_the_run(ring):
     whole = flexframe.Simulation(ring).run()
     simulation = flexframe.Simulation(ring)
@@ -84,6 +87,7 @@ def test_a_run_in_parts_is_the_run(ring):
     assert simulation.stats["steps"] == 500
 
 
+# Conserved: the same state after it was set.
 def test_a_simulation_stops_at_times_and_goes_on_from_states(ring):
     simulation = flexframe.Simulation(ring)
     assert simulation.advance_to(0.00333).kind == "stop"
@@ -150,6 +154,7 @@ def test_a_row_at_which_an_event_raised_comes_when_it_is_mended(rigid):
     assert simulation.run()["time"] == pytest.approx(np.linspace(0.5, 1.0, 6), rel=1e-12)
 
 
+# Closed form: X + V t.
 def test_a_run_from_a_set_state_begins_with_its_row(rigid):
     nothing = flexframe.Force("center", lambda motion: [0.0, 0.0, 0.0])
     simulation = flexframe.Simulation(rigid, [nothing])
@@ -172,6 +177,7 @@ def test_an_iteration_goes_on_though_the_state_is_set_at_every_row(rigid):
     assert times == pytest.approx(np.linspace(0.0, 1.0, 11), rel=1e-12)
 
 
+# Conserved: the numbers of the results and of the CSV file, bit for bit.
 def test_rows_become_a_dataset_and_a_table(ring, program, tmp_path):
     xarray, pandas = pytest.importorskip("xarray"), pytest.importorskip("pandas")
     results = flexframe.Simulation(ring).run()

@@ -69,6 +69,7 @@ def test_what_is_doubtful_is_a_warning_before_the_work():
         flexframe.Body(scene)
 
 
+# Closed form: ρV.
 @pytest.mark.skipif(shutil.which("gmsh") is None, reason="gmsh is not there")
 def test_geometry_that_runs_programs_is_refused_unless_it_is_trusted(tmp_path):
     evidence = tmp_path / "ran"

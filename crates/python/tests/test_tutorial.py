@@ -9,6 +9,7 @@ import pytest
 TUTORIAL = Path(__file__).parents[1] / "tutorial.py"
 
 
+# Closed form: the bounce of the tutorial.
 def test_tutorial(tmp_path, monkeypatch):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")

@@ -50,6 +50,7 @@ impl Numbers {
 mod tests {
     use super::{Engine, Numbers, STANDARD};
 
+    /// Closed form: half a step of 16 bits.
     #[test]
     fn quantised_numbers_come_back_within_half_a_step() {
         let values: Vec<f32> = (0..1000).map(|i| (f64::from(i) * 0.37).sin() as f32 * 3.7e-5).collect();

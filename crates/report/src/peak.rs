@@ -69,6 +69,7 @@ mod tests {
         (n as f64 * 12.9898).sin() * 43_758.545 % 1.0
     }
 
+    /// Independent reference: a plain loop in double precision.
     #[test]
     fn the_peak_is_that_of_all_rows_and_vertices() {
         let (vertices, rows) = (37, 53);
@@ -87,6 +88,7 @@ mod tests {
         assert_eq!(peak::<3>(&[], &[], length), 0.0);
     }
 
+    /// Closed form: von Mises stress of tension, shear and pressure.
     #[test]
     fn von_mises_of_tension_shear_and_pressure() {
         assert_eq!(von_mises(&[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 5.0);

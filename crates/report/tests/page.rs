@@ -77,6 +77,7 @@ fn singles(numbers: &Value) -> Vec<f32> {
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }
 
+/// Conserved: the numbers that were given, in single precision.
 #[test]
 fn the_numbers_of_a_short_run_come_back_to_single_precision() {
     let report = strip(20, 3, 50, 2);
@@ -90,6 +91,7 @@ fn the_numbers_of_a_short_run_come_back_to_single_precision() {
     assert_eq!(data["shapes"][2]["frequency"], 30.0);
 }
 
+/// Closed form: the wave at the last vertex.
 #[test]
 fn the_peaks_in_the_page_are_those_of_all_rows() {
     let report = strip(20, 1, 50, 1);

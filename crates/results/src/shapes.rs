@@ -167,6 +167,7 @@ mod tests {
         }
     }
 
+    /// Closed form: q² times the drawing in, by hand.
     #[test]
     fn a_body_that_bends_far_is_drawn_in() {
         let shapes = shapes();

@@ -16,6 +16,7 @@ fn write(path: &Path, rows: usize, metadata: &Metadata) -> Writer {
     writer
 }
 
+/// Conserved: the numbers that were written, bit for bit.
 #[test]
 fn what_is_written_is_read_bit_for_bit() {
     let (_folder, path) = folder();
@@ -530,7 +531,8 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     assert_eq!(descriptor("complete"), TypeDescriptor::Integer(IntSize::U8));
 }
 
-/// The writer puts the numbers into their places by itself; HDF5 must find them there.
+/// Independent reference: HDF5 reads the numbers. The writer puts them into their places by itself; HDF5 must find
+/// them there.
 #[test]
 fn hdf5_finds_the_numbers_that_were_written() {
     let (_folder, path) = folder();

@@ -60,6 +60,7 @@ with h5py.File(sys.argv[1], "r") as file:
         assert file["body/shapes"].shape == (coordinates, nodes, 3)
         assert file["body/stress/shapes"].shape == (coordinates, len(file["body/stress/nodes"]), 6)
         assert np.isfinite(file["body/shapes"]).all() and np.isfinite(file["body/stress/shapes"]).all()
+    # Conserved: the balance of energy, and unit quaternions.
     energy = {name: file[f"energy/{name}"][:] for name in ("kinetic", "strain", "work", "dissipation", "balance")}
     balance = energy["kinetic"] + energy["strain"] - energy["work"] + energy["dissipation"]
     assert np.allclose(energy["balance"], balance, rtol=1e-12, atol=1e-12 * np.abs(balance).max())

@@ -48,6 +48,7 @@ fn solve(eigenvalues: &[f64], modes: usize) -> (Vec<f64>, Value) {
     (found, answer)
 }
 
+/// Closed form: the entries of a diagonal matrix.
 #[test]
 fn eigenvalues_that_a_search_misses_are_seen_by_the_count_and_found_by_the_next() {
     // A Krylov space has one vector of an eigenvalue that is there five times; rounding brings in the others too late.
@@ -61,6 +62,7 @@ fn eigenvalues_that_a_search_misses_are_seen_by_the_count_and_found_by_the_next(
     }
 }
 
+/// Closed form: the entries of a diagonal matrix.
 #[test]
 fn the_count_is_taken_beside_a_cluster_and_not_in_it() {
     // Twelve together where eight are searched at first: there is no gap among them.

@@ -101,6 +101,7 @@ fn rounded(point: &Seen) -> BackendCoord {
 mod tests {
     use super::*;
 
+    /// Closed form: a triangle with sides of 3, 4 and 5.
     #[test]
     fn a_grown_triangle_has_its_sides_moved_outwards_whichever_way_it_turns() {
         let corners = [(0.0, 0.0), (30.0, 0.0), (0.0, 40.0)].map(|(x, y)| Seen::new(x, y, 1.0));

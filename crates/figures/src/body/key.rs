@@ -102,6 +102,7 @@ fn draw_axes<DB: DrawingBackend>(area: &Area<DB>, view: &View, unit: Unit) -> Re
 mod tests {
     use super::*;
 
+    /// Closed form: zero, or the smallest value if it is negative.
     #[test]
     fn colours_begin_at_zero_whatever_the_smallest_value() {
         let range = |values: &[f64]| colour_axis(values.iter().copied()).values();

@@ -62,6 +62,7 @@ mod tests {
         triangle.map(|i| block.points[i as usize].into())
     }
 
+    /// Closed form: area and volume of the block.
     #[test]
     fn the_surface_of_a_block_is_closed_and_encloses_its_volume() {
         let block = Block::new([10.0, 4.0, 3.0], [5, 2, 3]);
@@ -82,6 +83,7 @@ mod tests {
         assert!((volume - 120.0).abs() < 1e-10, "{volume}");
     }
 
+    /// Closed form: twelve edges.
     #[test]
     fn the_sharp_edges_of_a_block_are_its_twelve() {
         let block = Block::new([10.0, 4.0, 3.0], [5, 2, 3]);

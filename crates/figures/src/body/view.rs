@@ -60,6 +60,7 @@ impl Window {
 mod tests {
     use super::*;
 
+    /// Conserved: the projection keeps lengths and handedness.
     #[test]
     fn the_projection_is_a_rotation() {
         let view = View { azimuth: 37.0, elevation: -22.0 };
@@ -67,6 +68,7 @@ mod tests {
         assert!((x.cross(&y) - z).norm() < 1e-15 && (x.norm() - 1.0).abs() < 1e-15);
     }
 
+    /// Closed form: views along the axes.
     #[test]
     fn from_the_front_x_is_right_and_z_is_up() {
         let view = View { azimuth: -90.0, elevation: 0.0 };

@@ -252,6 +252,7 @@ mod tests {
         assert_eq!((axis.note.as_str(), labels(&axis)[0].as_str()), ("− 250", "−0.0020"));
     }
 
+    /// Closed form: half of the value on each side.
     #[test]
     fn what_does_not_vary_stands_in_the_middle() {
         assert_eq!(linear_range(0.0, 0.0, 0.05), (-1.0, 1.0));

@@ -85,6 +85,7 @@ mod tests {
         if (start..start + width).contains(&x) { (PI * (x - start) / width).sin() } else { 0.0 }
     }
 
+    /// Closed form: the length of the pulse.
     #[test]
     fn a_short_pulse_is_enlarged_where_there_is_room() {
         let inset = Inset::of(&[series(|x| pulse(x, 0.0, 0.04))], (0.0, 1.0), (-0.05, 1.05)).unwrap();

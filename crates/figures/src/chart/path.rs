@@ -60,6 +60,7 @@ pub(crate) fn thinned(line: Vec<Point>, column: f64) -> Vec<Point> {
 mod tests {
     use super::*;
 
+    /// Closed form: the places where the lines cross.
     #[test]
     fn a_line_is_cut_where_it_leaves_the_axes() {
         let line = [(0.0, 0.0), (1.0, 2.0), (2.0, 0.0), (3.0, 0.5), (4.0, 3.0)];

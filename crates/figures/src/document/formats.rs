@@ -183,6 +183,7 @@ mod tests {
         }
     }
 
+    /// Conserved: the mean.
     #[test]
     fn averaging_keeps_the_mean() {
         let rgb: Vec<u8> = (0..4 * 4).flat_map(|i| [i * 2, 7, 255]).collect();
@@ -192,6 +193,7 @@ mod tests {
         assert_eq!(means.len(), 3 * 4);
     }
 
+    /// Independent reference: the base lines that plotters writes into an SVG.
     #[test]
     fn text_stands_in_a_bitmap_where_it_stands_in_an_svg() {
         // Distances of the base line from the anchor, in ems, as plotters writes them into an SVG.

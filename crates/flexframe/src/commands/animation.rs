@@ -297,6 +297,7 @@ fn aliased(interval: f64, intervals: u64, fastest: f64, time_unit: &str) -> Opti
 mod tests {
     use super::*;
 
+    /// Closed form: turns between two frames.
     #[test]
     fn a_spin_that_the_frames_do_not_show_is_told_with_the_frames_that_do() {
         // 0.4 turns a frame is seen; 0.6 looks like 0.4 backwards.

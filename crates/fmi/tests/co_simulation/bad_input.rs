@@ -121,7 +121,8 @@ fn steps_go_forward_from_where_the_fmu_is() {
     assert!((instance.time() - 0.3).abs() < 1e-15);
 }
 
-/// A force that no step can follow: the step fails in the words of the program, and what was before is still there.
+/// Conserved: the same run without the step that fails: a force that no step can follow; the step fails in the words
+/// of the program, and what was before is still there.
 #[test]
 fn after_a_step_that_fails_the_fmu_can_go_on() {
     let rigid_spin = rigid();

@@ -51,6 +51,7 @@ fn rows(fmu: &Fmu, instance: &mut Instance, from: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
+/// Conserved: the same numbers in the fork.
 #[test]
 fn a_forked_host_goes_on_with_its_instance_and_makes_others() {
     let fmu = Fmu::of(&scene(FREE));

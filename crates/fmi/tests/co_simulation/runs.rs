@@ -59,6 +59,7 @@ fn compare(fmu: &Fmu, rows: &[Vec<f64>], expected: &[Vec<f64>], inputs_jump: boo
     }
 }
 
+/// Conserved: the same numbers as a run of the library without an FMU.
 #[test]
 fn a_run_is_that_of_the_program() {
     let of_table = "{ amplitude = 1.0, history = { kind = \"half-sine\", duration = 0.4 } }";
@@ -70,7 +71,8 @@ fn a_run_is_that_of_the_program() {
     }
 }
 
-/// A damper outside: at each communication point it takes the velocity of the tip, and holds its force until the next.
+/// Conserved: the same numbers as a run of the library with the damper inside. Outside, it takes the velocity of the
+/// tip at each communication point, and holds its force until the next.
 #[test]
 fn a_controller_outside_is_the_same_controller_inside() {
     const GAIN: f64 = 15.0;
@@ -116,7 +118,8 @@ fn a_controller_outside_is_the_same_controller_inside() {
     assert!((last - alone.last().unwrap()[at]).abs() > 1e-2);
 }
 
-/// Forces, moments and factors from outside are those of loads that the scene has.
+/// Conserved: the same numbers as a run of the library. Forces, moments and factors from outside are those of loads
+/// that the scene has.
 #[test]
 fn inputs_are_the_loads_of_a_scene() {
     let load = |kind: &str, direction: &str, amplitude: f64, history: &str| {
@@ -156,7 +159,8 @@ fn inputs_are_the_loads_of_a_scene() {
     compare(&fmu, &rows, &own_run(&expected), true);
 }
 
-/// A drive whose acceleration is held is one whose speed is a table.
+/// Conserved: the same numbers as a run of the library. A drive whose acceleration is held is one whose speed is a
+/// table.
 #[test]
 fn a_drive_is_steered_by_its_acceleration() {
     let accelerations = [4.0, -2.0, 0.0, 9.0, 1.0, -7.0, 0.0, 0.0, 3.0, 2.0];
@@ -175,7 +179,8 @@ fn a_drive_is_steered_by_its_acceleration() {
     compare(&fmu, &rows, &own_run(&scene(&driven(&table))), true);
 }
 
-/// Between communication points the scheme keeps its order, whatever steps they are apart, fixed or under control.
+/// Conserved: order 4. Between communication points the scheme keeps it, whatever steps they are apart, fixed or
+/// under control.
 #[test]
 fn held_inputs_cost_no_order() {
     let end = |step: &str| -> Vec<f64> {
@@ -199,6 +204,7 @@ fn held_inputs_cost_no_order() {
     assert!(controlled < 1e-6, "{controlled}");
 }
 
+/// Conserved: the same numbers alone and beside another.
 #[test]
 fn two_instances_know_nothing_of_each_other() {
     let fmu = Fmu::of(&scene(FREE));

@@ -23,6 +23,7 @@ fn onward(fmu: &Fmu, instance: &mut Instance, from: f64) -> Vec<Vec<f64>> {
         .collect()
 }
 
+/// Conserved: the same bits after a state.
 #[test]
 fn after_a_state_all_goes_on_as_before_bit_for_bit() {
     let driven = driven("{ amplitude = 0.5, history = \"constant\" }");

@@ -9,6 +9,7 @@ use scene::{
 
 const EXAMPLE: &str = include_str!("../../src/example.toml");
 
+/// Closed form: the direction (1, 0, 1)/√2.
 #[test]
 fn the_whole_example() {
     let scene = Scene::parse(EXAMPLE, "examples/plate.toml").unwrap();
@@ -136,6 +137,7 @@ fn numbers_in_every_writing() {
     }
 }
 
+/// Closed form: the direction (0, −3, 4)/5.
 #[test]
 fn every_optional_key() {
     let text = least(

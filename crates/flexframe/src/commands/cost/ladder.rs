@@ -446,6 +446,7 @@ mod tests {
         assert_eq!(marks, [true, false, false, true, false]);
     }
 
+    /// Closed form: errors of order 4.
     #[test]
     fn the_order_is_the_slope_of_the_errors_between_coarse_and_reference() {
         let fourth = |step: f64| row(step, 3.0 * step.powi(4), 1.0);

@@ -81,6 +81,7 @@ mod tests {
         Units { length: length.into(), mass: mass.into(), time: time.into() }
     }
 
+    /// Closed form: powers of ten of SI.
     #[test]
     fn units_are_powers_of_si_with_a_factor() {
         let mm = units("mm", "Mg", "s");

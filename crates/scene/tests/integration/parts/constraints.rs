@@ -31,6 +31,7 @@ fn a_pin() {
     refused("kind = \"pin\"\nat = [1, 2, 3]\ngroup = \"a\"", "group", ".group", &["unknown key `group`", "`radius`"]);
 }
 
+/// Closed form: the direction (0, 3, 4)/5.
 #[test]
 fn a_hinge() {
     let at = [1.0, 2.0, 3.0];

@@ -113,6 +113,7 @@ fn one_way_of_damping() {
     );
 }
 
+/// Closed form: straight lines of the table, and √(αβ) of Rayleigh's damping.
 #[test]
 fn the_ratio_of_a_mode() {
     let list = Damping::List(vec![0.1, 0.2]);

@@ -22,6 +22,7 @@ fn rigid(keys: &str) -> RigidBody {
     }
 }
 
+/// Closed form: Steiner's theorem.
 #[test]
 fn inertia_is_moved_to_the_centre_of_mass() {
     // 20 (0, 0, 1): 21 - 20 = 1 across, 2 along.
