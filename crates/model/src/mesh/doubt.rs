@@ -125,6 +125,7 @@ impl Bar {
 mod tests {
     use super::*;
 
+    /// Closed form: FL²/(3EI) over the length, and F/(EA).
     #[test]
     fn a_bar_bends_as_in_closed_form() {
         let (length, width, height, young) = (200.0, 10.0, 4.0, 2e5);

@@ -70,6 +70,7 @@ impl SpinStress {
 mod tests {
     use super::*;
 
+    /// Conserved: the same verdict in turned axes.
     #[test]
     fn strong_coupling_is_the_same_in_any_axes() {
         // Just strong; each entry of the turned tensor would be too small by itself.

@@ -26,6 +26,7 @@ fn largest(path: impl Iterator<Item = Vector3<f64>>) -> f64 {
     path.map(|u| u.norm()).fold(0.0, f64::max)
 }
 
+/// Independent reference: the motion with 40 modes.
 #[test]
 fn a_short_pulse_keeps_more_modes_than_a_slow_one_and_both_are_right() {
     let mut kept = Vec::new();

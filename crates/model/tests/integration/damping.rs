@@ -12,6 +12,7 @@ fn model(damping: &str) -> Model {
     build(&bar(&format!("flexible = 5\n{damping}"), &format!("{KEPT}{CLAMPED}"), TIME))
 }
 
+/// Closed form: the formulas of each kind of damping.
 #[test]
 fn ratios_are_those_of_the_formulas() {
     assert_eq!(model("").damping_ratios(), [0.0; 5]);
@@ -43,7 +44,7 @@ fn effects_switch_it_off() {
     assert_eq!(build(&off).damping_ratios(), [0.0; 3]);
 }
 
-/// e^(−ζωt) cos(ω√(1−ζ²) t) of a mode that is let go.
+/// Closed form: e^(−ζωt) cos(ω√(1−ζ²) t) of a mode that is let go.
 #[test]
 fn a_mode_decays_as_its_ratio_says() {
     let zeta: f64 = 0.05;

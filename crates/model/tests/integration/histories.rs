@@ -30,6 +30,7 @@ fn follows(history: &str, formula: impl Fn(f64) -> f64) {
     assert!(largest > 0.5, "{history}: never more than {largest}");
 }
 
+/// Closed form: the formula of each kind of history.
 #[test]
 fn every_kind_is_its_formula() {
     let inside = |t: f64, from: f64, to: f64| f64::from(t > from && t < to);
@@ -62,6 +63,7 @@ fn every_kind_is_its_formula() {
     );
 }
 
+/// Closed form: straight lines between the rows.
 #[test]
 fn a_csv_file_is_a_table() {
     let folder = tempfile::tempdir().unwrap();
@@ -132,7 +134,7 @@ fn a_formula_that_is_none_or_has_no_value_is_refused_at_its_place() {
     }
 }
 
-/// A driven hinge turns with the speed that its history says, and has its rate.
+/// Closed form: ω = 3 sin 2πft of a driven hinge, which turns with the speed that its history says, and has its rate.
 #[test]
 fn a_motion_has_a_history_too() {
     let scene = parse(

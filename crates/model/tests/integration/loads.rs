@@ -25,6 +25,7 @@ fn pushes(rest: &str, force: [f64; 3], moment: [f64; 3]) {
     near(point(&model, &start, "tip").rigid_acceleration, tip, 1e-10);
 }
 
+/// Closed form: F/m and J⁻¹M of a rigid bar.
 #[test]
 fn a_force_on_a_node_and_one_between_nodes() {
     for (at, arm) in [("[200.0, 0.0, 0.0]", 100.0), ("[187.3, 0.0, 0.0]", 87.3)] {
@@ -46,6 +47,7 @@ fn a_force_on_a_node_and_one_between_nodes() {
     );
 }
 
+/// Closed form: F/m and J⁻¹M of a rigid bar.
 #[test]
 fn a_moment_with_and_without_a_radius() {
     for radius in ["", "radius = 8.0"] {
@@ -62,6 +64,7 @@ fn a_moment_with_and_without_a_radius() {
     }
 }
 
+/// Closed form: F/m and J⁻¹M of a rigid bar.
 #[test]
 fn a_pressure_and_a_traction() {
     let tip = BREADTH * BREADTH;
@@ -86,6 +89,7 @@ fn a_pressure_and_a_traction() {
     );
 }
 
+/// Closed form: F/m and J⁻¹M of a rigid bar.
 #[test]
 fn several_loads_add_up() {
     pushes(
@@ -97,6 +101,7 @@ fn several_loads_add_up() {
     );
 }
 
+/// Closed form: g, and no deformation.
 #[test]
 fn gravity_on_a_free_body_moves_it_as_a_whole_and_deforms_nothing() {
     let gravity = "[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 1.0, 0.0]\namplitude = 9810.0";
@@ -107,6 +112,7 @@ fn gravity_on_a_free_body_moves_it_as_a_whole_and_deforms_nothing() {
     assert!(largest < 1e-9 * 9810.0 * MASS.sqrt(), "{largest}");
 }
 
+/// Closed form: −500 · 0.8 along the slider.
 #[test]
 fn base_acceleration_pulls_a_held_body_the_other_way() {
     let slider = "[[constraints]]\nkind = \"slider\"\ndirection = [0.0, 0.6, 0.8]\ngroup = \"root\"\n";
@@ -117,6 +123,7 @@ fn base_acceleration_pulls_a_held_body_the_other_way() {
     near(point(&model, &start, "root").rigid_acceleration, Vector3::new(0.0, 0.6, 0.8) * -400.0, 1e-10);
 }
 
+/// Closed form: F/m and J⁻¹M.
 #[test]
 fn loads_on_a_body_without_a_mesh() {
     let inertia = Matrix3::new(5.0, 0.5, 0.2, 0.5, 6.0, -0.3, 0.2, -0.3, 4.0).try_inverse().unwrap();
@@ -139,7 +146,8 @@ fn loads_on_a_body_without_a_mesh() {
     push("[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.0, -1.0]\namplitude = 9.81", [0.0, 0.0, -19.62], [0.0; 3]);
 }
 
-/// A force at the centre of a body that turns about z: one turns with it, the other does not.
+/// Closed form: F/m along the turned force: a force at the centre of a body that turns about z: one turns with it,
+/// the other does not.
 #[test]
 fn a_follower_turns_with_the_body_and_a_dead_load_does_not() {
     let (spin, end, force): (f64, f64, f64) = (3.0, 0.4, 7.0);

@@ -64,7 +64,7 @@ fn the_stress_of_steady_loads_counts_where_it_matters() {
     assert!(!built("geometric_stiffening = false", pull).is_stressed());
 }
 
-/// Euler's load of a column that is clamped at one end, π² E I/4 L², presses on its tip.
+/// Closed form: Euler's load of a column that is clamped at one end, π² E I/4 L², presses on its tip.
 #[test]
 fn a_load_that_buckles_the_body_is_refused_with_however_few_modes() {
     let euler = (std::f64::consts::PI / LENGTH).powi(2) * YOUNG * BENDING / 4.0;

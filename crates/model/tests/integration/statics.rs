@@ -33,6 +33,7 @@ fn rests(load: &str, expected: Vector3<f64>, relative: f64) {
     assert!(off < relative, "{found:?} is {off:e} off {expected:?}");
 }
 
+/// Closed form: PL³/(3EI) + PL/(κGA), and ML²/(2EI).
 #[test]
 fn a_force_a_moment_and_a_traction_at_the_tip() {
     let bent = sheared(LENGTH.powi(3) / (3.0 * YOUNG * BENDING), LENGTH);
@@ -62,6 +63,7 @@ fn a_force_a_moment_and_a_traction_at_the_tip() {
     }
 }
 
+/// Closed form: wL⁴/(8EI) + wL²/(2κGA).
 #[test]
 fn a_load_all_along_the_bar() {
     // Measured: 8.2e-3 (pressure), 8.4e-3 (gravity and base).
@@ -77,6 +79,7 @@ fn a_load_all_along_the_bar() {
     );
 }
 
+/// Closed form: FL/(EA).
 #[test]
 fn a_pull_along_the_bar() {
     // F L/(E A), but for the root that cannot narrow. Measured: 3.0e-3.
@@ -96,6 +99,7 @@ fn answer_to_unit_force(axis: usize) -> Vector3<f64> {
     Vector3::from_fn(|axis, _| answer[(3 * tip as usize + axis, 0)])
 }
 
+/// Independent reference: K⁻¹f of the whole mesh.
 #[test]
 fn static_shapes_give_what_the_modes_miss() {
     for (axis, direction) in ["[1.0, 0.0, 0.0]", "[0.0, 1.0, 0.0]", "[0.0, 0.0, 1.0]"].into_iter().enumerate() {

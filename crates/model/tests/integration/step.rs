@@ -77,7 +77,8 @@ fn check(scene: &mut Scene, steps: &[f64], reference: f64, above: f64) -> Vec<f6
     steps.iter().map(check).collect()
 }
 
-/// The modes follow their own motion exactly at any step; their coupling by the spin they do not.
+/// Independent reference: a run in short steps. The modes follow their own motion exactly at any step; their coupling
+/// by the spin they do not.
 #[test]
 fn of_an_undamped_plate_that_tumbles() {
     let mut scene = example("tumbling_plate");
@@ -88,7 +89,8 @@ fn of_an_undamped_plate_that_tumbles() {
     assert!(found[0] > 1e-2 && found[1] < 1e-2, "{found:?}");
 }
 
-/// A mode that turns by many radians in a step is as wrong in half of it.
+/// Independent reference: a run in short steps. A mode that turns by many radians in a step is as wrong in half of
+/// it.
 #[test]
 fn of_modes_far_faster_than_the_steps() {
     let found = check(&mut example("accuracy/spin"), &[5e-3, 2.5e-3, 5e-4], 2.5e-5, 3.0);
@@ -99,6 +101,7 @@ fn of_modes_far_faster_than_the_steps() {
     assert!(found[0] > 1e-2 && found[2] < 1e-2, "{found:?}");
 }
 
+/// Independent reference: a run in short steps.
 #[test]
 fn of_a_ring_that_spins_and_is_struck_and_of_a_rigid_pendulum() {
     let mut ring = example("ring");
@@ -108,7 +111,7 @@ fn of_a_ring_that_spins_and_is_struck_and_of_a_rigid_pendulum() {
     check(&mut example("pendulum"), &[1e-1, 2e-2, 5e-3], 1e-4, 3.0);
 }
 
-/// Long runs: only the beginning is compared.
+/// Independent reference: a run in short steps. Long runs: only the beginning is compared.
 #[test]
 fn of_a_run_too_long_to_be_made_three_times() {
     let mut scene = example("accuracy/spin");

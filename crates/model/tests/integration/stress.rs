@@ -55,6 +55,7 @@ fn beck(p: f64) -> f64 {
     low
 }
 
+/// Closed form: Beck's column (Bolotin 1963).
 #[test]
 fn a_follower_pressure_on_the_tip_makes_becks_column() {
     let free = frequencies(CLAMPED)[0];
@@ -68,6 +69,7 @@ fn a_follower_pressure_on_the_tip_makes_becks_column() {
     }
 }
 
+/// Closed form: Beck's load, 20.05 EI/L².
 #[test]
 fn becks_column_flutters_and_is_refused() {
     let refusal = |part: f64| {
@@ -103,6 +105,7 @@ fn end(rest: &str, more: &str) -> Vec<f64> {
     observations(&scene, &model).pop().unwrap().modal_displacement
 }
 
+/// Conserved: the same motion by each history that is one.
 #[test]
 fn a_load_stiffens_whatever_its_history_is_called() {
     let pull = |history: &str| {
@@ -129,6 +132,7 @@ fn a_load_stiffens_whatever_its_history_is_called() {
     }
 }
 
+/// Conserved: the same motion in the frame of the slide.
 #[test]
 fn a_slider_that_speeds_up_stiffens_as_a_base_that_is_shaken() {
     let acceleration = 4e7;
@@ -147,7 +151,8 @@ fn a_slider_that_speeds_up_stiffens_as_a_base_that_is_shaken() {
     }
 }
 
-/// A bar that hangs under a heavy weight: a string with bending stiffness, by Ritz on polynomials.
+/// Independent reference: Ritz on polynomials for a bar that hangs under a heavy weight: a string with bending
+/// stiffness.
 #[test]
 fn a_hanging_bar_has_the_frequencies_of_a_heavy_beam() {
     let area = BREADTH * BREADTH;
@@ -182,7 +187,8 @@ fn a_hanging_bar_has_the_frequencies_of_a_heavy_beam() {
     }
 }
 
-/// The base shakes along the bar at twice its first frequency: q̈ + ω² (1 + ε cos 2ωt) q = 0 grows as exp(εωt/4).
+/// Closed form: the base shakes along the bar at twice its first frequency: q̈ + ω² (1 + ε cos 2ωt) q = 0 grows as
+/// exp(εωt/4).
 #[test]
 fn shaking_along_the_bar_at_twice_its_frequency_makes_it_swing() {
     let (scene, model) = stressed(&format!(
@@ -214,6 +220,7 @@ fn shaking_along_the_bar_at_twice_its_frequency_makes_it_swing() {
     assert!((growth / expected - 1.0).abs() < 0.02, "{growth} instead of {expected}");
 }
 
+/// Conserved: the frequencies without pressure.
 #[test]
 fn a_pressure_all_round_moves_no_frequency_to_speak_of() {
     // Of the size of a thousandth of Young's modulus.
@@ -227,6 +234,7 @@ fn a_pressure_all_round_moves_no_frequency_to_speak_of() {
     }
 }
 
+/// Conserved: linear and angular momentum.
 #[test]
 fn a_pressure_all_round_gives_neither_a_force_nor_a_moment() {
     // Bent by a few thousandths of the length, and with large modes by some hundredths.

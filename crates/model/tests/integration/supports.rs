@@ -105,8 +105,9 @@ fn halved(coarse: f64, fine: f64) -> bool {
     (coarse / fine - 2.0).abs() < 0.1
 }
 
-/// The paper's scheme has its rigid modes "determined by constraints": to first order it goes where its fourth-order
-/// limit does, and that is the conservative answer but for what the paper leaves out of deformed bodies that turn.
+/// Conserved: order 1. The paper's scheme has its rigid modes "determined by constraints": to first order it goes
+/// where its fourth-order limit does, and that is the conservative answer but for what the paper leaves out of
+/// deformed bodies that turn.
 #[test]
 fn the_scheme_of_the_paper_converges_on_held_bodies() {
     for constraint in [PINS[0], PINS[1], HINGES[0], HINGES[4], CLAMPS[2], SLIDERS[2]] {
@@ -171,6 +172,7 @@ fn supported(parts: &[(&str, &str)], rest: &str) -> Scene {
     bar("flexible = 4\nstatic_correction = false", &format!("{rest}\n{}", supports(parts)), TIME)
 }
 
+/// Conserved: the same frequencies by the constraint of that name.
 #[test]
 fn supports_leave_what_the_geometry_says() {
     // As the constraint with that name leaves it, modes and all.
@@ -202,6 +204,7 @@ fn supports_leave_what_the_geometry_says() {
     assert_eq!(of(&[(ROOT, "[\"x\"]"), (EDGE, "[\"y\", \"z\"]")]), "no rigid motion");
 }
 
+/// Conserved: the same motion on a hinge.
 #[test]
 fn a_body_on_supports_moves_as_one_on_a_hinge() {
     // Gravity across a hinge of the root's lower edge.
@@ -237,8 +240,9 @@ fn supports_that_prevent_the_initial_motion_are_refused() {
     assert!(message.contains("constraints[1].group"), "{message}");
 }
 
-/// A pressure turns with its surface, and its resultant with it. Each support has its share of that, with stiffening by
-/// stress and without: before, 4 % of the force were missing here.
+/// Conserved: the forces of supports sum to the reaction. A pressure turns with its surface, and its resultant with
+/// it. Each support has its share of that, with stiffening by stress and without: before, 4 % of the force were
+/// missing here.
 #[test]
 fn the_forces_of_supports_sum_to_the_reaction_under_a_pressure_on_a_bent_surface() {
     let tip = "box = [[200.0, -5.0, -5.0], [200.0, 5.0, 5.0]]";

@@ -55,16 +55,19 @@ fn check(scene: &Scene, tolerances: &[f64], reference: f64, points: f64) {
     }
 }
 
+/// Conserved: the same motion in steps of 1e-5 s.
 #[test]
 fn a_small_vibration_of_a_fast_spin_is_right_too() {
     check(&example("accuracy/spin"), &[1e-3, 1e-5, 1e-7], 1e-5, 3.0);
 }
 
+/// Conserved: the same motion in steps of 1e-5 s.
 #[test]
 fn of_a_plate_that_tumbles() {
     check(&example("accuracy/tumbling"), &[1e-3, 1e-5], 1e-5, 3.0);
 }
 
+/// Conserved: the same motion in steps of 1e-5 s.
 #[test]
 fn high_modes_that_a_load_strikes_are_right_in_a_pendulum() {
     let mut scene = example("bar/pendulum");

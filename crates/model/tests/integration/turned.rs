@@ -52,6 +52,7 @@ fn off(motion: &Motion, angle: f64, modes: &str) -> f64 {
     (deformed.dot(&direction) / exact - 1.0).abs()
 }
 
+/// Independent reference: K⁻¹f of the whole mesh.
 #[test]
 fn the_answer_to_a_dead_force_is_right_whichever_way_the_body_has_turned() {
     let held = Support::new(RigidMotion::clamp(Vector3::zeros()), vec![0]);

@@ -6,6 +6,7 @@ use scene::{Choice, Effect, Flexible};
 
 use crate::{CLAMPED, bar, build, observations};
 
+/// Conserved: the same frequencies and energies alone.
 #[test]
 fn models_of_one_assembly_are_those_built_alone_and_its_mesh_is_read_once() {
     let mut scene = bar("flexible = 8\nlarge = 2", CLAMPED, "end = 1e-4\nstep = 1e-5");

@@ -39,6 +39,7 @@ fn reduced(modes: &str, rest: &str, matrices: bool) -> (tempfile::TempDir, Scene
 const MODES: &str = "flexible = 6\nstatic_correction = true";
 const SPIN: &str = "[initial]\nangular_velocity = [3.0, 5.0, 400.0]\n";
 
+/// Conserved: the same bits from the mesh.
 #[test]
 fn a_body_file_stands_for_the_mesh_to_the_last_bit() {
     for rest in [format!("{SPIN}{FORCE}"), format!("{CLAMPED}{FORCE}[effects]\nrefuse = false\n")] {
@@ -81,6 +82,7 @@ const STRESS: &str =
     "[effects]\nlarge_deflection = true\nrefuse = false\n[output]\nstress = true\npeak_stress = true\n";
 const LARGE: &str = "flexible = 6\nstatic_correction = true\nlarge = [1, 2]";
 
+/// Conserved: the same bits from the mesh.
 #[test]
 fn the_stress_from_a_body_file_is_the_same_to_the_last_bit_and_not_recovered_again() {
     for modes in [MODES, LARGE] {
@@ -111,6 +113,7 @@ fn the_stress_from_a_body_file_is_the_same_to_the_last_bit_and_not_recovered_aga
     }
 }
 
+/// Independent reference: sums over what is read of the file.
 #[test]
 fn what_is_bent_far_and_its_stress_follow_from_what_others_read() {
     let (_folder, direct, path) = reduced(LARGE, &format!("{CLAMPED}{FORCE}{STRESS}"), false);

@@ -61,6 +61,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
+/// Conserved: the same bits without the cache.
 #[test]
 fn a_body_from_the_cache_is_the_same_to_the_last_bit_and_solves_nothing() {
     let driven = "[[constraints]]\nkind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [0.0, 0.0, 1.0]\ngroup = \"root\"\n\
@@ -91,8 +92,8 @@ fn a_body_from_the_cache_is_the_same_to_the_last_bit_and_solves_nothing() {
     }
 }
 
-/// Written down: the modes of this body are under this name in the caches of users, whatever the program calls its fields.
-/// With another version of the key, write down another name.
+/// Regression only: the modes of this body are under this name in the caches of users, whatever the program calls its
+/// fields. With another version of the key, write down another name.
 #[test]
 fn the_name_of_the_modes_stays() {
     const NAME: &str = "d7472c103cf264b5499bacbb0397a3f5cbc5b89a63accf671c455af9087007c1/\
@@ -103,7 +104,8 @@ fn the_name_of_the_modes_stays() {
     assert!(names.iter().any(|name| name.ends_with(NAME)), "{names:?}");
 }
 
-/// Speeds and sizes of loads share one solution; another load, material, support or number of modes is asked for anew.
+/// Conserved: the same bits without the cache. Speeds and sizes of loads share one solution; another load, material,
+/// support or number of modes is asked for anew.
 #[test]
 fn only_what_is_the_same_is_read() {
     let folder = tempfile::tempdir().unwrap();
@@ -139,7 +141,8 @@ fn only_what_is_the_same_is_read() {
     assert_eq!(assembled(&heavier), 1);
 }
 
-/// The load says which parts of an answer are known from before, and in which company the others are computed: their last bits.
+/// Conserved: the same bits without the cache. The load says which parts of an answer are known from before, and in
+/// which company the others are computed: their last bits.
 #[test]
 fn answers_of_another_size_of_a_load_are_the_same_to_the_last_bit() {
     let pin = "[[constraints]]\nkind = \"pin\"\nat = [0.0, 0.0, 0.0]\nradius = 6.0\n";

@@ -11,6 +11,7 @@ fn on<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
 }
 
+/// Conserved: the same bits on any number of threads.
 #[test]
 fn the_number_of_threads_changes_nothing() {
     let spin = "[initial]\nangular_velocity = [3.0, 5.0, 400.0]\n";

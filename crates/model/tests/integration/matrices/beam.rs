@@ -69,7 +69,8 @@ fn beam_with(elements: usize, mass: f64, offset: Vector3<f64>) -> Files {
     files
 }
 
-/// A couple on the last node bends a cantilever into a circle: w = M L²/(2 E I), and turns its end by M L/(E I).
+/// Closed form: a couple on the last node bends a cantilever into a circle: w = M L²/(2 E I), and turns its end by M
+/// L/(E I).
 #[test]
 fn a_moment_at_a_node_with_rotations() {
     let files = beam(8);
@@ -91,7 +92,7 @@ fn a_moment_at_a_node_with_rotations() {
     }
 }
 
-/// A body in free fall does not begin to turn, wherever its masses are on their nodes.
+/// Conserved: a body in free fall does not begin to turn, wherever its masses are on their nodes.
 #[test]
 fn gravity_acts_at_the_centre_of_mass_of_a_mass_beside_its_node() {
     let files = beam_with(8, 2e-3, Vector3::new(10.0, 120.0, -60.0));
@@ -106,7 +107,8 @@ fn gravity_acts_at_the_centre_of_mass_of_a_mass_beside_its_node() {
     close(last.velocity_global.norm(), 9810.0 * 0.5, 1e-9);
 }
 
-/// The part of a consistent mass that the large rotation leaves out goes with the square of the length of the elements.
+/// Conserved: order 2: the part of a consistent mass that the large rotation leaves out goes with the square of the
+/// length of the elements.
 #[test]
 fn what_is_left_out_of_the_mass_is_told() {
     let left_out = |elements: usize| {

@@ -114,6 +114,7 @@ fn assert_same_frequencies(files: &Files, expected: &[f64]) -> Model {
     model
 }
 
+/// Independent reference: CalculiX' own frequencies.
 #[test]
 fn hexahedra_have_calculix_own_frequencies() {
     let (files, expected) = calculix(&grid([20, 2, 1], false, plate).text("C3D20", SOLID));
@@ -151,6 +152,7 @@ fn tetrahedra(folder: &Path) -> (Model3, String) {
     (model, of_mesh(&path))
 }
 
+/// Independent reference: CalculiX' own frequencies.
 #[test]
 fn tetrahedra_have_calculix_own_frequencies_and_ours() {
     let folder = tempfile::tempdir().unwrap();
@@ -164,7 +166,8 @@ fn tetrahedra_have_calculix_own_frequencies_and_ours() {
     }
 }
 
-/// CalculiX computes shells with solid elements, and does not say where their nodes are.
+/// Independent reference: CalculiX' own frequencies. It computes shells with solid elements, and does not say where
+/// their nodes are.
 #[test]
 fn shells_have_calculix_own_frequencies() {
     let shell = "*SHELL SECTION, ELSET=EALL, MATERIAL=M\n10.\n";
@@ -187,7 +190,8 @@ fn shells_have_calculix_own_frequencies() {
     assert!(model.meshed.as_ref().unwrap().mesh_notes[0].contains("165 nodes of shells"));
 }
 
-/// A quarter of a tube: its nodes lie half the thickness inside and outside of the shell.
+/// Independent reference: CalculiX' own frequencies of a quarter of a tube: its nodes lie half the thickness inside
+/// and outside of the shell.
 #[test]
 fn curved_shells_find_their_nodes() {
     let shell = "*SHELL SECTION, ELSET=EALL, MATERIAL=M\n4.\n";
@@ -217,9 +221,9 @@ fn tumbling(files: &Files, body: &str) -> Scene {
     )
 }
 
-/// Only the discretization differs: the frequencies of the two meshes agree to 4e-3 (the first to 1e-4), the elastic
-/// displacement
-/// of an end in 0.1 s to 3e-3 of its largest, and the attitude after a turn of a radian to 1e-6 rad.
+/// Independent reference: the matrices of CalculiX' hexahedra. Only the discretization differs: the frequencies of
+/// the two meshes agree to 4e-3 (the first to 1e-4), the elastic displacement of an end in 0.1 s to 3e-3 of its
+/// largest, and the attitude after a turn of a radian to 1e-6 rad.
 #[test]
 fn the_hexahedral_plate_tumbles_as_the_tetrahedral_one() {
     let (files, _) = calculix(&grid([40, 4, 1], false, plate).text("C3D20", SOLID));

@@ -59,6 +59,7 @@ fn compare(files: &Files, body: &str, rest: &str) {
     assert!(checks.rigid_stiffness < 1e-12, "{checks:?}");
 }
 
+/// Conserved: the same motion from the mesh.
 #[test]
 fn free_with_a_force_and_a_moment() {
     let rest = "[initial]\nangular_velocity = [3.0, 8.0, 5.0]\n\
@@ -68,6 +69,7 @@ fn free_with_a_force_and_a_moment() {
     compare(&bar_files(), MARKET, rest);
 }
 
+/// Conserved: the same motion from the mesh.
 #[test]
 fn clamped_by_a_group_under_gravity_and_base_motion() {
     let rest = "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n\
@@ -77,6 +79,7 @@ fn clamped_by_a_group_under_gravity_and_base_motion() {
     compare(&bar_files(), MARKET, rest);
 }
 
+/// Conserved: the same motion from the mesh.
 #[test]
 fn driven_about_a_hinge() {
     let rest = "[[constraints]]\nkind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [0, 0, 1]\ngroup = \"root\"\n\
@@ -84,6 +87,7 @@ fn driven_about_a_hinge() {
     compare(&bar_files(), MARKET, rest);
 }
 
+/// Conserved: the same motion from the mesh.
 #[test]
 fn in_the_form_of_abaqus() {
     let (files, (mesh, matrices)) = (Files::new(), bar());

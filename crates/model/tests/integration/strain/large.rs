@@ -51,6 +51,7 @@ fn whole(rest: &str) -> String {
     )
 }
 
+/// Independent reference: nonlinear finite elements that were given with the project.
 #[test]
 fn the_advice_says_what_linear_strain_gets_wrong_of_each_mode() {
     let (_, model) = plate("", "", "modal_displacement = [0.5]", TIME);
@@ -91,8 +92,8 @@ fn a_body_that_is_bent_beyond_what_fourth_order_holds_is_refused() {
     assert!(text.contains("90.0 % of its length") && text.contains("of the forces"), "{text}");
 }
 
-/// A mode that stretches the bar moves far enough to be large by itself, but bending draws it in: it is not large, and its
-/// frequency goes with its amplitude as that of any mode that is not.
+/// Closed form: ¼ √(E/ρ)/L of a rod. A mode that stretches the bar moves far enough to be large by itself, but
+/// bending draws it in: it is not large, and its frequency goes with its amplitude as that of any mode that is not.
 #[test]
 fn a_mode_that_others_draw_in_is_not_large_and_its_backbone_is_kept() {
     let model = |initial: &[f64]| {

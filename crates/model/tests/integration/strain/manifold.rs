@@ -44,6 +44,7 @@ middle = [0.0, 0.0, 10.0]
 
 const ON: &str = "[effects]\nlarge_deflection = true\nrefuse = false";
 
+/// Independent reference: nonlinear finite elements that were given with the project.
 #[test]
 fn the_strain_energy_of_the_first_mode_is_that_of_the_whole_mesh() {
     for (q, expected) in [(0.1, 4.116e-5), (0.25, 2.573e-4), (0.5, 1.0304e-3)] {
@@ -75,6 +76,7 @@ fn frequency(modes: &str, effects: &str, q: f64, omega: [f64; 3]) -> (f64, f64) 
     (0.5 * halves / (zeros.last().unwrap() - zeros[0]), drift / rows[0].energy())
 }
 
+/// Independent reference: nonlinear finite elements that were given with the project, and the same method there.
 #[test]
 fn the_frequency_of_the_plate_falls_with_its_amplitude() {
     let linear = frequency("", "[effects]\nlarge_deflection = false\nrefuse = false", 0.5, [0.0; 3]).0;

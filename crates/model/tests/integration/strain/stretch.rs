@@ -30,6 +30,7 @@ fn stretched(scene: &Scene) -> (usize, f64, Vec<Broken>, String) {
     (model.static_shapes(), stretch / EXACT, review.broken(), why)
 }
 
+/// Closed form: ρΩ²a³/(3E).
 #[test]
 fn the_default_scheme_takes_static_shapes_for_it_with_and_without_stiffening() {
     for effects in ["", "geometric_stiffening = false", "geometric_stiffening = false\ndeformed_inertia = true"] {
@@ -41,6 +42,7 @@ fn the_default_scheme_takes_static_shapes_for_it_with_and_without_stiffening() {
     }
 }
 
+/// Closed form: ρΩ²a³/(3E), of which nothing is there.
 #[test]
 fn where_the_scheme_does_not_take_them_advice_and_review_say_that_the_answer_lacks_it() {
     for scheme in ["scheme = \"rkmk4\"", "formulation = \"paper\"\nscheme = \"rkmk4\""] {
@@ -58,6 +60,7 @@ fn where_the_scheme_does_not_take_them_advice_and_review_say_that_the_answer_lac
     }
 }
 
+/// Closed form: ρΩ²a³/(3E).
 #[test]
 fn more_modes_hold_it() {
     let (_, found, broken, _) =
@@ -67,6 +70,7 @@ fn more_modes_hold_it() {
     assert!((found - 1.0).abs() < 0.1 && broken.is_empty(), "{found} {broken:?}");
 }
 
+/// Closed form: ρΩ²a³/(3E), of which nothing is there.
 #[test]
 fn who_leaves_them_out_is_told_by_the_table_alone() {
     let scene = spinning("flexible = 6\nstatic_correction = false", "geometric_stiffening = false", "step = 1e-4");
