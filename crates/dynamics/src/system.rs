@@ -6,14 +6,14 @@
 pub(crate) mod collocation;
 pub(crate) mod constraints;
 pub(crate) mod description;
+pub(crate) mod element;
+mod elimination;
 mod groups;
 mod invariants;
-pub(crate) mod inverse;
 pub(crate) mod joint;
-pub(crate) mod joint_matrix;
 pub(crate) mod marker;
-mod matrices;
-mod newton;
+pub(crate) mod motion;
 pub(crate) mod radau;
+mod reactions;
 mod relaxed;
 pub(crate) mod stage;

@@ -6,7 +6,7 @@ use pulp::{Arch, Simd, WithSimd};
 use crate::body::shapes::PointShapes;
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::rates::evaluation::Evaluation;
-use crate::conservative::state::{get, part};
+use crate::conservative::state::{get, part, set};
 use crate::error::RateError;
 use crate::observation::reaction::HeldMotion;
 use crate::observation::work::Work;
@@ -30,6 +30,35 @@ impl WithSimd for Accelerate<'_> {
 }
 
 impl ConservativeBody {
+    /// Finds q̈, and gives the rate of the spin, where `e` has the rates of a state.
+    pub(crate) fn find_accelerations(
+        &self,
+        driven_acceleration: f64,
+        e: &mut Evaluation,
+    ) -> Result<Vector3<f64>, RateError> {
+        for (k, rate) in e.acceleration.iter_mut().enumerate() {
+            *rate = e.rates.p()[k] + self.linear_rate(k, e.at.q()[k], e.at.p()[k]);
+        }
+        Arch::new().dispatch(Accelerate { body: self, driven_acceleration, e })
+    }
+
+    /// Adds a force (global), a moment about the origin (body axes) and modal forces to the rates of a free body.
+    pub(crate) fn add_forces(
+        &self,
+        [force_global, moment_body]: [&Vector3<f64>; 2],
+        modal: &[f64],
+        e: &mut Evaluation,
+    ) {
+        let mut rates = *e.rates.slow();
+        for (first, vector) in [(part::MOMENTUM, force_global), (part::PI, moment_body)] {
+            let sum = get(&rates, first) + vector;
+            set(&mut rates, first, &sum);
+        }
+        e.rates.set_slow(&rates);
+        let [_, momentum] = e.rates.modes_mut();
+        momentum.iter_mut().zip(modal).for_each(|(rate, force)| *rate += force);
+    }
+
     /// Reads the motion off a state whose rates are in `e`, and leaves these as they are.
     pub(super) fn read_motion(
         &self,
@@ -41,10 +70,7 @@ impl ConservativeBody {
         let (kinetic, strain) = self.energies(state, e);
         let driven_acceleration =
             self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(state.time, state.time));
-        for (k, rate) in e.acceleration.iter_mut().enumerate() {
-            *rate = e.rates.p()[k] + self.linear_rate(k, e.at.q()[k], e.at.p()[k]);
-        }
-        let spin_rate = Arch::new().dispatch(Accelerate { body: self, driven_acceleration, e })?;
+        let spin_rate = self.find_accelerations(driven_acceleration, e)?;
         out.modal_acceleration.copy_from_slice(&e.acceleration);
         let alpha = self.axis_columns * spin_rate;
         let omega = e.omega_body;

@@ -1,6 +1,6 @@
 //! The rows of all joints of a system, and what they do to its bodies.
 
-use crate::system::inverse::Number;
+use crate::system::elimination::inverse::Number;
 use crate::system::joint::Joint;
 use crate::system::marker::{BodyPlace, MarkerPlace};
 

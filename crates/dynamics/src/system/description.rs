@@ -1,16 +1,20 @@
 //! Bodies and the joints between them.
 
+use std::sync::Arc;
+
 use crate::conservative::ConservativeBody;
-use crate::equations::Equations;
 use crate::error::SetupError;
+use crate::system::element::ForceElement;
 use crate::system::groups::free_groups;
 use crate::system::joint::Joint;
+use crate::system::marker::Marker;
 
 /// Bodies and joints.
 #[derive(Debug, Clone)]
 pub struct System {
     pub(crate) bodies: Vec<ConservativeBody>,
     pub(crate) joints: Vec<Joint>,
+    pub(crate) elements: Vec<Arc<dyn ForceElement>>,
     /// First coordinate of each body, and the number of coordinates: six and the modes of each.
     pub(crate) first: Vec<usize>,
     /// Groups of bodies that joints connect with each other and not with the ground.
@@ -34,20 +38,19 @@ impl System {
             }
             first.push(first[first.len() - 1] + 6 + body.flexible());
         }
-        for marker in joints.iter().flat_map(|joint| &joint.markers) {
-            let Some(number) = marker.body() else { continue };
-            let expected = bodies.get(number).map_or(0, Equations::flexible);
-            let found = marker.flexible();
-            if number >= bodies.len() {
-                let what = "the number of a marker's body";
-                return Err(SetupError::Value { what, found: number as f64, expected: "that of a body, from 0" });
-            }
-            if found != 0 && found != expected {
-                return Err(SetupError::Length { what: "the shapes of a marker", expected, found });
-            }
-        }
+        joints.iter().flat_map(|joint| &joint.markers).try_for_each(|marker| check(marker, &bodies))?;
+        let elements = Vec::new();
         let free_groups = free_groups(bodies.len(), &joints);
-        Ok(Self { bodies, joints, first, free_groups })
+        Ok(Self { bodies, joints, elements, first, free_groups })
+    }
+
+    /// The same with forces between markers.
+    ///
+    /// # Errors
+    /// [`SetupError`] for a marker on a body that is not there or has other modes.
+    pub fn with_elements(self, elements: Vec<Arc<dyn ForceElement>>) -> Result<Self, SetupError> {
+        elements.iter().flat_map(|element| element.markers()).try_for_each(|marker| check(marker, &self.bodies))?;
+        Ok(Self { elements, ..self })
     }
 
     /// The bodies.
@@ -69,4 +72,18 @@ impl System {
     pub(crate) fn rows(&self) -> usize {
         self.joints.iter().map(|joint| joint.rows.len()).sum()
     }
+}
+
+/// Refuses a marker on a body that is not there or has other modes.
+fn check(marker: &Marker, bodies: &[ConservativeBody]) -> Result<(), SetupError> {
+    let Some(number) = marker.body() else { return Ok(()) };
+    let Some(body) = bodies.get(number) else {
+        let what = "the number of a marker's body";
+        return Err(SetupError::Value { what, found: number as f64, expected: "that of a body, from 0" });
+    };
+    let (found, expected) = (marker.flexible(), body.flexible());
+    if found != 0 && found != expected {
+        return Err(SetupError::Length { what: "the shapes of a marker", expected, found });
+    }
+    Ok(())
 }

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{cross_matrix, transformation_matrix};
 
 use crate::body::shapes::{PointShapes, RotationShapes};
+use crate::system::motion::MarkerMotion;
 
 /// A place with axes on a body, or on the ground.
 ///
@@ -82,6 +83,26 @@ impl Marker {
             arm,
             body_from_global: *body_from_global,
             tangent: tangent(&theta),
+        }
+    }
+
+    /// The motion of the marker, by its place and the velocities (V and ω in body axes, q̇) of its body.
+    pub(crate) fn motion(&self, place: &MarkerPlace, velocities: Option<&[f64]>) -> MarkerMotion {
+        let (mut velocity, mut omega) = (Vector3::zeros(), Vector3::zeros());
+        if let Some(v) = velocities {
+            let [of_origin, spin] = [0, 3].map(|first| Vector3::new(v[first], v[first + 1], v[first + 2]));
+            (velocity, omega) = (of_origin + spin.cross(&place.arm), Vector3::zeros());
+            for ((psi, turn), rate) in self.displacement.iter().zip(&self.rotation).zip(&v[6..]) {
+                velocity += psi * *rate;
+                omega += turn * *rate;
+            }
+            omega = spin + place.tangent * omega;
+        }
+        MarkerMotion {
+            position_global: place.position,
+            axes_global: place.axes,
+            velocity_global: place.body_from_global.tr_mul(&velocity),
+            omega_global: place.body_from_global.tr_mul(&omega),
         }
     }
 

@@ -16,10 +16,10 @@ use crate::error::{RateError, SetupError, StepError};
 use crate::state::{State, attitude_at};
 use crate::system::collocation::{Collocation, STAGES};
 use crate::system::description::System;
-use crate::system::inverse::Inverse;
-use crate::system::joint_matrix::{JointMatrix, Pattern};
-use crate::system::matrices::{Matrices, oscillators};
-use crate::system::newton::{Frozen, Solution, sizes};
+use crate::system::elimination::inverse::Inverse;
+use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
+use crate::system::elimination::matrices::{Matrices, oscillators};
+use crate::system::elimination::newton::{Frozen, Solution, sizes};
 use crate::system::stage::{BodyStart, Stage, Start, about_global_origin, put, vector};
 
 /// Error of Newton's method over the tolerance: of positions relative to the bodies, and in the norm of the energy. Ten times as
@@ -82,7 +82,11 @@ pub struct SystemMotion {
     largest_energy: f64,
     /// Work of the drives of joints since the beginning.
     drive_work: f64,
+    /// Work of the force elements since the beginning.
+    element_work: f64,
     evaluations: u64,
+    /// λ of index 1, where they were last asked for.
+    pub(super) reactions: Vec<f64>,
 }
 
 /// Room for one solution of the Newton system.
@@ -146,7 +150,9 @@ impl SystemMotion {
             system,
             largest_energy: 0.0,
             drive_work: 0.0,
+            element_work: 0.0,
             evaluations: 0,
+            reactions: vec![0.0; rows],
         })
     }
 
@@ -181,6 +187,11 @@ impl SystemMotion {
     /// Work of the drives of joints since the beginning.
     pub fn drive_work(&self) -> f64 {
         self.drive_work
+    }
+
+    /// Work of the force elements since the beginning.
+    pub fn element_work(&self) -> f64 {
+        self.element_work
     }
 
     /// Linear momentum, and angular momentum about the global origin, of all bodies, global.
@@ -219,11 +230,6 @@ impl SystemMotion {
     /// Number of rows that others imply, where the system is.
     pub fn dependent_rows(&self) -> usize {
         self.matrices.is_left_out.iter().filter(|is_left_out| **is_left_out).count()
-    }
-
-    /// Multipliers of the rows at the end of the last step: the reactions.
-    pub fn multipliers(&self) -> &[f64] {
-        &self.multipliers[STAGES - 1]
     }
 
     /// Moves the bodies, and changes their velocities, so that the joints hold. Returns the largest residual and the largest
@@ -305,7 +311,7 @@ impl SystemMotion {
     }
 
     /// Takes the state as the start of a step.
-    fn begin(&mut self) {
+    pub(super) fn begin(&mut self) {
         self.start.time = self.time;
         self.start.bodies.clear();
         for (b, (body, state)) in self.system.bodies.iter().zip(&self.bodies).enumerate() {
@@ -324,7 +330,7 @@ impl SystemMotion {
         }
     }
 
-    fn evaluate_first(&mut self) -> Result<(), RateError> {
+    pub(super) fn evaluate_first(&mut self) -> Result<(), RateError> {
         let Self { first, system, start, .. } = self;
         first.x.fill(0.0);
         first.y.fill(0.0);
@@ -525,6 +531,7 @@ impl SystemMotion {
         for ((stage, lambda), weight) in stages {
             let power: f64 = lambda.iter().zip(&stage.constraints.own_rates).map(|(lambda, rate)| -lambda * rate).sum();
             self.drive_work += h * weight * power;
+            self.element_work += h * weight * stage.element_power;
         }
         for (b, state) in self.bodies.iter_mut().enumerate() {
             let body = &self.system.bodies[b];

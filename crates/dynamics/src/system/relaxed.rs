@@ -10,15 +10,13 @@
 //! Eqs. (J9) of `docs/method/systems.md`.
 
 use crate::conservative::{get, part};
-use crate::system::inverse::Inverse;
-use crate::system::joint_matrix::JointMatrix;
+use crate::system::elimination::inverse::Inverse;
+use crate::system::elimination::joint_matrix::JointMatrix;
 use crate::system::radau::{Failed, SystemMotion};
 use crate::system::stage::{put, vector};
 
 /// Passes: the deformation changes the forces a little.
 const PASSES: usize = 6;
-/// Time over which the rows are looked at before and after, relative to a turn of the fastest body by one radian.
-const SHORT: f64 = 1e-4;
 
 impl SystemMotion {
     /// Deforms the bodies so that an undeformed start does not ring, and assembles them again. Returns the largest residual and
@@ -38,27 +36,12 @@ impl SystemMotion {
 
     /// λ of rigid bodies where the system is.
     fn rigid_multipliers(&mut self) -> Result<Vec<f64>, Failed> {
-        let fastest = self.first.velocities_of_turns(&self.system).map(|omega| omega.norm()).fold(0.0, f64::max);
-        let short = SHORT / fastest.max(1.0);
-        let mut change = vec![0.0; self.pattern.len()];
-        // Ġ v + ġ_t, by differences along the motion of rigid bodies.
         let mut velocities = self.first.velocities.clone();
         for (b, first) in self.system.first[..self.system.bodies.len()].iter().enumerate() {
             velocities[first + 6..self.system.first[b + 1]].fill(0.0);
         }
-        for sign in [1.0, -1.0] {
-            let stage = &mut self.stages[0];
-            stage.x.iter_mut().zip(&velocities).for_each(|(x, v)| *x = sign * short * v);
-            for (first, attitude) in self.system.first.iter().zip(&self.first.attitudes) {
-                let moved = attitude.tr_mul(&vector(&stage.x, *first));
-                put(&mut stage.x, *first, &moved);
-            }
-            stage.place(&self.system, &self.start);
-            let time = self.start.time + sign * short;
-            stage.find_constraints(&self.system, [time, self.start.time + short]);
-            stage.constraints.rates(&velocities, &mut stage.constraint_rates);
-            change.iter_mut().zip(&stage.constraint_rates).for_each(|(sum, rate)| *sum += sign * rate / (2.0 * short));
-        }
+        let mut change = vec![0.0; self.pattern.len()];
+        self.find_row_accelerations(&velocities, &mut change);
         let Self { first, system, pattern, matrices, .. } = self;
         let mut acceleration = vec![0.0; system.coordinates()];
         let mut inverses: Vec<Inverse<f64>> = Vec::new();

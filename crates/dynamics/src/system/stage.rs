@@ -9,8 +9,9 @@ use crate::equations::Equations;
 use crate::error::RateError;
 use crate::system::constraints::Constraints;
 use crate::system::description::System;
-use crate::system::inverse::Inertia;
-use crate::system::marker::BodyPlace;
+use crate::system::elimination::inverse::Inertia;
+use crate::system::marker::{BodyPlace, MarkerPlace};
+use crate::system::motion::{MarkerMotion, MarkerWrench};
 
 /// The start of a step: the numbers that its increments are counted from.
 #[derive(Debug, Clone)]
@@ -57,6 +58,13 @@ pub(crate) struct Stage {
     q: Vec<f64>,
     forces: Vec<f64>,
     scratch: Vec<f64>,
+    /// Generalised forces of the elements, in the axes and about the origins of the bodies.
+    pub element_forces: Vec<f64>,
+    /// Power of the force elements.
+    pub element_power: f64,
+    marker_places: Vec<MarkerPlace>,
+    marker_motions: Vec<MarkerMotion>,
+    wrenches: Vec<MarkerWrench>,
 }
 
 impl Stage {
@@ -64,6 +72,7 @@ impl Stage {
         let (coordinates, rows) = (system.coordinates(), system.rows());
         let zeros = || vec![0.0; coordinates];
         let flexible = system.bodies.iter().map(Equations::flexible);
+        let most_markers = system.elements.iter().map(|element| element.markers().len()).max().unwrap_or(0);
         Self {
             x: zeros(),
             y: zeros(),
@@ -79,6 +88,11 @@ impl Stage {
             q: zeros(),
             forces: zeros(),
             scratch: zeros(),
+            element_forces: zeros(),
+            element_power: 0.0,
+            marker_places: Vec::with_capacity(most_markers),
+            marker_motions: Vec::with_capacity(most_markers),
+            wrenches: Vec::with_capacity(most_markers),
         }
     }
 
@@ -145,6 +159,7 @@ impl Stage {
             inertia.locked_inverse = e.locked_inertia.try_inverse().ok_or(RateError::Inertia)?;
             body.copy_coupling(e, &mut inertia.coupling);
         }
+        self.add_elements(system, times);
         self.find_constraints(system, times);
         self.constraints.rates(&self.velocities, &mut self.constraint_rates);
         Ok(())
@@ -195,9 +210,61 @@ impl Stage {
         self.y.iter_mut().zip(dy).for_each(|(y, change)| *y += *change);
     }
 
-    /// ω of each body, body axes.
-    pub fn velocities_of_turns<'s>(&'s self, system: &'s System) -> impl Iterator<Item = Vector3<f64>> + 's {
-        (0..system.bodies.len()).map(|b| vector(&self.velocities, system.first[b] + 3))
+    /// The place of a body.
+    pub fn body_place(&self, system: &System, b: usize) -> BodyPlace<'_> {
+        BodyPlace {
+            origin: self.positions[b],
+            body_from_global: self.attitudes[b],
+            q: &self.q[system.first[b] + 6..system.first[b + 1]],
+        }
+    }
+
+    /// Adds the forces of the elements to y'.
+    fn add_elements(&mut self, system: &System, times: [f64; 2]) {
+        let Self { marker_places, marker_motions, wrenches, positions, attitudes, q, velocities, .. } = self;
+        let (forces, total) = (&mut self.element_forces, &mut self.forces);
+        self.element_power = 0.0;
+        if system.elements.is_empty() {
+            return;
+        }
+        forces.fill(0.0);
+        for element in &system.elements {
+            let markers = element.markers();
+            let own = |b: usize| system.first[b]..system.first[b + 1];
+            marker_places.clear();
+            marker_places.extend(markers.iter().map(|marker| {
+                let place = marker.body().map(|b| BodyPlace {
+                    origin: positions[b],
+                    body_from_global: attitudes[b],
+                    q: &q[own(b)][6..],
+                });
+                marker.place(place.as_ref())
+            }));
+            marker_motions.clear();
+            marker_motions.extend(
+                markers
+                    .iter()
+                    .zip(&*marker_places)
+                    .map(|(marker, place)| marker.motion(place, marker.body().map(|b| &velocities[own(b)]))),
+            );
+            wrenches.clear();
+            wrenches.resize(markers.len(), MarkerWrench::default());
+            element.apply(times, marker_motions, wrenches);
+            for (k, MarkerWrench { force_global, moment_global }) in wrenches.iter().enumerate() {
+                let motion = &marker_motions[k];
+                self.element_power +=
+                    force_global.dot(&motion.velocity_global) + moment_global.dot(&motion.omega_global);
+                if let Some(b) = markers[k].body() {
+                    markers[k].add_wrench(&marker_places[k], [force_global, moment_global], &mut forces[own(b)]);
+                }
+            }
+        }
+        total.copy_from_slice(forces);
+        for (b, (position, attitude)) in positions.iter().zip(&*attitudes).enumerate() {
+            let first = system.first[b];
+            about_global_origin(&mut total[first..first + 6], position, attitude);
+        }
+        self.y_rates.iter_mut().zip(&*total).for_each(|(rate, force)| *rate += force);
     }
 
     /// Finds x' of the velocities and M⁻¹Gᵀ of `multipliers`.

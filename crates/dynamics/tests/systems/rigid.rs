@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use dynamics::{LoadFn, PointShapes, SharedLoad, SystemMotion};
+use dynamics::{LoadFn, Observation, PointShapes, SharedLoad, SystemMotion};
 use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 
@@ -105,4 +105,123 @@ fn the_error_falls_with_the_fifth_power_of_the_step() {
     let orders = [0, 1].map(|k| (errors[k] / errors[k + 1]).log2());
     println!("{errors:?} {orders:?}");
     assert!(orders.iter().all(|order| *order > 4.5));
+}
+
+/// Closed form: the force of the hinge of a bar that swings, m (ω² l/2 + g cos θ) along it and m g sin θ/4 across.
+#[test]
+fn the_reaction_of_a_pendulum_is_that_of_its_swing() {
+    let (amplitude, length) = (1.2_f64, 1.0);
+    let mut motion = pendulum(amplitude);
+    let mut out = Observation::new(0, 0);
+    for end in [0.0, 0.2, 0.5, 0.9] {
+        if end > 0.0 {
+            motion.advance(end, 1e-10, &mut 1e-3).unwrap();
+        }
+        motion.find_reactions().unwrap();
+        motion.observe(0, &[], &mut out).unwrap();
+        let theta = angle(&motion, 0);
+        let square = 3.0 * GRAVITY / length * (theta.cos() - amplitude.cos());
+        let along = 0.5 * length * square + GRAVITY * theta.cos();
+        let across = 0.25 * GRAVITY * theta.sin();
+        // From the centre to the hinge, and at right angles to it.
+        let [to_hinge, beside] =
+            [[-theta.sin(), theta.cos()], [theta.cos(), theta.sin()]].map(|[x, y]| Vector3::new(x, y, 0.0));
+        let found = motion.reaction(0).force_global;
+        assert!((found.dot(&to_hinge) - along).abs() < 1e-7, "{end}: {found} {along}");
+        assert!((found.dot(&beside) - across).abs() < 1e-7, "{end}: {found} {across}");
+        let alpha = -1.5 * GRAVITY / length * theta.sin();
+        assert!((out.alpha_body.z - alpha).abs() < 1e-7, "{end}: {} {alpha}", out.alpha_body.z);
+    }
+}
+
+/// Independent reference: Bricard's linkage of five rods of 1 m and 1 kg along the edges of a cube, 1e-3 kg m² about themselves,
+/// under gravity. Another program has the centre of the third rod at (1.11401, −0.48059, 1.25119) after 1 s.
+#[test]
+fn bricards_linkage_goes_where_others_have_it() {
+    let edges = [Vector3::z(), Vector3::y(), Vector3::x(), -Vector3::z(), -Vector3::y(), -Vector3::x()];
+    let mut points = vec![Vector3::zeros()];
+    edges[..5].iter().for_each(|edge| points.push(points[points.len() - 1] + edge));
+    let axes: Vec<Vector3<f64>> = (0..6).map(|k| edges[(k + 5) % 6].cross(&edges[k])).collect();
+    let mut motion = linkage(&points, &axes);
+    let steps = motion.advance(1.0, 1e-7, &mut 1e-3).unwrap();
+    let center = motion.state(2).unwrap().origin_global;
+    println!("{steps} steps, {center:?}");
+    assert!((center - Vector3::new(1.11401, -0.48059, 1.25119)).amax() < 1e-5, "{center}");
+    // Six hinges have 30 rows, of which 29 are independent: it moves although it should not.
+    assert_eq!(motion.dependent_rows(), 1);
+}
+
+/// Independent reference: the double four-bar of the IFToMM library of benchmarks, links of 1 m and 1 kg, thrown with 1 m/s; it
+/// passes through positions in which all links are in one line, and more motions are open. B0 after 10 s.
+#[test]
+fn a_double_four_bar_passes_its_singular_positions() {
+    let start = || {
+        let mut mechanism = Mechanism::default();
+        let mut rod = |center: [f64; 2], angle: f64| {
+            let inertia = Vector3::new(1e-3, 1.0 / 12.0, 1.0 / 12.0);
+            mechanism.link(Link { mass: 1.0, inertia, center, angle, loads: vec![weight(1.0)] })
+        };
+        let cranks = [0.0, 1.0, 2.0].map(|x| rod([x, 0.5], 0.5 * PI));
+        let couplers = [0.5, 1.5].map(|x| rod([x, 1.0], 0.0));
+        for (k, crank) in cranks.into_iter().enumerate() {
+            mechanism.hinge([None, Some(crank)], [k as f64, 0.0]);
+        }
+        for (crank, coupler) in [(0, 0), (1, 0), (1, 1), (2, 1)] {
+            mechanism.hinge([Some(cranks[crank]), Some(couplers[coupler])], [crank as f64, 1.0]);
+        }
+        let turning = ([0.5, 0.0], -1.0);
+        mechanism.starts(&[turning, turning, turning, ([1.0, 0.0], 0.0), ([1.0, 0.0], 0.0)])
+    };
+    for (tolerance, bound) in [(1e-6, 1e-5), (1e-8, 2e-6)] {
+        let mut motion = start();
+        motion.assemble().unwrap();
+        let energy = motion.energy().unwrap();
+        let steps = motion.advance(10.0, tolerance, &mut 1e-3).unwrap();
+        let turned = angle(&motion, 0);
+        let error = (turned.cos() - 0.328_457_376_8).hypot(turned.sin() - 0.944_518_793_7);
+        println!("{tolerance:e}: {steps} steps, error {error:e}, energy {energy} at the start");
+        assert!(error < bound, "{error:e}");
+    }
+}
+
+/// Rods between points, the first and the last of which are on the ground, with a hinge at each point.
+fn linkage(points: &[Vector3<f64>], axes: &[Vector3<f64>]) -> SystemMotion {
+    use dynamics::{ConservativeBody, Joint, Marker, MotionState, Physics, System};
+    use rigid_kin::Attitude;
+
+    let rods = points.len() - 1;
+    let center = |rod: usize| 0.5 * (points[rod] + points[rod + 1]);
+    let bodies = (0..rods).map(|rod| {
+        let along = points[rod + 1] - points[rod];
+        let length = along.norm();
+        let unit = along / length;
+        let across = Matrix3::identity() - unit * unit.transpose();
+        let inertia = across * (length * length / 12.0) + unit * unit.transpose() * 1e-3;
+        let body = ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
+        ConservativeBody::new(&body, &[], vec![weight(1.0)], &Physics::default()).unwrap()
+    });
+    let frame = |axis: &Vector3<f64>| {
+        let other = if axis.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+        let x = axis.cross(&other).normalize();
+        Matrix3::from_columns(&[x, axis.cross(&x), *axis])
+    };
+    let on = |rod: usize, at: usize| Marker::on_rigid(rod, points[at] - center(rod), frame(&axes[at]));
+    let ground = |at: usize| Marker::on_ground(points[at], frame(&axes[at]));
+    let mut joints = vec![Joint::revolute("first", [ground(0), on(0, 0)])];
+    joints.extend((1..rods).map(|at| Joint::revolute("between", [on(at - 1, at), on(at, at)])));
+    joints.push(Joint::revolute("last", [on(rods - 1, rods), ground(rods)]));
+    let states: Vec<MotionState> = (0..rods)
+        .map(|rod| MotionState {
+            time: 0.0,
+            attitude: Attitude::identity(),
+            origin_global: center(rod),
+            velocity_global: Vector3::zeros(),
+            omega_body: Vector3::zeros(),
+            modal_displacement: Vec::new(),
+            modal_velocity: Vec::new(),
+        })
+        .collect();
+    let mut motion = SystemMotion::new(System::new(bodies.collect(), joints).unwrap(), &states).unwrap();
+    motion.assemble().unwrap();
+    motion
 }

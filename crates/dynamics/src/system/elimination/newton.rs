@@ -1,13 +1,13 @@
 //! One pass of Newton's method: Eqs. (J8) of `docs/method/systems.md`.
 
 use crate::system::description::System;
-use crate::system::inverse::{Inverse, Number};
-use crate::system::joint_matrix::{JointMatrix, Pattern, Times};
+use crate::system::elimination::inverse::{Inverse, Number};
+use crate::system::elimination::joint_matrix::{JointMatrix, Pattern, Times};
 use crate::system::stage::{Stage, vector};
 
 /// Right-hand sides, which become changes.
 #[derive(Debug, Clone)]
-pub(super) struct Solution<T> {
+pub(in crate::system) struct Solution<T> {
     pub x: Vec<T>,
     pub y: Vec<T>,
     pub lambda: Vec<T>,
@@ -39,7 +39,7 @@ impl<T: Number> Solution<T> {
 
 /// What both solutions of a Newton pass share.
 #[derive(Clone, Copy)]
-pub(super) struct Frozen<'a> {
+pub(in crate::system) struct Frozen<'a> {
     pub system: &'a System,
     pub stage: &'a Stage,
     pub pattern: &'a Pattern,
@@ -95,7 +95,7 @@ impl Frozen<'_> {
 
 /// Sizes of a change of positions: the largest root mean square of a body, with its mass, relative to its radius of gyration;
 /// and the energy of the change, if it comes about within a step, and of its strain.
-pub(super) fn sizes(system: &System, x: &[f64], h: f64) -> [f64; 2] {
+pub(in crate::system) fn sizes(system: &System, x: &[f64], h: f64) -> [f64; 2] {
     let (mut largest, mut energy) = (0.0, 0.0);
     for (b, body) in system.bodies.iter().enumerate() {
         let own = &x[system.first[b]..system.first[b + 1]];

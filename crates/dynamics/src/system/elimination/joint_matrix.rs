@@ -7,7 +7,7 @@
 use nalgebra::Complex;
 
 use crate::system::constraints::Constraints;
-use crate::system::inverse::{Inverse, Number};
+use crate::system::elimination::inverse::{Inverse, Number};
 
 /// A pivot below this part of its diagonal entry belongs to a row that others imply.
 const DEPENDENT: f64 = 1e-8;
@@ -309,7 +309,7 @@ mod tests {
     use nalgebra::{Matrix3, Vector3};
 
     use super::*;
-    use crate::system::inverse::Inertia;
+    use crate::system::elimination::inverse::Inertia;
     use crate::system::joint::Joint;
     use crate::system::marker::{BodyPlace, Marker};
 

@@ -4,13 +4,13 @@ use nalgebra::Complex;
 
 use crate::conservative::ConservativeBody;
 use crate::system::description::System;
-use crate::system::inverse::Inverse;
-use crate::system::joint_matrix::{JointMatrix, Pattern};
+use crate::system::elimination::inverse::Inverse;
+use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
 use crate::system::stage::Stage;
 
 /// Factors of a step.
 #[derive(Debug, Clone)]
-pub(super) struct Matrices {
+pub(in crate::system) struct Matrices {
     pub is_left_out: Vec<bool>,
     pub mass: Vec<Inverse<f64>>,
     pub real: Vec<Inverse<f64>>,
@@ -41,6 +41,6 @@ impl Matrices {
 }
 
 /// Λ_k and D_k of each mode.
-pub(super) fn oscillators(body: &ConservativeBody) -> impl Iterator<Item = [f64; 2]> {
+pub(in crate::system) fn oscillators(body: &ConservativeBody) -> impl Iterator<Item = [f64; 2]> {
     body.circular_frequencies.iter().zip(&body.damping_ratios).map(|(omega, zeta)| [omega * omega, 2.0 * zeta * omega])
 }

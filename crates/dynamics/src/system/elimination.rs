@@ -1,0 +1,6 @@
+//! The structured Newton system: bodies by 3×3 matrices, then the rows of the joints.
+
+pub(crate) mod inverse;
+pub(crate) mod joint_matrix;
+pub(crate) mod matrices;
+pub(crate) mod newton;

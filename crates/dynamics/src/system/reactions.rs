@@ -1,0 +1,122 @@
+//! Reactions of the joints and accelerations of the bodies, where a system is: the multipliers of index 1.
+//!
+//! ```text
+//! λ = −A⁻¹ (G a + Ġ v + ġ_t),     A = G M⁻¹ Gᵀ,     a: accelerations without the joints
+//! ```
+//!
+//! Eqs. (J10) of `docs/method/systems.md`. Ġ v + ġ_t is found by differences along the motion.
+
+use nalgebra::Vector3;
+
+use crate::body::shapes::PointShapes;
+use crate::conservative::{get, part};
+use crate::equations::Equations;
+use crate::error::RateError;
+use crate::observation::Observation;
+use crate::system::motion::MarkerWrench;
+use crate::system::radau::SystemMotion;
+use crate::system::stage::{put, vector};
+
+/// Time of the differences, relative to a turn of the fastest body by one radian.
+const SHORT: f64 = 1e-4;
+
+impl SystemMotion {
+    /// Finds the reactions of the joints and the accelerations of the bodies where the system is, for [`Self::observe`] and
+    /// [`Self::reaction`].
+    ///
+    /// # Errors
+    /// [`RateError`] where the inertia of a body is singular.
+    pub fn find_reactions(&mut self) -> Result<(), RateError> {
+        self.begin();
+        self.evaluate_first()?;
+        let velocities = std::mem::take(&mut self.first.velocities);
+        let mut change = std::mem::take(&mut self.reactions);
+        self.find_row_accelerations(&velocities, &mut change);
+        self.first.velocities = velocities;
+        let Self { first, system, matrices, pattern, .. } = self;
+        // A κ of one: only the factor with the masses is used.
+        if !matrices.factor_real(system, pattern, first, 1.0) {
+            return Err(RateError::Inertia);
+        }
+        for (b, body) in system.bodies.iter().enumerate() {
+            let own = system.first[b]..system.first[b + 1];
+            let forces = &first.element_forces[own.clone()];
+            let force_global = first.attitudes[b].tr_mul(&vector(forces, 0));
+            let e = &mut first.evaluations[b];
+            body.add_forces([&force_global, &vector(forces, 3)], &forces[6..], e);
+            let spin_rate = body.find_accelerations(0.0, e)?;
+            let velocities = &first.velocities[own.clone()];
+            let [velocity, omega] = [vector(velocities, 0), vector(velocities, 3)];
+            let acceleration = first.attitudes[b] * get(e.rates.slow(), part::MOMENTUM) / body.mass();
+            let accelerations = &mut first.x_rates[own];
+            // V has the axes of the body, which turn.
+            put(accelerations, 0, &(acceleration - omega.cross(&velocity)));
+            put(accelerations, 3, &spin_rate);
+            accelerations[6..].copy_from_slice(&e.acceleration);
+        }
+        first.constraints.add_rates(1.0, &first.x_rates, &mut change);
+        change.iter_mut().for_each(|sum| *sum = -*sum);
+        matrices.of_mass.solve(pattern, &mut change);
+        let forces = &mut first.x_rates;
+        forces.fill(0.0);
+        first.constraints.add_forces(&change, forces);
+        for (b, body) in system.bodies.iter().enumerate() {
+            let forces = &forces[system.first[b]..system.first[b + 1]];
+            let force_global = first.attitudes[b].tr_mul(&vector(forces, 0));
+            body.add_forces([&force_global, &vector(forces, 3)], &forces[6..], &mut first.evaluations[b]);
+        }
+        self.reactions = change;
+        Ok(())
+    }
+
+    /// Fills `out` with the motion of a body, and that of points on it, after [`Self::find_reactions`].
+    ///
+    /// # Errors
+    /// [`RateError`] where the inertia of the body is singular.
+    pub fn observe(&mut self, body: usize, points: &[PointShapes], out: &mut Observation) -> Result<(), RateError> {
+        let Self { system, bodies, first, .. } = self;
+        system.bodies[body].observe(&bodies[body], &mut first.evaluations[body], points, out)
+    }
+
+    /// What a joint puts on its second marker, after [`Self::find_reactions`]; on the first it is the opposite, about the same
+    /// point.
+    pub fn reaction(&self, joint: usize) -> MarkerWrench {
+        let Self { system, first, .. } = self;
+        let before: usize = system.joints[..joint].iter().map(|joint| joint.rows.len()).sum();
+        let joint = &system.joints[joint];
+        let places = joint
+            .markers
+            .each_ref()
+            .map(|marker| marker.place(marker.body().map(|b| first.body_place(system, b)).as_ref()));
+        let mut sum = MarkerWrench::default();
+        let mut multipliers = self.reactions[before..].iter();
+        joint.wrenches(places.each_ref(), [self.time(); 2], |wrench| {
+            let multiplier = multipliers.next().copied().unwrap_or_default();
+            sum.force_global += wrench.force * multiplier;
+            sum.moment_global += wrench.moments[1] * multiplier;
+        });
+        sum
+    }
+
+    /// out = Ġ v + ġ_t for these velocities, where the first stage is.
+    pub(super) fn find_row_accelerations(&mut self, velocities: &[f64], out: &mut Vec<f64>) {
+        let omegas = self.system.first[..self.system.bodies.len()].iter().map(|first| vector(velocities, first + 3));
+        let fastest = omegas.map(|omega| omega.norm()).fold(0.0, f64::max);
+        let short = SHORT / fastest.max(1.0);
+        out.clear();
+        out.resize(self.pattern.len(), 0.0);
+        let Self { stages: [scratch, ..], first, system, start, .. } = self;
+        for sign in [1.0, -1.0] {
+            scratch.x.iter_mut().zip(velocities).for_each(|(x, v)| *x = sign * short * v);
+            for (first_of_body, attitude) in system.first.iter().zip(&first.attitudes) {
+                let moved: Vector3<f64> = attitude.tr_mul(&vector(&scratch.x, *first_of_body));
+                put(&mut scratch.x, *first_of_body, &moved);
+            }
+            scratch.place(system, start);
+            let time = start.time + sign * short;
+            scratch.find_constraints(system, [time, start.time + short]);
+            scratch.constraints.rates(velocities, &mut scratch.constraint_rates);
+            out.iter_mut().zip(&scratch.constraint_rates).for_each(|(sum, rate)| *sum += sign * rate / (2.0 * short));
+        }
+    }
+}
