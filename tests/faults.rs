@@ -122,6 +122,7 @@ fn random() -> impl FnMut() -> f64 {
     }
 }
 
+/// Conserved: the bytes of the run that nobody killed, and its numbers in every row on the way.
 #[test]
 fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
     let scene = Scene::new("3e-7");
@@ -238,6 +239,7 @@ fn a_full_disk_leaves_the_old_picture() {
     assert_eq!(std::fs::read_dir(scene.folder.path()).unwrap().count(), 2);
 }
 
+/// Conserved: a run that goes on after a signal ends in the bytes of the one that had none.
 #[test]
 fn control_c_stops_at_a_row_and_says_how_to_go_on() {
     let scene = Scene::new("5e-7");

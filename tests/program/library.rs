@@ -11,6 +11,7 @@ mod own_matrices;
 #[path = "../../examples/spring_to_ground.rs"]
 mod spring_to_ground;
 
+/// Conserved: energy less the work of the controller.
 #[test]
 fn a_controller_from_outside_damps_the_plate_and_its_work_is_accounted_for() {
     let controller::Answer { strain_energy_left, balance } = controller::run().unwrap();
@@ -19,6 +20,7 @@ fn a_controller_from_outside_damps_the_plate_and_its_work_is_accounted_for() {
     assert!(balance < 1e-9, "{balance:e}");
 }
 
+/// Closed form: free fall, √(2h/g).
 #[test]
 fn an_event_is_found_to_the_accuracy_of_the_scheme_and_a_new_state_goes_on() {
     let bounce::Answer { impact, back } = bounce::run().unwrap();
@@ -28,6 +30,7 @@ fn an_event_is_found_to_the_accuracy_of_the_scheme_and_a_new_state_goes_on() {
     }
 }
 
+/// Conserved: second order, against the exponential scheme.
 #[test]
 fn an_own_scheme_has_its_order_and_takes_step_control() {
     let [coarse, fine, controlled] = own_integrator::run().unwrap();
@@ -36,6 +39,7 @@ fn an_own_scheme_has_its_order_and_takes_step_control() {
     assert!(fine < 1e-3 && (coarse / fine - 4.0).abs() < 0.4, "{coarse:e} {fine:e}");
 }
 
+/// Closed form: frequencies of a free beam, cos β cosh β = 1; energy and momentum stay.
 #[test]
 fn a_beam_from_its_own_matrices_has_its_frequencies_and_tumbles_without_loss() {
     let own_matrices::Answer { frequencies, energy, angular_momentum, against_rigid } = own_matrices::run().unwrap();
@@ -47,6 +51,7 @@ fn a_beam_from_its_own_matrices_has_its_frequencies_and_tumbles_without_loss() {
     assert!(against_rigid > 1e-2, "{against_rigid:e}");
 }
 
+/// Closed form: a period of 2π√(m/k), and T/(mΩ²) (1 − cos Ωt) across the spin.
 #[test]
 fn laws_as_closures_have_their_closed_forms() {
     let spring_to_ground::Answer { after_a_period, energy, circled } = spring_to_ground::run().unwrap();

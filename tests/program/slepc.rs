@@ -34,6 +34,7 @@ fn sine(a: &Mat<f64>, b: &Mat<f64>) -> f64 {
     rest.singular_values().unwrap()[0]
 }
 
+/// Independent reference: SLEPc.
 #[test]
 fn two_ranks_find_the_modes_and_static_answers_that_this_program_finds() {
     // Free and struck; held on a patch that turns about an axis; clamped. Bars have pairs of equal frequencies.
@@ -150,6 +151,7 @@ fn frequencies(said: &Said) -> Vec<f64> {
     list.iter().map(|frequency| frequency.as_f64().unwrap()).collect()
 }
 
+/// Independent reference: SLEPc.
 #[test]
 fn a_folder_goes_to_a_cluster_and_its_answers_come_back() {
     let case = Case::new();
@@ -210,6 +212,7 @@ fn a_folder_goes_to_a_cluster_and_its_answers_come_back() {
     spoil("modes.json", &counted, 5, &["as the count of the pivots has it"]);
 }
 
+/// Independent reference: SLEPc.
 #[test]
 fn static_answers_of_a_run_come_back_from_the_folder_too() {
     let case = Case::new();

@@ -34,6 +34,7 @@ fn real(report: &AdviseReport, effect: &str) -> f64 {
     }
 }
 
+/// Independent reference: the motion itself, run with and without each effect, against the estimates.
 #[test]
 fn of_a_free_body_that_spins_and_is_struck() {
     let report = verified(&example("ring"));
@@ -42,6 +43,7 @@ fn of_a_free_body_that_spins_and_is_struck() {
     assert!(real(&report, "rotation") >= 1.0);
 }
 
+/// Independent reference: the motion itself, run with and without each effect, against the estimates.
 #[test]
 fn of_a_driven_body() {
     let mut scene = example("wu_haug");
@@ -53,6 +55,7 @@ fn of_a_driven_body() {
     assert!(rows("rotation").on.is_none() && rows("translation").on == Some(false));
 }
 
+/// Independent reference: the motion itself, run with and without each effect, against the estimates.
 #[test]
 fn of_a_held_body_under_gravity() {
     let mut scene = example("bar/pendulum");
@@ -61,7 +64,8 @@ fn of_a_held_body_under_gravity() {
     assert!(real(&verified(&scene), "gravity") >= 1.0);
 }
 
-/// (Ω/ω₁)² is 0.4 %, but the plate's heavy tips put it under tension.
+/// Closed form: (Ω/ω₁)² is 0.42 % for the first frequency of 24.5 Hz. The plate's heavy tips put it under tension:
+/// the bounds of 3 to 4 % are about what was measured.
 #[test]
 fn the_plate_at_10_rad_s_is_stiffened_by_three_per_cent() {
     let mut scene = example("accuracy/tumbling");
@@ -100,6 +104,8 @@ fn the_table_of_modes_shows_as_many_to_keep_as_the_sentence_says() {
     assert!(text.contains("Keep the lowest 4 of 5 modes: 2 for their own share"), "{text}");
 }
 
+/// Independent reference: the motion itself without large deflections, against the estimate. Regression only: 0.87 %
+/// of the first frequency.
 #[test]
 fn what_linear_strain_gets_wrong_has_a_row_for_each_mode_and_is_what_a_run_without_shows() {
     let mut scene = example("spinning_plate");

@@ -69,8 +69,8 @@ fn the_cache_is_used_by_itself_and_the_results_are_the_same_to_the_last_byte() {
     assert!(notes.contains("cannot be written, and what is computed is not kept"), "{notes}");
 }
 
-/// The same as in docs/reference/body.md, where h5py does it: displacements and kinetic energy from the body file and the results file
-/// alone, with the full mass matrix.
+/// Independent reference: displacements and kinetic energy by plain sums over the body file and the results file
+/// alone, with the full mass matrix, as h5py has them in docs/reference/body.md.
 #[test]
 fn a_body_file_gives_back_the_field_and_the_kinetic_energy_of_a_run() {
     let folder = tempfile::tempdir().unwrap();

@@ -12,9 +12,9 @@ const DENSITY: f64 = 2.7e-9;
 const LENGTH: f64 = 202.07;
 const SIDE: f64 = 10.0;
 
-/// A clamped bar of slenderness 70 that spins about an axis across it through its root, hub radius 0: η, then flap 1, 2,
-/// 3 (exact, thin beam), chord 1 without and with Coriolis forces (published). From rotating_bar.csv, given with the
-/// project. Unit of frequencies and of η: √(EI/(ρAL⁴)).
+/// Independent reference: a clamped bar of slenderness 70 that spins about an axis across it through its root, hub
+/// radius 0: η, then flap 1, 2, 3 (exact, thin beam), chord 1 without and with Coriolis forces (published). From
+/// rotating_bar.csv, given with the project. Unit of frequencies and of η: √(EI/(ρAL⁴)).
 const THIN_BEAM: [(f64, [f64; 3], f64, Option<f64>); 8] = [
     (0.0, [3.5160, 22.0345, 61.6972], 3.5160, None),
     (1.0, [3.6816, 22.1810, 61.8418], 3.5432, None),
@@ -155,6 +155,7 @@ fn timoshenko(eta: f64, in_plane: bool) -> f64 {
     (shape.dot(&(&stiffness * &shape)) / shape.dot(&(&mass * &shape))).sqrt() / unit()
 }
 
+/// Independent reference: a Timoshenko beam by Ritz.
 #[test]
 fn with_many_modes_the_bar_is_a_timoshenko_beam() {
     // The thin beam is 0.16 % above this one at rest, and its chord 0.57 % at η = 12.
@@ -169,6 +170,7 @@ fn with_many_modes_the_bar_is_a_timoshenko_beam() {
     }
 }
 
+/// Closed form: ω² = ω₀² − Ω², and beyond ω₀ growth by √(Ω² − ω₀²).
 #[test]
 fn without_stiffening_the_chord_falls_to_zero_and_then_grows() {
     let report = spinning_bar(12, "coriolis = false\ngeometric_stiffening = false");
@@ -192,6 +194,7 @@ fn without_stiffening_the_chord_falls_to_zero_and_then_grows() {
     assert!((first["speed"].as_f64().unwrap() / unit() / stable_below - 1.0).abs() < 1e-12);
 }
 
+/// Conserved: a critical speed is where the branch in the table crosses its order.
 #[test]
 fn table_files_and_diagram_say_the_same() {
     let folder = tempfile::tempdir().unwrap();

@@ -55,6 +55,7 @@ fn runs(line: &Line) -> Vec<(f64, &Measured)> {
     line.rows.iter().filter_map(|row| Some((row.setting.value(), row.measured()?))).collect()
 }
 
+/// Conserved: the error falls with the order of each scheme.
 #[test]
 fn every_method_is_in_the_list_with_its_order() {
     for method in METHODS {
@@ -70,6 +71,7 @@ fn every_method_is_in_the_list_with_its_order() {
     assert_eq!(controlled.map(|method| line(method, true).rows.len()).filter(|rows| *rows > 2).count(), 2);
 }
 
+/// Conserved: the error falls with the step.
 #[test]
 fn errors_fall_down_the_ladder() {
     for line in &list().0.lines {
@@ -81,6 +83,7 @@ fn errors_fall_down_the_ladder() {
     }
 }
 
+/// Conserved: a scheme that shares no step with the reference comes to the same motion.
 #[test]
 fn the_reference_is_closer_than_all_that_is_ranked() {
     let report = &list().0;
@@ -112,6 +115,7 @@ fn nothing_on_the_front_is_beaten() {
     assert_eq!(own[0].setting, Setting::Step(3e-5));
 }
 
+/// Conserved: the same motion by another scheme in short steps.
 #[test]
 fn the_answer_reaches_the_target_when_the_scene_is_run_with_it() {
     let answer = list().0.answer.as_ref().unwrap();

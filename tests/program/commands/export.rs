@@ -85,6 +85,8 @@ fn numbers(line: &str) -> Vec<f64> {
     line.split(',').map(|number| number.parse().unwrap()).collect()
 }
 
+/// Independent reference: displacements and stress of the model at its nodes, summed here over shapes and
+/// coordinates.
 #[test]
 fn a_results_file_becomes_a_table_and_fields() {
     let folder = tempfile::tempdir().unwrap();

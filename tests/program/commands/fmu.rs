@@ -29,6 +29,7 @@ fn refused(library: &str, arguments: &[&str], code: i32) -> Value {
     serde_json::from_str(text.lines().last().unwrap()).unwrap()
 }
 
+/// Conserved: the same bytes each time.
 #[test]
 fn an_fmu_is_packed_of_a_scene_or_of_its_body_file_and_is_the_same_each_time() {
     let folder = tempfile::tempdir().unwrap();

@@ -120,7 +120,8 @@ fn follows_the_point(scene: &str, point: &str, place: [f64; 3]) {
     assert!(std::fs::metadata(file.with_extension("html")).unwrap().len() < 4_000_000);
 }
 
-/// The corner is a node, so that the point is a vertex.
+/// Conserved: displacement and stress of a point are those of the run. The corner is a node, so that the point is a
+/// vertex.
 #[test]
 fn the_page_moves_a_free_body_as_the_run_did() {
     follows_the_point("plate", "P3", [500.0, 25.0, 0.0]);
@@ -162,7 +163,8 @@ fn the_page_opens_on_the_motion_of_a_point_in_units_of_si() {
     }
 }
 
-/// Its nodes may turn, so that a node has six numbers in a shape.
+/// Conserved: displacements of a point are those of the run. Its nodes may turn, so that a node has six numbers in a
+/// shape.
 #[test]
 fn a_body_of_matrices_is_drawn_by_its_nodes_which_move_as_the_run_did() {
     let folder = tempfile::tempdir().unwrap();

@@ -8,6 +8,7 @@ use flexframe::scene::{Body, Scene};
 
 const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false };
 
+/// Closed form: the mass is ρV of a box of steel.
 #[test]
 fn it_names_groups_and_mass_and_runs() {
     let folder = tempfile::tempdir().unwrap();
@@ -60,7 +61,7 @@ fn it_names_groups_and_mass_and_runs() {
     assert_eq!(body.mesh, mesh.canonicalize().unwrap());
 }
 
-/// A bracket of aluminium does not become one of steel.
+/// Closed form: the mass is the sum of ρV. A bracket of aluminium does not become one of steel.
 #[test]
 fn the_materials_of_a_deck_are_those_of_its_scene_and_another_one_is_told() {
     let folder = tempfile::tempdir().unwrap();

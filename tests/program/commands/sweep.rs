@@ -73,6 +73,7 @@ impl Case {
     }
 }
 
+/// Conserved: the numbers of each row are those of a run of its own, to the last bit.
 #[test]
 fn a_blade_at_twenty_speeds_costs_one_reduction_and_each_row_is_that_of_its_own_run() {
     let case = Case::new("[parameters]\n\"initial.angular_velocity[2]\" = { from = 0, to = 1900, count = 20 }");
@@ -96,6 +97,7 @@ fn a_blade_at_twenty_speeds_costs_one_reduction_and_each_row_is_that_of_its_own_
     }
 }
 
+/// Closed form: strain energy goes with the square of the load.
 #[test]
 fn a_grid_has_every_pair_and_a_zip_has_pairs() {
     let lists = "[parameters]\n\"loads[0].amplitude\" = [1.0, 2, 3.0]\n\"time.step\" = [1e-5, 2e-5]";
@@ -156,6 +158,7 @@ fn warnings_of_rows_are_kept_and_failures_name_no_file_that_is_gone() {
     assert_eq!(case.run(false).unwrap().warnings, report.warnings);
 }
 
+/// Conserved: the numbers of the whole sweep to the last bit.
 #[test]
 fn shards_of_a_sweep_merge_into_the_table_of_the_whole() {
     let case = Case::new("[parameters]\n\"time.step\" = [1e-5, 2e-5, 1.0, 4e-5, 5e-5]");
@@ -256,7 +259,7 @@ fn a_table_is_written_as_csv_and_shown() {
     assert_eq!(fs::read_to_string(case.path("sweep.csv")).unwrap(), csv);
 }
 
-/// E four times as large doubles every frequency. A run would not end.
+/// Closed form: E four times as large doubles every frequency. A run would not end.
 #[test]
 fn frequencies_are_swept_without_a_run() {
     let parameters = "[parameters]\n\"body.material.young_modulus\" = [70e3, 280e3]\n\"time.end\" = [1e3]";
@@ -369,7 +372,8 @@ fn what_a_sweep_cannot_be_is_refused() {
     assert!(report.failures[&0].contains("the results have no column points/nose/displacement"), "{report:?}");
 }
 
-/// A load table that is read for each row, and changed between two runs of the sweep.
+/// Closed form: the answer is three times as large under three times the load. A load table that is read for each row
+/// changes between two runs of the sweep.
 #[test]
 fn rows_of_an_old_table_are_computed_again() {
     let case = Case::new("[parameters]\n\"loads[0].history.file\" = [\"a.csv\", \"b.csv\"]");

@@ -9,7 +9,7 @@ const LENGTH: f64 = 400.0;
 const SIDE: f64 = 10.0;
 const STEEL: Material = Material { young_modulus: 210000.0, poisson_ratio: 0.3, density: 7.85e-9 };
 
-// β_k of Euler–Bernoulli beams whose other end is free.
+// Closed form: β_k of Euler–Bernoulli beams whose other end is free.
 const CLAMPED: [f64; 3] = [1.875104069, 4.694091133, 7.854757438];
 const HINGED: [f64; 3] = [3.926602312, 7.068582746, 10.21017612];
 const GUIDED: [f64; 3] = [2.365020372, 5.497803919, 8.639379829];

@@ -51,7 +51,8 @@ fn what_a_scene_has_not_got_is_not_computed() {
     }
 }
 
-/// The rigid body moves as the mean of the one that deforms; the one that does not turn only falls and is pushed.
+/// Closed form: impulse and free fall. The rigid body moves as the mean of the one that deforms; the one that does
+/// not turn only falls and is pushed.
 #[test]
 fn the_centre_of_mass_moves_alike() {
     let impulse = 50.0 * 2.0 * 0.02 / std::f64::consts::PI * std::f64::consts::FRAC_1_SQRT_2;

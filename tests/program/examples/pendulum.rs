@@ -43,6 +43,7 @@ fn measured_period(rows: &[Observation], axis: Vector3<f64>, down: Vector3<f64>)
     (passages[passages.len() - 1] - passages[0]) / (passages.len() - 1) as f64
 }
 
+/// Closed form: the elliptic integral.
 #[test]
 fn the_period_of_a_rigid_pendulum_is_the_elliptic_integral() {
     let scene = scene("pendulum");
@@ -57,6 +58,7 @@ fn period_of_bar(scene: &Scene, model: &Model) -> f64 {
     measured_period(&rows(model, scene), Vector3::y(), Vector3::new(1.0_f64.cos(), 0.0, -1.0_f64.sin()))
 }
 
+/// Closed form: the elliptic integral; the gap of the bar that bends falls as 1/E.
 #[test]
 fn the_period_of_a_meshed_pendulum_is_the_elliptic_integral() {
     let mut scene = scene("bar/pendulum");

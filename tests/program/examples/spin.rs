@@ -48,6 +48,8 @@ fn refusal(name: &str) -> Option<Refusal> {
     model.refusal
 }
 
+/// Independent reference: the critical speed is ω₁ of the plate, 24.5284 Hz by an independent FE code, given with the
+/// project.
 #[test]
 fn the_adviser_says_so_beforehand() {
     for (name, at) in [("plate_axis_2_at_150", 150.0), ("plate_axis_2_at_160", 160.0)] {
@@ -62,9 +64,10 @@ fn the_adviser_says_so_beforehand() {
     assert_eq!(refusal("plate_axis_3_at_300"), None);
 }
 
-/// ω₁² of the plate.
+/// Independent reference: ω₁² of the plate, 24.5284 Hz by an independent FE code, given with the project.
 const FIRST: f64 = 154.117 * 154.117;
 
+/// Closed form: q₁(0) cos σt and q₁(0) cosh σt of the linear equation of a mode in steady spin.
 #[test]
 fn about_axis_2_it_is_stable_at_150_and_not_at_160() {
     // Measured: a mean spin of 149.44, σ = 37.7 rad/s, off by 0.7 %.
@@ -75,6 +78,7 @@ fn about_axis_2_it_is_stable_at_150_and_not_at_160() {
     assert!(square < 0.8 * (FIRST - 160.0 * 160.0) && off < 0.02, "{square} {off}");
 }
 
+/// Closed form: q₁(0) cos σt of the linear equation of a mode in steady spin.
 #[test]
 fn about_axis_3_it_is_stable_at_300() {
     // Measured: σ = 153.1 rad/s, off by 0.25 %. It would be unstable from 737 rad/s on.

@@ -28,7 +28,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 
 #[test]
 fn the_modes_of_the_plate_are_those_of_the_reference() {
-    // lc 10 column of plate_modes.csv: an independent FE code and ARPACK, given with the project.
+    // Independent reference: the lc 10 column of plate_modes.csv by another FE code and ARPACK, given with the project.
     let expected = [24.5284, 86.1726, 93.2686, 117.3730, 206.1779, 359.9787, 387.9791, 536.7789, 545.4214, 582.0931];
     let report = json(&["modes", "examples/plate.toml", "--json"]);
     let found = numbers(&report["body"]["natural_frequencies"]);
@@ -43,6 +43,7 @@ fn the_modes_of_the_plate_are_those_of_the_reference() {
     assert!(found.iter().zip(&more).all(|(a, b)| (a / b - 1.0).abs() < 1e-9));
 }
 
+/// Independent reference: the figures and tables of the paper, and moments of inertia given with the project.
 #[test]
 fn the_paper_is_reproduced_with_every_figure() {
     let folder = tempfile::tempdir().unwrap();
@@ -169,6 +170,7 @@ fn the_page_on_results_has_the_table_of_columns() {
     assert!(page.contains(&(table.clone() + "\n")), "docs/reference/results.md is to have this table:\n{table}");
 }
 
+/// Closed form: the momentum is the impulse of a half sine, 2FT/π.
 #[test]
 fn another_mesh_runs_and_its_file_holds_all_that_is_promised() {
     let folder = tempfile::tempdir().unwrap();
@@ -243,6 +245,7 @@ fn a_scene_flies_as_a_moving_picture() {
     }
 }
 
+/// Conserved: the linear momentum stays m V.
 #[test]
 fn the_tumbling_plate_turns_and_swings() {
     let folder = tempfile::tempdir().unwrap();

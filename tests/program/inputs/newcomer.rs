@@ -193,7 +193,8 @@ fn a_dash_is_standard_output_for_texts_and_refused_for_all_else() {
     assert!(!desk.path("-").exists());
 }
 
-/// A rigid body that spins at 30 rad/s for 10 s: 300 rad, which is 47.75 turns and leaves it 1.593 rad from its first attitude.
+/// Closed form: a rigid body that spins at 30 rad/s for 10 s turns by 300 rad, which is 47.75 turns and leaves it
+/// 1.593 rad from its first attitude.
 #[test]
 fn a_summary_says_by_how_much_the_body_has_turned_in_all() {
     let desk = Desk::new();

@@ -36,7 +36,8 @@ fn ring(young: f64, rest: &str) -> String {
     )
 }
 
-/// A rigid body of mass 1 under a force of 50 Hz, with rows on whole periods, where it stands still.
+/// Conserved: the balance of energy of a rigid body of mass 1 under a force of 50 Hz, with rows on whole periods,
+/// where it stands still.
 #[test]
 fn of_a_shaken_rigid_body() {
     let report = report(
@@ -50,7 +51,7 @@ fn of_a_shaken_rigid_body() {
     assert!(report.balances.energy < 1e-4 && report.warnings.is_empty(), "{:?}", report.warnings);
 }
 
-/// Gravity neither turns a soft body nor bends it: what its modes do is rounding.
+/// Closed form: −gt²/2. Gravity neither turns a soft body nor bends it: what its modes do is rounding.
 #[test]
 fn of_a_body_that_falls() {
     let report = report(&ring(
@@ -65,7 +66,8 @@ fn of_a_body_that_falls() {
     );
 }
 
-/// Steps of 1/ω, by which RK4 takes the energy of an undamped mode times 1 − 1/72 + 1/576, a hundred times.
+/// Closed form: steps of 1/ω, by which RK4 takes the energy of an undamped mode times 1 − 1/72 + 1/576, a hundred
+/// times.
 #[test]
 fn of_a_mode_that_dies_of_the_scheme_there_are_two() {
     let rest = |step: f64| {
@@ -157,8 +159,8 @@ fn of_a_load_that_bends_the_body_without_end_the_run_stops() {
     assert!(message.contains("at time 0.0") && message.contains("means nothing"), "{message}");
 }
 
-/// The balance of energy of the spinning plate closes to 6.3e-7 in steps of 2.5 ms, in which its eighth mode swings by
-/// 0.18 of the largest coordinate beside where it should be.
+/// Regression only: the balance of energy of the spinning plate closes to 6.3e-7 in steps of 2.5 ms, in which its
+/// eighth mode swings by 0.18 of the largest coordinate beside where it should be.
 #[test]
 fn of_modes_that_long_steps_get_wrong_though_the_energy_is_right_there_is_one() {
     let mut scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/accuracy/spin.toml")).unwrap();
@@ -217,6 +219,7 @@ fn clamped(modes: &str, displacement: f64, velocity: f64) -> Scene {
     of(displacement / unit, velocity * model.body.circular_frequencies[0] / unit)
 }
 
+/// Regression only: at 40 % of the length 3 % of the forces are left out.
 #[test]
 fn of_large_modes_it_is_the_order_that_is_left_out() {
     let report = |scene: &Scene| {
@@ -252,7 +255,7 @@ fn far_beyond_it_the_run_stops_and_its_file_can_be_read() {
     assert!(rows > 0 && rows as f64 <= 1.0 + time / 1e-4, "{rows} at {time}");
 }
 
-/// A picture shows what a point of the output does: the shapes that follow, too.
+/// Conserved: a picture shows what a point of the output does: the shapes that follow, too.
 #[test]
 fn the_surface_moves_as_the_points_do() {
     let scene = clamped("large = 1\n", 0.2, 0.0);

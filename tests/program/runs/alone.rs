@@ -89,6 +89,7 @@ fn what_comes_after(folder: &Path, results: &str) {
     done(folder, &["animate", results, "-o", "moving.gif", "--frames", "3"]);
 }
 
+/// Conserved: the same bytes and numbers with and without the mesh.
 #[test]
 fn what_comes_after_a_run_needs_the_results_file_alone() {
     let desk = desk(MESH);
@@ -112,6 +113,7 @@ fn what_comes_after_a_run_needs_the_results_file_alone() {
     }
 }
 
+/// Conserved: points of the volume that are on the surface have the numbers of the surface.
 #[test]
 fn the_whole_volume_comes_from_the_body_file() {
     let desk = desk(MESH);

@@ -35,6 +35,7 @@ fn histories(file: &Path) -> Vec<(String, Vec<u64>)> {
     columns.map(|column| (column.path.to_owned(), bits(column.path))).collect()
 }
 
+/// Conserved: the numbers of each body are those of a run of its own, to the last bit.
 #[test]
 fn each_body_of_a_pair_moves_as_it_would_alone_to_the_last_bit() {
     let folder = tempfile::tempdir().unwrap();

@@ -30,8 +30,8 @@ at = [0.0, 0.0, 0.0]
 axis = [0.0, 0.0, 1.0]
 "#;
 
-/// With ω² = 2 (m g d/J) (cos θ − cos θ₀), the bearing gives m (d ω² + g cos θ) along the rod and m g sin θ (1 − m d²/J)
-/// across it.
+/// Closed form: with ω² = 2 (m g d/J) (cos θ − cos θ₀), the bearing gives m (d ω² + g cos θ) along the rod and m g
+/// sin θ (1 − m d²/J) across it.
 #[test]
 fn the_bearing_of_a_pendulum_gives_what_the_closed_form_has() {
     let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/pendulum.toml")).unwrap();
@@ -49,6 +49,7 @@ fn the_bearing_of_a_pendulum_gives_what_the_closed_form_has() {
     }
 }
 
+/// Closed form: m g.
 #[test]
 fn a_hung_rod_weighs_on_its_bearing_what_it_weighs() {
     let load = "[[loads]]\nkind = \"gravity\"\ndirection = [1.0, 0.0, 0.0]\namplitude = 9.81\n[time]\nend = 0.1\nstep = 1e-3\n";
@@ -58,6 +59,7 @@ fn a_hung_rod_weighs_on_its_bearing_what_it_weighs() {
     assert!(found.moment_body.norm() < 1e-12);
 }
 
+/// Closed form: θ = Ωt, and m d Ω² along the rod.
 #[test]
 fn seventy_two_turns_are_seventy_two_turns() {
     let speed = 72.0 * std::f64::consts::TAU;
@@ -85,6 +87,7 @@ material = { young_modulus = 6.8952e10, poisson_ratio = 0.0, density = 2766.7 }
 
 const END: &str = "box = [[0.0, -0.1, -0.1], [0.0, 0.1, 0.1]]\n";
 
+/// Closed form: statics: the force and its moment about the clamp.
 #[test]
 fn a_clamped_beam_at_rest_has_the_moment_of_its_load() {
     let scene = format!(
@@ -102,8 +105,8 @@ fn a_clamped_beam_at_rest_has_the_moment_of_its_load() {
     assert!((found.moment_body.z + 4.0).abs() < 1e-3, "{found:?}");
 }
 
-/// m Ω² times the distance of the centre of mass, which stretching moves by a ten-millionth, once the bar that was not
-/// stretched at the start has come to rest on its hinge.
+/// Closed form: m Ω² times the distance of the centre of mass, which stretching moves by a ten-millionth, once the
+/// bar that was not stretched at the start has come to rest on its hinge.
 #[test]
 fn the_hinge_of_a_spinning_bar_holds_it_on_its_circle() {
     let scene = format!(
@@ -120,7 +123,7 @@ fn the_hinge_of_a_spinning_bar_holds_it_on_its_circle() {
     }
 }
 
-/// θ(t) is the integral of the given speed; the energy is what the drive has put in.
+/// Closed form: θ(t) is the integral of the given speed; the energy is what the drive has put in.
 #[test]
 fn the_drive_of_a_spin_up_does_the_work_that_the_beam_has() {
     let mut scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spin_up.toml")).unwrap();
@@ -146,7 +149,8 @@ fn the_drive_of_a_spin_up_does_the_work_that_the_beam_has() {
     }
 }
 
-/// On the manifold of large modes, with static shapes beside them: what a hinge leaves free it does not hold.
+/// Closed form: no moment about the axis of a hinge: what it leaves free it does not hold, on the manifold of large
+/// modes with static shapes beside them either.
 #[test]
 fn a_hinge_gives_no_moment_about_its_axis_to_a_rod_that_bends_far() {
     let scene = format!(
@@ -179,8 +183,8 @@ const PROP: &str =
     "[[constraints]]\nkind = \"support\"\nbox = [[8.0, -1.0, -1.0], [8.0, 1.0, 1.0]]\ndirections = [\"y\"]\n";
 const LENGTH: f64 = 8.0;
 
-/// At rest under its weight a propped cantilever has 3/8 of it on the prop, 5/8 on the clamp, and a moment of an eighth of it
-/// times the length there; a modal sum of two modes would not have that.
+/// Closed form: at rest under its weight a propped cantilever has 3/8 of it on the prop, 5/8 on the clamp, and a
+/// moment of an eighth of it times the length there; a modal sum of two modes would not have that.
 #[test]
 fn each_support_of_a_propped_cantilever_has_its_part() {
     let (model, results) = on_supports(&format!(
@@ -199,8 +203,8 @@ fn each_support_of_a_propped_cantilever_has_its_part() {
     assert!((clamp + prop - last("reaction/force")).norm() < 1e-6, "{clamp} {prop}");
 }
 
-/// Two supports that leave the beam to turn about none of its axes, of which each gives half of what a force in the middle
-/// does; and while a force at the quarter shakes it, both together are d'Alembert's at every row.
+/// Closed form: two supports that leave the beam to turn about none of its axes, of which each gives half of what a
+/// force in the middle does; and while a force at the quarter shakes it, both together are d'Alembert's at every row.
 #[test]
 fn two_supports_share_a_force_and_their_sum_is_that_of_dalembert() {
     let rest = |at: f64, history: &str, damping: f64, time: &str| {
