@@ -31,6 +31,10 @@ circles:
 pages:
     .ci/pages
 
+# How many numbers in tests are closed forms, independent references, conserved, or regression only; --check for silent files.
+references *args:
+    .ci/references {{args}}
+
 # The documentation as a book with a search: target/book/index.html.
 book:
     test -x .tools/bin/mdbook || cargo install --quiet --locked --no-default-features --features search --root .tools mdbook@0.5.4

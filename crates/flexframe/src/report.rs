@@ -316,6 +316,7 @@ fn kinds(model: &Model) -> Vec<&'static str> {
 mod tests {
     use super::quantity;
 
+    /// Closed form: numbers rounded by hand.
     #[test]
     fn quantities_have_seven_digits_and_no_rounding_dust() {
         assert_eq!(quantity(0.009349999999998967), "0.00935");
