@@ -90,9 +90,10 @@ nonlinear:
     mkdir -p docs/evidence/nonlinear
     cargo run --release --quiet --package verification --bin nonlinear -- docs/evidence/nonlinear --overwrite
 
-# Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
+# Steps a second of every scheme on one core, steps of chains of bodies, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package dynamics --bench steps
+    cargo bench --quiet --package dynamics --bench chain
     cargo bench --quiet --package flexframe-cli --bench effects
 
 # docs/evidence/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: twenty minutes, `full`: hours, with all peers to their ends; parts: `modes`, `size`, `loop`, `page`).

@@ -1,6 +1,6 @@
 //! Steps a second of every scheme on one core, for the paper's plate with no, ten and forty flexible modes.
 //!
-//! `cargo bench -p frames-rk4 --bench steps`. The plate tumbles at 10 rad/s and vibrates, as in the table of
+//! `cargo bench -p dynamics --bench steps`. The plate tumbles at 10 rad/s and vibrates, as in the table of
 //! `docs/evidence/accuracy.md`; the time is that of the loop alone, the shortest of several runs.
 
 #[allow(dead_code)]
