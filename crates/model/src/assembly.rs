@@ -44,13 +44,13 @@ pub(crate) struct AssembledMesh {
     pub mesh: Arc<Mesh>,
     /// Notes about the parts of the mesh file that were left out.
     pub mesh_notes: Vec<String>,
-    /// The matrices, where they are needed: where answers are known, none are.
+    /// The matrices, where they are needed: where values are known, none are.
     matrices: OnceLock<(FeMatrices, Duration)>,
     /// Checks of matrices from another program.
     pub checks: Option<MatrixChecks>,
     pub support: Support,
     pub drive: Option<Drive>,
-    /// Where answers are kept from run to run.
+    /// Where values are kept from run to run.
     pub store: Option<Store>,
     pub times: BuildTimes,
 }
@@ -73,7 +73,7 @@ impl Builder {
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
         let read = || {
-            // It is read once: the answers that are kept and the mesh are of the same bytes.
+            // It is read once: the values that are kept and the mesh are of the same bytes.
             let file = if given.is_none() { Some(mesh_file(self, scene, &body)?) } else { None };
             let store = Store::open(&self.cache, &body, given, file.as_ref())?;
             let made = || match &file {
@@ -171,7 +171,7 @@ impl AssembledMesh {
         let mut time = Duration::ZERO;
         let MadeOf::Elements(body) = &self.body else { return Err(self.without_elements()) };
         let assembled = timed(&mut time, || matrices(&self.scene, body, &self.mesh))?;
-        self.builder.cache.has_assembled();
+        self.builder.cache.note(|notes| notes.assembled += 1);
         Ok(&self.matrices.get_or_init(|| (FeMatrices::Assembled(assembled), time)).0)
     }
 

@@ -1,18 +1,17 @@
-//! The cache: a folder in which what the finite-element model of a body was asked is kept from run to run.
+//! The cache: a folder in which values of the finite-element side of a body are kept from run to run.
 //!
-//! Every answer is a file of its own ([`body_file`]), `PROGRAM/MESH/QUESTION.h5`, named by hashes of all that it follows from:
-//! the program and the machine, the bytes of the mesh file, and the question with the material, the support and what else it
-//! is about. A file is never changed: it appears whole, and is checked when it is read. So any number of programs may use the
-//! folder at once, and what has changed is not found.
+//! Each is a file of its own ([`body_file`]), `PROGRAM/MESH/KEY.h5`, named by hashes of all that it follows from: the program
+//! and the machine, the bytes of the mesh file, and what the value is, with the material, the support and what else it is made
+//! of. A file is never changed: it appears whole, and is checked when it is read. So any number of programs may use the folder
+//! at once, and what has changed is not found.
 
-pub(crate) mod answer;
-pub(crate) mod answers;
+pub(crate) mod kept;
 pub(crate) mod store;
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -27,7 +26,7 @@ const NAME: &str = "flexframe";
 const PROGRAM_DIGITS: usize = 16;
 const MESH_DIGITS: usize = 64;
 
-/// Where answers are kept from run to run; nowhere by default. Clones share what [`Cache::notes`] counts.
+/// Where values are kept from run to run; nowhere by default. Clones are the same cache.
 #[derive(Debug, Clone, Default)]
 pub struct Cache(Arc<Inner>);
 
@@ -39,16 +38,13 @@ struct Inner {
     program: Option<PathBuf>,
     /// Makes a file. A program that has no cache, such as the library in FMUs, does without what makes files, which is HDF5.
     create: Option<CreateFile>,
-    read: AtomicUsize,
-    computed: AtomicUsize,
-    assembled: AtomicUsize,
     /// True if nothing can be written.
     is_closed: AtomicBool,
-    /// Warnings, also of the caches made by [`Cache::elsewhere`].
-    warnings: Arc<Mutex<Vec<String>>>,
     /// True if a thread computes.
     computing: Mutex<bool>,
     computed_all: Condvar,
+    /// Also of the caches made by [`Cache::elsewhere`].
+    notes: Arc<Mutex<CacheNotes>>,
 }
 
 /// [`Writer::create`].
@@ -57,9 +53,9 @@ type CreateFile = fn(&Path, BTreeMap<String, String>, &[Declared]) -> Result<Wri
 /// Counts of the use of a cache.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CacheNotes {
-    /// Answers that were read.
+    /// Values that were read.
     pub read: usize,
-    /// Answers that were computed.
+    /// Values that were computed.
     pub computed: usize,
     /// How often matrices were assembled.
     pub assembled: usize,
@@ -75,30 +71,22 @@ impl Cache {
 
     /// A cache in a folder, which is made if it does not exist, with a limit of its bytes.
     pub fn new(folder: impl Into<PathBuf>, limit: u64) -> Self {
-        let create: CreateFile = |path, texts, datasets| Writer::create(path, texts, datasets);
-        Self(Arc::new(Inner { folder: Some(folder.into()), limit, create: Some(create), ..Inner::default() }))
+        Self::none().elsewhere(folder, limit)
     }
 
-    /// One in another folder for the same user: it says what there is to say through this one.
+    /// One in another folder for the same user and program: its notes are those of this one.
     pub fn elsewhere(&self, folder: impl Into<PathBuf>, limit: u64) -> Self {
-        let Self(mut inner) = Self::new(folder, limit);
-        if let Some(inner) = Arc::get_mut(&mut inner) {
-            inner.warnings = self.0.warnings.clone();
-            inner.program = self.0.program.clone();
-        }
-        Self(inner)
+        let (program, notes) = (self.0.program.clone(), self.0.notes.clone());
+        let create: CreateFile = |path, texts, datasets| Writer::create(path, texts, datasets);
+        let folder = Some(folder.into());
+        Self(Arc::new(Inner { folder, limit, program, notes, create: Some(create), ..Inner::default() }))
     }
 
     /// The same for the user of a program that is in another file than the one that runs: in a library of Python.
-    pub fn of_program(self, file: impl Into<PathBuf>) -> Self {
-        let inner = &*self.0;
-        Self(Arc::new(Inner {
-            folder: inner.folder.clone(),
-            limit: inner.limit,
-            program: Some(file.into()),
-            create: inner.create,
-            ..Inner::default()
-        }))
+    pub fn of_program(&self, file: impl Into<PathBuf>) -> Self {
+        let Inner { folder, limit, create, notes, .. } = &*self.0;
+        let (folder, notes, program) = (folder.clone(), notes.clone(), Some(file.into()));
+        Self(Arc::new(Inner { folder, limit: *limit, program, create: *create, notes, ..Inner::default() }))
     }
 
     /// The user's: the folder `FLEXFRAME_CACHE`, or `flexframe` in `XDG_CACHE_HOME` or in `~/.cache`, with 4 GiB at most. None
@@ -128,12 +116,12 @@ impl Cache {
 
     /// Counts of its use up to now.
     pub fn notes(&self) -> CacheNotes {
-        CacheNotes {
-            read: self.0.read.load(Ordering::Relaxed),
-            computed: self.0.computed.load(Ordering::Relaxed),
-            assembled: self.0.assembled.load(Ordering::Relaxed),
-            warnings: self.0.warnings.lock().unwrap_or_else(PoisonError::into_inner).clone(),
-        }
+        self.0.notes.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Changes the notes.
+    pub(crate) fn note(&self, change: impl FnOnce(&mut CacheNotes)) {
+        change(&mut self.0.notes.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
     /// The folder of a mesh, by the hash of its file; made if it does not exist.
@@ -148,24 +136,13 @@ impl Cache {
         }
     }
 
-    pub(crate) fn has_read(&self) {
-        self.0.read.fetch_add(1, Ordering::Relaxed);
-    }
-
-    pub(crate) fn has_computed(&self) {
-        self.0.computed.fetch_add(1, Ordering::Relaxed);
-    }
-
-    pub(crate) fn has_assembled(&self) {
-        self.0.assembled.fetch_add(1, Ordering::Relaxed);
-    }
-
     /// Says once what is wrong.
     pub(crate) fn warn(&self, warning: String) {
-        let mut warnings = self.0.warnings.lock().unwrap_or_else(PoisonError::into_inner);
-        if !warnings.contains(&warning) {
-            warnings.push(warning);
-        }
+        self.note(|notes| {
+            if !notes.warnings.contains(&warning) {
+                notes.warnings.push(warning);
+            }
+        });
     }
 
     /// Writes no more, where the folder cannot be written.
@@ -219,13 +196,6 @@ impl Drop for Computing {
     }
 }
 
-/// The same folder and limit.
-impl PartialEq for Cache {
-    fn eq(&self, other: &Self) -> bool {
-        (&self.0.folder, self.0.limit) == (&other.0.folder, other.0.limit)
-    }
-}
-
 /// Says that a file was used now. Without the right to it, it will look older than it is.
 pub(crate) fn touch(path: &Path) {
     let _ = File::options().append(true).open(path).and_then(|file| file.set_modified(SystemTime::now()));
@@ -259,7 +229,7 @@ fn entries(folder: &Path) -> impl Iterator<Item = fs::DirEntry> {
     fs::read_dir(folder).into_iter().flatten().flatten()
 }
 
-/// The program and the machine, whose answers are the same to the last bit: the version, the size and the time of the file
+/// The program and the machine, whose results are the same to the last bit: the version, the size and the time of the file
 /// of the program, and what its processor can do.
 fn program(file: Option<&Path>) -> String {
     let file = file.map_or_else(std::env::current_exe, |file| Ok(file.to_owned()));

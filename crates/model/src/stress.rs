@@ -43,7 +43,12 @@ pub(crate) struct Stress {
 
 impl Stress {
     /// By the static responses to the loads and to the drive.
-    pub fn new(model: &MeshModel<'_>, statics: &Statics, modes: &Modes, body: &ModalModel) -> Result<Self, BuildError> {
+    pub fn new(
+        model: &MeshModel<'_, '_>,
+        statics: &Statics,
+        modes: &Modes,
+        body: &ModalModel,
+    ) -> Result<Self, BuildError> {
         if !physics::may_stress(model.scene) || modes.shapes.ncols() == 0 {
             return Ok(Self::default());
         }
@@ -58,7 +63,7 @@ impl Stress {
                     continue;
                 }
                 let (of_unit, terms) = if load.is_base_acceleration {
-                    (model.solver.stress_stiffness(response, modes, DRIVE, &[])?, DRIVE)
+                    (model.structure.stress_stiffness(response, modes, DRIVE, &[])?, DRIVE)
                 } else {
                     of_load(model, response, modes, size * load.history.largest(model.scene.time.end))?
                 };
@@ -78,7 +83,7 @@ impl Stress {
         }
         if let Some(response) = &statics.of_drive {
             names.push((StressSource::Drive, "the acceleration of the drive".to_owned()));
-            found.of_drive = model.solver.stress_stiffness(response.as_ref(), modes, DRIVE, &[])?.pop();
+            found.of_drive = model.structure.stress_stiffness(response.as_ref(), modes, DRIVE, &[])?.pop();
             shown.extend(found.of_drive.clone());
         }
         found.decided(model, body, &names, &shown)
@@ -87,7 +92,7 @@ impl Stress {
     /// Without what the scene leaves open and does not call for.
     fn decided(
         mut self,
-        model: &MeshModel<'_>,
+        model: &MeshModel<'_, '_>,
         body: &ModalModel,
         names: &[(StressSource, String)],
         stiffness: &[Mat<f64>],
@@ -123,13 +128,13 @@ impl Stress {
 /// The stiffness by each static response to a load of amplitude 1 that is `largest` at most: the initial stress, and the
 /// initial displacement where it is small.
 fn of_load(
-    model: &MeshModel<'_>,
+    model: &MeshModel<'_, '_>,
     responses: MatRef<'_, f64>,
     modes: &Modes,
     largest: f64,
 ) -> Result<(Vec<Mat<f64>>, GeometricTerms), BuildError> {
-    let all = model.solver.stress_stiffness(responses, modes, GeometricTerms::All, &[])?;
-    let stress = model.solver.stress_stiffness(responses, modes, GeometricTerms::InitialStress, &[])?;
+    let all = model.structure.stress_stiffness(responses, modes, GeometricTerms::All, &[])?;
+    let stress = model.structure.stress_stiffness(responses, modes, GeometricTerms::InitialStress, &[])?;
     let is_small = all.iter().zip(&stress).all(|(all, stress)| {
         (0..all.ncols()).all(|l| {
             (0..=l).all(|k| {
@@ -143,13 +148,13 @@ fn of_load(
 
 /// The steady dead loads over those at which the body buckles, on the whole mesh: the modes that are kept do not hold the
 /// shape in which it does.
-fn buckling_ratio(model: &MeshModel<'_>, statics: &Statics, modes: &Modes) -> Result<f64, BuildError> {
+fn buckling_ratio(model: &MeshModel<'_, '_>, statics: &Statics, modes: &Modes) -> Result<f64, BuildError> {
     let Some((response, size)) = statics.to_steady_loads(model).filter(|(response, _)| response.norm_max() > 0.0)
     else {
         return Ok(0.0);
     };
     let ratio = |accuracy| -> Result<f64, BuildError> {
-        Ok(-size * model.solver.lowest_buckling_ratio(response.as_ref(), modes, accuracy)?)
+        Ok(-size * model.structure.lowest_buckling_ratio(response.as_ref(), modes, accuracy)?)
     };
     let estimate = ratio(BucklingAccuracy::Estimate)?;
     if estimate < FAR { Ok(estimate) } else { ratio(BucklingAccuracy::Full) }

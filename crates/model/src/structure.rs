@@ -1,102 +1,53 @@
-//! Questions to the finite-element model of a body.
+//! The finite-element side of a body: all that depends on its mesh and takes long.
+//!
+//! Each value follows from the body, its support and what it is asked with, and is kept under a key of these. So matrices are
+//! assembled and factored only where a value is not known. The functions of `modal` and `fem_tet10` with these names say more.
 
-pub(crate) mod solved;
+pub(crate) mod kept;
 pub(crate) mod statics;
 
+use std::cell::{Cell, OnceCell, RefCell};
+use std::path::{Path, PathBuf};
+
 use dynamics::DrivenMotion;
-use faer::{Mat, MatRef};
-use fem_tet10::{GeometricTerms, StressSites};
-use modal::{BucklingAccuracy, Modes, ReducedBody, SecondOrderShapes, StaticAccuracy};
+use faer::{ColRef, Mat, MatRef, Scale};
+use fem_tet10::{
+    AssemblyError, GeometricTerms, StressRecovery, StressSites, extended_geometric_stiffness,
+    geometric_stiffness_product, second_order_energies, second_order_forces,
+};
+use keys::{Key, Keyed};
+use modal::{
+    BucklingAccuracy, ModalError, Modes, ReducedBody, Solver, StaticAccuracy, acceleration_fields, centrifugal_fields,
+    mass_left_out, turning_field,
+};
 use nalgebra::Vector3;
+use slepc::write_folder;
 
-use crate::error::BuildError;
-use crate::load::mesh_load::UnitWeight;
-use crate::progress::BuildProgress;
+use crate::assembly::{AssembledMesh, MadeOf};
+use crate::body::origin::Origin;
+use crate::cache::Computing;
+use crate::cache::kept::Keep;
+use crate::cache::store::Store;
+use crate::error::{BuildError, modal, too_many_modes};
+use crate::mesh::fe_matrices::FeMatrices;
+use crate::mesh::given::{MatrixChecks, refuse_matrix};
+use crate::progress::{BuildProgress, BuildWork};
+use crate::structure::kept::{Basis, Extended, Found, OwnSecondOrder, SecondOrder, StaticResponses};
 
-/// The finite-element model of a body: all that depends on its mesh and takes long. The functions of `modal` and `fem_tet10`
-/// with these names say more.
-pub(crate) trait Structure {
-    /// The rigid and the `flexible` lowest other modes.
-    fn modes(&self, flexible: usize, progress: &mut dyn FnMut(BuildProgress)) -> Result<Modes, BuildError>;
-
-    /// Forces of a unit acceleration of the whole body.
-    fn unit_weight(&self) -> Result<UnitWeight, BuildError>;
-
-    /// M times fields (3n×k).
-    fn mass_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
-
-    /// K times fields (3n×k).
-    fn stiffness_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
-
-    /// Static responses to forces (3n×k), from the natural ones of the modes on.
-    fn static_response(
-        &self,
-        modes: &Modes,
-        forces: MatRef<'_, f64>,
-        accuracy: StaticAccuracy,
-    ) -> Result<Mat<f64>, BuildError>;
-
-    /// Static responses to the forces of loads (3n×k), to the centrifugal field of each pair of spins, and to the inertia of a
-    /// driven motion, side by side, from the natural ones of the modes on.
-    fn static_responses(&self, modes: &Modes, forces: &StaticForces) -> Result<Mat<f64>, BuildError>;
-
-    /// The modes, with shapes appended that make them span static responses (3n×k).
-    fn with_static_shapes(&self, modes: Modes, responses: MatRef<'_, f64>) -> Result<Modes, BuildError>;
-
-    /// The shapes that follow large modes, by the forces of second order and the static responses to them.
-    fn second_order_shapes(
-        &self,
-        modes: Modes,
-        large: &[usize],
-        forces: MatRef<'_, f64>,
-        responses: MatRef<'_, f64>,
-    ) -> Result<SecondOrderShapes, BuildError>;
-
-    /// The body in the coordinates of its modes.
-    fn reduced_body(&self, modes: &Modes) -> Result<ReducedBody, BuildError>;
-
-    /// Remainder of each of the static responses (6) beside the modes: √(uᵀMu − Σ(Φ_kᵀMu)²).
-    fn remainders(&self, modes: &Modes, responses: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError>;
-
-    /// Stiffness in the modes (nf×nf) by the stress of each displacement field (3n×k). `known` are those in the first of the
-    /// modes, one for each field, or none.
-    fn stress_stiffness(
-        &self,
-        displacements: MatRef<'_, f64>,
-        modes: &Modes,
-        terms: GeometricTerms,
-        known: &[Mat<f64>],
-    ) -> Result<Vec<Mat<f64>>, BuildError>;
-
-    /// The forces of second order (3n×p) of pairs of fields (3n×k).
-    fn second_order_forces(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError>;
-
-    /// The energies of second order of quadruples of fields (3n×k).
-    fn second_order_energies(&self, fields: MatRef<'_, f64>, quadruples: &[[usize; 4]])
-    -> Result<Vec<f64>, BuildError>;
-
-    /// Where nodal stress is known.
-    fn stress_sites(&self) -> Result<&StressSites, BuildError>;
-
-    /// The stress (6m×k) of displacement fields (3n×k).
-    fn nodal_stress(&self, displacements: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
-
-    /// The stress of second order (6m×p) of pairs of fields (3n×k).
-    fn second_order_nodal_stress(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError>;
-
-    /// The lowest buckling ratio by the stress of a static response (3n×1), from the modes on.
-    fn lowest_buckling_ratio(
-        &self,
-        response: MatRef<'_, f64>,
-        modes: &Modes,
-        accuracy: BucklingAccuracy,
-    ) -> Result<f64, BuildError>;
+/// The finite-element side of a body.
+pub(crate) struct Structure<'a> {
+    assembled: &'a AssembledMesh,
+    solver: OnceCell<Solver<'a>>,
+    recovery: OnceCell<StressRecovery<'a>>,
+    element_passes: Cell<usize>,
+    /// Held from the first value that has to be computed on.
+    computing: RefCell<Option<Computing>>,
 }
 
-/// Forces that static responses are asked for.
-pub(crate) struct StaticForces {
+/// Forces that static responses are asked for, side by side.
+pub(crate) struct StaticForces<'a> {
     /// Forces of the loads (3n×k).
-    pub of_loads: Mat<f64>,
+    pub of_loads: MatRef<'a, f64>,
     /// True if the centrifugal fields of the pairs of spins follow.
     pub spin: bool,
     /// The driven motion whose inertia comes last.
@@ -105,9 +56,483 @@ pub(crate) struct StaticForces {
     pub origin: Vector3<f64>,
 }
 
-impl StaticForces {
+impl StaticForces<'_> {
     /// How many there are.
     pub fn count(&self) -> usize {
         self.of_loads.ncols() + if self.spin { 6 } else { 0 } + usize::from(self.drive.is_some())
     }
+}
+
+/// The key of a value; none where nothing is kept.
+struct Asked(Option<Key>);
+
+impl Asked {
+    fn with<T: Keyed + ?Sized>(self, name: &str, part: &T) -> Self {
+        Self(self.0.map(|key| key.with(name, part)))
+    }
+
+    /// With modes; the rigid ones follow from the body and its support.
+    fn with_modes(self, modes: &Modes) -> Self {
+        self.with("eigenvalues", &modes.eigenvalues).with("modes", &modes.shapes)
+    }
+
+    /// With the natural ones of some modes.
+    fn with_natural(self, modes: &Modes) -> Self {
+        let natural = modes.natural();
+        self.with("eigenvalues", &modes.eigenvalues[..natural]).with("modes", &modes.shapes.get(.., ..natural))
+    }
+}
+
+impl<'a> Structure<'a> {
+    /// Errors of the matrices come at once where nothing is kept.
+    pub fn new(assembled: &'a AssembledMesh) -> Result<Self, BuildError> {
+        let structure = Self {
+            assembled,
+            solver: OnceCell::new(),
+            recovery: OnceCell::new(),
+            element_passes: Cell::default(),
+            computing: RefCell::default(),
+        };
+        if assembled.store.is_none() {
+            structure.solver()?;
+        }
+        Ok(structure)
+    }
+
+    /// The key of a value of the body whatever holds it.
+    fn of_body(&self, what: &str) -> Asked {
+        Asked(self.assembled.store.as_ref().map(|store| store.key().of(what, 1)))
+    }
+
+    /// The key of a value of the body with its support.
+    fn of_held_body(&self, what: &str) -> Asked {
+        self.of_body(what).with("support", &self.assembled.support)
+    }
+
+    /// The value that was asked for: it is read where it is kept, and else computed and kept.
+    fn ask<T: Keep>(
+        &self,
+        Asked(key): Asked,
+        known: T::Known<'_>,
+        compute: impl FnOnce() -> Result<T, BuildError>,
+    ) -> Result<T, BuildError> {
+        let (Some(store), Some(key)) = (&self.assembled.store, key.map(Key::finish)) else { return compute() };
+        if let Some(value) = store.recall(&key, known)? {
+            return Ok(value);
+        }
+        if self.computing.borrow().is_none() {
+            *self.computing.borrow_mut() = Some(self.assembled.builder.cache.computing());
+            // Another thread may have computed it in the meantime.
+            if let Some(value) = store.recall(&key, known)? {
+                return Ok(value);
+            }
+        }
+        let value = compute()?;
+        store.keep(&key, &value);
+        Ok(value)
+    }
+
+    fn ask_number(&self, asked: Asked, compute: impl FnOnce() -> Result<f64, BuildError>) -> Result<f64, BuildError> {
+        Ok(self.ask(asked, 1, || Ok(vec![compute()?]))?.first().copied().unwrap_or_default())
+    }
+
+    fn solver(&self) -> Result<&Solver<'a>, BuildError> {
+        if let Some(found) = self.solver.get() {
+            return Ok(found);
+        }
+        let AssembledMesh { mesh, support, builder, .. } = self.assembled;
+        let solver = self.matrices()?.solver(mesh.positions(), support).map_err(|error| self.refuse(error))?;
+        let edge_ends = if mesh.has_elements() { mesh.edge_ends() } else { None };
+        let solver = match edge_ends {
+            Some(edge_ends) => solver.with_edge_ends(edge_ends).map_err(|error| self.refuse(error))?,
+            None => solver,
+        };
+        let solver = match &builder.solver {
+            Some(slepc) => solver.with_engine(slepc.engine()),
+            None => solver,
+        };
+        Ok(self.solver.get_or_init(|| solver))
+    }
+
+    fn matrices(&self) -> Result<&'a FeMatrices, BuildError> {
+        self.assembled.matrices()
+    }
+
+    fn recovery(&self) -> Result<&StressRecovery<'a>, BuildError> {
+        if let Some(found) = self.recovery.get() {
+            return Ok(found);
+        }
+        let recovery = StressRecovery::new(&self.assembled.mesh, self.assembled.materials()?)?;
+        Ok(self.recovery.get_or_init(|| recovery))
+    }
+
+    fn pass_elements(&self) {
+        self.element_passes.set(self.element_passes.get() + 1);
+    }
+
+    /// Error of the modal analysis, in words of the files where the matrices come from files.
+    fn refuse(&self, error: ModalError) -> BuildError {
+        let AssembledMesh { scene, body, mesh, .. } = self.assembled;
+        match body {
+            MadeOf::Elements(_) => modal(scene)(error),
+            MadeOf::Files(files) => refuse_matrix(scene, files, mesh, error),
+        }
+    }
+
+    /// Static responses to forces (3n×k), from the natural ones of the modes on.
+    fn solve(&self, modes: &Modes, forces: MatRef<'_, f64>, accuracy: StaticAccuracy) -> Result<Mat<f64>, BuildError> {
+        self.solver()?.static_response_from(modes, forces, accuracy).map_err(|error| self.modal(error))
+    }
+
+    /// The body in the coordinates of its modes.
+    fn reduced(&self, modes: &Modes) -> Result<ReducedBody, BuildError> {
+        let positions = self.assembled.mesh.positions();
+        ReducedBody::of_mass(modes, self.solver()?.mass(), positions).map_err(|error| self.modal(error))
+    }
+
+    fn modal(&self, error: ModalError) -> BuildError {
+        modal(&self.assembled.scene)(error)
+    }
+
+    fn rows(&self) -> usize {
+        self.assembled.dofs() * self.assembled.mesh.positions().len()
+    }
+
+    /// Hash of the support, in hexadecimal digits.
+    pub fn support_hash(&self) -> String {
+        self.assembled.support.key(Key::new()).finish().to_string()
+    }
+
+    /// Work of the mesh's size that was done up to now.
+    pub fn work(&self) -> BuildWork {
+        let [blocks, columns] = self.solver.get().map_or([0; 2], Solver::solved);
+        BuildWork { blocks, columns, element_passes: self.element_passes.get() }
+    }
+
+    /// Number of flexible modes that there are.
+    pub fn available(&self) -> Result<usize, BuildError> {
+        Ok(self.solver()?.available())
+    }
+
+    /// Writes the problem of a number of modes into a folder, to be solved elsewhere on a number of ranks. Returns the files.
+    pub fn write_problem(&self, modes: usize, folder: &Path, ranks: usize) -> Result<Vec<PathBuf>, BuildError> {
+        let (scene, solver) = (&self.assembled.scene, self.solver()?);
+        let available = solver.available();
+        if modes > available {
+            return Err(too_many_modes(scene, ModalError::TooManyModes { requested: modes, available }));
+        }
+        let problem = solver.held_problem().map_err(|error| self.refuse(error))?;
+        write_folder(&problem, modes, folder, ranks, &scene.path)
+            .map_err(|source| self.modal(ModalError::Engine(source.into())))
+    }
+
+    /// Refuses a body file that was made for other modes or another support: these are what takes long.
+    fn refuse_other_body(&self, flexible: usize) -> Result<(), BuildError> {
+        let Some(file) = self.assembled.store.as_ref().and_then(Store::given) else { return Ok(()) };
+        let origin = Origin::read(file)?;
+        let help = "give the scene what the file was made for, or make the file again: flexframe reduce SCENE -o FILE, from a \
+                    scene without `file`";
+        let (found, expected) = if origin.support != self.support_hash() {
+            (
+                "a body file of a body that is held otherwise".to_owned(),
+                "one with the constraints of the scene".to_owned(),
+            )
+        } else {
+            (format!("a body file with {} modes", origin.modes), format!("one with {flexible}, as [modes] asks"))
+        };
+        Err(self.assembled.scene.refuse("body.file", found, expected, help).into())
+    }
+}
+
+/// The values.
+impl Structure<'_> {
+    /// The rigid and the `flexible` lowest other modes, the body in them, and what else is known once the matrices are there.
+    pub fn modes(&self, flexible: usize, progress: &mut dyn FnMut(BuildProgress)) -> Result<Found, BuildError> {
+        let AssembledMesh { support, mesh, body, .. } = self.assembled;
+        let weights = match body {
+            MadeOf::Elements(_) => [mesh.positions().len(), 1],
+            MadeOf::Files(_) => [self.rows(), 3],
+        };
+        let asked = self.of_held_body("modes").with("flexible", &flexible);
+        self.ask(asked, (self.rows(), flexible, support.motion, weights), || {
+            self.refuse_other_body(flexible)?;
+            if self.solver.get().is_none() {
+                progress(BuildProgress::Assembly);
+            }
+            let solver = self.solver()?;
+            let modes = solver.modes(flexible, |p| progress(BuildProgress::Modes(p))).map_err(|error| match error {
+                ModalError::TooManyModes { .. } => too_many_modes(&self.assembled.scene, error),
+                other => self.refuse(other),
+            })?;
+            let weights = match body {
+                MadeOf::Elements(_) => {
+                    let masses = solver.mass().row_sums();
+                    MatRef::from_column_major_slice(&masses, masses.len(), 1).to_owned()
+                }
+                MadeOf::Files(_) => acceleration_fields(solver.mass()),
+            };
+            let (body, matrix_bytes) = (self.reduced(&modes)?, self.matrices()?.bytes());
+            Ok(Found { modes, body, weights, available: solver.available(), matrix_bytes })
+        })
+    }
+
+    /// Checks of the matrices, of a body of matrices from another program, with the part of the mass that the motion in these
+    /// modes leaves out of the mass.
+    pub fn checks(&self, modes: &Modes) -> Result<Option<MatrixChecks>, BuildError> {
+        let Some(checks) = self.assembled.checks else { return Ok(None) };
+        if checks.is_scalar_mass || modes.shapes.ncols() == 0 {
+            return Ok(Some(checks));
+        }
+        let asked = self.of_body("mass left out").with_modes(modes);
+        let left_out = self.ask_number(asked, || Ok(mass_left_out(self.solver()?.mass(), modes)))?;
+        Ok(Some(MatrixChecks { left_out, ..checks }))
+    }
+
+    /// Static responses to forces, from the natural ones of the modes on (3n×count).
+    pub fn static_responses(&self, modes: &Modes, forces: &StaticForces<'_>) -> Result<StaticResponses, BuildError> {
+        let StaticForces { of_loads, spin, drive, origin } = forces;
+        let asked = self.of_held_body("static responses").with_natural(modes);
+        let asked = asked.with("loads", of_loads).with("spin", spin).with("drive", drive).with("origin", origin);
+        let spins = if *spin { 6 } else { 0 };
+        self.ask(asked, [self.rows(), forces.count(), spins], || {
+            let solver = self.solver()?;
+            let solve = |forces| self.solve(modes, forces, StaticAccuracy::Full);
+            if forces.count() == of_loads.ncols() {
+                return Ok(StaticResponses { fields: solve(*of_loads)?, remainders: Vec::new() });
+            }
+            let (mass, positions) = (solver.mass(), self.assembled.mesh.positions());
+            let mut all = Mat::zeros(of_loads.nrows(), forces.count());
+            all.as_mut().subcols_mut(0, of_loads.ncols()).copy_from(of_loads);
+            let mut next = of_loads.ncols();
+            let mut add = |fields: Mat<f64>| {
+                all.as_mut().subcols_mut(next, fields.ncols()).copy_from(&fields);
+                next += fields.ncols();
+            };
+            if *spin {
+                add(centrifugal_fields(mass, positions, origin).map_err(|error| self.modal(error))?);
+            }
+            match drive {
+                Some(DrivenMotion::Slide { direction }) => {
+                    add(acceleration_fields(mass) * Mat::from_fn(3, 1, |i, _| direction[i]));
+                }
+                Some(DrivenMotion::Turn { axis }) => {
+                    add(turning_field(mass, positions, origin, axis).map_err(|error| self.modal(error))?);
+                }
+                None => {}
+            }
+            let fields = solve(all.as_ref())?;
+            let momenta = mass.product(fields.subcols(of_loads.ncols(), spins));
+            let natural = modes.shapes.get(.., ..modes.natural());
+            let remainder = |(u, mu): (ColRef<'_, f64>, ColRef<'_, f64>)| {
+                let carried: f64 = natural.col_iter().map(|shape| (shape.transpose() * mu).powi(2)).sum();
+                (u.transpose() * mu - carried).max(0.0).sqrt()
+            };
+            let of_spin = fields.subcols(of_loads.ncols(), spins);
+            let remainders = of_spin.col_iter().zip(momenta.as_ref().col_iter()).map(remainder).collect();
+            Ok(StaticResponses { fields, remainders })
+        })
+    }
+
+    /// Natural modes with shapes after them that make them span static responses (3n×k each), and the body in these.
+    pub fn basis(&self, natural: &Modes, responses: &[&Mat<f64>]) -> Result<Basis, BuildError> {
+        let asked = self.of_held_body("basis").with_modes(natural).with("lists", &responses.len());
+        let asked = responses.iter().fold(asked, |asked, responses| asked.with("responses", *responses));
+        self.ask(asked, natural, || {
+            let modes = responses.iter().try_fold(natural.clone(), |modes, responses| {
+                self.solver()?.with_static_shapes(modes, responses.as_ref()).map_err(|error| self.modal(error))
+            })?;
+            Ok(Basis { body: self.reduced(&modes)?, modes })
+        })
+    }
+
+    /// The modes with motions of the support after them, which the rest of the body follows, and the body in these.
+    pub fn with_motions(&self, modes: &Modes, motions: MatRef<'_, f64>) -> Result<Basis, BuildError> {
+        let asked = self.of_held_body("motions of supports").with_modes(modes).with("natural", &modes.natural());
+        self.ask(asked.with("motions", &motions), modes, || {
+            let forces = self.matrices()?.stiffness() * motions * Scale(-1.0);
+            let motions = motions + self.solve(modes, forces.as_ref(), StaticAccuracy::Full)?;
+            let (size, shapes) = (modes.shapes.nrows(), modes.shapes.ncols());
+            let mut extended = modes.clone();
+            // They have no frequency; the equations of motion do not meet them.
+            extended.eigenvalues.resize(shapes + motions.ncols(), 1.0);
+            extended.shapes = Mat::from_fn(size, shapes + motions.ncols(), |i, j| {
+                if j < shapes { modes.shapes[(i, j)] } else { motions[(i, j - shapes)] }
+            });
+            Ok(Basis { body: self.reduced(&extended)?, modes: extended })
+        })
+    }
+
+    /// The second order of some modes, each with itself: forces, responses and energy, and beside them for each
+    /// `φᵀMu` and `uᵀMu` of its response u.
+    pub fn own_second_order(&self, modes: &Modes, list: &[usize]) -> Result<OwnSecondOrder, BuildError> {
+        let asked = self.of_held_body("own second order").with_natural(modes).with("list", list);
+        self.ask(asked, [self.rows(), list.len()], || {
+            let (shapes, places) = (shapes_of(modes, list), 0..list.len());
+            let pairs: Vec<[usize; 2]> = places.clone().map(|j| [j; 2]).collect();
+            let quadruples: Vec<[usize; 4]> = places.map(|j| [j; 4]).collect();
+            let second = self.find_second_order(modes, shapes.as_ref(), &pairs, &quadruples)?;
+            let momenta = self.solver()?.mass().product(second.responses.as_ref());
+            let along = |fields: &Mat<f64>| {
+                fields
+                    .col_iter()
+                    .zip(momenta.col_iter())
+                    .map(|(field, momentum)| field.transpose() * momentum)
+                    .collect()
+            };
+            Ok(OwnSecondOrder { along: along(&shapes), inertia: along(&second.responses), second })
+        })
+    }
+
+    /// The energies of second order of quadruples of some modes, and the forces of pairs of them with the static responses.
+    /// Pairs and quadruples are numbered within the list.
+    pub fn second_order(
+        &self,
+        modes: &Modes,
+        list: &[usize],
+        pairs: &[[usize; 2]],
+        quadruples: &[[usize; 4]],
+    ) -> Result<SecondOrder, BuildError> {
+        let asked = self.of_held_body("second order").with_natural(modes).with("list", list).with("pairs", pairs);
+        self.ask(asked.with("quadruples", quadruples), [self.rows(), pairs.len(), quadruples.len()], || {
+            self.find_second_order(modes, shapes_of(modes, list).as_ref(), pairs, quadruples)
+        })
+    }
+
+    fn find_second_order(
+        &self,
+        modes: &Modes,
+        shapes: MatRef<'_, f64>,
+        pairs: &[[usize; 2]],
+        quadruples: &[[usize; 4]],
+    ) -> Result<SecondOrder, BuildError> {
+        let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
+        self.pass_elements();
+        let energies = second_order_energies(mesh, materials, shapes, quadruples)?;
+        self.pass_elements();
+        let forces = second_order_forces(mesh, materials, shapes, pairs)?;
+        let responses = self.solve(modes, forces.as_ref(), StaticAccuracy::Shapes)?;
+        Ok(SecondOrder { forces, responses, energies })
+    }
+
+    /// The shapes that follow large modes, by the forces of second order and the static responses to them.
+    pub fn second_order_shapes(
+        &self,
+        modes: &Modes,
+        large: &[usize],
+        forces: MatRef<'_, f64>,
+        responses: MatRef<'_, f64>,
+    ) -> Result<Extended, BuildError> {
+        // The last bits of the responses depend on those that were computed with them.
+        let asked = self.of_held_body("shapes of second order").with_modes(modes).with("large", large);
+        self.ask(asked.with("forces", &forces).with("responses", &responses), (modes, large), || {
+            let momenta = self.solver()?.mass().product(shapes_of(modes, large).as_ref());
+            let shapes = self.solver()?.second_order_shapes(modes.clone(), large, forces, responses);
+            let shapes = shapes.map_err(|error| self.modal(error))?;
+            Ok(Extended { body: self.reduced(&shapes.modes)?, shapes, momenta })
+        })
+    }
+
+    /// Stiffness in the modes (nf×nf) by the stress of each displacement field (3n×k). `known` are those in the first of the
+    /// modes, one for each field, or none.
+    pub fn stress_stiffness(
+        &self,
+        displacements: MatRef<'_, f64>,
+        modes: &Modes,
+        terms: GeometricTerms,
+        known: &[Mat<f64>],
+    ) -> Result<Vec<Mat<f64>>, BuildError> {
+        let shapes = modes.shapes.as_ref();
+        let terms_name = match terms {
+            GeometricTerms::All => "all",
+            GeometricTerms::InitialStress => "initial stress",
+        };
+        let asked = self.of_body("stress stiffness").with("displacements", &displacements).with("shapes", &shapes);
+        let asked = asked.with("terms", terms_name).with("known", known);
+        self.ask(asked, [displacements.ncols(), shapes.ncols()], || {
+            self.pass_elements();
+            let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
+            Ok(extended_geometric_stiffness(mesh, materials, displacements, shapes, terms, known)?)
+        })
+    }
+
+    /// Where nodal stress is known.
+    pub fn stress_sites(&self) -> Result<&StressSites, BuildError> {
+        Ok(self.recovery()?.sites())
+    }
+
+    /// The stress (6m×k) of displacement fields (3n×k), and of second order of pairs of others (3n×l).
+    pub fn nodal_stress(
+        &self,
+        displacements: MatRef<'_, f64>,
+        others: MatRef<'_, f64>,
+        pairs: &[[usize; 2]],
+    ) -> Result<Mat<f64>, BuildError> {
+        let recovery = self.recovery()?;
+        let asked = self.of_body("nodal stress").with("displacements", &displacements);
+        let size = [6 * recovery.sites().len(), displacements.ncols() + pairs.len()];
+        self.ask(asked.with("others", &others).with("pairs", pairs), size, || {
+            let linear = recovery.nodal_stress(displacements)?;
+            if pairs.is_empty() {
+                return Ok(linear);
+            }
+            let second = recovery.second_order_nodal_stress(others, pairs)?;
+            let first = linear.ncols();
+            let entry = |i: usize, j: usize| if j < first { linear[(i, j)] } else { second[(i, j - first)] };
+            Ok(Mat::from_fn(size[0], size[1], entry))
+        })
+    }
+
+    /// The stress (6m×k) of static responses (3n×k) that modes and static shapes leave out.
+    pub fn stress_beside(&self, modes: &Modes, responses: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
+        let recovery = self.recovery()?;
+        let asked = self.of_body("stress beside modes").with_modes(modes).with("responses", &responses);
+        self.ask(asked, [6 * recovery.sites().len(), responses.ncols()], || {
+            let mut parts = modes.shapes.transpose() * (self.matrices()?.stiffness() * responses);
+            for (k, eigenvalue) in modes.eigenvalues.iter().enumerate() {
+                parts.row_mut(k).iter_mut().for_each(|part| *part /= eigenvalue);
+            }
+            let rest = responses - &modes.shapes * parts;
+            Ok(recovery.nodal_stress(rest.as_ref())?)
+        })
+    }
+
+    /// The lowest buckling ratio by the stress of a static response (3n×1), from the modes on.
+    pub fn lowest_buckling_ratio(
+        &self,
+        response: MatRef<'_, f64>,
+        modes: &Modes,
+        accuracy: BucklingAccuracy,
+    ) -> Result<f64, BuildError> {
+        let shapes = modes.shapes.as_ref();
+        let accuracy_name = match accuracy {
+            BucklingAccuracy::Estimate => "estimate",
+            BucklingAccuracy::Full => "full",
+        };
+        let asked = self.of_held_body("buckling").with("accuracy", accuracy_name);
+        self.ask_number(asked.with("response", &response).with("shapes", &shapes), || {
+            let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
+            let product = |fields: MatRef<'_, f64>| -> Result<Mat<f64>, BucklingError> {
+                self.pass_elements();
+                Ok(geometric_stiffness_product(mesh, materials, response, fields)?)
+            };
+            self.solver()?.lowest_buckling_ratio(shapes, accuracy, product).map_err(|error| match error {
+                BucklingError::Modal(error) => self.modal(error),
+                BucklingError::Assembly(error) => error.into(),
+            })
+        })
+    }
+}
+
+/// Errors in the search for the buckling load.
+#[derive(Debug, thiserror::Error)]
+enum BucklingError {
+    #[error(transparent)]
+    Modal(#[from] ModalError),
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+}
+
+/// The shapes (3n×k) of some modes, numbered from 0.
+pub(crate) fn shapes_of(modes: &Modes, list: &[usize]) -> Mat<f64> {
+    Mat::from_fn(modes.shapes.nrows(), list.len(), |i, j| modes.shapes[(i, list[j])])
 }

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use dynamics::Effect;
-use modal::Modes;
 use scene::{Choice, RigidBody, Scene};
 
 use crate::assembly::{Assembled, AssembledMesh, Assembly};
@@ -15,7 +14,7 @@ use crate::progress::{BuildProgress, BuildTimes, BuildWork, timed};
 use crate::reduction::meshed;
 use crate::reduction::rigid;
 use crate::structure::Structure;
-use crate::structure::solved::Solved;
+use crate::structure::kept::{Basis, Found};
 
 /// Models of an [`Assembly`] that differ in their effects and modes. The matrices are factored once, and modes are
 /// searched again only where more of them are asked for.
@@ -28,9 +27,9 @@ enum Of<'a> {
 
 struct MeshedVariants<'a> {
     assembled: &'a AssembledMesh,
-    solved: Solved<'a>,
+    structure: Structure<'a>,
     /// The most that have been searched so far.
-    modes: Option<Modes>,
+    found: Option<Found>,
 }
 
 impl Builder {
@@ -62,8 +61,8 @@ impl Assembly {
     pub fn variants(&self) -> Result<Variants<'_>, BuildError> {
         Ok(Variants(match &self.0 {
             Assembled::Meshed(assembled) => {
-                let solved = Solved::new(assembled)?;
-                Of::Meshed(Box::new(MeshedVariants { assembled, solved, modes: None }))
+                let structure = Structure::new(assembled)?;
+                Of::Meshed(Box::new(MeshedVariants { assembled, structure, found: None }))
             }
             Assembled::Rigid(body) => Of::Rigid(body),
         }))
@@ -88,8 +87,8 @@ impl<'a> Variants<'a> {
     /// # Errors
     /// As [`Assembly::variants`], and of a body without modes.
     pub fn write_problem(&self, scene: &Scene, folder: &Path, ranks: usize) -> Result<Vec<PathBuf>, BuildError> {
-        match (self.solved(), requested(scene)) {
-            (Some(solved), modes @ 1..) => solved.write_problem(modes, folder, ranks),
+        match (self.structure(), requested(scene)) {
+            (Some(structure), modes @ 1..) => structure.write_problem(modes, folder, ranks),
             (None, _) => {
                 let help = "run the scene as it is: a rigid body has no modes";
                 Err(scene.refuse("body.rigid", "a rigid body", "a body with a mesh, or with matrices", help).into())
@@ -100,13 +99,13 @@ impl<'a> Variants<'a> {
 
     /// Work of the mesh's size that was done up to now; none without a mesh.
     pub fn work(&self) -> BuildWork {
-        self.solved().map_or_else(BuildWork::default, Solved::work)
+        self.structure().map_or_else(BuildWork::default, Structure::work)
     }
 
-    /// The finite-element model, of a body with a mesh.
-    pub(crate) fn solved(&self) -> Option<&Solved<'a>> {
+    /// The finite-element side, of a body with a mesh.
+    pub(crate) fn structure(&self) -> Option<&Structure<'a>> {
         match &self.0 {
-            Of::Meshed(variants) => Some(&variants.solved),
+            Of::Meshed(variants) => Some(&variants.structure),
             Of::Rigid(_) => None,
         }
     }
@@ -119,8 +118,8 @@ impl<'a> Variants<'a> {
     ) -> Result<Model, BuildError> {
         match self.0 {
             Of::Meshed(variants) => {
-                let (modes, time) = variants.search(scene, &mut progress)?;
-                variants.reduce(scene, modes, time, &mut progress)
+                let (found, time) = variants.search(scene, &mut progress)?;
+                variants.reduce(scene, found, time, &mut progress)
             }
             Of::Rigid(body) => rigid::build(scene, body),
         }
@@ -132,7 +131,10 @@ impl<'a> Variants<'a> {
     /// As [`Assembly::variants`].
     pub fn available(&self) -> Result<usize, BuildError> {
         match &self.0 {
-            Of::Meshed(variants) => variants.solved.available(),
+            Of::Meshed(variants) => match &variants.found {
+                Some(found) => Ok(found.available),
+                None => variants.structure.available(),
+            },
             Of::Rigid(_) => Ok(0),
         }
     }
@@ -141,31 +143,36 @@ impl<'a> Variants<'a> {
 impl MeshedVariants<'_> {
     fn build(&mut self, scene: &Scene, progress: &mut dyn FnMut(BuildProgress)) -> Result<Model, BuildError> {
         let requested = requested(scene);
-        let (modes, time) = match self.modes.take().filter(|modes| modes.natural() >= requested) {
-            Some(modes) => (modes, Duration::ZERO),
+        let (found, time) = match self.found.take().filter(|found| found.modes.natural() >= requested) {
+            Some(found) => (found, Duration::ZERO),
             None => self.search(scene, progress)?,
         };
-        let model = self.reduce(scene, modes.truncated(requested), time, progress);
-        self.modes = Some(modes);
-        model
+        let first = if found.modes.natural() == requested {
+            found.clone()
+        } else {
+            let Basis { modes, body } = self.structure.basis(&found.modes.truncated(requested), &[])?;
+            Found { modes, body, weights: found.weights.clone(), ..found }
+        };
+        self.found = Some(found);
+        self.reduce(scene, first, time, progress)
     }
 
     /// The modes that a scene asks for, and how long that took.
-    fn search(&self, scene: &Scene, progress: &mut dyn FnMut(BuildProgress)) -> Result<(Modes, Duration), BuildError> {
+    fn search(&self, scene: &Scene, progress: &mut dyn FnMut(BuildProgress)) -> Result<(Found, Duration), BuildError> {
         let mut time = Duration::ZERO;
-        let modes = timed(&mut time, || self.solved.modes(requested(scene), progress))?;
-        Ok((modes, time))
+        let found = timed(&mut time, || self.structure.modes(requested(scene), progress))?;
+        Ok((found, time))
     }
 
     fn reduce(
         &self,
         scene: &Scene,
-        modes: Modes,
+        found: Found,
         search: Duration,
         progress: &mut dyn FnMut(BuildProgress),
     ) -> Result<Model, BuildError> {
         let times = BuildTimes { modes: search, assembly: self.assembled.assembly_time(), ..self.assembled.times };
-        meshed::reduce(scene, self.assembled, &self.solved, modes, times, progress)
+        meshed::reduce(scene, self.assembled, &self.structure, found, times, progress)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The body file of a scene: what other programs read by name, and the answers that later runs read.
+//! The body file of a scene: what other programs read by name, and the values that later runs read.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,7 +17,7 @@ use crate::assembly::Assembled;
 use crate::body::origin::{ElementKeys, ORIGIN, Origin};
 use crate::builder::Builder;
 use crate::cache::Cache;
-use crate::cache::answer::by_columns;
+use crate::cache::kept::{by_columns, group};
 use crate::error::BuildError;
 use crate::mesh::arrays::MeshArrays;
 use crate::model::{Meshed, Model};
@@ -35,13 +35,6 @@ impl Numbers {
         match self {
             Self::F64(_) => f64::KIND,
             Self::U32(_) => u32::KIND,
-        }
-    }
-
-    fn hash(&self) -> Hash {
-        match self {
-            Self::F64(values) => Hash::of(values),
-            Self::U32(values) => Hash::of(values),
         }
     }
 }
@@ -77,7 +70,7 @@ impl Builder {
                 return Err(scene.refuse("body.matrices", "a body of matrices", "a body with a mesh", help).into());
             }
         }
-        // The answers come by way of a cache, from which nothing is removed in the meantime.
+        // The values come by way of a cache, from which nothing is removed in the meantime.
         let failed =
             |source| BodyFileError::System { path: path.to_owned(), action: "make a temporary folder", source };
         let temporary = TemporaryFolder::new().map_err(failed)?;
@@ -91,8 +84,8 @@ impl Builder {
         }
         let mut variants = assembly.variants()?;
         let model = variants.build(scene, &mut progress)?;
-        let (Assembled::Meshed(assembled), Some(meshed), Some(solved)) =
-            (&assembly.0, &model.meshed, variants.solved())
+        let (Assembled::Meshed(assembled), Some(meshed), Some(structure)) =
+            (&assembly.0, &model.meshed, variants.structure())
         else {
             return Ok(model);
         };
@@ -121,7 +114,7 @@ impl Builder {
             mesh_hash: store.mesh_hash().to_string(),
             elements: ElementKeys::of(body),
             modes: crate::variants::requested(scene),
-            support: solved.support_hash(),
+            support: structure.support_hash(),
         };
         let mut texts = BTreeMap::from(arrays.texts());
         texts.extend([
@@ -140,7 +133,7 @@ impl Builder {
     }
 }
 
-/// Error of a `folder` that cannot keep answers about the body, of which the file is made.
+/// Error of a `folder` that cannot keep values of the body, of which the file is made.
 fn without_store(cache: &Cache, scene: &Scene, folder: &Path) -> BuildError {
     if cache.is_closed() {
         let what = cache.notes().warnings.join("; ");
@@ -152,27 +145,29 @@ fn without_store(cache: &Cache, scene: &Scene, folder: &Path) -> BuildError {
     scene.refuse("body.mesh", found, "a mesh in one file", help).into()
 }
 
-/// Writes the file. An answer that is there by name already is a second name of it.
+/// Writes the file. An array that is there by name already gets a second name.
 fn write(
     path: &Path,
     texts: BTreeMap<String, String>,
     arrays: &MeshArrays,
     unit: &str,
     named: &Named<'_>,
-    answers: &[(Hash, BodyFile)],
+    kept: &[(Hash, BodyFile)],
 ) -> Result<(), BodyFileError> {
     let mut declared = arrays.declared(unit);
     let mut by_hash = BTreeMap::new();
     for (dataset, numbers) in &named.datasets {
-        by_hash.insert((numbers.hash().to_string(), dataset.shape.clone()), dataset.path.clone());
+        if let Numbers::F64(values) = numbers {
+            by_hash.insert(Hash::of(values).to_string(), dataset.path.clone());
+        }
         declared.push(dataset.clone());
     }
     let mut copied: Vec<(&BodyFile, &str, Kind)> = Vec::new();
-    for (question, file) in answers {
-        let group = format!("{}/", crate::cache::answer::group(question));
+    for (key, file) in kept {
+        let group = format!("{}/", group(key));
         for dataset in file.datasets().filter(|dataset| dataset.starts_with(&group)) {
             let Some((kind, shape, hash)) = file.described(dataset) else { continue };
-            let same_as = by_hash.get(&(hash.to_owned(), shape.to_vec())).filter(|_| !shape.contains(&0)).cloned();
+            let same_as = by_hash.get(hash).filter(|_| !shape.contains(&0)).cloned();
             if same_as.is_none() {
                 copied.push((file, dataset, kind));
             }

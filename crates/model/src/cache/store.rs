@@ -1,16 +1,16 @@
-//! Where the answers about the body of a scene are kept from run to run.
+//! Where the values of the body of a scene are kept from run to run.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use body_file::{BodyFile, BodyFileError, Declared, Kind, Writer};
+use body_file::{Array, BodyFile, BodyFileError, Declared, Kind, Writer};
 use keys::{Hash, Key};
 use mesh_import::{Imported, MeshFile};
 use scene::{MeshedBody, Scene};
 
 use crate::body::origin::{ElementKeys, Origin};
-use crate::cache::answer::{Answer, Kept, group};
+use crate::cache::kept::{Arrays, Keep, Kept, group};
 use crate::cache::{Cache, touch};
 use crate::error::BuildError;
 use crate::mesh::arrays::{self, MeshArrays};
@@ -18,7 +18,7 @@ use crate::mesh::arrays::{self, MeshArrays};
 /// The name of the file of a mesh.
 const MESH: &str = "mesh.h5";
 
-/// The answers about one body.
+/// The values of one body.
 pub(crate) struct Store {
     cache: Cache,
     /// The body file that the scene names.
@@ -27,14 +27,14 @@ pub(crate) struct Store {
     folder: Option<PathBuf>,
     /// The hash of what was read of the mesh, or of the matrices.
     mesh: Hash,
-    /// The start of all questions about the body.
+    /// The start of all keys.
     body: Key,
-    /// Questions that were asked, for who writes a body file.
+    /// Keys of all that was asked for, for who writes a body file.
     asked: Mutex<BTreeSet<Hash>>,
 }
 
 impl Store {
-    /// The answers about the mesh in a file, or in the body file that the scene names. None where nothing is kept.
+    /// The values of the mesh in a file, or in the body file that the scene names. None where nothing is kept.
     pub fn open(
         cache: &Cache,
         body: &MeshedBody,
@@ -64,8 +64,8 @@ impl Store {
         Some(Self { cache, given: None, folder, mesh, body, asked: Mutex::default() })
     }
 
-    /// The start of a question about the body.
-    pub fn question(&self) -> Key {
+    /// The start of the key of anything that follows from the body.
+    pub fn key(&self) -> Key {
         self.body.clone()
     }
 
@@ -104,65 +104,48 @@ impl Store {
         Ok(imported)
     }
 
-    /// The answer to a question, if it is known.
-    pub fn recall<T>(
-        &self,
-        question: &Hash,
-        recall: impl Fn(&Kept<'_>) -> Result<T, BodyFileError>,
-    ) -> Result<Option<T>, BuildError> {
-        self.asked.lock().unwrap_or_else(PoisonError::into_inner).insert(*question);
-        let kept = |file: &BodyFile| recall(&Kept { file, group: group(question) });
-        if let Some(file) = self.given.as_ref().filter(|file| has(file, question)) {
-            let answer = kept(file)?;
-            self.cache.has_read();
-            return Ok(Some(answer));
+    /// A value by its key, if it is kept.
+    pub fn recall<T: Keep>(&self, key: &Hash, known: T::Known<'_>) -> Result<Option<T>, BuildError> {
+        self.asked.lock().unwrap_or_else(PoisonError::into_inner).insert(*key);
+        let read = |file: &BodyFile| T::read(&Kept { file, group: group(key) }, known);
+        if let Some(file) = self.given.as_ref().filter(|file| has(file, key)) {
+            let value = read(file)?;
+            self.cache.note(|notes| notes.read += 1);
+            return Ok(Some(value));
         }
-        Ok(self.place(question).and_then(|place| self.read(&place, kept)))
+        Ok(self.place(key).and_then(|place| self.read(&place, read)))
     }
 
-    /// Keeps the answer to a question.
-    pub fn keep(&self, question: &Hash, answer: impl FnOnce() -> Answer) {
-        self.cache.has_computed();
-        if let Some(place) = self.place(question).filter(|_| !self.cache.is_closed()) {
-            self.write_answer(&place, question, &answer());
-        }
+    /// Keeps a value that was computed.
+    pub fn keep(&self, key: &Hash, value: &impl Keep) {
+        self.cache.note(|notes| notes.computed += 1);
+        let Some(place) = self.place(key).filter(|_| !self.cache.is_closed()) else { return };
+        let mut arrays = Arrays::default();
+        value.write(&mut arrays);
+        let path = |name: &str| format!("{}/{name}", group(key));
+        let declared = |(name, array): &(&str, Array<f64>)| {
+            let (kind, shape) = (Kind::F64, array.shape.clone());
+            Declared { path: path(name), kind, shape, attributes: Vec::new(), same_as: None }
+        };
+        let datasets: Vec<Declared> = arrays.0.iter().map(declared).collect();
+        self.write(&place, BTreeMap::new(), &datasets, |writer| {
+            arrays.0.iter().try_for_each(|(name, array)| writer.write(&path(name), &array.values))
+        });
     }
 
-    /// The files that have the answers to all that was asked.
+    /// The files that have all that was asked for.
     pub fn files(&self) -> Result<Vec<(Hash, BodyFile)>, BuildError> {
         let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let file = |question: Hash| {
-            let given = self.given.as_ref().filter(|file| has(file, &question)).map(|file| file.path().to_owned());
-            let place = given.or_else(|| self.place(&question)).unwrap_or_default();
-            Ok((question, BodyFile::open(place)?))
+        let file = |key: Hash| {
+            let given = self.given.as_ref().filter(|file| has(file, &key)).map(|file| file.path().to_owned());
+            let place = given.or_else(|| self.place(&key)).unwrap_or_default();
+            Ok((key, BodyFile::open(place)?))
         };
         asked.into_iter().map(file).collect()
     }
 
-    fn place(&self, question: &Hash) -> Option<PathBuf> {
-        self.folder.as_ref().map(|folder| folder.join(format!("{question}.h5")))
-    }
-
-    fn write_answer(&self, place: &Path, question: &Hash, answer: &Answer) {
-        let declared = |name: &str, kind, shape: &[usize]| Declared {
-            path: format!("{}/{name}", group(question)),
-            kind,
-            shape: shape.to_vec(),
-            attributes: Vec::new(),
-            same_as: None,
-        };
-        let numbers = answer.numbers.iter().map(|(name, array)| declared(name, Kind::F64, &array.shape));
-        let counts = answer.counts.iter().map(|(name, array)| declared(name, Kind::U64, &array.shape));
-        let datasets: Vec<Declared> = numbers.chain(counts).collect();
-        self.write(place, BTreeMap::new(), &datasets, |writer| {
-            for (name, array) in &answer.numbers {
-                writer.write(&format!("{}/{name}", group(question)), &array.values)?;
-            }
-            for (name, array) in &answer.counts {
-                writer.write(&format!("{}/{name}", group(question)), &array.values)?;
-            }
-            Ok(())
-        });
+    fn place(&self, key: &Hash) -> Option<PathBuf> {
+        self.folder.as_ref().map(|folder| folder.join(format!("{key}.h5")))
     }
 
     /// Content of a file of the cache; none where there is no file, or a damaged one.
@@ -170,7 +153,7 @@ impl Store {
         match BodyFile::open(place).and_then(|file| read(&file)) {
             Ok(found) => {
                 touch(place);
-                self.cache.has_read();
+                self.cache.note(|notes| notes.read += 1);
                 Some(found)
             }
             Err(BodyFileError::System { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
@@ -200,8 +183,8 @@ impl Store {
     }
 }
 
-/// True if a file has the answer to a question, or a part of it.
-fn has(file: &BodyFile, question: &Hash) -> bool {
-    let group = group(question);
+/// True if a file has a value, or a part of it.
+fn has(file: &BodyFile, key: &Hash) -> bool {
+    let group = group(key);
     file.datasets().any(|dataset| dataset.strip_prefix(&group).is_some_and(|rest| rest.starts_with('/')))
 }

@@ -85,6 +85,17 @@ pub(crate) struct UnitWeight {
 }
 
 impl UnitWeight {
+    /// By the forces themselves (N×3), or by a mass for each node (n×1).
+    pub fn new(weights: Mat<f64>, dofs: usize) -> Self {
+        if weights.ncols() == 1 {
+            let of_node = |row: usize, axis: usize| if row % 3 == axis { weights[(row / 3, 0)] } else { 0.0 };
+            let forces = Mat::from_fn(3 * weights.nrows(), 3, of_node);
+            return Self { forces, mass: weights.col(0).iter().sum() };
+        }
+        let mass = (0..weights.nrows() / dofs).map(|node| weights[(dofs * node, 0)]).sum();
+        Self { forces: weights, mass }
+    }
+
     /// The centre of mass, which moves as the mean of all masses does: in a free body not at all.
     fn point(&self, body: &ReducedBody, modes: &Modes) -> BodyPoint {
         let position_body = body.center_of_mass - body.origin;

@@ -5,13 +5,15 @@ use std::cell::OnceCell;
 use dynamics::Manifold;
 use faer::{Mat, MatRef, Scale};
 use fem_tet10::GeometricTerms;
-use modal::{Modes, SecondOrderShapes, StaticAccuracy};
+use modal::{Modes, SecondOrderShapes};
 
 use crate::error::{BuildError, modal};
 use crate::reduction::backbones::Derivatives;
-use crate::reduction::mesh_model::{MeshModel, shapes_of};
+use crate::reduction::mesh_model::MeshModel;
 use crate::stress::spin::SpinStress;
 use crate::stress::{DRIVE, Stress};
+use crate::structure::kept::Extended;
+use crate::structure::shapes_of;
 use crate::structure::statics::{OfSpin, Statics};
 
 /// A mode that relieves more than this part of the strain energy of second order of others is drawn in by them. Measured: 0.17
@@ -43,14 +45,14 @@ impl LargeDeflection {
     /// The manifold of some `large` modes, of which some `derivatives` are known. `spin` is the stress
     /// stiffness by the static responses to the spin.
     pub fn new(
-        model: &MeshModel<'_>,
+        model: &MeshModel<'_, '_>,
         modes: &Modes,
         large: &[usize],
         derivatives: &Derivatives,
         statics: &Statics,
         spin: Option<&SpinStress>,
     ) -> Result<Self, BuildError> {
-        let solver = model.solver;
+        let structure = model.structure;
         let of_large = shapes_of(modes, large);
         let pairs = SecondOrderShapes::pairs(large.len());
         // The energy is the same with the pairs in each other's place.
@@ -62,12 +64,18 @@ impl LargeDeflection {
                 [i, j, k, l]
             })
             .collect();
+        let known = |[j, k]: [usize; 2]| derivatives.of_mode(large[j]).filter(|_| j == k);
+        let missing: Vec<[usize; 2]> = pairs.iter().copied().filter(|pair| known(*pair).is_none()).collect();
+        let found = structure.second_order(modes, large, &missing, &quadruples)?;
         let mut energies = vec![0.0; pairs.len() * pairs.len()];
-        for ([a, b], energy) in halves.zip(solver.second_order_energies(of_large.as_ref(), &quadruples)?) {
-            energies[a * pairs.len() + b] = energy;
-            energies[b * pairs.len() + a] = energy;
+        for ([a, b], energy) in halves.zip(&found.energies) {
+            energies[a * pairs.len() + b] = *energy;
+            energies[b * pairs.len() + a] = *energy;
         }
-        let [forces, responses] = second_order_forces(model, modes, large, &pairs, derivatives)?;
+        let mut computed = found.forces.col_iter().zip(found.responses.col_iter()).map(|(f, u)| [f, u]);
+        let columns: Vec<_> = pairs.iter().filter_map(|pair| known(*pair).or_else(|| computed.next())).collect();
+        let [forces, responses] =
+            [0, 1].map(|which| Mat::from_fn(of_large.nrows(), pairs.len(), |i, pair| columns[pair][which][i]));
         let squares: Vec<f64> = large.iter().map(|k| modes.eigenvalues[*k]).collect();
         if let Some((follower, pair)) = drawn_in(of_large.as_ref(), &squares, forces.as_ref(), &energies) {
             let others: Vec<usize> = large.iter().copied().filter(|k| *k != large[follower]).collect();
@@ -76,9 +84,9 @@ impl LargeDeflection {
             }
             return Err(refuse_drawn_in(model, large[follower], pair.map(|j| large[j]), &others));
         }
-        let momenta = solver.mass_product(of_large.as_ref())?;
         let by_all_terms = stiffness_by_pairs(modes, large, &pairs, forces.as_ref());
-        let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref(), responses.as_ref())?;
+        let Extended { shapes, body, momenta } =
+            structure.second_order_shapes(modes, large, forces.as_ref(), responses.as_ref())?;
         let large = LargeShapes { shapes, momenta, by_all_terms, by_initial_stress: OnceCell::new() };
         let extended = match (&statics.of_spin, spin) {
             (Some(OfSpin { responses, .. }), Some(spin)) => {
@@ -95,7 +103,7 @@ impl LargeDeflection {
             _ => None,
         };
         let shapes = &large.shapes;
-        let body = solver.reduced_body(&shapes.modes)?.with_stress_stiffness(extended).map_err(modal(model.scene))?;
+        let body = body.with_stress_stiffness(extended).map_err(modal(model.scene))?;
         Ok(Self { manifold: Manifold::new(body, shapes, &energies)?, large })
     }
 
@@ -113,7 +121,7 @@ impl LargeDeflection {
     /// The stress of loads and of a drive in the extended shapes. `modes` are those of the motion.
     pub fn stressed(
         &self,
-        model: &MeshModel<'_>,
+        model: &MeshModel<'_, '_>,
         modes: &Modes,
         statics: &Statics,
         mut stress: Stress,
@@ -161,36 +169,12 @@ fn drawn_in(
 }
 
 /// Refuses a list of large modes, numbered from 0, with one that others draw in.
-fn refuse_drawn_in(model: &MeshModel<'_>, follower: usize, [j, k]: [usize; 2], others: &[usize]) -> BuildError {
+fn refuse_drawn_in(model: &MeshModel<'_, '_>, follower: usize, [j, k]: [usize; 2], others: &[usize]) -> BuildError {
     let by = if j == k { format!("mode {} bends", j + 1) } else { format!("modes {} and {} bend", j + 1, k + 1) };
     let others: Vec<String> = others.iter().map(|mode| (mode + 1).to_string()).collect();
     let found = format!("mode {}, which is drawn in where {by} the body, and follows by itself", follower + 1);
     let help = format!("leave it out: `large = [{}]`", others.join(", "));
     model.scene.refuse("modes.large", found, "modes that bend or twist the body", help).into()
-}
-
-/// Forces of second order of pairs of large modes, and the static responses to them; those that are known are not computed.
-fn second_order_forces(
-    model: &MeshModel<'_>,
-    modes: &Modes,
-    large: &[usize],
-    pairs: &[[usize; 2]],
-    derivatives: &Derivatives,
-) -> Result<[Mat<f64>; 2], BuildError> {
-    let of_large = shapes_of(modes, large);
-    let known = |[j, k]: [usize; 2]| derivatives.of_mode(large[j]).filter(|_| j == k);
-    let missing: Vec<[usize; 2]> = pairs.iter().copied().filter(|pair| known(*pair).is_none()).collect();
-    let forces = model.solver.second_order_forces(of_large.as_ref(), &missing)?;
-    let responses = model.solver.static_response(modes, forces.as_ref(), StaticAccuracy::Shapes)?;
-    let mut found = [(); 2].map(|()| Mat::zeros(of_large.nrows(), pairs.len()));
-    let mut computed = forces.col_iter().zip(responses.col_iter());
-    for (column, pair) in pairs.iter().enumerate() {
-        let known = known(*pair).or_else(|| computed.next().map(|(force, response)| [force, response]));
-        for (all, one) in found.iter_mut().zip(known.into_iter().flatten()) {
-            all.col_mut(column).copy_from(one);
-        }
-    }
-    Ok(found)
 }
 
 /// The geometric stiffness by all terms of each large mode in the `modes` of the motion, between a large mode and another:
@@ -215,7 +199,7 @@ impl LargeShapes {
     /// The geometric stiffness of each large mode in the `modes` of the motion.
     fn stiffness(
         &self,
-        model: &MeshModel<'_>,
+        model: &MeshModel<'_, '_>,
         modes: &Modes,
         terms: GeometricTerms,
     ) -> Result<&[Mat<f64>], BuildError> {
@@ -224,7 +208,7 @@ impl LargeShapes {
             (GeometricTerms::InitialStress, Some(known)) => Ok(known),
             (GeometricTerms::InitialStress, None) => {
                 let large = shapes_of(modes, &self.shapes.large);
-                let found = model.solver.stress_stiffness(large.as_ref(), modes, terms, &[])?;
+                let found = model.structure.stress_stiffness(large.as_ref(), modes, terms, &[])?;
                 Ok(self.by_initial_stress.get_or_init(|| found))
             }
         }

@@ -14,7 +14,7 @@ use scene::{Choice, Frame, Scene};
 
 use crate::assembly::AssembledMesh;
 use crate::error::{BuildError, modal, refuse};
-use crate::load::mesh_load;
+use crate::load::mesh_load::{self, UnitWeight};
 use crate::model::points::{output_points, well_spread};
 use crate::model::{Meshed, Model};
 use crate::progress::{BuildProgress, BuildTimes, timed};
@@ -26,22 +26,23 @@ use crate::reduction::reduce::Reduction;
 use crate::reduction::survey::Survey;
 use crate::stress::shapes::BodyStress;
 use crate::structure::Structure;
-use crate::structure::solved::Solved;
+use crate::structure::kept::Found;
 use crate::support::reactions::SupportRows;
 
 /// The model of a scene, from its mesh and the modes that it asks for.
 pub(crate) fn reduce(
     scene: &Scene,
     assembled: &AssembledMesh,
-    solved: &Solved<'_>,
-    modes: Modes,
+    structure: &Structure<'_>,
+    found: Found,
     mut times: BuildTimes,
     progress: &mut dyn FnMut(BuildProgress),
 ) -> Result<Model, BuildError> {
     let AssembledMesh { mesh, support, drive, .. } = assembled;
     let dofs = assembled.dofs();
-    let loads = mesh_load::on_mesh(scene, mesh, dofs, &Arc::new(solved.unit_weight()?))?;
-    let model = MeshModel { scene, mesh, dofs, solver: solved, support, loads, drive: drive.clone() };
+    let Found { modes, body, weights, matrix_bytes, .. } = found;
+    let loads = mesh_load::on_mesh(scene, mesh, dofs, &Arc::new(UnitWeight::new(weights, dofs)))?;
+    let model = MeshModel { scene, mesh, dofs, structure, support, loads, drive: drive.clone() };
 
     if !scene.time.method.abilities.any_mass && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {
         let found = "a scheme of the paper's formulation, which knows no rotations of nodes, for a mass that is no scalar for each node";
@@ -49,7 +50,7 @@ pub(crate) fn reduce(
         return Err(scene.refuse("time", found, "the conservative form", help).into());
     }
 
-    let on_all_modes = timed(&mut times.reduction, || ModalModel::new(&model, &modes))?;
+    let on_all_modes = timed(&mut times.reduction, || ModalModel::new(&model, body, &modes))?;
     let started = Instant::now();
     let survey = Survey::new(&model, modes, on_all_modes, progress)?;
     let has_statics = survey.statics.any();
@@ -103,11 +104,11 @@ pub(crate) fn reduce(
         supports,
         body: reduced.body,
         meshed: Some(Meshed {
-            matrix_bytes: solved.matrix_bytes()?,
+            matrix_bytes,
             mesh: Arc::clone(mesh),
             elements: assembled.elements().cloned(),
             mesh_notes: assembled.mesh_notes.clone(),
-            checks: solved.checks(&modes)?,
+            checks: structure.checks(&modes)?,
             modes,
             following,
         }),

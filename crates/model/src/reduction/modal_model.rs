@@ -25,9 +25,8 @@ pub(crate) struct ModalModel {
 
 impl ModalModel {
     /// Without the stress stiffness of the spin.
-    pub fn new(model: &MeshModel<'_>, modes: &Modes) -> Result<Self, BuildError> {
+    pub fn new(model: &MeshModel<'_, '_>, body: ReducedBody, modes: &Modes) -> Result<Self, BuildError> {
         let &MeshModel { scene, mesh, .. } = model;
-        let body = model.solver.reduced_body(modes)?;
         let loads = loads(model, &body, modes, &[])?;
         let peak = |shape: faer::ColRef<'_, f64>| {
             let at = |node: usize| Vector3::from_fn(|axis, _| shape[model.dofs * node + axis]).norm();
@@ -43,7 +42,11 @@ impl ModalModel {
     }
 
     /// The same model with a stress stiffness of the spin, or without any.
-    pub fn with_stress_stiffness(self, model: &MeshModel<'_>, spin: Option<&SpinStress>) -> Result<Self, BuildError> {
+    pub fn with_stress_stiffness(
+        self,
+        model: &MeshModel<'_, '_>,
+        spin: Option<&SpinStress>,
+    ) -> Result<Self, BuildError> {
         let body = self.body.with_stress_stiffness(spin.map(SpinStress::stiffness)).map_err(modal(model.scene))?;
         Ok(Self { body, ..self })
     }
@@ -52,7 +55,7 @@ impl ModalModel {
     /// the stress of each.
     pub fn with_stress(
         self,
-        model: &MeshModel<'_>,
+        model: &MeshModel<'_, '_>,
         body: Option<&ReducedBody>,
         modes: &Modes,
         stress: &[Vec<Directed>],
@@ -61,7 +64,7 @@ impl ModalModel {
     }
 
     /// The run of the scene as [`advice`] sees it, where nothing is known of static responses and backbones.
-    pub fn case<'a>(&'a self, model: &'a MeshModel<'_>) -> Case<'a> {
+    pub fn case<'a>(&'a self, model: &'a MeshModel<'_, '_>) -> Case<'a> {
         Case {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
@@ -82,7 +85,7 @@ impl ModalModel {
 
 /// The loads on the modes of a body.
 fn loads(
-    model: &MeshModel<'_>,
+    model: &MeshModel<'_, '_>,
     body: &ReducedBody,
     modes: &Modes,
     stress: &[Vec<Directed>],

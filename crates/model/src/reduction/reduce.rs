@@ -12,8 +12,7 @@ use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
 use crate::reduction::survey::Survey;
 use crate::stress::Stress;
-use crate::structure::Structure;
-use crate::structure::statics::Statics;
+use crate::structure::kept::Basis;
 
 /// Sentence about effects that may matter but need elements.
 const WITHOUT_ELEMENTS: &str =
@@ -33,7 +32,7 @@ pub(crate) struct Reduction {
 }
 
 impl Reduction {
-    pub fn new(model: &MeshModel<'_>, survey: Survey, decision: &Decision) -> Result<Self, BuildError> {
+    pub fn new(model: &MeshModel<'_, '_>, survey: Survey, decision: &Decision) -> Result<Self, BuildError> {
         let Survey { modes, modal, spin, statics, backbones, advice } = survey;
         let Backbones { of_modes: mut backbones, derivatives } = backbones;
         let tolerance = model.scene.effects.tolerance;
@@ -43,8 +42,9 @@ impl Reduction {
         let (modes, modal, spin, deflection) = if has_all {
             (modes, modal, spin.filter(|_| stiffens), advice.deflection)
         } else {
-            let modes = basis(model.solver, &modes, &statics, decision)?;
-            let modal = ModalModel::new(model, &modes)?;
+            let responses = statics.responses().filter(|_| decision.has_static_shapes).collect::<Vec<_>>();
+            let Basis { modes, body } = model.structure.basis(&modes.truncated(decision.keep), &responses)?;
+            let modal = ModalModel::new(model, body, &modes)?;
             let deflection = advise(&modal.case(model), tolerance)?.deflection;
             let known = spin.map_or_else(Default::default, |spin| spin.of_first(decision.keep));
             let spin = if stiffens { statics.stress_stiffness(model, &modes, &known)? } else { None };
@@ -80,13 +80,4 @@ impl Reduction {
         }
         Ok(Self { modes, modal, large, backbones, stress, advice })
     }
-}
-
-/// The modes that are kept, and the static shapes.
-fn basis(solver: &dyn Structure, modes: &Modes, statics: &Statics, decision: &Decision) -> Result<Modes, BuildError> {
-    let kept = modes.truncated(decision.keep);
-    if !decision.has_static_shapes {
-        return Ok(kept);
-    }
-    statics.responses().try_fold(kept, |modes, responses| solver.with_static_shapes(modes, responses.as_ref()))
 }

@@ -29,7 +29,7 @@ pub(crate) struct Survey {
 
 impl Survey {
     pub fn new(
-        model: &MeshModel<'_>,
+        model: &MeshModel<'_, '_>,
         modes: Modes,
         modal: ModalModel,
         progress: &mut dyn FnMut(BuildProgress),
@@ -68,7 +68,7 @@ impl Survey {
 }
 
 /// True if the stress of the spin may matter, and is to be computed.
-fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
+fn may_stiffen(model: &MeshModel<'_, '_>, modal: &ModalModel) -> Result<bool, BuildError> {
     let &MeshModel { scene, support, .. } = model;
     let has_none = modal.body.flexible() == 0 || !scene.body.has_elements();
     if has_none || scene.effects.choices[Effect::DeformedInertia] == Choice::Off {
@@ -87,7 +87,7 @@ fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildE
 
 /// True if the modes may leave out something of the static response to the spin that matters, which is to be computed:
 /// for static shapes, or to tell that they are missing.
-fn may_stretch(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
+fn may_stretch(model: &MeshModel<'_, '_>, modal: &ModalModel) -> Result<bool, BuildError> {
     let &MeshModel { scene, support, .. } = model;
     let acts = modal.body.flexible() > 0
         && scene.effects.choices[Effect::DeformedInertia] != Choice::Off

@@ -9,7 +9,7 @@
 //! and the Euler force of its change. The inertia of the modes' own motion and the Coriolis force are not among them.
 
 use dynamics::{DrivenMotion, History, Observation};
-use faer::{Mat, MatRef};
+use faer::Mat;
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 
@@ -40,12 +40,12 @@ struct LoadPart {
 
 impl LeftOut {
     pub fn new(
-        model: &MeshModel<'_>,
+        model: &MeshModel<'_, '_>,
         modes: &Modes,
         origin: &Vector3<f64>,
         has_gravity: bool,
     ) -> Result<Self, BuildError> {
-        let solver = model.solver;
+        let structure = model.structure;
         let asked = Asked { loads: true, spin: true, drive: false };
         let statics = Statics::new(model, modes, origin, asked)?;
         let mut columns: Vec<Mat<f64>> = Vec::new();
@@ -67,20 +67,19 @@ impl LeftOut {
         columns.extend(statics.of_spin.map(|of_spin| of_spin.responses));
         for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
             let forces = StaticForces {
-                of_loads: Mat::zeros(modes.shapes.nrows(), 0),
+                of_loads: modes.shapes.get(.., ..0),
                 spin: false,
                 drive: Some(DrivenMotion::Turn { axis }),
                 origin: *origin,
             };
-            columns.push(solver.static_responses(modes, &forces)?);
+            columns.push(structure.static_responses(modes, &forces)?.fields);
         }
-        let mut stress = Mat::zeros(6 * solver.stress_sites()?.len(), columns.iter().map(Mat::ncols).sum());
+        let mut stress = Mat::zeros(6 * structure.stress_sites()?.len(), columns.iter().map(Mat::ncols).sum());
         let mut first = 0;
         for responses in columns {
-            let momenta = solver.stiffness_product(responses.as_ref())?;
-            let rest = rest(modes, responses.as_ref(), momenta.as_ref());
-            stress.subcols_mut(first, rest.ncols()).copy_from(solver.nodal_stress(rest.as_ref())?);
-            first += rest.ncols();
+            let beside = structure.stress_beside(modes, responses.as_ref())?;
+            stress.subcols_mut(first, beside.ncols()).copy_from(&beside);
+            first += beside.ncols();
         }
         Ok(Self { stress: SiteStress::new(&stress), loads })
     }
@@ -99,13 +98,4 @@ impl LeftOut {
         let spin = ReducedBody::PAIRS.into_iter().map(of_pair);
         self.loads.iter().map(of_load).chain(spin).chain(now.alpha_body.iter().map(|alpha| -alpha)).collect()
     }
-}
-
-/// Remainder of the responses beside the modes; `forces` are K times the responses.
-fn rest(modes: &Modes, responses: MatRef<'_, f64>, forces: MatRef<'_, f64>) -> Mat<f64> {
-    let mut parts = modes.shapes.transpose() * forces;
-    for (k, eigenvalue) in modes.eigenvalues.iter().enumerate() {
-        parts.row_mut(k).iter_mut().for_each(|part| *part /= eigenvalue);
-    }
-    responses - &modes.shapes * parts
 }

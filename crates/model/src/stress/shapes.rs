@@ -17,10 +17,10 @@ use nalgebra::Vector3;
 use scene::Output;
 
 use crate::error::{BuildError, refuse};
-use crate::reduction::mesh_model::{MeshModel, shapes_of};
+use crate::reduction::mesh_model::MeshModel;
 use crate::stress::left_out::LeftOut;
 use crate::stress::site::{SiteStress, combined};
-use crate::structure::Structure;
+use crate::structure::{Structure, shapes_of};
 
 /// The stress of a body in its coordinates ([`BodyStress::coordinates`]), force per area, body axes, in the order of
 /// [`fem_tet10::COMPONENTS`]: Eq. (S2) of `docs/method/stress.md`.
@@ -56,19 +56,19 @@ pub struct StressPeak {
 impl BodyStress {
     /// The stress that the scene asks for, if any. `large` are the manifold of the large modes and its extended shapes.
     pub(crate) fn new(
-        model: &MeshModel<'_>,
+        model: &MeshModel<'_, '_>,
         modes: &Modes,
         large: Option<(&Manifold, &Modes)>,
         origin: &Vector3<f64>,
         has_gravity: bool,
     ) -> Result<Option<Self>, BuildError> {
-        let &MeshModel { scene, mesh, solver, .. } = model;
+        let &MeshModel { scene, mesh, structure, .. } = model;
         let Output { stress, peak_stress, stress_field, .. } = scene.output;
         if !scene.output.any_stress() {
             return Ok(None);
         }
-        let nodal = of_coordinates(solver, modes, large)?;
-        let sites = solver.stress_sites()?;
+        let nodal = of_coordinates(structure, modes, large)?;
+        let sites = structure.stress_sites()?;
         let mut points = Vec::new();
         for (name, at) in scene.output.points.iter().filter(|_| stress) {
             let location = mesh.locate(*at).map_err(|error| refuse(scene, &format!("output.points.{name}"), error))?;
@@ -151,19 +151,20 @@ fn larger(stresses: impl Iterator<Item = [f64; 6]>) -> [f64; 6] {
 
 /// The stress (6m × …) of each coordinate at the sites.
 fn of_coordinates(
-    solver: &dyn Structure,
+    structure: &Structure<'_>,
     modes: &Modes,
     large: Option<(&Manifold, &Modes)>,
 ) -> Result<Mat<f64>, BuildError> {
-    let Some((manifold, extended)) = large else { return solver.nodal_stress(modes.shapes.as_ref()) };
-    let linear = solver.nodal_stress(extended.shapes.as_ref())?;
+    let Some((manifold, extended)) = large else {
+        return structure.nodal_stress(modes.shapes.as_ref(), modes.shapes.get(.., ..0), &[]);
+    };
     let large = manifold.large();
     let pairs = SecondOrderShapes::pairs(large.len());
-    let second = solver.second_order_nodal_stress(shapes_of(modes, large).as_ref(), &pairs)?;
+    let mut stress = structure.nodal_stress(extended.shapes.as_ref(), shapes_of(modes, large).as_ref(), &pairs)?;
     // A product of two modes stands for both orders of its pair.
-    let factor = |[j, k]: [usize; 2]| if j == k { 1.0 } else { 2.0 };
-    let first = linear.ncols();
-    Ok(Mat::from_fn(linear.nrows(), first + second.ncols(), |i, j| {
-        if j < first { linear[(i, j)] } else { factor(pairs[j - first]) * second[(i, j - first)] }
-    }))
+    let first = extended.shapes.ncols();
+    for (j, _) in pairs.iter().enumerate().filter(|(_, [j, k])| j != k) {
+        stress.col_mut(first + j).iter_mut().for_each(|stress| *stress *= 2.0);
+    }
+    Ok(stress)
 }

@@ -15,6 +15,7 @@ use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::physics;
 use crate::stress::spin::SpinStress;
 use crate::structure::StaticForces;
+use crate::structure::kept::StaticResponses;
 
 /// Which static responses are asked for.
 #[derive(Clone, Copy)]
@@ -62,11 +63,16 @@ pub(crate) struct OfSpin {
 
 impl Statics {
     /// All static responses that are asked for, from one block of forces.
-    pub fn new(model: &MeshModel<'_>, modes: &Modes, origin: &Vector3<f64>, asked: Asked) -> Result<Self, BuildError> {
+    pub fn new(
+        model: &MeshModel<'_, '_>,
+        modes: &Modes,
+        origin: &Vector3<f64>,
+        asked: Asked,
+    ) -> Result<Self, BuildError> {
         if !asked.any() {
             return Ok(Self { of_loads: None, of_spin: None, of_drive: None });
         }
-        let &MeshModel { scene, mesh, solver, .. } = model;
+        let &MeshModel { scene, mesh, structure, .. } = model;
         let turning = turning::turning(scene, model.support.motion, model.drive.as_ref());
         let loads = if asked.loads { &model.loads[..] } else { &[] };
         let mut columns = Vec::with_capacity(loads.len());
@@ -78,40 +84,30 @@ impl Statics {
             of_loads += count;
         }
         let unknowns = model.dofs * mesh.positions().len();
-        let mut forces = StaticForces {
-            of_loads: Mat::zeros(0, of_loads),
-            spin: asked.spin,
-            drive: model.drive.as_ref().filter(|_| asked.drive).map(|drive| drive.motion),
-            origin: *origin,
-        };
-        let count = forces.count();
+        let drive = model.drive.as_ref().filter(|_| asked.drive).map(|drive| drive.motion);
+        let of_drive = of_loads + if asked.spin { 6 } else { 0 };
+        let count = of_drive + usize::from(drive.is_some());
         memory::check("the forces of the loads", 8 * unknowns * count).map_err(|source| modal(scene)(source.into()))?;
-        forces.of_loads = Mat::zeros(unknowns, of_loads);
+        let mut unit_forces = Mat::zeros(unknowns, of_loads);
         // A load without an amplitude has no response.
         for (load, (range, turned)) in loads.iter().zip(&columns).filter(|(load, _)| load.size() > 0.0) {
             for column in range.clone() {
-                let forces = forces.of_loads.as_mut().col_mut(column);
+                let forces = unit_forces.as_mut().col_mut(column);
                 load.add_unit_nodal_forces(turned.get(column - range.start).copied(), forces);
             }
         }
-        let responses = solver.static_responses(modes, &forces)?;
-        let (driven, of_drive) = (usize::from(forces.drive.is_some()), count - usize::from(forces.drive.is_some()));
+        let forces = StaticForces { of_loads: unit_forces.as_ref(), spin: asked.spin, drive, origin: *origin };
+        let StaticResponses { fields: responses, remainders } = structure.static_responses(modes, &forces)?;
         let spins = of_drive - of_loads;
         let to = |first: usize, count: usize| responses.subcols(first, count).to_owned();
         Ok(Self {
             of_loads: asked.loads.then(|| OfLoads {
-                compliances: compliances(loads, &columns, forces.of_loads.as_ref(), responses.as_ref()),
+                compliances: compliances(loads, &columns, unit_forces.as_ref(), responses.as_ref()),
                 responses: to(0, of_loads),
                 columns,
             }),
-            of_spin: match asked.spin {
-                true => Some(OfSpin {
-                    remainders: solver.remainders(modes, responses.subcols(of_loads, spins))?,
-                    responses: to(of_loads, spins),
-                }),
-                false => None,
-            },
-            of_drive: (driven > 0).then(|| to(of_drive, driven)),
+            of_spin: asked.spin.then(|| OfSpin { remainders, responses: to(of_loads, spins) }),
+            of_drive: drive.is_some().then(|| to(of_drive, 1)),
         })
     }
 
@@ -124,12 +120,12 @@ impl Statics {
     /// first of the modes, by all terms and by the initial stress.
     pub fn stress_stiffness(
         &self,
-        model: &MeshModel<'_>,
+        model: &MeshModel<'_, '_>,
         modes: &Modes,
         known: &[Vec<Mat<f64>>; 2],
     ) -> Result<Option<SpinStress>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
-        let by = |terms, known| model.solver.stress_stiffness(of_spin.responses.as_ref(), modes, terms, known);
+        let by = |terms, known| model.structure.stress_stiffness(of_spin.responses.as_ref(), modes, terms, known);
         let all = by(GeometricTerms::All, &known[0])?.try_into().ok();
         let initial = by(GeometricTerms::InitialStress, &known[1])?.try_into().ok();
         Ok(all.zip(initial).map(|(all, initial)| SpinStress::new([all, initial], &modes.eigenvalues)))
@@ -137,7 +133,7 @@ impl Statics {
 
     /// The response to all dead loads together that stay as they are, seen from the body (3n × 1), over the amplitude's size of
     /// the first, and this size.
-    pub fn to_steady_loads(&self, model: &MeshModel<'_>) -> Option<(Mat<f64>, f64)> {
+    pub fn to_steady_loads(&self, model: &MeshModel<'_, '_>) -> Option<(Mat<f64>, f64)> {
         let of_loads = self.of_loads.as_ref()?;
         let is_steady = |load: &MeshLoad| {
             !load.follows && physics::is_steady(model.scene, model.support.motion, model.drive.as_ref(), load)

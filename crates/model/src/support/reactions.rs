@@ -2,12 +2,13 @@
 
 use dynamics::{EffectMap, Manifold, Observation, SupportReactions};
 use faer::Mat;
-use modal::{Modes, StaticAccuracy};
+use modal::Modes;
 use nalgebra::Vector3;
 use scene::{Constraint, Scene};
 
 use crate::error::BuildError;
 use crate::reduction::mesh_model::MeshModel;
+use crate::structure::kept::Basis;
 use crate::support::held_parts;
 
 /// Reactions of several supports: for each a force on the body, and a moment about the mean of the nodes that it holds.
@@ -22,13 +23,13 @@ pub struct SupportRows {
 impl SupportRows {
     /// None where there are not several supports, or nobody asks.
     pub(crate) fn new(
-        model: &MeshModel<'_>,
+        model: &MeshModel<'_, '_>,
         modes: &Modes,
         manifold: Option<&Manifold>,
         effects: &EffectMap<bool>,
         has_gravity: bool,
     ) -> Result<Option<Self>, BuildError> {
-        let &MeshModel { scene, mesh, solver, .. } = model;
+        let &MeshModel { scene, mesh, structure, .. } = model;
         let Some(parts) = several(scene) else { return Ok(None) };
         let parts = held_parts(scene, mesh, parts)?;
         let (size, shapes) = (modes.shapes.nrows(), modes.shapes.ncols());
@@ -53,21 +54,12 @@ impl SupportRows {
                 }
             }
         }
-        // The supports move by themselves, and the rest of the body follows.
+        // The supports move by themselves.
         let mut motions = Mat::zeros(size, columns.len());
         for (c, column) in columns.iter().enumerate() {
             column.iter().for_each(|(row, moved)| motions[(*row, c)] = *moved);
         }
-        let forces = solver.stiffness_product(motions.as_ref())? * faer::Scale(-1.0);
-        let followed = solver.static_response(modes, forces.as_ref(), StaticAccuracy::Full)?;
-        let motions = motions + followed;
-        let mut extended = modes.clone();
-        // They have no frequency; the equations of motion do not meet them.
-        extended.eigenvalues.resize(shapes + columns.len(), 1.0);
-        extended.shapes = Mat::from_fn(size, shapes + columns.len(), |i, j| {
-            if j < shapes { modes.shapes[(i, j)] } else { motions[(i, j - shapes)] }
-        });
-        let body = solver.reduced_body(&extended)?;
+        let Basis { modes: extended, body } = structure.with_motions(modes, motions.as_ref())?;
         let acting = model.loads.iter().filter(|load| has_gravity || !load.is_gravity());
         // No stress, but the turn of a pressure with its surface, which the reaction of all supports has, too.
         let loads =
