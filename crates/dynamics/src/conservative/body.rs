@@ -112,6 +112,11 @@ impl ConservativeBody {
         Self { initial_attitude: initial.attitude, origin, ..self }
     }
 
+    /// Counts displacements of points from another attitude and position of the origin.
+    pub(crate) fn begin_at(&mut self, attitude: Attitude, origin_global: Vector3<f64>) {
+        (self.initial_attitude, self.origin) = (attitude, origin_global);
+    }
+
     /// The numbers of a state.
     #[inline(always)]
     pub(crate) fn list<'s>(&self, state: &'s State) -> BodyList<&'s [f64]> {

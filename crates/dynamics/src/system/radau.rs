@@ -105,10 +105,13 @@ impl SystemMotion {
     ///
     /// # Errors
     /// [`SetupError`] for another number of states than of bodies, and for states that do not fit their bodies.
-    pub fn new(system: System, states: &[MotionState]) -> Result<Self, SetupError> {
+    pub fn new(mut system: System, states: &[MotionState]) -> Result<Self, SetupError> {
         let (expected, found) = (system.bodies.len(), states.len());
         if found != expected {
             return Err(SetupError::Length { what: "the list of states", expected, found });
+        }
+        for (body, state) in system.bodies.iter_mut().zip(states) {
+            body.begin_at(state.attitude, state.origin_global);
         }
         let bodies: Vec<State> =
             system.bodies.iter().zip(states).map(|(body, state)| body.state_of(state)).collect::<Result<_, _>>()?;
@@ -272,7 +275,7 @@ impl SystemMotion {
     }
 
     /// Goes to `end` with steps whose estimated error is at most `tolerance`; `h` is the first try, and the next one after.
-    /// Returns the number of steps.
+    /// Returns the number of steps. Where a load or a drive jumps, end a call there.
     ///
     /// # Errors
     /// [`StepError`] where no step is short enough.

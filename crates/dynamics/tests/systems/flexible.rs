@@ -1,13 +1,13 @@
 //! Flexible bodies in joints.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use dynamics::{
-    ConservativeBody, History, Joint, JointDrive, Marker, MotionState, Physics, PointShapes, RotationShapes, System,
-    SystemMotion, Table,
+    ConservativeBody, History, Initial, Joint, JointDrive, Marker, MotionState, Observation, Physics, PointForce,
+    PointShapes, RotationShapes, Rows, SharedLoad, Simulation, StepControl, System, SystemMotion, Table,
 };
-use fem_tet10::{Material, Materials, Patch, assemble, read_msh};
-use modal::{BodyPoint, ReducedBody, RigidMotion, Solver, StaticAccuracy, Support};
+use fem_tet10::{Material, Materials, Mesh, Patch, assemble, read_msh};
+use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, StaticAccuracy, Support};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
@@ -15,6 +15,8 @@ use rigid_kin::Attitude;
 pub struct Jointed {
     pub body: ReducedBody,
     pub patches: Vec<(PointShapes, RotationShapes)>,
+    mesh: Mesh,
+    modes: Modes,
 }
 
 impl Jointed {
@@ -39,7 +41,14 @@ impl Jointed {
                 (PointShapes::new(&body, &point), turning)
             })
             .collect();
-        Self { body, patches }
+        Self { body, patches, mesh, modes }
+    }
+
+    /// A point of the body, at a place of its mesh.
+    fn point(&self, at: [f64; 3]) -> PointShapes {
+        let location = self.mesh.locate(at).unwrap();
+        let point = BodyPoint::new(&self.modes, self.mesh.positions(), &location.nodes, &location.weights).unwrap();
+        PointShapes::new(&self.body, &point)
     }
 
     fn marker(&self, number: usize, patch: usize) -> Marker {
@@ -48,8 +57,12 @@ impl Jointed {
     }
 
     fn conservative(&self) -> ConservativeBody {
+        self.loaded(Vec::new())
+    }
+
+    fn loaded(&self, loads: Vec<SharedLoad>) -> ConservativeBody {
         let undamped = vec![0.0; self.body.circular_frequencies.len()];
-        ConservativeBody::new(&self.body, &undamped, Vec::new(), &Physics::default()).unwrap()
+        ConservativeBody::new(&self.body, &undamped, loads, &Physics::default()).unwrap()
     }
 
     fn at_rest(&self, origin: Vector3<f64>, attitude: Attitude) -> MotionState {
@@ -148,5 +161,58 @@ fn the_slider_crank_ends_where_others_have_it() {
         assert!((slider.x - 0.169_737_332_842_786).abs() < 1e-6, "{slider}");
         assert!(balance.abs() < balance_bound, "{balance:e}");
         assert_eq!(motion.dependent_rows(), 0);
+    }
+}
+
+/// Independent reference: the whole bar, by the exponential scheme and without joints, against its two halves welded face to face. It
+/// tumbles and is struck at one end.
+#[test]
+fn two_welded_halves_move_as_the_whole() {
+    let aluminium = Material { young_modulus: 70_000.0, poisson_ratio: 0.33, density: 2.7e-9 };
+    let (omega, end) = (Vector3::new(3.0, 8.0, 5.0), 0.02);
+    let strike = |point: PointShapes| -> SharedLoad {
+        let history = History::HalfSine { start: 0.0, duration: 2e-3 };
+        Arc::new(PointForce::dead(point, Vector3::new(0.0, 30.0, 50.0), history))
+    };
+    let whole = Jointed::new("slender_bar", aluminium, 12, &[]);
+    let initial = Initial { omega, ..Initial::at_rest(12) };
+    let mut simulation = Simulation::builder(&whole.body, StepControl::Tolerance(1e-6), end)
+        .loads([strike(whole.point([0.0; 3]))])
+        .initial(initial)
+        .point(whole.point([0.0; 3]))
+        .point(whole.point([400.0, 0.0, 0.0]))
+        .rows(Rows::Interval(end))
+        .build()
+        .unwrap();
+    let expected = simulation.by_ref().last().unwrap().unwrap();
+    let bent = expected.points.iter().map(|point| point.elastic_displacement_body.norm()).fold(0.0, f64::max);
+
+    let [left, right] = ["right", "left"].map(|patch| Jointed::new("half_bar", aluminium, 8, &[patch]));
+    let weld = Joint::fixed("weld", [left.marker(0, 0), right.marker(1, 0)]);
+    let bodies = vec![left.loaded(vec![strike(left.point([0.0; 3]))]), right.conservative()];
+    let system = System::new(bodies, vec![weld]).unwrap();
+    let start = |x: f64, body: &Jointed| MotionState {
+        velocity_global: omega.cross(&Vector3::new(x, 0.0, 0.0)),
+        omega_body: omega,
+        ..body.at_rest(Vector3::new(200.0 + x, 0.0, 0.0), Attitude::identity())
+    };
+    let mut motion = SystemMotion::new(system, &[start(-100.0, &left), start(100.0, &right)]).unwrap();
+    motion.assemble().unwrap();
+    // Steps end where the strike does.
+    let mut steps = motion.advance(2e-3, 1e-6, &mut 1e-5).unwrap();
+    steps += motion.advance(end, 1e-6, &mut 1e-4).unwrap();
+    motion.find_reactions().unwrap();
+    for (body, half, at, number) in [(0, &left, 0.0, 0), (1, &right, 200.0, 1)] {
+        let mut out = Observation::new(half.body.circular_frequencies.len(), 1);
+        motion.observe(body, &[half.point([at, 0.0, 0.0])], &mut out).unwrap();
+        let (found, expected) = (&out.points[0], &expected.points[number]);
+        let [error, speed] =
+            [found.displacement - expected.displacement, found.velocity - expected.velocity].map(|x| x.norm());
+        println!(
+            "end {number}: {steps} steps, off by {error:e} of {bent:e}, velocity by {speed:e} of {:e}",
+            expected.velocity.norm()
+        );
+        assert!(error < 0.02 * bent, "{error:e} {bent:e}");
+        assert!(speed < 0.03 * expected.velocity.norm(), "{speed:e}");
     }
 }
