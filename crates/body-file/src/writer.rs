@@ -1,4 +1,4 @@
-//! Writes a body file, which HDF5 makes.
+//! Writes a body file, which HDF5 makes, or a plain one.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, OpenOptions};
@@ -10,7 +10,7 @@ use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::VarLenUnicode;
 use whole_file::TemporaryFile;
 
-use crate::array::{Kind, Number};
+use crate::array::{Kind, Number, bytes};
 use crate::error::BodyFileError;
 use crate::head::{Description, StoredArray};
 use keys::Hash;
@@ -42,6 +42,9 @@ pub struct Writer {
     same: Vec<(String, String)>,
 }
 
+/// The first byte of each dataset that is not empty.
+type Starts = Vec<(String, u64)>;
+
 impl Writer {
     /// Makes a file with these texts and room for these datasets.
     ///
@@ -58,6 +61,27 @@ impl Writer {
         if folder.to_str().is_none() {
             return Err(BodyFileError::NameNotUtf8 { path: folder.to_owned() });
         }
+        Self::made_by(make, path, attributes, datasets)
+    }
+
+    /// The same without HDF5, for [`BodyFile`](crate::BodyFile) alone.
+    ///
+    /// # Errors
+    /// [`BodyFileError::System`].
+    pub fn plain(
+        path: impl Into<PathBuf>,
+        attributes: BTreeMap<String, String>,
+        datasets: &[Declared],
+    ) -> Result<Self, BodyFileError> {
+        Self::made_by(lay_out, path.into(), attributes, datasets)
+    }
+
+    fn made_by(
+        make: fn(&Path, &Path, &Description, &[Declared]) -> Result<Starts, BodyFileError>,
+        path: PathBuf,
+        attributes: BTreeMap<String, String>,
+        datasets: &[Declared],
+    ) -> Result<Self, BodyFileError> {
         let made = TemporaryFile::beside(&path, ".h5");
         let (_, place) = made.map_err(BodyFileError::system(&path, "create the file"))?;
 
@@ -138,14 +162,30 @@ impl Writer {
     }
 }
 
-/// Makes the file at `place` (called `path` in messages) and closes it. Gives the first byte of each dataset that is not
-/// empty.
-fn make(
+/// Makes room in the file at `place` for the head and the datasets, one after the other; gives what [`make`] does.
+fn lay_out(
     place: &Path,
     path: &Path,
     description: &Description,
     datasets: &[Declared],
-) -> Result<Vec<(String, u64)>, BodyFileError> {
+) -> Result<Starts, BodyFileError> {
+    let mut end = description.user_block();
+    let own = datasets.iter().filter(|declared| declared.same_as.is_none());
+    let starts = own
+        .map(|Declared { path, kind, shape, .. }| {
+            let start = end.next_multiple_of(8);
+            end = start + bytes(*kind, shape).unwrap_or_default();
+            (path.clone(), start)
+        })
+        .collect();
+    let made = File::create(place).and_then(|file| file.set_len(end));
+    made.map_err(BodyFileError::system(path, "create the file"))?;
+    Ok(starts)
+}
+
+/// Makes the file at `place` (called `path` in messages) and closes it. Gives the first byte of each dataset that is not
+/// empty.
+fn make(place: &Path, path: &Path, description: &Description, datasets: &[Declared]) -> Result<Starts, BodyFileError> {
     let mut builder = hdf5::File::with_options();
     // Without times of creation, so that equal bodies give equal files.
     builder.with_fcpl(|plist| plist.obj_track_times(false).userblock(description.user_block()));

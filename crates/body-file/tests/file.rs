@@ -11,6 +11,10 @@ fn declared(path: &str, kind: Kind, shape: &[usize]) -> Declared {
 }
 
 fn write(path: &Path) {
+    write_as(false, path);
+}
+
+fn write_as(is_plain: bool, path: &Path) {
     let texts = BTreeMap::from([("scene".to_owned(), "a = 1\nω".to_owned())]);
     let second = Declared { same_as: Some("modes/shapes".into()), ..declared("answers/0/x", Kind::F64, &[2, 2, 3]) };
     let datasets = [
@@ -21,7 +25,8 @@ fn write(path: &Path) {
         declared("none", Kind::F64, &[0, 3]),
         second,
     ];
-    let mut writer = Writer::create(path, texts, &datasets).unwrap();
+    let mut writer =
+        if is_plain { Writer::plain(path, texts, &datasets) } else { Writer::create(path, texts, &datasets) }.unwrap();
     writer.write("modes/shapes", &SHAPES).unwrap();
     writer.write("mesh/tetrahedra", &[0u32, 1, 2, 3, 4, 5, 6, 7, 8, 9]).unwrap();
     writer.write("tags", &[u64::MAX, 7, 0]).unwrap();
@@ -38,7 +43,28 @@ fn what_is_written_is_read_back_by_us_and_by_hdf5() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("b.body.h5");
     write(&path);
-    let file = BodyFile::open(&path).unwrap();
+    check(&path);
+    let other = hdf5::File::open(&path).unwrap();
+    assert_eq!(other.dataset("modes/shapes").unwrap().read_raw::<f64>().unwrap(), SHAPES);
+    assert_eq!(other.dataset("answers/0/x").unwrap().read_raw::<f64>().unwrap(), SHAPES);
+    assert_eq!(other.dataset("tags").unwrap().read_raw::<u64>().unwrap(), [u64::MAX, 7, 0]);
+    let unit = other.dataset("mass").unwrap().attr("unit").unwrap();
+    assert_eq!(unit.read_scalar::<hdf5::types::VarLenUnicode>().unwrap().as_str(), "mm");
+    // Without HDF5, the same is read, and a bit that changes is found.
+    write_as(true, &path);
+    check(&path);
+    let mut bytes = std::fs::read(&path).unwrap();
+    assert!(hdf5::File::open(&path).is_err());
+    let at = bytes.windows(8).position(|number| number == 12.5f64.to_ne_bytes()).unwrap();
+    bytes[at] ^= 1;
+    std::fs::write(&path, bytes).unwrap();
+    let changed = BodyFile::open(&path).unwrap().read::<f64>("modes/shapes").unwrap_err();
+    assert!(changed.to_string().contains("has been changed"), "{changed}");
+}
+
+/// Reads it back.
+fn check(path: &Path) {
+    let file = BodyFile::open(path).unwrap();
     assert_eq!(file.attribute("scene"), Some("a = 1\nω"));
     let shapes: Array<f64> = file.read("modes/shapes").unwrap();
     assert_eq!(shapes.shape, [2, 2, 3]);
@@ -48,13 +74,6 @@ fn what_is_written_is_read_back_by_us_and_by_hdf5() {
     assert_eq!(file.read::<f64>("mass").unwrap(), Array { shape: vec![], values: vec![2.5] });
     assert_eq!(file.read::<f64>("none").unwrap(), Array { shape: vec![0, 3], values: vec![] });
     assert!(!file.has("other") && file.datasets().count() == 6);
-
-    let other = hdf5::File::open(&path).unwrap();
-    assert_eq!(other.dataset("modes/shapes").unwrap().read_raw::<f64>().unwrap(), SHAPES);
-    assert_eq!(other.dataset("answers/0/x").unwrap().read_raw::<f64>().unwrap(), SHAPES);
-    assert_eq!(other.dataset("tags").unwrap().read_raw::<u64>().unwrap(), [u64::MAX, 7, 0]);
-    let unit = other.dataset("mass").unwrap().attr("unit").unwrap();
-    assert_eq!(unit.read_scalar::<hdf5::types::VarLenUnicode>().unwrap().as_str(), "mm");
 }
 
 #[test]

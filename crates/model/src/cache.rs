@@ -1,6 +1,6 @@
 //! The cache: a folder in which values of the finite-element side of a body are kept from run to run.
 //!
-//! Each is a file of its own ([`body_file`]), `PROGRAM/MESH/KEY.h5`, named by hashes of all that it follows from: the program
+//! Each is a file of its own ([`body_file`]), `PROGRAM/MESH/KEY.kept`, named by hashes of all that it follows from: the program
 //! and the machine, the bytes of the mesh file, and what the value is, with the material, the support and what else it is made
 //! of. A file is never changed: it appears whole, and is checked when it is read. So any number of programs may use the folder
 //! at once, and what has changed is not found.
@@ -8,14 +8,12 @@
 pub(crate) mod kept;
 pub(crate) mod store;
 
-use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use body_file::{BodyFileError, Declared, Writer};
 use keys::{Hash, Key};
 
 /// Bytes that the user's cache may have.
@@ -36,8 +34,6 @@ struct Inner {
     limit: u64,
     /// The file of the program, where that is not the one that runs.
     program: Option<PathBuf>,
-    /// Makes a file. A program that has no cache, such as the library in FMUs, does without what makes files, which is HDF5.
-    create: Option<CreateFile>,
     /// True if nothing can be written.
     is_closed: AtomicBool,
     /// True if a thread computes.
@@ -46,9 +42,6 @@ struct Inner {
     /// Also of the caches made by [`Cache::elsewhere`].
     notes: Arc<Mutex<CacheNotes>>,
 }
-
-/// [`Writer::create`].
-type CreateFile = fn(&Path, BTreeMap<String, String>, &[Declared]) -> Result<Writer, BodyFileError>;
 
 /// Counts of the use of a cache.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -77,16 +70,14 @@ impl Cache {
     /// One in another folder for the same user and program: its notes are those of this one.
     pub fn elsewhere(&self, folder: impl Into<PathBuf>, limit: u64) -> Self {
         let (program, notes) = (self.0.program.clone(), self.0.notes.clone());
-        let create: CreateFile = |path, texts, datasets| Writer::create(path, texts, datasets);
-        let folder = Some(folder.into());
-        Self(Arc::new(Inner { folder, limit, program, notes, create: Some(create), ..Inner::default() }))
+        Self(Arc::new(Inner { folder: Some(folder.into()), limit, program, notes, ..Inner::default() }))
     }
 
     /// The same for the user of a program that is in another file than the one that runs: in a library of Python.
     pub fn of_program(&self, file: impl Into<PathBuf>) -> Self {
-        let Inner { folder, limit, create, notes, .. } = &*self.0;
+        let Inner { folder, limit, notes, .. } = &*self.0;
         let (folder, notes, program) = (folder.clone(), notes.clone(), Some(file.into()));
-        Self(Arc::new(Inner { folder, limit: *limit, program, create: *create, notes, ..Inner::default() }))
+        Self(Arc::new(Inner { folder, limit: *limit, program, notes, ..Inner::default() }))
     }
 
     /// The user's: the folder `FLEXFRAME_CACHE`, or `flexframe` in `XDG_CACHE_HOME` or in `~/.cache`, with 4 GiB at most. None
@@ -107,11 +98,6 @@ impl Cache {
     /// Its folder.
     pub fn folder(&self) -> Option<&Path> {
         self.0.folder.as_deref()
-    }
-
-    /// Function that makes its files; none where nothing is kept.
-    pub(crate) fn create(&self) -> Option<CreateFile> {
-        self.0.create
     }
 
     /// Counts of its use up to now.
@@ -205,8 +191,8 @@ pub(crate) fn touch(path: &Path) {
 fn list(folder: &Path) -> Vec<(SystemTime, u64, PathBuf)> {
     let mut files = Vec::new();
     for entry in hashed(folder, PROGRAM_DIGITS).iter().flat_map(|program| hashed(program, MESH_DIGITS)) {
-        for entry in entries(&entry).filter(|entry| entry.path().extension() == Some("h5".as_ref())) {
-            // Links are not followed.
+        // What is being written has a name with a dot. Links are not followed.
+        for entry in entries(&entry).filter(|entry| !entry.file_name().as_encoded_bytes().starts_with(b".")) {
             if let Some(found) = entry.metadata().ok().filter(fs::Metadata::is_file) {
                 files.push((found.modified().unwrap_or(UNIX_EPOCH), found.len(), entry.path()));
             }

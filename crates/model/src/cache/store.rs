@@ -16,7 +16,7 @@ use crate::error::BuildError;
 use crate::mesh::arrays::{self, MeshArrays};
 
 /// The name of the file of a mesh.
-const MESH: &str = "mesh.h5";
+const MESH: &str = "mesh.kept";
 
 /// The values of one body.
 pub(crate) struct Store {
@@ -145,7 +145,7 @@ impl Store {
     }
 
     fn place(&self, key: &Hash) -> Option<PathBuf> {
-        self.folder.as_ref().map(|folder| folder.join(format!("{key}.h5")))
+        self.folder.as_ref().map(|folder| folder.join(format!("{key}.kept")))
     }
 
     /// Content of a file of the cache; none where there is no file, or a damaged one.
@@ -171,8 +171,7 @@ impl Store {
         datasets: &[Declared],
         write: impl FnOnce(&mut Writer) -> Result<(), BodyFileError>,
     ) {
-        let Some(create) = self.cache.create() else { return };
-        let written = create(place, texts, datasets).and_then(|mut writer| {
+        let written = Writer::plain(place, texts, datasets).and_then(|mut writer| {
             write(&mut writer)?;
             writer.finish(false)
         });

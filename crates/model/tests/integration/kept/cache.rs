@@ -97,7 +97,7 @@ fn a_body_from_the_cache_is_the_same_to_the_last_bit_and_solves_nothing() {
 #[test]
 fn the_name_of_the_modes_stays() {
     const NAME: &str = "d7472c103cf264b5499bacbb0397a3f5cbc5b89a63accf671c455af9087007c1/\
-                        9e775670cf8998baba496b79b81a792669b33e98a85081446a59a23178bd85c5.h5";
+                        9e775670cf8998baba496b79b81a792669b33e98a85081446a59a23178bd85c5.kept";
     let folder = tempfile::tempdir().unwrap();
     built_with(&Cache::new(folder.path(), LIMIT), &bar("flexible = 2", CLAMPED, TIME));
     let names: Vec<_> = files(folder.path()).iter().map(|path| path.display().to_string()).collect();
