@@ -155,13 +155,20 @@ fmu-test: build
 paraview: build
     {{flexframe}} run examples/ring.toml -o out/paraview --overwrite
     {{flexframe}} reduce examples/ring.toml --stress -o out/paraview/ring.body.h5 --overwrite
+    {{flexframe}} run tests/two.toml -o out/paraview --overwrite
+    for body in ring bar; do \
+        {{flexframe}} reduce tests/two.toml --body $body --stress -o out/paraview/two.$body.body.h5 --overwrite; done
     python3 -m venv --upgrade-deps .tools/paraview >/dev/null
     .tools/paraview/bin/pip install -q h5py vtk
     for cells in "" --volume; do \
         {{flexframe}} export out/paraview/ring.h5 --vtkhdf out/paraview/ring.vtkhdf --modes out/paraview/modes.vtkhdf \
             --vtu out/paraview/vtu --every 200 --overwrite $cells && \
         .tools/paraview/bin/python tests/read_with_vtk.py \
-            out/paraview/{ring.h5,ring.vtkhdf,modes.vtkhdf,vtu}; \
+            out/paraview/{ring.h5,ring.vtkhdf,modes.vtkhdf,vtu} && \
+        {{flexframe}} export out/paraview/two.h5 --vtkhdf out/paraview/two.vtkhdf --modes out/paraview/two_modes.vtkhdf \
+            --vtu out/paraview/vtu --overwrite $cells && \
+        .tools/paraview/bin/python tests/read_with_vtk.py \
+            out/paraview/{two.h5,two.vtkhdf,two_modes.vtkhdf,vtu} || exit 1; \
     done
 
 # Build the page of reports from its sources (npm). It is checked in, so that nobody else needs npm.
@@ -174,7 +181,7 @@ report-page-test:
     cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build -- ../../../out/report-page/page.html
     cmp crates/report/web/page.html out/report-page/page.html || \
         { echo "report-page-test: page.html is not what web/src gives: run ./dev report-page" >&2; exit 1; }
-    for kind in small large unfinished rigid hinged nodes patch; do \
+    for kind in small large unfinished rigid hinged nodes patch several; do \
         cargo run --quiet --package report --example synthetic -- $kind out/report-page/$kind.html; done
     cd crates/report/web && REPORTS=../../../out/report-page npm test --silent
 

@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use flexframe::columns::COLUMNS;
-use results::{Results, unfinished};
+use results::{Results, Scope, unfinished};
 use tempfile::TempDir;
 
 /// A scene that takes some seconds, and the folder that it is in.
@@ -156,7 +156,11 @@ fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
             assert!(rows >= kept || rounds > 0, "{rows} after {kept}");
             kept = rows;
             for column in COLUMNS.iter().filter(|column| column.part.is_none()) {
-                let path = column.path.replace("points/", "points/struck/");
+                let place = (column.scope() == Scope::Point).then_some("struck");
+                let path = match column.scope() {
+                    Scope::System => format!("system/{}", column.path()),
+                    _ => column.path_of(place),
+                };
                 let (found, expected) = (results.table(&path).unwrap(), whole.table(&path).unwrap());
                 assert_eq!(found.values(), &expected.values()[..rows * found.width()], "{path}");
             }

@@ -14,7 +14,8 @@ use flexframe::failure::{Details, Failure, FailureReport, Kind};
 use flexframe::figures::{self, View};
 use flexframe::fmu::{self, FmuSettings};
 use flexframe::given_file::GivenFile;
-use flexframe::outputs::{OutputError, Written, outputs_of_results, outputs_of_scene};
+use flexframe::outputs::{OutputError, Written, outputs_of_results, outputs_of_scene, outputs_of_scenes};
+use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
@@ -400,6 +401,11 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         tell_doubts(&scene);
         Ok(scene)
     };
+    let read_bodies = |input: SceneInput| -> Result<Vec<Scene>, Box<dyn Failure>> {
+        let scenes = input.read_bodies()?;
+        scenes.iter().for_each(tell_doubts);
+        Ok(scenes)
+    };
     let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
     threads::start(cli.threads)?;
     let mut bar = Bar::new(json_errors);
@@ -423,19 +429,13 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Run { scene: SceneArgs { scene, json }, output, files, large, solver } => {
             output::require_file("--output", output.as_deref())?;
-            let scenes = scene.read_bodies()?;
-            scenes.iter().for_each(tell_doubts);
-            match &scenes[..] {
-                [scene] => {
-                    if let Some(to) = solver.take(&mut builder, signals.slepc())? {
-                        return write_only(scene, &builder, &to, files.overwrite, bar);
-                    }
-                }
-                several => solver.refuse_several(several.len())?,
+            let scenes = read_bodies(scene)?;
+            if let Some(to) = solver.take_of(&scenes, &mut builder, signals.slepc())? {
+                return write_only(&scenes[0], &builder, &to, files.overwrite, bar);
             }
             let folder = folder(&scenes[0], output)?;
             let settings = RunSettings { large, ..settings(&signals, files.overwrite, &builder) };
-            let report = run::run_bodies(&scenes, &folder, &settings, |p| {
+            let (_, report) = run::run(&scenes, &folder, &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;
@@ -444,7 +444,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Resume { file, files, json } => {
             GivenFile::expect(&file, &[GivenFile::Results], "the unfinished results file of a run")?;
-            let (_, _, report) = run::resume(&file, &settings(&signals, files.overwrite, &builder), |p| {
+            let report = run::resume(&file, &settings(&signals, files.overwrite, &builder), |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;
@@ -465,52 +465,59 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Fmu { scene: SceneArgs { scene, json }, output, files, library } => {
             output::require_file("--output", Some(&output))?;
-            let scene = scene.read_scene_or_body()?;
+            let scenes = scene.read_bodies_or_body()?;
             if !json {
-                output::doubts(plausible::doubts_of_scene(&scene));
+                output::doubts(scenes.iter().flat_map(plausible::doubts_of_scene));
             }
-            let outputs = outputs_of_scene(&scene, &builder, files.overwrite);
+            let outputs = outputs_of_scenes(&scenes, &builder, files.overwrite);
             outputs.and_input(&fmu::library_path(library.as_deref())).claim_as(&Written::FMU, &output)?;
-            let report = fmu::pack(&scene, &builder, &output, &FmuSettings { library }, |p| bar.build(p))?;
+            let report = fmu::pack(&scenes, &builder, &output, &FmuSettings { library }, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)
         }
         Command::Modes { scene: SceneArgs { scene, json }, flexible, output, files, solver } => {
             output::require_file("--output", output.as_deref())?;
-            let mut scene = read(scene)?;
+            let mut scenes = read_bodies(scene)?;
             if let Some(count) = flexible {
-                scene.modes.flexible = Flexible::Count(count);
+                scenes.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
             }
-            if let Some(to) = solver.take(&mut builder, signals.slepc())? {
-                return write_only(&scene, &builder, &to, files.overwrite, bar);
+            if let Some(to) = solver.take_of(&scenes, &mut builder, signals.slepc())? {
+                return write_only(&scenes[0], &builder, &to, files.overwrite, bar);
             }
             output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
-            let picture = output.as_ref().map(|folder| folder.join("modes"));
-            if let Some(picture) = &picture {
-                modes::require_surface(&scene)?;
-                outputs_of_scene(&scene, &builder, files.overwrite).claim(&figures::files(picture))?;
-            }
-            let (model, report) =
-                modes::modes(&scene, &builder, |p| bar.build(p)).map_err(|error| of_option(error.into(), flexible))?;
-            drop(bar);
-            let pictures = match (output, picture) {
-                (Some(folder), Some(picture)) => {
-                    std::fs::create_dir_all(&folder)
-                        .map_err(|source| run::RunError::Folder { folder: folder.clone(), source })?;
-                    mode_shapes::draw(&scene, &model, &picture)?.to_vec()
-                }
-                _ => Vec::new(),
+            let picture = |folder: &PathBuf, scene: &Scene| match &scene.name {
+                Some(body) => folder.join(format!("modes.{body}")),
+                None => folder.join("modes"),
             };
-            output::print(&report, json)?;
-            if !json {
-                output::list(&pictures)?;
+            if let Some(folder) = &output {
+                scenes.iter().try_for_each(modes::require_surface)?;
+                let pictures: Vec<_> =
+                    scenes.iter().flat_map(|scene| figures::files(&picture(folder, scene))).collect();
+                outputs_of_scenes(&scenes, &builder, files.overwrite).claim(&pictures)?;
             }
-            Ok(())
+            let (mut reports, mut pictures) = (Vec::new(), Vec::new());
+            for scene in &scenes {
+                let (model, report) = modes::modes(scene, &builder, |p| bar.build(p))
+                    .map_err(|error| of_option(error.into(), flexible))?;
+                if let Some(folder) = output.as_ref().filter(|_| model.meshed.is_some() || scenes.len() == 1) {
+                    std::fs::create_dir_all(folder)
+                        .map_err(|source| run::RunError::Folder { folder: folder.clone(), source })?;
+                    pictures.extend(mode_shapes::draw(scene, &model, &picture(folder, scene))?);
+                }
+                reports.push((scene.name.clone(), report));
+            }
+            drop(bar);
+            output::print(&OfBodies(reports), json)?;
+            if json { Ok(()) } else { output::list(&pictures) }
         }
         Command::Advise { scene: SceneArgs { scene, json }, verify } => {
-            let report = advise::advise(&read(scene)?, &builder, verify, |p| bar.advise(p))?;
+            let mut reports = Vec::new();
+            for scene in read_bodies(scene)? {
+                let report = advise::advise(&scene, &builder, verify, |p| bar.advise(p))?;
+                reports.push((scene.name, report));
+            }
             drop(bar);
-            output::print(&report, json)
+            output::print(&OfBodies(reports), json)
         }
         Command::Campbell {
             scene: SceneArgs { scene, json },
@@ -643,9 +650,9 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                     animate_results(file, &output, settings, |p| bar.run(p))?
                 }
                 None => {
-                    let scene = read(scene)?.without_rows();
-                    outputs_of_scene(&scene, &builder, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
-                    animate(&scene, &builder, &output, settings, |p| bar.run(p))?
+                    let scenes: Vec<_> = read_bodies(scene)?.into_iter().map(Scene::without_rows).collect();
+                    outputs_of_scenes(&scenes, &builder, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
+                    animate(&scenes, &builder, &output, settings, |p| bar.run(p))?
                 }
             };
             drop(bar);

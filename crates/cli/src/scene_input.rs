@@ -26,21 +26,21 @@ pub struct SceneInput {
     /// The value is written as in the scene file; what is not TOML is taken as text, so that quotes may be left out.
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
     set: Vec<(String, Value)>,
-    /// The body to look at, of a scene of several.
+    /// One body of a scene of several.
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
 }
 
 impl SceneInput {
-    /// The same, of a body file, too: then it is the scene that it was made of.
-    pub fn read_scene_or_body(self) -> Result<Scene, Box<dyn Failure>> {
+    /// As [`Self::read_bodies`], of a body file, too: then it is the scene that it was made of.
+    pub fn read_bodies_or_body(self) -> Result<Vec<Scene>, Box<dyn Failure>> {
         if !self.scene.extension().is_some_and(|extension| extension == "h5" || extension == "hdf5") {
-            return self.read();
+            return self.read_bodies();
         }
         GivenFile::expect(&self.scene, &[GivenFile::Scene, GivenFile::Body], "a scene file or a body file")?;
         let scene = scene_of_body(&self.scene)?;
         let text = assigned(&scene.source, &self.set)?;
-        Ok(Scene::parse(&text, &self.scene)?)
+        Ok(vec![Scene::parse(&text, &self.scene)?])
     }
 
     /// The results file that was given in the place of a scene, if one was. It has a scene of its own, which is not to be changed.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use model::Builder;
+use scene::Scene;
 use slepc::{Slepc, Stop};
 
 use crate::cli_error::CliError;
@@ -44,7 +45,7 @@ pub struct WriteOnly {
 
 impl SolverInput {
     /// Refuses SLEPc for several bodies at once, whose files would be in each other's way.
-    pub fn refuse_several(&self, bodies: usize) -> Result<(), CliError> {
+    fn refuse_several(&self, bodies: usize) -> Result<(), CliError> {
         match self.solver {
             Some(Solver::Slepc) => Err(CliError::Option {
                 option: "--solver",
@@ -53,6 +54,14 @@ impl SolverInput {
                 help: "name the body: --body NAME".to_owned(),
             }),
             _ => Ok(()),
+        }
+    }
+
+    /// As [`Self::take`]; refuses SLEPc for several bodies.
+    pub fn take_of(self, scenes: &[Scene], builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
+        match scenes.len() {
+            1 => self.take(builder, stop),
+            count => self.refuse_several(count).map(|()| None),
         }
     }
 

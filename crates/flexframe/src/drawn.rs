@@ -8,5 +8,5 @@ mod stored;
 
 pub(crate) use of_model::shapes_of;
 pub use opened::DrawnError;
-pub(crate) use opened::{Drawn, Part, body_files};
+pub(crate) use opened::{Drawn, DrawnBody, Part, body_files};
 pub(crate) use stored::{mesh_properties, not_stored, stored_shapes};

@@ -9,6 +9,48 @@ use model::{MatrixChecks, Meshed, Model};
 use nalgebra::Matrix3;
 use serde::{Serialize, Serializer};
 
+/// Reports of the bodies of a scene, in its order. As JSON it is the report of a single body, and otherwise an object with the list
+/// `bodies`, each with its `name`.
+#[derive(Debug, Clone)]
+pub struct OfBodies<R>(pub Vec<(Option<String>, R)>);
+
+impl<R: fmt::Display> fmt::Display for OfBodies<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (name, report)) in self.0.iter().enumerate() {
+            if i > 0 {
+                f.write_str("\n\n")?;
+            }
+            if let Some(name) = name {
+                writeln!(f, "body {name}")?;
+            }
+            write!(f, "{report}")?;
+        }
+        Ok(())
+    }
+}
+
+impl<R: Serialize> Serialize for OfBodies<R> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Named<'a, R> {
+            name: Option<&'a str>,
+            #[serde(flatten)]
+            report: &'a R,
+        }
+        #[derive(Serialize)]
+        struct Bodies<'a, R> {
+            bodies: Vec<Named<'a, R>>,
+        }
+        match &self.0[..] {
+            [(_, report)] => report.serialize(serializer),
+            several => {
+                let bodies = several.iter().map(|(name, report)| Named { name: name.as_deref(), report });
+                Bodies { bodies: bodies.collect() }.serialize(serializer)
+            }
+        }
+    }
+}
+
 /// Times of the phases, seconds, in the order in which they were passed.
 #[derive(Debug, Clone, Default)]
 pub struct Times(Vec<(&'static str, f64)>);
@@ -42,9 +84,21 @@ impl Times {
         times
     }
 
-    /// Appends a phase.
+    /// Adds to a phase.
     pub fn add(&mut self, phase: &'static str, time: Duration) {
-        self.0.push((phase, time.as_secs_f64()));
+        self.add_seconds(phase, time.as_secs_f64());
+    }
+
+    /// Adds to all phases of others.
+    pub fn add_all(&mut self, others: &Self) {
+        others.0.iter().for_each(|(phase, seconds)| self.add_seconds(phase, *seconds));
+    }
+
+    fn add_seconds(&mut self, phase: &'static str, seconds: f64) {
+        match self.0.iter_mut().find(|(known, _)| *known == phase) {
+            Some((_, sum)) => *sum += seconds,
+            None => self.0.push((phase, seconds)),
+        }
     }
 
     /// Sum of all phases, seconds.

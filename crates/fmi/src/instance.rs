@@ -48,7 +48,7 @@ impl Instance {
         if manifest.guid != guid {
             return Err(Error::Guid { found: guid.to_owned(), expected: manifest.guid });
         }
-        let fmu = FmuModel::open(&resources)?;
+        let fmu = FmuModel::open(&resources, &manifest)?;
         Ok(Self {
             guid: manifest.guid,
             variables: fmu.variables.clone(),

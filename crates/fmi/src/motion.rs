@@ -1,4 +1,4 @@
-//! The body in motion between communication points, under inputs that are held in between.
+//! The bodies in motion between communication points, under inputs that are held in between.
 
 use std::sync::Arc;
 
@@ -7,9 +7,9 @@ use flexframe::dynamics::{
     History, Initial, LoadFrame, Physics, PointForce, PointMoment, PointShapes, Reached, Rows, ScaledLoad, Setup,
     SharedLoad, Signal, Simulation,
 };
-use flexframe::fmu::{FmuModel, Input, Source};
+use flexframe::fmu::{FmuBody, FmuModel, Input, InputKind, Source};
 use flexframe::nalgebra::Vector3;
-use flexframe::row::Row;
+use flexframe::row::{BodyRow, Row};
 use self_cell::self_cell;
 use serde::{Deserialize, Serialize};
 
@@ -22,40 +22,47 @@ const ROUNDING: f64 = 1e-6;
 
 struct Owner {
     fmu: FmuModel,
-    initial: Initial,
+    /// One for each body.
+    initial: Vec<Initial>,
 }
 
+type Reviews<'a> = Vec<Review<'a>>;
+
 self_cell!(
-    /// The model, and the review of its motion, which looks at it.
+    /// The model, and the reviews of the motions of its bodies, which look at it.
     struct Reviewed {
         owner: Owner,
         #[not_covariant]
-        dependent: Review,
+        dependent: Reviews,
     }
 );
 
 impl Reviewed {
     fn of(owner: Owner) -> Self {
         Self::new(owner, |Owner { fmu, initial }| {
-            Review::new(fmu.model.case(&fmu.scene, initial), fmu.model.physics.effects, &fmu.model.advice)
+            let bodies = fmu.bodies.iter().zip(initial);
+            let reviews = bodies.map(|(FmuBody { scene, model, .. }, initial)| {
+                Review::new(model.case(scene, initial), model.physics.effects, &model.advice)
+            });
+            reviews.collect()
         })
     }
 }
 
-/// A body in motion.
+/// Bodies in motion, all at one time.
 pub struct Motion {
     reviewed: Option<Reviewed>,
-    simulation: Simulation,
+    simulations: Vec<Simulation>,
     /// One for each input variable, in their order.
     inputs: Vec<Channel>,
-    /// True if an input has been set since the last step.
-    changed: bool,
+    /// True of a body of which an input has been set since the last step.
+    changed: Vec<bool>,
     row: Row,
     numbers: Vec<f64>,
     /// True if `numbers` are those of the state and the inputs as they are.
     known: bool,
-    /// Warnings that the logger has had.
-    told: Vec<std::mem::Discriminant<flexframe::advice::Broken>>,
+    /// Warnings that the logger has had, of each body.
+    told: Vec<(usize, std::mem::Discriminant<flexframe::advice::Broken>)>,
 }
 
 /// An input and its way into the simulation.
@@ -68,26 +75,28 @@ struct Channel {
 /// Contents of a state of an FMU.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    checkpoint: Vec<u64>,
+    checkpoints: Vec<Vec<u64>>,
     inputs: Vec<(f64, [f64; 3])>,
-    changed: bool,
+    changed: Vec<bool>,
 }
 
 impl Motion {
     /// From the beginning of the scene to its end or the `stop` time, if that is later; times in the scene's unit.
     pub fn new(fmu: FmuModel, stop: Option<f64>) -> Result<Self, (Box<FmuModel>, Error)> {
-        let initial = fmu.model.initial(&fmu.scene);
+        let initial: Vec<Initial> = fmu.bodies.iter().map(|body| body.model.initial(&body.scene)).collect();
         let inputs: Vec<Channel> = fmu.variables.iter().filter_map(|variable| channel(variable.source)).collect();
-        let simulation = match simulation(&fmu, &initial, &inputs, stop) {
-            Ok(simulation) => simulation,
+        let bodies = fmu.bodies.iter().zip(&initial).enumerate();
+        let simulations = bodies.map(|(i, (body, initial))| simulation((i, body), initial, &inputs, stop));
+        let simulations: Vec<Simulation> = match simulations.collect::<Result<_, _>>() {
+            Ok(simulations) => simulations,
             Err(error) => return Err((Box::new(fmu), error)),
         };
         Ok(Self {
-            row: Row::new(&fmu.model),
+            row: Row { time: 0.0, bodies: fmu.bodies.iter().map(|body| BodyRow::new(&body.model)).collect() },
             reviewed: Some(Reviewed::of(Owner { fmu, initial })),
-            simulation,
+            changed: vec![false; simulations.len()],
+            simulations,
             inputs,
-            changed: false,
             numbers: Vec::new(),
             known: false,
             told: Vec::new(),
@@ -101,7 +110,7 @@ impl Motion {
 
     /// Time, in the scene's unit.
     pub fn time(&self) -> f64 {
-        self.simulation.time()
+        self.simulations.first().map_or(0.0, Simulation::time)
     }
 
     /// The value of an input, by its number among the inputs.
@@ -111,15 +120,18 @@ impl Motion {
 
     /// Sets an input from now on.
     pub fn set_input(&mut self, number: usize, value: f64) {
-        let time = self.simulation.time();
+        let time = self.time();
         let Some(channel) = self.inputs.get_mut(number).filter(|channel| channel.value != value) else { return };
-        match channel.input {
+        match channel.input.kind {
             // The speed goes on from where it is.
-            Input::DriveAcceleration => channel.signal.ramp(time, channel.signal.at(time), value),
+            InputKind::DriveAcceleration => channel.signal.ramp(time, channel.signal.at(time), value),
             _ => channel.signal.hold(value),
         }
         channel.value = value;
-        (self.changed, self.known) = (true, false);
+        self.known = false;
+        if let Some(changed) = self.changed.get_mut(channel.input.body) {
+            *changed = true;
+        }
     }
 
     /// The numbers of a row of a results file, now.
@@ -131,10 +143,14 @@ impl Motion {
     }
 
     fn observe(&mut self) -> Result<(), Failure> {
-        self.simulation.observe(&mut self.row.motion)?;
         let Some(reviewed) = &self.reviewed else { return Ok(()) };
         let fmu = &reviewed.borrow_owner().fmu;
-        self.row.complete(&fmu.model);
+        self.row.time = self.time();
+        let Self { simulations, row, .. } = self;
+        for ((simulation, body), row) in simulations.iter_mut().zip(&fmu.bodies).zip(&mut row.bodies) {
+            simulation.observe(&mut row.motion)?;
+            row.complete(&body.model);
+        }
         fmu.numbers(&self.row, &mut self.numbers);
         self.known = true;
         Ok(())
@@ -142,7 +158,7 @@ impl Motion {
 
     /// Goes on from `point` by `step`, in the scene's unit of time. After an error everything is as it was.
     pub fn go(&mut self, point: f64, step: f64) -> Result<(), Error> {
-        let (time, end) = (self.simulation.time(), self.simulation.end());
+        let (time, end) = (self.time(), self.simulations.first().map_or(0.0, Simulation::end));
         let least = SHORTEST * end;
         if !(step >= least && step.is_finite()) {
             return Err(Error::Step { found: step, least, time });
@@ -159,13 +175,15 @@ impl Motion {
         if (target - end).abs() <= slack {
             target = end;
         }
-        let before = self.simulation.clone();
-        if std::mem::take(&mut self.changed) {
-            self.simulation.loads_have_changed();
+        let before = (self.simulations.clone(), self.changed.clone());
+        for (simulation, changed) in self.simulations.iter_mut().zip(&mut self.changed) {
+            if std::mem::take(changed) {
+                simulation.loads_have_changed();
+            }
         }
         self.advance_to(target).map_err(|source| {
-            self.simulation = before;
-            (self.changed, self.known) = (true, false);
+            (self.simulations, self.changed) = before;
+            self.known = false;
             // What the failed step has shown is not to be held against what comes.
             self.reviewed = self.reviewed.take().map(|reviewed| Reviewed::of(reviewed.into_owner()));
             Error::Failed { source, time }
@@ -173,38 +191,36 @@ impl Motion {
     }
 
     fn advance_to(&mut self, target: f64) -> Result<(), Failure> {
-        let Self { simulation, reviewed, .. } = self;
+        let Self { simulations, reviewed, .. } = self;
         let Some(reviewed) = reviewed else { return Ok(()) };
-        simulation.set_stop_time(Some(target));
-        reviewed.with_dependent_mut(|Owner { fmu, .. }, review| {
-            loop {
-                let reached = simulation.advance_watched(u64::MAX, |moment| review.look(moment));
-                // A step that fails after the model has come to mean nothing fails for that.
-                if let Some((time, refusal)) = review.stop().filter(|_| fmu.scene.effects.refuse) {
-                    return Err(Failure::Refused { time, words: refusal.to_string() });
-                }
-                match reached? {
-                    Reached::Stop | Reached::End => return Ok(()),
-                    _ if simulation.time() >= target => return Ok(()),
-                    _ => {}
-                }
-            }
+        reviewed.with_dependent_mut(|Owner { fmu, .. }, reviews| {
+            let mut bodies = simulations.iter_mut().zip(reviews).zip(&fmu.bodies);
+            bodies.try_for_each(|((simulation, review), body)| advance(simulation, review, body, target))
         })?;
         self.observe()?;
         let Self { row, reviewed: Some(reviewed), .. } = self else { return Ok(()) };
-        Ok(reviewed.with_dependent_mut(|_, review| review.observe(row))?)
+        let reviews = |reviews: &mut Reviews<'_>| {
+            reviews.iter_mut().zip(&row.bodies).try_for_each(|(review, body)| review.observe(body))
+        };
+        Ok(reviewed.with_dependent_mut(|_, of_bodies| reviews(of_bodies))?)
     }
 
     /// Doubts about the model, each only once.
     pub fn warnings(&mut self) -> Vec<String> {
         let Some(reviewed) = &self.reviewed else { return Vec::new() };
-        let broken = reviewed.with_dependent(|_, review| review.broken());
+        let broken: Vec<_> = reviewed.with_dependent(|_, reviews| reviews.iter().map(Review::broken).collect());
         let mut new = Vec::new();
-        for broken in broken {
-            let kind = std::mem::discriminant(&broken);
+        for (body, broken) in
+            broken.into_iter().enumerate().flat_map(|(body, all)| all.into_iter().map(move |b| (body, b)))
+        {
+            let kind = (body, std::mem::discriminant(&broken));
             if !self.told.contains(&kind) {
                 self.told.push(kind);
-                new.push(broken.to_string());
+                let scene = &reviewed.borrow_owner().fmu.bodies[body].scene;
+                new.push(match &scene.name {
+                    Some(name) => format!("body {name}: {broken}"),
+                    None => broken.to_string(),
+                });
             }
         }
         new
@@ -213,21 +229,27 @@ impl Motion {
     /// The state with the inputs.
     pub fn state(&self) -> Result<State, Error> {
         let inputs = self.inputs.iter().map(|channel| (channel.value, channel.signal.numbers())).collect();
-        Ok(State { checkpoint: self.simulation.checkpoint()?, inputs, changed: self.changed })
+        let checkpoints = self.simulations.iter().map(Simulation::checkpoint).collect::<Result<_, _>>()?;
+        Ok(State { checkpoints, inputs, changed: self.changed.clone() })
     }
 
     /// Goes on from a state of this FMU. After an error everything is as it was.
     pub fn set_state(&mut self, state: &State) -> Result<(), Error> {
         let finite = |(value, numbers): &(f64, [f64; 3])| value.is_finite() && numbers.iter().all(|n| n.is_finite());
-        if state.inputs.len() != self.inputs.len() || !state.inputs.iter().all(finite) {
+        let bodies = self.simulations.len();
+        let fits =
+            state.inputs.len() == self.inputs.len() && [state.checkpoints.len(), state.changed.len()] == [bodies; 2];
+        if !(fits && state.inputs.iter().all(finite)) {
             return Err(Error::Bytes);
         }
-        self.simulation = self.simulation.clone().restored(&state.checkpoint)?;
+        let simulations = self.simulations.iter().zip(&state.checkpoints);
+        let restored = simulations.map(|(simulation, checkpoint)| simulation.clone().restored(checkpoint));
+        self.simulations = restored.collect::<Result<_, _>>()?;
         for (channel, (value, numbers)) in self.inputs.iter_mut().zip(&state.inputs) {
             channel.value = *value;
             channel.signal.set(*numbers);
         }
-        (self.changed, self.known) = (state.changed, false);
+        (self.changed, self.known) = (state.changed.clone(), false);
         self.reviewed = self.reviewed.take().map(|reviewed| Reviewed::of(reviewed.into_owner()));
         Ok(())
     }
@@ -238,32 +260,53 @@ fn channel(source: Source) -> Option<Channel> {
     Some(Channel { input, value: input.start(), signal: Signal::held(input.start()) })
 }
 
-fn simulation(fmu: &FmuModel, initial: &Initial, inputs: &[Channel], stop: Option<f64>) -> Result<Simulation, Error> {
-    let model = &fmu.model;
+/// Goes on to a time, under the eyes of a review.
+fn advance(simulation: &mut Simulation, review: &mut Review<'_>, body: &FmuBody, target: f64) -> Result<(), Failure> {
+    simulation.set_stop_time(Some(target));
+    loop {
+        let reached = simulation.advance_watched(u64::MAX, |instant| review.look(instant));
+        // A step that fails after the model has come to mean nothing fails for that.
+        if let Some((time, refusal)) = review.stop().filter(|_| body.scene.effects.refuse) {
+            return Err(Failure::Refused { time, words: refusal.to_string() });
+        }
+        match reached? {
+            Reached::Stop | Reached::End => return Ok(()),
+            _ if simulation.time() >= target => return Ok(()),
+            _ => {}
+        }
+    }
+}
+
+fn simulation(
+    (number, FmuBody { scene, model, rotations }): (usize, &FmuBody),
+    initial: &Initial,
+    inputs: &[Channel],
+    stop: Option<f64>,
+) -> Result<Simulation, Error> {
     let mut loads = model.loads().to_vec();
     let mut physics: Physics = model.physics.clone();
     let axis = |axis: usize| Vector3::from_fn(|i, _| if i == axis { 1.0 } else { 0.0 });
-    for Channel { input, signal, .. } in inputs {
+    for Channel { input, signal, .. } in inputs.iter().filter(|channel| channel.input.body == number) {
         let factor = signal.clone();
-        let unit: SharedLoad = match *input {
-            Input::Factor(load) => {
+        let unit: SharedLoad = match input.kind {
+            InputKind::Factor(load) => {
                 if let Some(load) = loads.get_mut(load) {
                     *load = Arc::new(ScaledLoad { load: Arc::clone(load), factor });
                 }
                 continue;
             }
-            Input::DriveAcceleration => {
+            InputKind::DriveAcceleration => {
                 if let Some(drive) = &mut physics.drive {
                     drive.added = Some(factor);
                 }
                 continue;
             }
-            Input::Force(point, component) => {
+            InputKind::Force(point, component) => {
                 let Some((_, point)) = model.points.get(point) else { continue };
                 Arc::new(PointForce::dead(point.clone(), axis(component), History::Constant))
             }
-            Input::Moment(point, component) => {
-                let Some(rotation) = fmu.rotations.get(point).cloned() else { continue };
+            InputKind::Moment(point, component) => {
+                let Some(rotation) = rotations.get(point).cloned() else { continue };
                 let (frame, history) = (LoadFrame::Global, History::Constant);
                 Arc::new(PointMoment { rotation, moment: axis(component), frame, history })
             }
@@ -271,7 +314,7 @@ fn simulation(fmu: &FmuModel, initial: &Initial, inputs: &[Channel], stop: Optio
         loads.push(Arc::new(ScaledLoad { load: unit, factor }));
     }
     let points: Vec<PointShapes> = model.points.iter().map(|(_, point)| point.clone()).collect();
-    let setup = model.setup(&fmu.scene, initial);
+    let setup = model.setup(scene, initial);
     Ok(Simulation::new(&Setup {
         loads: &loads,
         physics: &physics,

@@ -13,7 +13,7 @@ use results::{FileError, Results, Writer};
 static FILES: LazyLock<(tempfile::TempDir, PathBuf, PathBuf, Vec<u8>)> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     let [any, part] = ["any.h5", "seed.part.h5"].map(|name| folder.path().join(name));
-    write_results(&folder.path().join("seed.h5"), 2, 1, 3, false).unwrap();
+    write_results(&folder.path().join("seed.h5"), 2, [2, 1], 3, false).unwrap();
     let bytes = std::fs::read(&part).unwrap();
     (folder, any, part, bytes)
 });

@@ -2,33 +2,61 @@
 
 use std::path::Path;
 
-use results::Values::{Modal, Number, Points, Quaternion, Vector};
-use results::{BodyProperties, Column, Expected, FileError, Metadata, Units, Writer};
+use results::Quantity::{Number, Quaternion, Vector};
+use results::{
+    BodyMetadata, BodyProperties, Column, Dimension, Expected, FileError, Metadata, Quantities, SystemRow, Units,
+    Writer,
+};
 
 /// A row.
 #[derive(Debug)]
 pub struct Row {
+    bodies: Vec<Body>,
+}
+
+/// A body in a row.
+#[derive(Debug)]
+pub struct Body {
     modes: Vec<f64>,
     points: usize,
 }
 
+impl SystemRow for Row {
+    type Body = Body;
+
+    fn time(&self) -> f64 {
+        0.5
+    }
+
+    fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+}
+
+const VELOCITY: (Dimension, &str) = (Dimension::Velocity, "global");
+
 /// A column of each kind.
 pub static COLUMNS: [Column<Row>; 5] = [
-    Column::new("time", "time", "none", "time of each row", Number(|_| 0.5)),
-    Column::new("attitude", "1", "none", "a quaternion", Quaternion(|_| [1.0, 0.0, 0.0, 0.0])),
-    Column::new("velocity", "length/time", "global", "a vector", Vector(|_| [1.0; 3])),
-    Column::new("modal/velocity", "1", "none", "modal coordinates", Modal(|row| &row.modes)),
-    Column::new(
-        "points/velocity",
-        "length/time",
-        "global",
+    Column::of_system(["", "number"], VELOCITY, "a number", Number(|_| 0.25)),
+    Column::of_body(["", "attitude"], VELOCITY, "a quaternion", Quaternion(|_| [1.0, 0.0, 0.0, 0.0])),
+    Column::of_body(["", "velocity"], VELOCITY, "a vector", Vector(|_| [1.0; 3])),
+    Column::of_modes("velocity", VELOCITY.0, "modal coordinates", |body: &Body| &body.modes),
+    Column::of_points(
+        "velocity",
+        VELOCITY,
         "a vector of each point",
-        Points(|row, i| (i < row.points).then_some([2.0; 3])),
+        Quantities::Vectors(|body: &Body, i| (i < body.points).then_some([2.0; 3])),
     ),
 ];
 
-/// Writes a file of so many modes, points and rows, finished or not.
-pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish: bool) -> Result<(), FileError> {
+/// Writes a file of so many bodies, each with so many modes and points, and so many rows, finished or not.
+pub fn write_results(
+    path: &Path,
+    bodies: usize,
+    [modes, points]: [usize; 2],
+    rows: u32,
+    finish: bool,
+) -> Result<(), FileError> {
     let metadata = Metadata {
         title: "a seed".into(),
         units: Units { length: "m".into(), mass: "kg".into(), time: "s".into() },
@@ -41,7 +69,20 @@ pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish
         scene_text: "title = \"a seed\"".into(),
         scene_file: "fuzz.toml".into(),
         input_files: Vec::new(),
-        body: BodyProperties {
+        bodies: (0..bodies).map(|i| body(format!("B{i}"), modes, points)).collect(),
+        warnings: Vec::new(),
+    };
+    let mut writer =
+        Writer::create(path, &metadata, &[], &COLUMNS, Expected { overwrite: true, ..Expected::default() })?;
+    let row = Row { bodies: (0..bodies).map(|_| Body { modes: vec![0.5; modes], points }).collect() };
+    (0..rows).try_for_each(|_| writer.push(&row))?;
+    if finish { writer.finish() } else { Ok(()) }
+}
+
+fn body(name: String, modes: usize, points: usize) -> BodyMetadata {
+    BodyMetadata {
+        name,
+        model: BodyProperties {
             mass: 1.0,
             center_of_mass: [0.0; 3],
             inertia: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
@@ -59,10 +100,5 @@ pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish
         support_names: Vec::new(),
         effects: Vec::new(),
         refusal: None,
-        warnings: Vec::new(),
-    };
-    let mut writer = Writer::create(path, &metadata, None, &COLUMNS, Expected { overwrite: true, ..Expected::default() })?;
-    let row = Row { modes: vec![0.5; modes], points };
-    (0..rows).try_for_each(|_| writer.push(&row))?;
-    if finish { writer.finish() } else { Ok(()) }
+    }
 }

@@ -40,7 +40,7 @@ pub(crate) struct Structure<'a> {
     solver: OnceCell<Solver<'a>>,
     recovery: OnceCell<StressRecovery<'a>>,
     element_passes: Cell<usize>,
-    /// Held from the first value that has to be computed on.
+    /// Held from the first value that has to be computed on, until a model is done.
     computing: RefCell<Option<Computing>>,
 }
 
@@ -97,6 +97,11 @@ impl<'a> Structure<'a> {
             structure.solver()?;
         }
         Ok(structure)
+    }
+
+    /// Lets other threads compute, and other bodies of this one.
+    pub fn rest(&self) {
+        self.computing.replace(None);
     }
 
     /// The key of a value of the body whatever holds it.

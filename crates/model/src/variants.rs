@@ -76,7 +76,11 @@ impl<'a> Variants<'a> {
     /// As [`Builder::build`].
     pub fn build(&mut self, scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Model, BuildError> {
         match &mut self.0 {
-            Of::Meshed(variants) => variants.build(scene, &mut progress),
+            Of::Meshed(variants) => {
+                let model = variants.build(scene, &mut progress);
+                variants.structure.rest();
+                model
+            }
             Of::Rigid(body) => rigid::build(scene, body),
         }
     }
@@ -133,7 +137,11 @@ impl<'a> Variants<'a> {
         match &self.0 {
             Of::Meshed(variants) => match &variants.found {
                 Some(found) => Ok(found.available),
-                None => variants.structure.available(),
+                None => {
+                    let available = variants.structure.available();
+                    variants.structure.rest();
+                    available
+                }
             },
             Of::Rigid(_) => Ok(0),
         }

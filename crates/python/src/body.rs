@@ -32,6 +32,8 @@ use crate::scene::Scene;
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Body {
     scene: Py<Scene>,
+    /// That of this body.
+    of: Arc<flexframe::scene::Scene>,
     model: Arc<Model>,
     /// The assembly that other scenes of the same body share with it.
     assembly: Arc<Assembly>,
@@ -43,20 +45,21 @@ impl Body {
     }
 
     pub(crate) fn scene_of(&self) -> &Arc<flexframe::scene::Scene> {
-        self.scene.get().scene()
+        &self.of
     }
 
     /// The same body in another scene.
     pub(crate) fn of_scene(&self, py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
-        if Assembly::made_of(scene.get().scene()) != Assembly::made_of(self.scene_of()) {
+        let of = scene.get().scene(py)?.clone();
+        if Assembly::made_of(&of) != Assembly::made_of(self.scene_of()) {
             let expected = "one with the same [body], constraints and modes.flexible";
             let help = "make another body: Simulation(Body(scene))";
             return Err(wrong_input(py, "scene", "a scene of another body", expected, help));
         }
-        let (assembly, of_thread) = (self.assembly.clone(), scene.get().scene().clone());
+        let (assembly, of_thread) = (self.assembly.clone(), of.clone());
         let build = move |told: &mut dyn FnMut(BuildProgress)| assembly.variants()?.build(&of_thread, told);
         let model = Arc::new(built(py, &scene, build)?);
-        Ok(Self { scene, model, assembly: self.assembly.clone() })
+        Ok(Self { scene, of, model, assembly: self.assembly.clone() })
     }
 
     fn meshed(&self, py: Python<'_>) -> PyResult<&Meshed> {
@@ -84,15 +87,16 @@ impl Body {
 impl Body {
     #[new]
     fn new(py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
-        warn(py, doubts_of_scene(scene.get().scene()))?;
-        let (of_thread, builder) = (scene.get().scene().clone(), scene.get().builder().clone());
+        let of = scene.get().scene(py)?.clone();
+        warn(py, doubts_of_scene(&of))?;
+        let (of_thread, builder) = (of.clone(), scene.get().builder().clone());
         let build = move |told: &mut dyn FnMut(BuildProgress)| {
             let assembly = builder.assemble(&of_thread, &mut *told)?;
             let model = assembly.variants()?.build(&of_thread, told)?;
             Ok((model, assembly.without_matrices()))
         };
         let (model, assembly) = built(py, &scene, build)?;
-        Ok(Self { scene, model: Arc::new(model), assembly: Arc::new(assembly) })
+        Ok(Self { scene, of, model: Arc::new(model), assembly: Arc::new(assembly) })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, (Py<Scene>,)) {

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use flexframe::columns::COLUMNS;
-use flexframe::results::{Column, Metadata, Results, present};
+use flexframe::results::{BodyMetadata, Metadata, Results};
 use flexframe::row::Row;
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::columns::{dimensions, of_run, shaped};
+use crate::columns::{History, dimensions, of_run, scope, shaped};
 use crate::errors::exception;
 use crate::scene::units;
 use crate::threads::detached;
@@ -19,8 +19,8 @@ const MODULE: &str = "flexframe.results";
 
 /// The rows of a run, in memory.
 pub(crate) struct Rows {
-    columns: Vec<(&'static Column<Row>, Vec<f64>)>,
-    count: usize,
+    times: Vec<f64>,
+    histories: Vec<(History, Vec<f64>)>,
 }
 
 /// An event that a run has come to: its name and the time.
@@ -28,12 +28,12 @@ pub(crate) type Occurred = (String, f64);
 
 impl Rows {
     pub(crate) fn new(metadata: &Metadata) -> Self {
-        Self { columns: of_run(metadata).map(|column| (column, Vec::new())).collect(), count: 0 }
+        Self { times: Vec::new(), histories: of_run(metadata).map(|history| (history, Vec::new())).collect() }
     }
 
     pub(crate) fn push(&mut self, row: &Row, metadata: &Metadata) {
-        self.columns.iter_mut().for_each(|(column, values)| column.append(row, metadata, values));
-        self.count += 1;
+        self.times.push(row.time);
+        self.histories.iter_mut().for_each(|(history, values)| history.append(row, metadata, values));
     }
 
     /// The results that they are; they become the arrays, without a copy.
@@ -56,28 +56,44 @@ impl Rows {
         data.set_item("program_version", program_version)?;
         data.set_item("scene", scene_text)?;
         data.set_item("scene_file", scene_file)?;
-        data.set_item("frequencies", metadata.body.frequencies.clone().into_pyarray(py))?;
-        data.set_item("damping_ratios", metadata.body.damping_ratios.clone().into_pyarray(py))?;
-        data.set_item("kinds", metadata.body.kinds().collect::<Vec<_>>())?;
-        data.set_item("points", &metadata.point_names)?;
-        let positions = metadata.point_positions.as_flattened().to_vec();
-        data.set_item("point_positions", positions.into_pyarray(py).reshape([metadata.point_names.len(), 3])?)?;
-        data.set_item("supports", &metadata.support_names)?;
         data.set_item("complete", complete)?;
         data.set_item("warnings", &metadata.warnings)?;
         data.set_item("events", events)?;
+        let bodies = metadata.bodies.iter().map(|body| of_body(py, body)).collect::<PyResult<Vec<_>>>()?;
+        data.set_item("bodies", bodies)?;
 
         let columns = PyList::empty(py);
-        for (column, values) in self.columns {
-            let shape: Vec<usize> = [self.count].into_iter().chain(column.row_shape(metadata)).collect();
-            let names: Vec<String> = ["time".to_owned()].into_iter().chain(dimensions(column)).collect();
-            let unit = column.unit(&metadata.units);
-            let array = shaped(py, values, &shape)?;
-            columns.append((column.path, unit, column.frame, column.description, names, array))?;
+        let time = (&metadata.units.time, "none", "time of each row", vec!["time"], "system", None::<&str>);
+        let rows = self.times.len();
+        columns.append(("time", "time", time, shaped(py, self.times, &[rows])?))?;
+        for (history, values) in self.histories {
+            let column = history.column;
+            let shape: Vec<usize> = [rows].into_iter().chain(history.row_shape(metadata)).collect();
+            let dimensions = dimensions(history);
+            let names: Vec<&str> = ["time"].into_iter().chain(dimensions.iter().map(String::as_str)).collect();
+            let (unit, body) = (column.unit(&metadata.units), history.body(metadata).map(|body| body.name.as_str()));
+            let described = (unit, column.frame, column.description, names, scope(history), body);
+            let path = history.short_path_of(metadata, None);
+            let own_path = column.path_of(None);
+            columns.append((path, own_path, described, shaped(py, values, &shape)?))?;
         }
         data.set_item("columns", columns)?;
         py.import(MODULE)?.getattr("Results")?.call1((data,))
     }
+}
+
+/// What is known of a body besides its columns.
+fn of_body<'py>(py: Python<'py>, body: &BodyMetadata) -> PyResult<Bound<'py, PyDict>> {
+    let data = PyDict::new(py);
+    data.set_item("name", &body.name)?;
+    data.set_item("frequencies", body.model.frequencies.clone().into_pyarray(py))?;
+    data.set_item("damping_ratios", body.model.damping_ratios.clone().into_pyarray(py))?;
+    data.set_item("kinds", body.model.kinds().collect::<Vec<_>>())?;
+    data.set_item("points", &body.point_names)?;
+    let positions = body.point_positions.as_flattened().to_vec();
+    data.set_item("point_positions", positions.into_pyarray(py).reshape([body.point_names.len(), 3])?)?;
+    data.set_item("supports", &body.support_names)?;
+    Ok(data)
 }
 
 /// Reads a results file, finished or not.
@@ -85,6 +101,7 @@ impl Rows {
 pub(crate) fn read_results(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
     let read = detached(py, || Results::open(&path, &COLUMNS))?.map_err(|error| exception(py, &error))?;
     let metadata = &read.metadata;
-    let columns = present(&COLUMNS, metadata).map(|column| (column, read.dataset(column))).collect();
-    Rows { columns, count: read.rows() }.into_results(py, metadata, read.complete, &[])
+    let times = read.numbers("time").unwrap_or_default().to_vec();
+    let histories = of_run(metadata).map(|history| (history, read.dataset(history))).collect();
+    Rows { times, histories }.into_results(py, metadata, read.complete, &[])
 }

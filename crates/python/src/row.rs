@@ -5,11 +5,15 @@ use std::sync::Arc;
 use flexframe::dynamics::Observation;
 use flexframe::model::Model;
 use flexframe::results::Metadata;
+use flexframe::row::BodyRow;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
 use crate::columns::{of_row, of_run};
 use crate::threads::in_pool;
+
+/// Path of the time.
+const TIME: &str = "time";
 
 /// The motion at one time: a number or an array for each column of a results file, by its path.
 #[pyclass(frozen, mapping, module = "flexframe")]
@@ -20,9 +24,10 @@ pub(crate) struct Row {
 
 impl Row {
     pub(crate) fn new(motion: &Observation, model: &Model, metadata: &Arc<Metadata>) -> PyResult<Self> {
-        let mut row = flexframe::row::Row::new(model);
-        row.motion.clone_from(motion);
-        in_pool(|| row.complete(model))?;
+        let mut body = BodyRow::new(model);
+        body.motion.clone_from(motion);
+        in_pool(|| body.complete(model))?;
+        let row = flexframe::row::Row { time: motion.time, bodies: vec![body] };
         Ok(Self { row, metadata: metadata.clone() })
     }
 }
@@ -36,16 +41,17 @@ impl Row {
     }
 
     /// Paths of its columns.
-    fn keys(&self) -> Vec<&'static str> {
-        of_run(&self.metadata).map(|column| column.path).collect()
+    fn keys(&self) -> Vec<String> {
+        let paths = of_run(&self.metadata).map(|history| history.short_path_of(&self.metadata, None));
+        [TIME.to_owned()].into_iter().chain(paths).collect()
     }
 
     fn __len__(&self) -> usize {
-        of_run(&self.metadata).count()
+        1 + of_run(&self.metadata).count()
     }
 
     fn __contains__(&self, path: &str) -> bool {
-        of_run(&self.metadata).any(|column| column.path == path)
+        self.keys().iter().any(|known| known == path)
     }
 
     fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -53,19 +59,18 @@ impl Row {
     }
 
     fn __getitem__<'py>(&self, py: Python<'py>, path: &str) -> PyResult<Bound<'py, PyAny>> {
-        if let Some(column) = of_run(&self.metadata).find(|column| column.path == path) {
-            return of_row(py, column, &self.metadata, &self.row);
+        if path == TIME {
+            return Ok(self.row.time.into_pyobject(py)?.into_any());
         }
-        // points/NAME/velocity
-        let of_place = path.split_once('/').and_then(|(group, rest)| rest.rsplit_once('/').map(|parts| (group, parts)));
-        if let Some((group, (name, quantity))) = of_place {
-            let column = of_run(&self.metadata).find(|column| column.path == format!("{group}/{quantity}"));
-            let place = column.and_then(|column| {
-                let names = column.places(&self.metadata);
-                names.iter().position(|known| known == name).map(|number| (column, number))
-            });
-            if let Some((column, number)) = place {
-                return of_row(py, column, &self.metadata, &self.row)?.get_item(number);
+        let metadata = &*self.metadata;
+        for history in of_run(metadata) {
+            let is_it = |place: Option<&str>| history.short_path_of(metadata, place) == path;
+            if is_it(None) {
+                return of_row(py, history, metadata, &self.row);
+            }
+            // points/NAME/velocity
+            if let Some(number) = history.places(metadata).iter().position(|place| is_it(Some(place))) {
+                return of_row(py, history, metadata, &self.row)?.get_item(number);
             }
         }
         Err(PyKeyError::new_err(format!("{path:?} is no column of this run; it has {}", self.keys().join(", "))))

@@ -14,9 +14,10 @@ use crate::interrupt::{Stop, interruptible};
 use crate::results::read_results;
 use crate::scene::Scene;
 
-/// Runs a scene as the program does, and writes its results to `<folder>/<name of the scene>.h5`. Until the end they
-/// are in `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash. What is there is replaced only
-/// with `overwrite`, and what the scene reads never; results of more than 1 GB are written only with `large`.
+/// Runs the bodies of a scene as the program does, and writes their results to `<folder>/<name of the scene>.h5`.
+/// Until the end they are in `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash. What is
+/// there is replaced only with `overwrite`, and what the scene reads never; results of more than 1 GB are written only
+/// with `large`.
 #[pyfunction]
 #[pyo3(signature = (scene, folder, *, overwrite=false, large=false))]
 pub(crate) fn run(
@@ -26,9 +27,9 @@ pub(crate) fn run(
     overwrite: bool,
     large: bool,
 ) -> PyResult<Bound<'_, PyAny>> {
-    let (scene, builder) = (scene.get().scene().clone(), scene.get().builder().clone());
+    let (scenes, builder) = (scene.get().scenes(), scene.get().builder().clone());
     followed(py, (overwrite, large), builder, move |settings, progress| {
-        flexframe::run::run(&scene, &folder, settings, progress).map(|(_, report)| report)
+        flexframe::run::run(&scenes, &folder, settings, progress).map(|(_, report)| report)
     })
 }
 
@@ -43,7 +44,7 @@ pub(crate) fn resume(
     trust_geometry: bool,
 ) -> PyResult<Bound<'_, PyAny>> {
     followed(py, (overwrite, false), builder(py, trust_geometry)?, move |settings, progress| {
-        flexframe::run::resume(&file, settings, progress).map(|(_, _, report)| report)
+        flexframe::run::resume(&file, settings, progress)
     })
 }
 

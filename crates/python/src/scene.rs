@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flexframe::model::Builder;
-use flexframe::scene::{AssignError, assign};
+use flexframe::scene::{AssignError, SceneError, assign};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -23,13 +23,17 @@ const NAME: &str = "scene";
 /// From the path of a scene file; or from a dict with the sections and keys of one, such as `{"title": "Bar", "units":
 /// {...}, "body": {"mesh": "bar.msh", ...}, ...}`. Its lists may be arrays of numpy. Paths in a dict are relative to
 /// `base` (default: the current folder); `name` stands for it in messages and names its results file (default:
-/// "scene"). `body` is the name of a body in a scene of several. With `trust_geometry`, gmsh may do all that a `.geo` file says which the scene names; otherwise one that
-/// runs other programs or writes files is refused.
+/// "scene"). In a scene of several bodies, `body` names one, to take it alone; `run` takes all of them. With
+/// `trust_geometry`, gmsh may do all that a `.geo` file says which the scene names; otherwise one that runs other
+/// programs or writes files is refused.
 ///
 /// A scene can be pickled and copied. The files that it names are read where it is unpickled.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Scene {
-    scene: Arc<flexframe::scene::Scene>,
+    /// One for each body.
+    scenes: Vec<Arc<flexframe::scene::Scene>>,
+    /// The body that was named.
+    body: Option<String>,
     builder: Builder,
 }
 
@@ -37,20 +41,41 @@ pub(crate) struct Scene {
 const UNPICKLE: &str = "_scene";
 
 impl Scene {
-    pub(crate) fn scene(&self) -> &Arc<flexframe::scene::Scene> {
-        &self.scene
+    /// The scene of its only body.
+    pub(crate) fn scene(&self, py: Python<'_>) -> PyResult<&Arc<flexframe::scene::Scene>> {
+        match &self.scenes[..] {
+            [scene] => Ok(scene),
+            several => {
+                let found = format!("{} bodies", several.len());
+                let help = "name one: Scene(…, body=\"NAME\"); run takes all";
+                Err(wrong_input(py, "scene", &found, &format!("one of {}", self.bodies().join(", ")), help))
+            }
+        }
     }
 
-    /// What builds its body.
+    /// The scenes of all its bodies.
+    pub(crate) fn scenes(&self) -> Vec<flexframe::scene::Scene> {
+        self.scenes.iter().map(|scene| (**scene).clone()).collect()
+    }
+
+    /// What builds its bodies.
     pub(crate) fn builder(&self) -> &Builder {
         &self.builder
     }
 
-    fn parsed(py: Python<'_>, text: &str, path: PathBuf, body: Option<&str>, builder: Builder) -> PyResult<Self> {
+    /// The scene of the first body: title, units and times are those of all.
+    fn first(&self) -> &flexframe::scene::Scene {
+        &self.scenes[0]
+    }
+
+    fn parsed(py: Python<'_>, text: &str, path: PathBuf, body: Option<String>, builder: Builder) -> PyResult<Self> {
         // Tables of histories are read, too.
-        let scene = detached(py, || flexframe::scene::Scene::parse_body(text, path, body))?;
-        let scene = scene.map_err(|error| exception(py, &error))?;
-        Ok(Self { scene: Arc::new(scene), builder })
+        let scenes = detached(py, || match &body {
+            Some(body) => Ok(vec![flexframe::scene::Scene::parse_body(text, path, Some(body))?]),
+            None => Ok(flexframe::scene::System::parse(text, path)?.bodies),
+        })?;
+        let scenes = scenes.map_err(|error: SceneError| exception(py, &error))?;
+        Ok(Self { scenes: scenes.into_iter().map(Arc::new).collect(), body, builder })
     }
 }
 
@@ -62,7 +87,7 @@ impl Scene {
         source: &Bound<'_, PyAny>,
         base: Option<PathBuf>,
         name: Option<String>,
-        body: Option<&str>,
+        body: Option<String>,
         trust_geometry: bool,
     ) -> PyResult<Self> {
         let py = source.py();
@@ -87,7 +112,7 @@ impl Scene {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let unpickle = py.import(MODULE)?.getattr(UNPICKLE)?;
-        let state = (&self.scene.source, &self.scene.path, self.builder.trust_geometry);
+        let state = (self.text(), self.path(), &self.body, self.builder.trust_geometry);
         Ok((unpickle, state.into_pyobject(py)?))
     }
 
@@ -103,55 +128,67 @@ impl Scene {
             let help = "name the key as messages about the scene do; docs/reference/scene.md lists them";
             wrong_input(py, &format!("`{key}`"), &found, &expected, help)
         };
-        let text = assign(&self.scene.source, &assigned).map_err(refused)?;
-        Self::parsed(py, &text, self.scene.path.clone(), None, self.builder.clone())
+        let text = assign(self.text(), &assigned).map_err(refused)?;
+        Self::parsed(py, &text, self.path().clone(), self.body.clone(), self.builder.clone())
     }
 
     /// The title of the run.
     #[getter]
     fn title(&self) -> &str {
-        &self.scene.title
+        &self.first().title
     }
 
-    /// The text of the scene, TOML.
+    /// The text of the scene, TOML; with all bodies, where it has several.
     #[getter]
     fn text(&self) -> &str {
-        &self.scene.source
+        self.first().file_text()
+    }
+
+    /// Names of its bodies; "body" is that of a single one.
+    #[getter]
+    fn bodies(&self) -> Vec<&str> {
+        self.scenes.iter().map(|scene| scene.name.as_deref().unwrap_or("body")).collect()
     }
 
     /// The scene file, or `base` and `name` of a dict.
     #[getter]
     fn path(&self) -> &PathBuf {
-        &self.scene.path
+        &self.first().path
     }
 
     /// Time at the end of the run.
     #[getter]
     fn end(&self) -> f64 {
-        self.scene.time.end
+        self.first().time.end
     }
 
     /// Labels of "length", "mass" and "time".
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        units(py, &self.scene.units.length, &self.scene.units.mass, &self.scene.units.time)
+        units(py, &self.first().units.length, &self.first().units.mass, &self.first().units.time)
     }
 
     fn __repr__(&self) -> String {
-        format!("Scene({:?}, {:?})", self.scene.path.display().to_string(), self.scene.title)
+        format!("Scene({:?}, {:?})", self.path().display().to_string(), self.first().title)
     }
 
     /// The title and the text.
     fn _repr_html_(&self) -> String {
-        let file = self.scene.path.display().to_string();
-        heading(&self.scene.title, &file) + &format!("<pre>{}</pre>", escaped(&self.scene.source))
+        let file = self.path().display().to_string();
+        heading(&self.first().title, &file) + &format!("<pre>{}</pre>", escaped(self.text()))
     }
 }
 
 /// The scene that was pickled.
 #[pyfunction(name = "_scene")]
-pub(crate) fn unpickled(py: Python<'_>, text: &str, path: PathBuf, trust_geometry: bool) -> PyResult<Scene> {
-    Scene::parsed(py, text, path, None, builder(py, trust_geometry)?)
+pub(crate) fn unpickled(
+    py: Python<'_>,
+    text: &str,
+    path: PathBuf,
+    body: Option<String>,
+    trust_geometry: bool,
+) -> PyResult<Scene> {
+    Scene::parsed(py, text, path, body, builder(py, trust_geometry)?)
 }
 
 /// The labels of the units.

@@ -7,7 +7,8 @@ use flexframe::dynamics::{self, Crossing, EffectMap, Event, Observation, Setup, 
 use flexframe::failure::{Details, Kind};
 use flexframe::model::StartError;
 use flexframe::results::Metadata;
-use flexframe::run::Watch;
+use flexframe::row::BodyRow;
+use flexframe::run::{RunBody, RunError, Watch};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -188,13 +189,17 @@ impl Simulation {
         events: &mut Vec<Occurred>,
     ) -> PyResult<()> {
         let model = self.body.get().model();
-        let mut row = flexframe::row::Row::new(model);
+        let mut row = flexframe::row::Row { time: 0.0, bodies: vec![BodyRow::new(model)] };
         let mut record = |running: &mut Running, watch: &mut Watch<'_>| -> PyResult<()> {
-            let observed = detached(py, || running.simulation.observe(&mut row.motion))?;
-            self.or_fault(py, observed)?;
-            in_pool(|| row.complete(model))?;
+            for body in &mut row.bodies {
+                let observed = detached(py, || running.simulation.observe(&mut body.motion))?;
+                self.or_fault(py, observed)?;
+                in_pool(|| body.complete(model))?;
+                row.time = body.time;
+                watch.observe(body).map_err(|error| exception(py, &error))?;
+            }
             rows.push(&row, &self.metadata);
-            watch.observe(&row).map_err(|error| exception(py, &error))
+            Ok(())
         };
         if !running.begun || running.is_set {
             record(running, watch)?;
@@ -241,24 +246,32 @@ impl Simulation {
             None => body,
         };
         let (model, scene) = (body.get().model().clone(), body.get().scene_of().clone());
-        let mut metadata = flexframe::run::metadata(&scene, &model);
+        let of_run = [RunBody { scene: &scene, model: &model }];
+        let metadata = flexframe::run::metadata(&of_run).ok_or_else(|| exception(py, &RunError::NoBody))?;
         let points: Points = Arc::new(model.points.clone());
         let faults = Faults::default();
         let mut laws = Vec::new();
         for load in listed(loads)? {
             laws.push(load_of(&load, &points, model.body.flexible(), &faults)?);
         }
+        let mut without_supports = false;
         let (physics, mut all, damping_ratios) = if laws.is_empty() {
             (model.physics.clone(), model.loads().to_vec(), model.damping_ratios().to_vec())
         } else {
             // What each of several supports does would have to know the laws.
-            metadata.parts.retain(|has| has != part::SUPPORTS);
-            metadata.support_names.clear();
+            without_supports = true;
             in_pool(|| model.under_unknown_forces(&scene))?
         };
         all.extend(laws);
-        metadata.body.damping_ratios.clone_from(&damping_ratios);
-        let metadata = Arc::new(metadata);
+        let bodies = metadata.bodies.into_iter().map(|mut body| {
+            if without_supports {
+                body.parts.retain(|has| has != part::SUPPORTS);
+                body.support_names.clear();
+            }
+            body.model.damping_ratios.clone_from(&damping_ratios);
+            body
+        });
+        let metadata = Arc::new(Metadata { bodies: bodies.collect(), ..metadata });
         if let Some(refusal) = model.refusal.filter(|_| scene.effects.refuse) {
             return Err(exception(py, &StartError::from(refusal)));
         }
@@ -278,7 +291,7 @@ impl Simulation {
         }
         let mut simulation = simulation.map_err(|error| {
             let source = Box::new(StartError::from(error));
-            exception(py, &flexframe::run::RunError::Setup { scene: scene.path.clone(), source })
+            exception(py, &RunError::Setup { scene: scene.path.clone(), source })
         })?;
         simulation.watch(Arc::new(Mutex::new(EndAtFault(faults.clone()))));
         let row = Observation::new(model.body.flexible(), points.len());

@@ -27,9 +27,10 @@ def same_as_file(results, path):
                 assert dataset.attrs[attribute] == getattr(column, attribute), name
         histories = []
         file.visititems(lambda name, item: histories.append(name) if isinstance(item, h5py.Dataset) else None)
-        histories = {name for name in histories if not name.startswith(("body/", "effects/"))}
-        about = {"input_files", "points/names", "points/position", "supports/names", "checkpoint", "warnings"}
-        assert set(results) == histories - about
+        assert not [path for path in results if path not in file]
+        histories = {name for name in histories if not name.startswith("bodies/") or "/model/" not in name}
+        numbers = sum(file[name].dtype.kind == "f" and file[name].ndim > 0 for name in histories)
+        assert len(results) == numbers
         assert file.attrs["complete"] == 1
 
 
@@ -70,6 +71,37 @@ def test_a_file_is_written_as_by_the_program(program, tmp_path):
     for path in results:
         assert np.array_equal(results[path], in_memory[path]), path
     assert results.scene == scene.text
+
+
+# Conserved: the numbers of the program, and sums over the bodies.
+def test_a_run_of_several_bodies_has_what_each_of_them_has_alone(program, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    pytest.importorskip("xarray")
+    scene = flexframe.Scene(EXAMPLES / "pair.toml").with_values({"time.end": 0.01})
+    results = flexframe.run(scene, tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["pair.h5"]
+    same_as_file(results, tmp_path / "pair.h5")
+    assert list(results.bodies) == ["ring", "block"] and "2 bodies" in repr(results)
+    with pytest.raises(AttributeError, match="bodies.'ring'"):
+        _ = results.frequencies
+
+    ring, block = results.bodies.values()
+    assert ring.points == ["rim"] and len(ring.frequencies) == ring["modal/displacement"].shape[1]
+    assert np.array_equal(ring["points/rim/velocity"], results["bodies/ring/points/velocity"][:, 0])
+    assert ring["position"] is results["bodies/ring/position"]
+    momentum = ring["momentum/linear"] + block["momentum/linear"]
+    assert np.allclose(results["system/momentum/linear"], momentum, rtol=1e-12, atol=1e-30)
+    column = results.columns["bodies/ring/points/velocity"]
+    assert (column.scope, column.body) == ("point", "ring")
+    assert results.columns["system/energy/total"].scope == "system"
+
+    dataset = results.to_xarray()
+    assert dataset["bodies/ring/points/velocity"].dims == ("time", "ring.point", "axis")
+    assert ring.to_xarray()["points/velocity"].dims == ("time", "point", "axis")
+    assert program("export", tmp_path / "pair.h5", "--csv", tmp_path / "pair.csv").returncode == 0
+    exported = pandas.read_csv(tmp_path / "pair.csv", index_col=0)
+    assert [name.split(" [")[0] for name in exported.columns] == list(results.to_pandas().columns)
+    assert np.array_equal(exported.to_numpy(), results.to_pandas().to_numpy())
 
 
 # Conserved: the numbers of the whole run, bit for bit.

@@ -87,13 +87,19 @@ def test_geometry_that_runs_programs_is_refused_unless_it_is_trusted(tmp_path):
     assert evidence.exists() and body.mass == pytest.approx(3000.0 * 7.85e-9)
 
 
-def test_one_body_of_a_scene_of_several():
+def test_a_scene_has_several_bodies_or_one_of_them_alone():
     pair = EXAMPLES / "pair.toml"
+    both = flexframe.Scene(pair)
     ring, block = (flexframe.Scene(pair, body=body) for body in ("ring", "block"))
-    assert "[body]" in ring.text and "rim" in ring.text and "rim" not in block.text
-    assert pickle.loads(pickle.dumps(block)).text == block.text
-    assert (ring.units, ring.end) == (block.units, block.end)
-    with pytest.raises(flexframe.InputError, match="name one of them: ring, block"):
-        flexframe.Scene(pair)
+    assert (both.bodies, ring.bodies, block.bodies) == (["ring", "block"], ["ring"], ["block"])
+    assert flexframe.Scene(RING, base=EXAMPLES).bodies == ["body"]
+    assert both.text == ring.text == block.text == pair.read_text()
+    for scene in (both, block):
+        assert pickle.loads(pickle.dumps(scene)).bodies == scene.bodies
+    assert (ring.units, ring.end) == (block.units, block.end) == (both.units, both.end)
+    longer = block.with_values({"time.end": 0.5, "bodies.block.initial.velocity": [1.0, 0.0, 0.0]})
+    assert (longer.bodies, longer.end) == (["block"], 0.5)
+    with pytest.raises(flexframe.InputError, match="2 bodies; expected one of ring, block"):
+        flexframe.Body(both)
     with pytest.raises(flexframe.InputError, match="no body `wheel`"):
         flexframe.Scene(pair, body="wheel")

@@ -3,16 +3,16 @@
 //!     cargo run -p report --example synthetic -- KIND FILE
 //!
 //! `small` is a struck plate, `large` one of 60 000 vertices and 40 modes, `unfinished` a run that was stopped, `rigid` a
-//! body without a surface, `hinged` a plate that turns about one end, `nodes` one of which only the nodes are known, and
-//! `patch` a square whose displacement and stress are the same everywhere.
+//! body without a surface, `hinged` a plate that turns about one end, `nodes` one of which only the nodes are known, `patch`
+//! a square whose displacement and stress are the same everywhere, and `several` three bodies.
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use report::{
-    Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
-    Surface, Units,
+    Balance, Body, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind,
+    StressField, Surface, Units,
 };
 
 const LENGTH: f64 = 1000.0;
@@ -29,7 +29,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         "large" => plate(1000, 26, 40, 5001, "Plate of 60 000 vertices and 40 modes"),
         "rigid" => plate(4, 2, 0, 500, "Rigid body without a mesh"),
         "patch" => patch(),
-        _ => return Err(format!("{kind}: expected small, large, unfinished, rigid, hinged, nodes or patch").into()),
+        "several" => several(),
+        _ => {
+            let expected = "small, large, unfinished, rigid, hinged, nodes, patch or several";
+            return Err(format!("{kind}: expected {expected}").into());
+        }
     };
     if kind == "unfinished" {
         let words = "This run stopped at 0.5 s of 0.8 s. Continue it with `flexframe resume plate.part.h5`.";
@@ -38,12 +42,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         report.warnings = vec![warning.to_owned()];
     }
     match kind.as_str() {
-        "rigid" => report.surface = None,
-        "large" => report.stress = None, // as in most runs
+        "rigid" => report.bodies[0].surface = None,
+        "large" => report.bodies[0].stress = None, // as in most runs
         "hinged" => hinge(&mut report),
         "nodes" => {
-            report.stress = None;
-            if let Some(surface) = &mut report.surface {
+            report.bodies[0].stress = None;
+            if let Some(surface) = &mut report.bodies[0].surface {
                 surface.triangles.clear();
                 surface.edges.clear();
             }
@@ -88,24 +92,26 @@ fn surface(along: usize, across: usize) -> Surface {
 
 /// Lays the origin into the end of the plate and leaves it there, so that the middle of the plate goes around it.
 fn hinge(report: &mut Report) {
-    for [x, ..] in report.surface.iter_mut().flat_map(|surface| &mut surface.vertices) {
+    let body = &mut report.bodies[0];
+    for [x, ..] in body.surface.iter_mut().flat_map(|surface| &mut surface.vertices) {
         *x += LENGTH as f32 / 2.0;
     }
-    report.motion.origins.fill([0.0; 3]);
+    body.motion.origins.fill([0.0; 3]);
 }
 
 /// A square with two shapes: one moves it by (3, 4, 0) under tension in x, one by (0, 0, 2) under shear.
 fn patch() -> Report {
     let mut report = plate(2, 2, 0, 3, "Patch");
-    report.surface = Some(Surface {
+    let body = &mut report.bodies[0];
+    body.surface = Some(Surface {
         vertices: vec![[-500.0, -500.0, 0.0], [500.0, -500.0, 0.0], [500.0, 500.0, 0.0], [-500.0, 500.0, 0.0]],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         edges: vec![[0, 1], [1, 2], [2, 3], [3, 0]],
     });
     let kind = ShapeKind::Natural { frequency: 1.0, damping_ratio: 0.0 };
     let shape = |name: &str, u: [f32; 3]| Shape { name: name.into(), kind, displacement: vec![u; 4] };
-    report.shapes = vec![shape("tension", [3.0, 4.0, 0.0]), shape("shear", [0.0, 0.0, 2.0])];
-    report.stress = Some(StressField {
+    body.shapes = vec![shape("tension", [3.0, 4.0, 0.0]), shape("shear", [0.0, 0.0, 2.0])];
+    body.stress = Some(StressField {
         unit: "MPa".into(),
         shapes: vec![
             vec![[100.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 4],
@@ -114,9 +120,36 @@ fn patch() -> Report {
         ],
         products: vec![[0, 1]],
     });
-    report.motion.origins = vec![[0.0; 3]; 3];
-    report.motion.attitudes = vec![[1.0, 0.0, 0.0, 0.0]; 3];
-    report.motion.coordinates = vec![2.0, 0.0, 0.0, 1.5, -1.0, 2.0];
+    body.motion.origins = vec![[0.0; 3]; 3];
+    body.motion.attitudes = vec![[1.0, 0.0, 0.0, 0.0]; 3];
+    body.motion.coordinates = vec![2.0, 0.0, 0.0, 1.5, -1.0, 2.0];
+    report
+}
+
+/// A struck plate, a smaller one without stress beside it, and a rigid body without a mesh.
+fn several() -> Report {
+    let mut report = plate(60, 4, 4, 1001, "Three bodies");
+    let [mut other, mut rigid] = [plate(20, 4, 2, 1001, ""), plate(4, 2, 0, 1001, "")];
+    for (i, (of, name)) in
+        [(&mut report, "plate"), (&mut other, "left arm"), (&mut rigid, "hub")].into_iter().enumerate()
+    {
+        let body = &mut of.bodies[0];
+        body.name = name.to_owned();
+        body.motion.origins.iter_mut().for_each(|[_, y, _]| *y += 600.0 * i as f64);
+        of.histories.iter_mut().for_each(|history| {
+            history.group = match history.group.strip_prefix("point ") {
+                Some(point) => format!("point {name}.{point}"),
+                None => format!("{name}: {}", history.group),
+            };
+        });
+        of.balances.iter_mut().for_each(|balance| balance.group = name.to_owned());
+    }
+    (other.bodies[0].stress, rigid.bodies[0].surface) = (None, None);
+    for of in [other, rigid] {
+        report.bodies.extend(of.bodies);
+        report.histories.extend(of.histories);
+        report.balances.extend(of.balances);
+    }
     report
 }
 
@@ -161,7 +194,6 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
         origins: times.iter().map(|t| [400.0 * t, -90.0 * t, 700.0 * t - 500.0 * t * t]).collect(),
         attitudes: times.iter().map(|t| [(angle(*t) / 2.0).cos(), 0.0, (angle(*t) / 2.0).sin(), 0.0]).collect(),
         coordinates: times.iter().flat_map(|t| (0..modes).map(move |k| coordinate(k, *t))).collect(),
-        times: times.clone(),
     };
     let course = |name: &str, value: &dyn Fn(f64) -> f64| Component {
         name: name.to_owned(),
@@ -197,6 +229,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
     let strain = |t: f64| 0.1 * bending(t).powi(2);
     let balances = vec![
         Balance {
+            group: String::new(),
             name: "Energy".into(),
             law: "kinetic + strain energy − work of the loads + dissipation is constant".into(),
             unit: "mJ".into(),
@@ -205,6 +238,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
             errors: vec![course("", &|t| 2e-9 * (400.0 * t).sin())],
         },
         Balance {
+            group: String::new(),
             name: "Linear momentum".into(),
             law: "momentum − impulse of the loads is constant".into(),
             unit: "N s".into(),
@@ -225,23 +259,32 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
         program: "flexframe 0.1.0".to_owned(),
         state: RunState::Complete,
         units: Units { length: "mm".into(), time: "s".into(), frequency: "Hz".into() },
-        facts: vec![
-            fact("Mass", "9.35 kg".into()),
-            fact("Surface", format!("{} vertices", surface.vertices.len())),
-            fact("Shapes", format!("{modes}")),
-            fact("Time", format!("{DURATION} s in {rows} rows")),
-        ],
-        stress: (modes > 0).then(|| StressField { unit: "MPa".into(), shapes: stresses, products: Vec::new() }),
-        surface: Some(surface),
-        shapes,
-        motion,
+        facts: vec![fact("Time", format!("{DURATION} s in {rows} rows"))],
+        bodies: vec![Body {
+            name: "body".to_owned(),
+            facts: vec![
+                fact("Mass", "9.35 kg".into()),
+                fact("Surface", format!("{} vertices", surface.vertices.len())),
+                fact("Shapes", format!("{modes}")),
+            ],
+            stress: (modes > 0).then(|| StressField { unit: "MPa".into(), shapes: stresses, products: Vec::new() }),
+            surface: Some(surface),
+            shapes,
+            motion,
+            effects: vec![
+                effect("damping", "on", "ζ = 0.05", "the scene asks for it"),
+                effect(
+                    "Coriolis forces",
+                    "on",
+                    "Ω/ω₁ = 0.09",
+                    "influence of 2 % of the deformation, above the limit of 0.1 %",
+                ),
+                effect("stiffening by stress", "off", "1e-5", "influence below the limit of 0.1 %"),
+            ],
+        }],
         histories,
         balances,
-        effects: vec![
-            effect("damping", "on", "ζ = 0.05", "the scene asks for it"),
-            effect("Coriolis forces", "on", "Ω/ω₁ = 0.09", "influence of 2 % of the deformation, above the limit of 0.1 %"),
-            effect("stiffening by stress", "off", "1e-5", "influence below the limit of 0.1 %"),
-        ],
+        times,
         scene: SceneText {
             file: "plate.toml".into(),
             text: "title = \"Free plate, 50 N end pulse\"\n\n[body]\nmesh = \"plate.msh\"\n\n[modes]\nflexible = 10 # <all>\n".into(),

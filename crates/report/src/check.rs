@@ -1,7 +1,7 @@
 //! Sizes and numbers of a report, checked before anything is written.
 
 use crate::ReportError;
-use crate::report::{Component, Motion, Report, Surface};
+use crate::report::{Body, Component, Motion, Report, Surface};
 
 /// Shapes that a page can draw: layers of a texture that every graphics processor has.
 const MAX_SHAPES: usize = 256;
@@ -14,15 +14,19 @@ const UNIT_TOLERANCE: f64 = 1e-6;
 /// # Errors
 /// The first thing that is wrong.
 pub(crate) fn check(report: &Report) -> Result<(), ReportError> {
-    check_motion(&report.motion, report.shapes.len())?;
-    if report.shapes.len() > MAX_SHAPES {
-        return Err(ReportError::TooManyShapes { found: report.shapes.len(), most: MAX_SHAPES });
+    check_times(&report.times)?;
+    let rows = report.times.len();
+    if report.bodies.is_empty() {
+        return Err(ReportError::Empty { what: "body".to_owned() });
     }
-    if let Some(surface) = &report.surface {
-        check_surface(surface)?;
+    for body in &report.bodies {
+        check_motion(&body.motion, rows, body.shapes.len())?;
+        if body.shapes.len() > MAX_SHAPES {
+            return Err(ReportError::TooManyShapes { found: body.shapes.len(), most: MAX_SHAPES });
+        }
+        body.surface.as_ref().map_or(Ok(()), check_surface)?;
+        check_shapes(body)?;
     }
-    check_shapes(report)?;
-    let rows = report.motion.times.len();
     for history in &report.histories {
         let what = format!("history \"{}: {}\"", history.group, history.name);
         least_range(&what, history.least_range)?;
@@ -36,23 +40,25 @@ pub(crate) fn check(report: &Report) -> Result<(), ReportError> {
     Ok(())
 }
 
-fn check_motion(motion: &Motion, shapes: usize) -> Result<(), ReportError> {
-    let Motion { times, origins, attitudes, coordinates } = motion;
+fn check_times(times: &[f64]) -> Result<(), ReportError> {
     if times.is_empty() {
         return Err(ReportError::Empty { what: "rows".to_owned() });
     }
-    length("positions", origins.len(), times.len())?;
-    length("attitudes", attitudes.len(), times.len())?;
-    length("coordinates", coordinates.len(), times.len() * shapes)?;
     finite("times", times.iter().copied())?;
+    match times.windows(2).position(|pair| pair[1] <= pair[0]) {
+        Some(row) => Err(ReportError::TimesNotIncreasing { row: row + 1, time: times[row + 1], before: times[row] }),
+        None => Ok(()),
+    }
+}
+
+fn check_motion(motion: &Motion, rows: usize, shapes: usize) -> Result<(), ReportError> {
+    let Motion { origins, attitudes, coordinates } = motion;
+    length("positions", origins.len(), rows)?;
+    length("attitudes", attitudes.len(), rows)?;
+    length("coordinates", coordinates.len(), rows * shapes)?;
     finite("positions", origins.as_flattened().iter().copied())?;
     finite("attitudes", attitudes.as_flattened().iter().copied())?;
     finite("coordinates", coordinates.iter().copied())?;
-    for (row, pair) in times.windows(2).enumerate() {
-        if pair[1] <= pair[0] {
-            return Err(ReportError::TimesNotIncreasing { row: row + 1, time: pair[1], before: pair[0] });
-        }
-    }
     for (row, attitude) in attitudes.iter().enumerate() {
         let norm = attitude.iter().map(|x| x * x).sum::<f64>().sqrt();
         if (norm - 1.0).abs() > UNIT_TOLERANCE {
@@ -77,9 +83,9 @@ fn check_surface(surface: &Surface) -> Result<(), ReportError> {
     Ok(())
 }
 
-fn check_shapes(report: &Report) -> Result<(), ReportError> {
-    let vertices = report.surface.as_ref().map_or(0, |surface| surface.vertices.len());
-    for shape in &report.shapes {
+fn check_shapes(body: &Body) -> Result<(), ReportError> {
+    let vertices = body.surface.as_ref().map_or(0, |surface| surface.vertices.len());
+    for shape in &body.shapes {
         let what = format!("shape \"{}\"", shape.name);
         length(&what, shape.displacement.len(), vertices)?;
         finite(&what, shape.displacement.as_flattened().iter().map(|x| f64::from(*x)))?;
@@ -87,15 +93,15 @@ fn check_shapes(report: &Report) -> Result<(), ReportError> {
             finite(&format!("{what}, frequency and damping ratio"), [frequency, damping_ratio].into_iter())?;
         }
     }
-    if let Some(stress) = &report.stress {
-        length("stresses of shapes and products", stress.shapes.len(), report.shapes.len() + stress.products.len())?;
+    if let Some(stress) = &body.stress {
+        length("stresses of shapes and products", stress.shapes.len(), body.shapes.len() + stress.products.len())?;
         if stress.shapes.len() > MAX_SHAPES {
             return Err(ReportError::TooManyShapes { found: stress.shapes.len(), most: MAX_SHAPES });
         }
-        if let Some(coordinate) = stress.products.as_flattened().iter().find(|k| **k >= report.shapes.len()) {
-            return Err(ReportError::NoSuchShape { coordinate: *coordinate, count: report.shapes.len() });
+        if let Some(coordinate) = stress.products.as_flattened().iter().find(|k| **k >= body.shapes.len()) {
+            return Err(ReportError::NoSuchShape { coordinate: *coordinate, count: body.shapes.len() });
         }
-        let names = report.shapes.iter().map(|shape| format!("shape \"{}\"", shape.name));
+        let names = body.shapes.iter().map(|shape| format!("shape \"{}\"", shape.name));
         let products = stress.products.iter().map(|[j, k]| format!("the product of the shapes {j} and {k}"));
         for (name, stresses) in names.chain(products).zip(&stress.shapes) {
             let what = format!("stress of {name}");

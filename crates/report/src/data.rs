@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::numbers::Numbers;
 use crate::peak::{length, peak, von_mises};
-use crate::report::{Component, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface};
+use crate::report::{Body, Component, Fact, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface};
 use crate::thin::{Thinning, spread};
 
 /// Bytes of the rows of the motion, before base64.
@@ -24,18 +24,27 @@ pub(crate) struct Data<'a> {
     facts: Vec<[&'a str; 2]>,
     /// Rows of the run, before any was left out.
     rows: usize,
+    /// Times of the rows of all motions.
+    times: Numbers,
+    bodies: Vec<BodyData<'a>>,
+    history_times: Numbers,
+    histories: Vec<HistoryData<'a>>,
+    balances: Vec<BalanceData<'a>>,
+    scene: [&'a str; 2],
+    warnings: &'a [String],
+}
+
+#[derive(Debug, Serialize)]
+struct BodyData<'a> {
+    name: &'a str,
+    facts: Vec<[&'a str; 2]>,
     surface: Option<SurfaceData>,
     shapes: Vec<ShapeData<'a>>,
     /// Greatest length of a displacement over all rows, in the unit of length.
     displacement_peak: f64,
     stress: Option<StressData<'a>>,
     motion: MotionData,
-    history_times: Numbers,
-    histories: Vec<HistoryData<'a>>,
-    balances: Vec<BalanceData<'a>>,
     effects: Vec<[&'a str; 4]>,
-    scene: [&'a str; 2],
-    warnings: &'a [String],
 }
 
 #[derive(Debug, Serialize)]
@@ -73,7 +82,6 @@ struct StressData<'a> {
 
 #[derive(Debug, Serialize)]
 struct MotionData {
-    times: Numbers,
     origins: Numbers,
     attitudes: Numbers,
     coordinates: Numbers,
@@ -96,6 +104,7 @@ struct ComponentData<'a> {
 
 #[derive(Debug, Serialize)]
 struct BalanceData<'a> {
+    group: &'a str,
     name: &'a str,
     law: &'a str,
     unit: &'a str,
@@ -110,10 +119,10 @@ struct BalanceData<'a> {
 impl<'a> Data<'a> {
     /// Data of a report that has been checked.
     pub(crate) fn new(report: &'a Report) -> Self {
-        let rows = report.motion.times.len();
+        let times = &report.times;
+        let rows = times.len();
         let thinning = Thinning::new(rows, history_points(report));
-        let times = &report.motion.times;
-        let displacements: Vec<&[[f32; 3]]> = report.shapes.iter().map(|shape| &*shape.displacement).collect();
+        let kept = motion_rows(report);
         Self {
             title: &report.title,
             program: &report.program,
@@ -122,13 +131,10 @@ impl<'a> Data<'a> {
                 RunState::Unfinished(words) => Some(words),
             },
             units: Units { length: &report.units.length, time: &report.units.time, frequency: &report.units.frequency },
-            facts: report.facts.iter().map(|fact| [&*fact.label, &*fact.value]).collect(),
+            facts: facts(&report.facts),
             rows,
-            surface: report.surface.as_ref().map(SurfaceData::new),
-            shapes: report.shapes.iter().map(ShapeData::new).collect(),
-            displacement_peak: peak(&displacements, &report.motion.coordinates, length),
-            stress: report.stress.as_ref().map(|stress| StressData::new(stress, &report.motion)),
-            motion: MotionData::new(&report.motion, report.shapes.len()),
+            times: Numbers::double(kept.iter().map(|row| times[*row])),
+            bodies: report.bodies.iter().map(|body| BodyData::new(body, &kept)).collect(),
             history_times: match &thinning {
                 Some(thinning) => Numbers::double(thinning.times(times).into_iter()),
                 None => Numbers::double(times.iter().copied()),
@@ -148,6 +154,7 @@ impl<'a> Data<'a> {
                 .balances
                 .iter()
                 .map(|balance| BalanceData {
+                    group: &balance.group,
                     name: &balance.name,
                     law: &balance.law,
                     unit: &balance.unit,
@@ -158,15 +165,21 @@ impl<'a> Data<'a> {
                     errors: components(&balance.errors, thinning.as_ref()),
                 })
                 .collect(),
-            effects: report
-                .effects
-                .iter()
-                .map(|effect| [&*effect.name, &*effect.state, &*effect.measure, &*effect.reason])
-                .collect(),
             scene: [&report.scene.file, &report.scene.text],
             warnings: &report.warnings,
         }
     }
+}
+
+fn facts(facts: &[Fact]) -> Vec<[&str; 2]> {
+    facts.iter().map(|fact| [&*fact.label, &*fact.value]).collect()
+}
+
+/// The rows of the motion that the page has, evenly spread.
+fn motion_rows(report: &Report) -> Vec<usize> {
+    let of_body = |body: &Body| (3 + 4 + body.shapes.len()) * size_of::<f32>();
+    let bytes = size_of::<f64>() + report.bodies.iter().map(of_body).sum::<usize>();
+    spread(report.times.len(), MOTION_BYTES / bytes)
 }
 
 /// How many points a history may have.
@@ -187,6 +200,23 @@ fn components<'a>(components: &'a [Component], thinning: Option<&Thinning>) -> V
 
 fn greatest(components: &[Component]) -> f64 {
     components.iter().flat_map(|component| &component.values).fold(0.0, |greatest, value| value.abs().max(greatest))
+}
+
+impl<'a> BodyData<'a> {
+    fn new(body: &'a Body, kept: &[usize]) -> Self {
+        let displacements: Vec<&[[f32; 3]]> = body.shapes.iter().map(|shape| &*shape.displacement).collect();
+        let effects = body.effects.iter();
+        Self {
+            name: &body.name,
+            facts: facts(&body.facts),
+            surface: body.surface.as_ref().map(SurfaceData::new),
+            shapes: body.shapes.iter().map(ShapeData::new).collect(),
+            displacement_peak: peak(&displacements, &body.motion.coordinates, length),
+            stress: body.stress.as_ref().map(|stress| StressData::new(stress, &body.motion)),
+            motion: MotionData::new(&body.motion, body.shapes.len(), kept),
+            effects: effects.map(|effect| [&*effect.name, &*effect.state, &*effect.measure, &*effect.reason]).collect(),
+        }
+    }
 }
 
 impl SurfaceData {
@@ -228,11 +258,8 @@ impl<'a> StressData<'a> {
 }
 
 impl MotionData {
-    fn new(motion: &Motion, shapes: usize) -> Self {
-        let bytes = size_of::<f64>() + (3 + 4 + shapes) * size_of::<f32>();
-        let kept = spread(motion.times.len(), MOTION_BYTES / bytes);
+    fn new(motion: &Motion, shapes: usize, kept: &[usize]) -> Self {
         Self {
-            times: Numbers::double(kept.iter().map(|row| motion.times[*row])),
             origins: Numbers::single(kept.iter().flat_map(|row| motion.origins[*row])),
             attitudes: Numbers::single(kept.iter().flat_map(|row| motion.attitudes[*row])),
             coordinates: Numbers::single(

@@ -1,6 +1,6 @@
 //! One HTML page with everything about a run, which opens without a network.
 //!
-//! [`Report`] is plain data: the surface of the body, its mode shapes, the rows of the motion, histories and balances,
+//! [`Report`] is plain data: the surfaces of the bodies, their mode shapes, the rows of their motion, histories and balances,
 //! and words. [`html`] and [`write()`] check it and put it into the page, whose program (in `web/`) draws it.
 
 #![forbid(unsafe_code)]
@@ -18,6 +18,6 @@ mod thin;
 pub use error::ReportError;
 pub use page::{html, write};
 pub use report::{
-    Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
-    Surface, Units,
+    Balance, Body, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind,
+    StressField, Surface, Units,
 };

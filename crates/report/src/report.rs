@@ -11,7 +11,28 @@ pub struct Report {
     pub state: RunState,
     /// Names of units.
     pub units: Units,
-    /// Lines for the top of the page, such as the mass and the size of the mesh.
+    /// Lines for the top of the page, such as the time and the scheme.
+    pub facts: Vec<Fact>,
+    /// Time of each row of the run, increasing.
+    pub times: Vec<f64>,
+    /// The bodies, at least one.
+    pub bodies: Vec<Body>,
+    /// Courses over the rows.
+    pub histories: Vec<History>,
+    /// Balances of energy and momentum.
+    pub balances: Vec<Balance>,
+    /// The scene.
+    pub scene: SceneText,
+    /// Warnings of the run, each a sentence or more.
+    pub warnings: Vec<String>,
+}
+
+/// A body of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Its name; that of a single one is not shown.
+    pub name: String,
+    /// Lines about it, such as its mass and the size of its mesh.
     pub facts: Vec<Fact>,
     /// Surface or nodes of the undeformed body; none for a rigid body without a mesh.
     pub surface: Option<Surface>,
@@ -19,18 +40,10 @@ pub struct Report {
     pub shapes: Vec<Shape>,
     /// Stresses of the shapes.
     pub stress: Option<StressField>,
-    /// The rows of the run.
+    /// Its rows.
     pub motion: Motion,
-    /// Courses over the rows.
-    pub histories: Vec<History>,
-    /// Balances of energy and momentum.
-    pub balances: Vec<Balance>,
     /// Which effects were on, and why.
     pub effects: Vec<Effect>,
-    /// The scene.
-    pub scene: SceneText,
-    /// Warnings of the run, each a sentence or more.
-    pub warnings: Vec<String>,
 }
 
 /// State of the run: complete or not.
@@ -112,11 +125,9 @@ pub struct StressField {
     pub products: Vec<[usize; 2]>,
 }
 
-/// The rows of a run. A vertex X is at `origin` + attitude (X + Σ coordinate × shape).
+/// The rows of a body. A vertex X is at `origin` + attitude (X + Σ coordinate × shape).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Motion {
-    /// Time of each row, increasing.
-    pub times: Vec<f64>,
     /// Position of the origin of the body frame, global axes.
     pub origins: Vec<[f64; 3]>,
     /// Attitudes as unit quaternions (w, x, y, z), which take body components to global ones.
@@ -128,7 +139,8 @@ pub struct Motion {
 /// A quantity over the rows of the motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct History {
-    /// The group it belongs to, such as "point P1". Histories of a group are shown together.
+    /// The group it belongs to, such as "point P1", or "point ring.P1" of one of several bodies. Histories of a group are shown
+    /// together.
     pub group: String,
     /// Name, such as "displacement (global)".
     pub name: String,
@@ -152,6 +164,8 @@ pub struct Component {
 /// A balance that holds in exact motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Balance {
+    /// The group it belongs to, such as the name of a body. Balances of a group are shown together.
+    pub group: String,
     /// Name, such as "energy".
     pub name: String,
     /// The law in words.

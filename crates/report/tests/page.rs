@@ -3,7 +3,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use report::{
-    Balance, Component, History, Motion, Report, ReportError, RunState, SceneText, Shape, ShapeKind, StressField,
+    Balance, Body, Component, History, Motion, Report, ReportError, RunState, SceneText, Shape, ShapeKind, StressField,
     Surface, Units, html, write,
 };
 use serde_json::Value;
@@ -32,27 +32,33 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
         state: RunState::Complete,
         units: Units { length: "mm".to_owned(), time: "s".to_owned(), frequency: "Hz".to_owned() },
         facts: Vec::new(),
-        surface: Some(Surface {
-            vertices: (0..vertices).map(|i| [i as f32, (i % 2) as f32, 0.0]).collect(),
-            triangles: (2..vertices as u32).map(|i| [i - 2, i - 1, i]).collect(),
-            edges: vec![[0, 1]],
-        }),
-        shapes: (0..modes).map(shape).collect(),
-        stress: Some(StressField {
-            unit: "MPa".to_owned(),
-            shapes: (0..modes)
-                .map(|k| (0..vertices).map(|i| [wave(k, i), 0.0, 0.0, 0.0, 0.0, 0.0]).collect())
-                .collect(),
-            products: Vec::new(),
-        }),
-        motion: Motion {
-            origins: vec![[0.0; 3]; rows],
-            attitudes: vec![[1.0, 0.0, 0.0, 0.0]; rows],
-            coordinates: times.iter().flat_map(|t| (0..modes).map(move |k| (t * (k + 1) as f64).cos())).collect(),
-            times: times.clone(),
-        },
+        bodies: vec![Body {
+            name: "body".to_owned(),
+            facts: Vec::new(),
+            surface: Some(Surface {
+                vertices: (0..vertices).map(|i| [i as f32, (i % 2) as f32, 0.0]).collect(),
+                triangles: (2..vertices as u32).map(|i| [i - 2, i - 1, i]).collect(),
+                edges: vec![[0, 1]],
+            }),
+            shapes: (0..modes).map(shape).collect(),
+            stress: Some(StressField {
+                unit: "MPa".to_owned(),
+                shapes: (0..modes)
+                    .map(|k| (0..vertices).map(|i| [wave(k, i), 0.0, 0.0, 0.0, 0.0, 0.0]).collect())
+                    .collect(),
+                products: Vec::new(),
+            }),
+            motion: Motion {
+                origins: vec![[0.0; 3]; rows],
+                attitudes: vec![[1.0, 0.0, 0.0, 0.0]; rows],
+                coordinates: times.iter().flat_map(|t| (0..modes).map(move |k| (t * (k + 1) as f64).cos())).collect(),
+            },
+            effects: Vec::new(),
+        }],
+        times: times.clone(),
         histories: (0..components).map(history).collect(),
         balances: vec![Balance {
+            group: String::new(),
             name: "energy".to_owned(),
             law: "constant".to_owned(),
             unit: "mJ".to_owned(),
@@ -60,7 +66,6 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
             terms: vec![course("kinetic")],
             errors: vec![course("")],
         }],
-        effects: Vec::new(),
         scene: SceneText { file: "strip.toml".to_owned(), text: "a = 1\n".to_owned() },
         warnings: Vec::new(),
     }
@@ -83,12 +88,14 @@ fn the_numbers_of_a_short_run_come_back_to_single_precision() {
     let report = strip(20, 3, 50, 2);
     let data = data(&html(&report).unwrap());
     assert_eq!((data["rows"].as_u64(), &data["unfinished"]), (Some(50), &Value::Null));
-    let expected: Vec<f32> = report.motion.coordinates.iter().map(|q| *q as f32).collect();
-    assert_eq!(singles(&data["motion"]["coordinates"]), expected);
+    let expected: Vec<f32> = report.bodies[0].motion.coordinates.iter().map(|q| *q as f32).collect();
+    assert_eq!(singles(&data["bodies"][0]["motion"]["coordinates"]), expected);
     let expected: Vec<f32> = report.histories[1].components[0].values.iter().map(|x| *x as f32).collect();
     assert_eq!(singles(&data["histories"][1]["components"][0]["values"]), expected);
-    assert_eq!(singles(&data["surface"]["vertices"]), report.surface.unwrap().vertices.as_flattened());
-    assert_eq!(data["shapes"][2]["frequency"], 30.0);
+    let body = &data["bodies"][0];
+    let vertices = &report.bodies[0].surface.as_ref().unwrap().vertices;
+    assert_eq!(singles(&body["surface"]["vertices"]), vertices.as_flattened());
+    assert_eq!(body["shapes"][2]["frequency"], 30.0);
 }
 
 /// Closed form: the wave at the last vertex.
@@ -97,8 +104,8 @@ fn the_peaks_in_the_page_are_those_of_all_rows() {
     let report = strip(20, 1, 50, 1);
     let data = data(&html(&report).unwrap());
     let expected = f64::from(((19.0_f64 / 20.0).sin()) as f32); // the last vertex in the first row, where q = 1
-    assert_eq!(data["displacement_peak"].as_f64(), Some(expected));
-    assert_eq!(data["stress"]["peak"].as_f64(), Some(expected));
+    assert_eq!(data["bodies"][0]["displacement_peak"].as_f64(), Some(expected));
+    assert_eq!(data["bodies"][0]["stress"]["peak"].as_f64(), Some(expected));
 }
 
 #[test]
@@ -137,11 +144,13 @@ fn a_run_of_ten_times_the_rows_makes_no_larger_page() {
 #[test]
 fn a_page_without_surface_shapes_or_histories_can_be_made() {
     let mut report = strip(4, 0, 1, 0);
-    report.surface = None;
-    report.stress = None;
+    (report.bodies[0].surface, report.bodies[0].stress) = (None, None);
     report.balances.clear();
     let data = data(&html(&report).unwrap());
-    assert_eq!((&data["surface"], data["displacement_peak"].as_f64()), (&Value::Null, Some(0.0)));
+    assert_eq!(
+        (&data["bodies"][0]["surface"], data["bodies"][0]["displacement_peak"].as_f64()),
+        (&Value::Null, Some(0.0))
+    );
 }
 
 #[test]
@@ -152,13 +161,17 @@ fn what_does_not_fit_together_is_refused_with_its_place() {
         html(&report).unwrap_err()
     };
     let message = |change: &dyn Fn(&mut Report)| refused(change).to_string();
-    assert!(message(&|r| r.motion = Motion::default()).contains("no rows"));
-    assert!(message(&|r| r.motion.coordinates.truncate(5)).contains("coordinates has 5 entries where 6"));
-    assert!(message(&|r| r.shapes[1].displacement.truncate(3)).contains("shape \"mode 2\" has 3 entries where 4"));
-    let few = message(&|r| r.stress.as_mut().unwrap().shapes.truncate(1));
+    assert!(message(&|r| r.times.clear()).contains("no rows"));
+    assert!(message(&|r| r.bodies[0].motion = Motion::default()).contains("positions has 0 entries where 3"));
+    assert!(message(&|r| r.bodies.clear()).contains("no body"));
+    assert!(message(&|r| r.bodies[0].motion.coordinates.truncate(5)).contains("coordinates has 5 entries where 6"));
+    assert!(
+        message(&|r| r.bodies[0].shapes[1].displacement.truncate(3)).contains("shape \"mode 2\" has 3 entries where 4")
+    );
+    let few = message(&|r| r.bodies[0].stress.as_mut().unwrap().shapes.truncate(1));
     assert!(few.contains("stresses of shapes and products has 1 entries"), "{few}");
     let of_no_shape = |r: &mut Report| {
-        let stress = r.stress.as_mut().unwrap();
+        let stress = r.bodies[0].stress.as_mut().unwrap();
         stress.shapes.push(stress.shapes[0].clone());
         stress.products.push([0, 5]);
     };
@@ -168,14 +181,36 @@ fn what_does_not_fit_together_is_refused_with_its_place() {
     );
     assert!(message(&|r| r.balances[0].errors[0].values.truncate(1)).contains("balance \"energy\", errors"));
     assert!(message(&|r| r.histories[0].components[0].values[2] = f64::NAN).contains("holds NaN in entry 2"));
-    assert!(message(&|r| r.motion.origins[1][2] = 1e39).contains("positions holds"), "infinite in single precision");
-    assert!(matches!(refused(&|r| r.motion.times[2] = 0.0), ReportError::TimesNotIncreasing { row: 2, time: 0.0, .. }));
-    assert!(matches!(refused(&|r| r.motion.attitudes[1][0] = 1.1), ReportError::NotUnit { row: 1, .. }));
+    assert!(
+        message(&|r| r.bodies[0].motion.origins[1][2] = 1e39).contains("positions holds"),
+        "infinite in single precision"
+    );
+    assert!(matches!(refused(&|r| r.times[2] = 0.0), ReportError::TimesNotIncreasing { row: 2, time: 0.0, .. }));
+    assert!(matches!(refused(&|r| r.bodies[0].motion.attitudes[1][0] = 1.1), ReportError::NotUnit { row: 1, .. }));
     assert!(matches!(
-        refused(&|r| r.surface.as_mut().unwrap().edges[0][1] = 4),
+        refused(&|r| r.bodies[0].surface.as_mut().unwrap().edges[0][1] = 4),
         ReportError::NoSuchVertex { what: "edge", index: 4, count: 4 }
     ));
     assert!(matches!(html(&strip(4, 257, 2, 1)).unwrap_err(), ReportError::TooManyShapes { found: 257, most: 256 }));
+}
+
+/// Each with its own shapes; the rows of all fit into what one has.
+#[test]
+fn several_bodies_share_the_rows_of_a_page() {
+    let mut report = strip(10, 2, 200_000, 4);
+    let alone = html(&report).unwrap().len();
+    let mut other = strip(8, 3, 200_000, 0).bodies;
+    other[0].name = "other".to_owned();
+    report.bodies.append(&mut other);
+    let page = html(&report).unwrap();
+    assert!(page.len() < alone + 20_000, "{} and {alone}", page.len());
+    let data = data(&page);
+    let rows = singles(&data["bodies"][1]["motion"]["origins"]).len() / 3;
+    assert_eq!(singles(&data["bodies"][1]["motion"]["coordinates"]).len(), 3 * rows);
+    assert_eq!(singles(&data["bodies"][0]["motion"]["coordinates"]).len(), 2 * rows);
+    assert_eq!(data["bodies"][1]["name"], "other");
+    report.bodies[1].shapes.pop();
+    assert!(matches!(html(&report).unwrap_err(), ReportError::WrongLength { .. }));
 }
 
 #[test]

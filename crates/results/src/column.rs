@@ -1,164 +1,285 @@
 //! The columns of a results file: data, from which the writer, the reader and the documentation are made.
 
-use crate::{Metadata, Units};
+use crate::dimension::Dimension;
+use crate::metadata::{BodyMetadata, Units};
+use std::fmt::Debug;
 
-/// A column of a results file: a time history. Rows are of type `R`.
+/// A row of a results file, as far as its columns look at it.
+pub trait SystemRow: Debug {
+    /// The part of a row that is of one body.
+    type Body: Debug;
+    /// The time.
+    fn time(&self) -> f64;
+    /// The bodies, in the order of [`Metadata::bodies`](crate::Metadata::bodies).
+    fn bodies(&self) -> &[Self::Body];
+}
+
+/// A column of a results file: time histories of a quantity, of the system or of each body. Rows are of type `R`.
 ///
-/// A file has its columns in the order of their table. The first column must be the time.
+/// The histories of a file are in the order of their table. The time is no column: every file has it.
 #[derive(Debug)]
-pub struct Column<R> {
-    /// Path of the dataset, such as "energy/work".
-    pub path: &'static str,
-    /// Unit, such as "mass length/time": the three words stand for the labels of the run's units.
-    pub unit: &'static str,
+pub struct Column<R: SystemRow> {
+    /// Group of the dataset, such as "energy"; empty for none.
+    pub group: &'static str,
+    /// Name of the dataset in it, such as "work".
+    pub name: &'static str,
+    /// Dimension of its numbers.
+    pub dimension: Dimension,
     /// Frame of the components, such as "global"; "none" for scalars.
     pub frame: &'static str,
     /// A sentence for people.
     pub description: &'static str,
-    /// How a row gives its values.
+    /// Numbers of a row.
     pub values: Values<R>,
-    /// Part that a run must have for its file to have the column, one of [`Metadata::parts`]; all files have it if `None`.
+    /// Part that a body must have for its histories, one of [`BodyMetadata::parts`]; all bodies have it if `None`.
     pub part: Option<&'static str>,
+    /// Use of the numbers where the body is a part of a larger model.
+    pub role: Role,
 }
 
-/// How a row gives the values of a column, which says also how many there are.
+/// The objects that a column has numbers of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scope {
+    /// All bodies together.
+    System,
+    /// Each body.
+    Body,
+    /// Each point of each body.
+    Point,
+    /// Each support of each body.
+    Support,
+}
+
+/// Use of numbers where the body is a part of a larger model, as in an FMU.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// An output that follows from the state.
+    Output,
+    /// An output that follows the forces of the instant, too, as accelerations and reactions do.
+    Direct,
+    /// For looking at, such as coordinates of modes and balances.
+    Internal,
+}
+
+/// Functions that take the numbers of a column from a row, by what the numbers belong to.
 #[derive(Debug)]
-pub enum Values<R> {
-    /// One number; the dataset has the shape T, with T rows.
-    Number(fn(&R) -> f64),
-    /// T×3.
-    Vector(fn(&R) -> [f64; 3]),
-    /// T×4.
-    Quaternion(fn(&R) -> [f64; 4]),
-    /// T×nf: one number for each flexible mode.
-    Modal(fn(&R) -> &[f64]),
-    /// T×P×3: a vector of each of P points; `None` for a number beyond the last point.
-    Points(fn(&R, usize) -> Option<[f64; 3]>),
-    /// T×S×3: a vector of each of S supports; `None` for a number beyond the last.
-    Supports(fn(&R, usize) -> Option<[f64; 3]>),
-    /// T×P×n: n numbers of each point; one has the shape T×P.
-    PointNumbers(usize, fn(&R, usize) -> Option<&[f64]>),
+pub enum Values<R: SystemRow> {
+    /// Those of the system.
+    OfSystem(Quantity<R>),
+    /// Those of a body.
+    OfBody(Quantity<R::Body>),
+    /// One number for each flexible mode of a body: the dataset has the shape T×nf.
+    OfModes(fn(&R::Body) -> &[f64]),
+    /// Those of each point of a body: T×P×….
+    OfPoints(Quantities<R::Body>),
+    /// Those of each support of a body: T×S×….
+    OfSupports(Quantities<R::Body>),
 }
 
-impl<R> Column<R> {
-    /// A column.
-    pub const fn new(
-        path: &'static str,
-        unit: &'static str,
-        frame: &'static str,
+/// Numbers of one thing.
+#[derive(Debug)]
+pub enum Quantity<T> {
+    /// One number; the dataset has the shape T, with T rows.
+    Number(fn(&T) -> f64),
+    /// T×3.
+    Vector(fn(&T) -> [f64; 3]),
+    /// T×4.
+    Quaternion(fn(&T) -> [f64; 4]),
+}
+
+/// Numbers of each of several places, by their index; `None` beyond the last.
+#[derive(Debug)]
+pub enum Quantities<T> {
+    /// A vector of each.
+    Vectors(fn(&T, usize) -> Option<[f64; 3]>),
+    /// A number of each.
+    Number(fn(&T, usize) -> Option<f64>),
+    /// As many numbers of each as there are names.
+    Named(&'static [&'static str], fn(&T, usize) -> Option<&[f64]>),
+}
+
+/// Components of a quantity: of the whole, or of one place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Components {
+    /// One number.
+    Number,
+    /// x, y, z.
+    Vector,
+    /// w, x, y, z.
+    Quaternion,
+    /// One for each flexible mode.
+    Modes,
+    /// These.
+    Named(&'static [&'static str]),
+}
+
+impl Components {
+    /// Their names; none of one number, nor of modes, which have numbers from 1.
+    pub const fn names(self) -> &'static [&'static str] {
+        match self {
+            Self::Number | Self::Modes => &[],
+            Self::Vector => &["x", "y", "z"],
+            Self::Quaternion => &["w", "x", "y", "z"],
+            Self::Named(names) => names,
+        }
+    }
+}
+
+impl<T> Quantity<T> {
+    pub(crate) fn append(&self, of: &T, out: &mut Vec<f64>) {
+        match self {
+            Self::Number(value) => out.push(value(of)),
+            Self::Vector(values) => out.extend(values(of)),
+            Self::Quaternion(values) => out.extend(values(of)),
+        }
+    }
+
+    const fn components(&self) -> Components {
+        match self {
+            Self::Number(_) => Components::Number,
+            Self::Vector(_) => Components::Vector,
+            Self::Quaternion(_) => Components::Quaternion,
+        }
+    }
+}
+
+impl<T> Quantities<T> {
+    pub(crate) fn append(&self, of: &T, places: usize, out: &mut Vec<f64>) {
+        match self {
+            Self::Vectors(values) => (0..places).map_while(|i| values(of, i)).for_each(|v| out.extend(v)),
+            Self::Number(value) => out.extend((0..places).map_while(|i| value(of, i))),
+            Self::Named(_, values) => (0..places).map_while(|i| values(of, i)).for_each(|v| out.extend(v)),
+        }
+    }
+
+    /// True if there is a place of this index.
+    pub(crate) fn has(&self, of: &T, place: usize) -> bool {
+        match self {
+            Self::Vectors(values) => values(of, place).is_some(),
+            Self::Number(value) => value(of, place).is_some(),
+            Self::Named(_, values) => values(of, place).is_some(),
+        }
+    }
+
+    const fn components(&self) -> Components {
+        match self {
+            Self::Vectors(_) => Components::Vector,
+            Self::Number(_) => Components::Number,
+            Self::Named(names, _) => Components::Named(names),
+        }
+    }
+}
+
+impl<R: SystemRow> Column<R> {
+    const fn new(
+        [group, name]: [&'static str; 2],
+        (dimension, frame): (Dimension, &'static str),
         description: &'static str,
         values: Values<R>,
     ) -> Self {
-        Self { path, unit, frame, description, values, part: None }
+        Self { group, name, dimension, frame, description, values, part: None, role: Role::Output }
     }
 
-    /// The same in the files of runs with this part only.
+    /// A column of the system, from its group and name, and its dimension and frame.
+    pub const fn of_system(
+        path: [&'static str; 2],
+        kind: (Dimension, &'static str),
+        description: &'static str,
+        values: Quantity<R>,
+    ) -> Self {
+        Self::new(path, kind, description, Values::OfSystem(values))
+    }
+
+    /// A column of each body.
+    pub const fn of_body(
+        path: [&'static str; 2],
+        kind: (Dimension, &'static str),
+        description: &'static str,
+        values: Quantity<R::Body>,
+    ) -> Self {
+        Self::new(path, kind, description, Values::OfBody(values))
+    }
+
+    /// A column of the modes of each body.
+    pub const fn of_modes(
+        name: &'static str,
+        dimension: Dimension,
+        description: &'static str,
+        values: fn(&R::Body) -> &[f64],
+    ) -> Self {
+        Self::new(["modal", name], (dimension, "none"), description, Values::OfModes(values))
+    }
+
+    /// A column of the points of each body.
+    pub const fn of_points(
+        name: &'static str,
+        kind: (Dimension, &'static str),
+        description: &'static str,
+        values: Quantities<R::Body>,
+    ) -> Self {
+        Self::new(["points", name], kind, description, Values::OfPoints(values))
+    }
+
+    /// A column of the supports of each body.
+    pub const fn of_supports(
+        name: &'static str,
+        kind: (Dimension, &'static str),
+        description: &'static str,
+        values: Quantities<R::Body>,
+    ) -> Self {
+        Self::new(["supports", name], kind, description, Values::OfSupports(values))
+    }
+
+    /// The same of bodies with this part only.
     #[must_use]
     pub const fn only_with(self, part: &'static str) -> Self {
         Self { part: Some(part), ..self }
     }
 
+    /// The same in another role.
+    #[must_use]
+    pub const fn in_role(self, role: Role) -> Self {
+        Self { role, ..self }
+    }
+
+    /// The objects that it has numbers of.
+    pub const fn scope(&self) -> Scope {
+        match self.values {
+            Values::OfSystem(_) => Scope::System,
+            Values::OfBody(_) | Values::OfModes(_) => Scope::Body,
+            Values::OfPoints(_) => Scope::Point,
+            Values::OfSupports(_) => Scope::Support,
+        }
+    }
+
+    /// Components of its quantity.
+    pub const fn components(&self) -> Components {
+        match &self.values {
+            Values::OfSystem(quantity) => quantity.components(),
+            Values::OfBody(quantity) => quantity.components(),
+            Values::OfModes(_) => Components::Modes,
+            Values::OfPoints(quantities) | Values::OfSupports(quantities) => quantities.components(),
+        }
+    }
+
     /// The unit in the labels of a run.
     pub fn unit(&self, units: &Units) -> String {
-        units.in_labels(self.unit)
+        units.in_labels(self.dimension.unit())
     }
 
-    /// Shape of a row's values: that of the dataset is T, the number of rows, and then this.
-    pub fn row_shape(&self, metadata: &Metadata) -> Vec<usize> {
-        match self.values {
-            Values::Number(_) => Vec::new(),
-            Values::Vector(_) => vec![3],
-            Values::Quaternion(_) => vec![4],
-            Values::Modal(_) => vec![metadata.body.frequencies.len()],
-            Values::Points(_) | Values::Supports(_) => vec![self.places(metadata).len(), 3],
-            Values::PointNumbers(1, _) => vec![metadata.point_names.len()],
-            Values::PointNumbers(count, _) => vec![metadata.point_names.len(), count],
-        }
+    /// Its path without the body, such as "energy/work".
+    pub fn path(&self) -> String {
+        self.path_of(None)
     }
 
-    /// True if the files of a run with this metadata have it.
-    pub fn is_in(&self, metadata: &Metadata) -> bool {
-        self.part.is_none_or(|part| metadata.parts.iter().any(|has| has == part))
+    /// The same of one place, such as "points/P1/velocity".
+    pub fn path_of(&self, place: Option<&str>) -> String {
+        let parts = [self.group, place.unwrap_or_default(), self.name];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("/")
     }
 
-    /// Values per row.
-    pub(crate) fn width(&self, metadata: &Metadata) -> usize {
-        match self.values {
-            Values::Number(_) => 1,
-            Values::Vector(_) => 3,
-            Values::Quaternion(_) => 4,
-            Values::Modal(_) => metadata.body.frequencies.len(),
-            Values::Points(_) | Values::Supports(_) | Values::PointNumbers(..) => {
-                self.per_point() * self.places(metadata).len()
-            }
-        }
+    /// True if a body has histories of it.
+    pub fn is_of(&self, body: &BodyMetadata) -> bool {
+        self.scope() != Scope::System && self.part.is_none_or(|part| body.parts.iter().any(|has| has == part))
     }
-
-    /// The names of the points or supports that it has values of; none of one that is of the whole body.
-    pub fn places<'m>(&self, metadata: &'m Metadata) -> &'m [String] {
-        match self.values {
-            Values::Points(_) | Values::PointNumbers(..) => &metadata.point_names,
-            Values::Supports(_) => &metadata.support_names,
-            _ => &[],
-        }
-    }
-
-    /// Appends the values that a row has.
-    #[inline]
-    pub fn append(&self, row: &R, metadata: &Metadata, out: &mut Vec<f64>) {
-        let points = self.places(metadata).len();
-        match self.values {
-            Values::Number(value) => out.push(value(row)),
-            Values::Vector(values) => out.extend(values(row)),
-            Values::Quaternion(values) => out.extend(values(row)),
-            Values::Modal(values) => out.extend_from_slice(values(row)),
-            Values::Points(values) | Values::Supports(values) => {
-                (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v))
-            }
-            Values::PointNumbers(_, values) => {
-                (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v));
-            }
-        }
-    }
-
-    /// Name of the value at `index` of a row, for messages and readers.
-    pub(crate) fn quantity(&self, metadata: &Metadata, index: usize) -> String {
-        let point = index.checked_div(self.per_point()).and_then(|point| self.places(metadata).get(point));
-        point.map_or_else(|| self.path.to_owned(), |name| of_point(self.path, name))
-    }
-
-    /// Values of each point or support; 0 of a column that is of the whole body.
-    pub(crate) fn per_point(&self) -> usize {
-        match self.values {
-            Values::Points(_) | Values::Supports(_) => 3,
-            Values::PointNumbers(count, _) => count,
-            _ => 0,
-        }
-    }
-
-    /// True if a row has values of more points or supports than there are.
-    pub(crate) fn has_more(&self, row: &R, metadata: &Metadata) -> bool {
-        let point = self.places(metadata).len();
-        match self.values {
-            Values::Points(values) | Values::Supports(values) => values(row, point).is_some(),
-            Values::PointNumbers(_, values) => values(row, point).is_some(),
-            _ => false,
-        }
-    }
-}
-
-/// Name of the history of one point: "points/P1/velocity" in the dataset "points/velocity".
-pub(crate) fn of_point(path: &str, name: &str) -> String {
-    match path.rsplit_once('/') {
-        Some((group, quantity)) => format!("{group}/{name}/{quantity}"),
-        None => format!("{name}/{path}"),
-    }
-}
-
-/// The columns of a table that a file with this metadata has.
-pub fn present<R>(
-    columns: &'static [Column<R>],
-    metadata: &Metadata,
-) -> impl Iterator<Item = &'static Column<R>> + Clone {
-    columns.iter().filter(|column| column.is_in(metadata))
 }

@@ -75,7 +75,7 @@ pub enum FileError {
         /// The unfinished file that is not there.
         part: PathBuf,
     },
-    /// The name of an output point or a support that cannot be part of a path, or occurs twice.
+    /// The name of a body, an output point or a support that cannot be part of a path, or occurs twice.
     #[error(
         "{path}: the {kind} \"{name}\" cannot be stored: {reason}; give it another name",
         path = .path.display()
@@ -83,7 +83,7 @@ pub enum FileError {
     PlaceName {
         /// The results file.
         path: PathBuf,
-        /// "output point" or "support".
+        /// "body", "output point" or "support".
         kind: &'static str,
         /// The name as given.
         name: String,
@@ -132,7 +132,7 @@ pub enum FileError {
         /// The results file.
         path: PathBuf,
         /// Name of the dataset or attribute that was to hold it.
-        quantity: &'static str,
+        quantity: String,
         /// The value.
         value: f64,
     },
@@ -177,8 +177,8 @@ pub enum FileError {
     },
     /// A file of another version of the format.
     #[error(
-        "{path}: this is a results file of version {found}, and this program reads version {expected}, in which a file carries the \
-         shapes of its body; run its scene again with --overwrite",
+        "{path}: this is a results file of version {found}, and this program reads version {expected}, in which a file has a \
+         group for each body; run its scene again with --overwrite",
         path = .path.display()
     )]
     OtherVersion {

@@ -94,6 +94,28 @@ pub struct EffectProperties {
     pub reason: String,
 }
 
+/// Everything of one body that does not change with time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyMetadata {
+    /// Its name, which is that of its group.
+    pub name: String,
+    /// Its model.
+    pub model: BodyProperties,
+    /// Names of the points whose motion is stored, in the order of a row's points.
+    pub point_names: Vec<String>,
+    /// Where they are in the undeformed body, in the mesh's coordinates.
+    pub point_positions: Vec<[f64; 3]>,
+    /// Further parts of the run, so that the body has the columns that ask for them ([`Column::part`](crate::Column::part)).
+    pub parts: Vec<String>,
+    /// Names of the supports whose reactions are stored, where there are several, in the order of a row's supports.
+    pub support_names: Vec<String>,
+    /// Effects of the motion.
+    pub effects: Vec<EffectProperties>,
+    /// Known error of the model at the beginning, in a run that was wanted all the same.
+    pub refusal: Option<String>,
+}
+
 /// Everything in a results file that does not change with time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -121,20 +143,8 @@ pub struct Metadata {
     pub scene_file: String,
     /// The files that the run read, the scene among them, written alike.
     pub input_files: Vec<String>,
-    /// The body.
-    pub body: BodyProperties,
-    /// Names of the points whose motion is stored, in the order of a row's points.
-    pub point_names: Vec<String>,
-    /// Where they are in the undeformed body, in the mesh's coordinates.
-    pub point_positions: Vec<[f64; 3]>,
-    /// Further parts of the run, so that its file has the columns that ask for them ([`Column::part`](crate::Column::part)).
-    pub parts: Vec<String>,
-    /// Names of the supports whose reactions are stored, where there are several, in the order of a row's supports.
-    pub support_names: Vec<String>,
-    /// Effects of the motion.
-    pub effects: Vec<EffectProperties>,
-    /// Known error of the model at the beginning, in a run that was wanted all the same.
-    pub refusal: Option<String>,
+    /// The bodies, at least one, in the order of the scene.
+    pub bodies: Vec<BodyMetadata>,
     /// Warnings of the run, each a sentence or more: see [`Writer::warn`](crate::Writer::warn).
     pub warnings: Vec<String>,
 }
@@ -148,10 +158,15 @@ impl BodyProperties {
     }
 }
 
-impl Metadata {
-    /// Refuses what a file cannot hold; `path` is named in messages.
-    pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
-        self.check_names(path)?;
+impl BodyMetadata {
+    /// Path of something of this body, from its path in the body's group.
+    pub(crate) fn path(&self, path: &str) -> String {
+        format!("{BODIES}/{}/{path}", self.name)
+    }
+
+    /// Refuses what a file cannot hold; `file` is named in messages.
+    fn check(&self, file: &Path) -> Result<(), FileError> {
+        self.check_names(file)?;
         let BodyProperties {
             mass,
             center_of_mass,
@@ -163,49 +178,82 @@ impl Metadata {
             rotation_axes,
             translation_axes,
             mesh,
-        } = &self.body;
+        } = &self.model;
         for (quantity, expected, found) in [
-            ("body/damping_ratios", frequencies.len(), damping_ratios.len()),
-            ("body/kinds", frequencies.len(), frequencies.len().max(*static_shapes)),
+            ("model/damping_ratios", frequencies.len(), damping_ratios.len()),
+            ("model/kinds", frequencies.len(), frequencies.len().max(*static_shapes)),
             ("points/position", self.point_names.len(), self.point_positions.len()),
         ] {
-            check_length(path, quantity, expected, found)?;
+            check_length(file, &self.path(quantity), expected, found)?;
         }
         for (quantity, values) in [
-            ("body/mass", &[*mass][..]),
-            ("body/center_of_mass", center_of_mass),
-            ("body/inertia", inertia.as_flattened()),
-            ("body/origin", origin),
+            ("model/mass", &[*mass][..]),
+            ("model/center_of_mass", center_of_mass),
+            ("model/inertia", inertia.as_flattened()),
+            ("model/origin", origin),
             ("points/position", self.point_positions.as_flattened()),
-            ("body/frequencies", frequencies),
-            ("body/damping_ratios", damping_ratios),
-            ("body/rotation_axes", rotation_axes.as_flattened()),
-            ("body/translation_axes", translation_axes.as_flattened()),
-            ("body/mesh/size", mesh.as_ref().map_or(&[], |mesh| &mesh.size)),
-            ("end", &[self.end]),
-            ("step", self.step.as_slice()),
-            ("tolerance", self.tolerance.as_slice()),
+            ("model/frequencies", frequencies),
+            ("model/damping_ratios", damping_ratios),
+            ("model/rotation_axes", rotation_axes.as_flattened()),
+            ("model/translation_axes", translation_axes.as_flattened()),
+            ("model/mesh/size", mesh.as_ref().map_or(&[], |mesh| &mesh.size)),
         ] {
-            if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
-                return Err(FileError::ConstantNotFinite { path: path.to_path_buf(), quantity, value });
-            }
+            check_finite(file, || self.path(quantity), values)?;
         }
         Ok(())
     }
 
-    fn check_names(&self, path: &Path) -> Result<(), FileError> {
-        let mut before = HashSet::new();
-        let points = self.point_names.iter().map(|name| ("output point", name));
-        for (kind, name) in points.chain(self.support_names.iter().map(|name| ("support", name))) {
-            let reason = match name.as_str() {
-                "" => "it is empty",
-                name if name.contains('/') => "it holds a /, which separates the parts of a path",
-                name if name.contains('\0') => "it holds a NUL character",
-                name if !before.insert((kind, name)) => "it occurs twice",
-                _ => continue,
-            };
-            return Err(FileError::PlaceName { path: path.to_path_buf(), kind, name: name.clone(), reason });
+    fn check_names(&self, file: &Path) -> Result<(), FileError> {
+        check_names(file, "output point", self.point_names.iter())?;
+        check_names(file, "support", self.support_names.iter())
+    }
+}
+
+impl Metadata {
+    /// The body, where it is the only one.
+    pub fn only_body(&self) -> Option<&BodyMetadata> {
+        match &self.bodies[..] {
+            [body] => Some(body),
+            _ => None,
+        }
+    }
+
+    /// Refuses what a file cannot hold; `path` is named in messages.
+    pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
+        check_length(path, "the list of bodies", self.bodies.len().max(1), self.bodies.len())?;
+        check_names(path, "body", self.bodies.iter().map(|body| &body.name))?;
+        self.bodies.iter().try_for_each(|body| body.check(path))?;
+        for (quantity, values) in
+            [("end", &[self.end][..]), ("step", self.step.as_slice()), ("tolerance", self.tolerance.as_slice())]
+        {
+            check_finite(path, || quantity.to_owned(), values)?;
         }
         Ok(())
     }
 }
+
+/// Refuses names that cannot be parts of a path, or occur twice.
+fn check_names<'n>(path: &Path, kind: &'static str, names: impl Iterator<Item = &'n String>) -> Result<(), FileError> {
+    let mut before = HashSet::new();
+    for name in names {
+        let reason = match name.as_str() {
+            "" => "it is empty",
+            name if name.contains('/') => "it holds a /, which separates the parts of a path",
+            name if name.contains('\0') => "it holds a NUL character",
+            name if !before.insert(name) => "it occurs twice",
+            _ => continue,
+        };
+        return Err(FileError::PlaceName { path: path.to_path_buf(), kind, name: name.clone(), reason });
+    }
+    Ok(())
+}
+
+fn check_finite(path: &Path, quantity: impl Fn() -> String, values: &[f64]) -> Result<(), FileError> {
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(&value) => Err(FileError::ConstantNotFinite { path: path.to_path_buf(), quantity: quantity(), value }),
+        None => Ok(()),
+    }
+}
+
+/// Group of the bodies.
+pub(crate) const BODIES: &str = "bodies";

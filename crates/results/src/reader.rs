@@ -1,19 +1,20 @@
 //! Reads a results file back, finished or not.
 
 use crate::checkpoint::{Checkpoint, Sums};
-use crate::column::{of_point, present};
+use crate::column::SystemRow;
 use crate::container::description::Description;
 use crate::container::seal;
 use crate::container::store::Store;
-use crate::{Column, FileError, Metadata, Shapes};
+use crate::history::{History, histories};
+use crate::{BodyMetadata, Column, FileError, Metadata, Shapes};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::Path;
 
-/// A results file in memory; rows are output times.
+/// A results file in memory; rows are output times, the same for all bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Results {
-    /// Metadata of the run as a whole; the points in the order in which they were given.
+    /// Metadata of the run as a whole; bodies and points in the order in which they were given.
     pub metadata: Metadata,
     /// True if the run came to its end.
     pub complete: bool,
@@ -70,19 +71,19 @@ impl Results {
     /// [`FileError::NoSeal`], [`FileError::OtherVersion`] and [`FileError::Damaged`] if it is not what a [`Writer`](crate::Writer) wrote, or those of
     /// [`Writer::create`](crate::Writer::create) for its metadata; [`FileError::Busy`] if another process writes it;
     /// [`FileError::System`] if it cannot be read.
-    pub fn open<R>(path: impl AsRef<Path>, columns: &'static [Column<R>]) -> Result<Self, FileError> {
+    pub fn open<R: SystemRow>(path: impl AsRef<Path>, columns: &'static [Column<R>]) -> Result<Self, FileError> {
         let path = path.as_ref();
         Ok(Self::read_with_checkpoint(&Store::open(path, columns)?, path, columns)?.0)
     }
 
-    /// The same, with the shapes of the body, if the file carries them.
+    /// The same, with the shapes of each body, if the file carries them.
     ///
     /// # Errors
     /// As [`Results::open`].
-    pub fn open_with_shapes<R>(
+    pub fn open_with_shapes<R: SystemRow>(
         path: impl AsRef<Path>,
         columns: &'static [Column<R>],
-    ) -> Result<(Self, Option<Shapes>), FileError> {
+    ) -> Result<(Self, Vec<Option<Shapes>>), FileError> {
         let path = path.as_ref();
         let store = Store::open(path, columns)?;
         Ok((Self::read_with_checkpoint(&store, path, columns)?.0, store.read_shapes(path)?))
@@ -105,7 +106,7 @@ impl Results {
     }
 
     /// With the last checkpoint of an unfinished file whose rows are as they were then, and their sums.
-    pub(crate) fn read_with_checkpoint<R>(
+    pub(crate) fn read_with_checkpoint<R: SystemRow>(
         store: &Store,
         path: &Path,
         table: &'static [Column<R>],
@@ -132,21 +133,25 @@ impl Results {
             let what = format!("its first {known} rows are not those that its checkpoint is for");
             return Err(FileError::Damaged { path: path.to_path_buf(), what });
         }
-        let mut histories = BTreeMap::new();
-        for (column, (mut values, width)) in present(table, &metadata).zip(columns.into_iter().zip(store.widths())) {
+        let mut tables = BTreeMap::new();
+        let mut columns = columns.into_iter();
+        let mut times = columns.next().unwrap_or_default();
+        times.truncate(rows);
+        tables.insert("time".to_owned(), ColumnTable { rows, width: 1, values: times });
+        for (history, mut values) in histories(table, &metadata).zip(columns) {
+            let (width, each) = (history.width(&metadata), history.values_of_each(&metadata));
             values.truncate(rows * width);
-            let each = column.per_point();
-            if each == 0 {
-                histories.insert(column.path.to_owned(), ColumnTable { rows, width, values });
+            if !history.is_of_places() {
+                tables.insert(history.path(&metadata), ColumnTable { rows, width, values });
                 continue;
             }
-            for (point, name) in column.places(&metadata).iter().enumerate() {
-                let its_part = each * point..each * (point + 1);
+            for (place, name) in history.places(&metadata).iter().enumerate() {
+                let its_part = each * place..each * (place + 1);
                 let values = values.chunks_exact(width).flat_map(|row| &row[its_part.clone()]).copied().collect();
-                histories.insert(of_point(column.path, name), ColumnTable { rows, width: each, values });
+                tables.insert(history.path_of(&metadata, Some(name)), ColumnTable { rows, width: each, values });
             }
         }
-        Ok((Self { metadata, complete, rows, histories }, checkpoint))
+        Ok((Self { metadata, complete, rows, histories: tables }, checkpoint))
     }
 
     /// Number of rows, T.
@@ -154,57 +159,91 @@ impl Results {
         self.rows
     }
 
-    /// The history of this path, such as "modal/displacement", or "points/P1/velocity" of the point P1 and
-    /// "supports/2/force" of the support 2, if there is one.
+    /// The history of this path, such as "time", "bodies/ring/modal/displacement", "bodies/ring/points/P1/velocity" of the point
+    /// P1 and "bodies/ring/supports/2/force" of the support 2, if there is one. Of a single body the path may begin after its
+    /// name, as "points/P1/velocity".
     pub fn table(&self, path: &str) -> Option<&ColumnTable> {
-        self.histories.get(path)
+        let of_body = || self.histories.get(&self.metadata.only_body()?.path(path));
+        self.histories.get(path).or_else(of_body)
     }
 
-    /// The history of this path, if there is one with one value a row, such as "energy/work".
+    /// The histories of each body.
+    pub fn bodies(&self) -> impl ExactSizeIterator<Item = BodyResults<'_>> {
+        self.metadata.bodies.iter().map(|metadata| BodyResults { results: self, metadata })
+    }
+
+    /// The history of this path, if there is one with one value a row, such as "system/energy/work".
     pub fn numbers(&self, path: &str) -> Option<&[f64]> {
         self.vectors(path).map(<[[f64; 1]]>::as_flattened)
     }
 
-    /// The history of this path, if there is one with `N` values a row, such as "position".
+    /// The history of this path, if there is one with `N` values a row, such as "system/momentum/linear".
     pub fn vectors<const N: usize>(&self, path: &str) -> Option<&[[f64; N]]> {
         let table = self.table(path).filter(|table| table.width == N)?;
         Some(table.values.as_chunks().0)
     }
 
-    /// All values of a column, row by row, as they are in its dataset: of a column with a value for each point, those of all
-    /// points of a row beside each other. Empty if the file does not have the column.
-    pub fn dataset<R>(&self, column: &Column<R>) -> Vec<f64> {
-        let names = column.places(&self.metadata);
-        if column.per_point() == 0 {
-            return self.table(column.path).map_or_else(Vec::new, |table| table.values.clone());
+    /// All values of a history, row by row, as they are in its dataset: with a value for each point, those of all points of a
+    /// row beside each other.
+    pub fn dataset<R: SystemRow>(&self, history: History<R>) -> Vec<f64> {
+        let metadata = &self.metadata;
+        if !history.is_of_places() {
+            return self.table(&history.path(metadata)).map_or_else(Vec::new, |table| table.values.clone());
         }
-        let tables: Vec<&ColumnTable> =
-            names.iter().filter_map(|name| self.table(&of_point(column.path, name))).collect();
+        let of_place = |name: &String| self.table(&history.path_of(metadata, Some(name)));
+        let tables: Vec<&ColumnTable> = history.places(metadata).iter().filter_map(of_place).collect();
         (0..self.rows).flat_map(|i| tables.iter().filter_map(move |table| table.row(i)).flatten().copied()).collect()
     }
 
     /// True if row `i` is this one, to the last bit of every column.
-    pub fn is_row<R>(&self, i: usize, columns: &'static [Column<R>], row: &R) -> bool {
-        let mut values = Vec::new();
+    pub fn is_row<R: SystemRow>(&self, i: usize, columns: &'static [Column<R>], row: &R) -> bool {
+        let metadata = &self.metadata;
         let is = |path: &str, values: &[f64]| self.table(path).and_then(|table| table.row(i)) == Some(values);
-        present(columns, &self.metadata).all(|column| {
-            values.clear();
-            column.append(row, &self.metadata, &mut values);
-            let names = column.places(&self.metadata);
-            match column.per_point() {
-                0 => is(column.path, &values),
-                each => {
-                    let mut of_points = names.iter().zip(values.chunks_exact(each));
-                    values.len() == each * names.len()
-                        && of_points.all(|(name, values)| is(&of_point(column.path, name), values))
+        let mut values = Vec::new();
+        row.bodies().len() == metadata.bodies.len()
+            && is("time", &[row.time()])
+            && histories(columns, metadata).all(|history| {
+                values.clear();
+                history.append(row, metadata, &mut values);
+                if !history.is_of_places() {
+                    return is(&history.path(metadata), &values);
                 }
-            }
-        })
+                let (names, each) = (history.places(metadata), history.values_of_each(metadata));
+                let mut of_places = names.iter().zip(values.chunks_exact(each.max(1)));
+                values.len() == each * names.len()
+                    && of_places.all(|(name, values)| is(&history.path_of(metadata, Some(name)), values))
+            })
     }
 
     /// Keeps the first `rows` rows only.
     pub(crate) fn truncate(&mut self, rows: usize) {
         self.rows = self.rows.min(rows);
         self.histories.values_mut().for_each(|table| table.truncate(rows));
+    }
+}
+
+/// The histories of one body.
+#[derive(Debug, Clone, Copy)]
+pub struct BodyResults<'a> {
+    results: &'a Results,
+    /// Everything of it that does not change with time.
+    pub metadata: &'a BodyMetadata,
+}
+
+impl<'a> BodyResults<'a> {
+    /// The history of this path, such as "modal/displacement" or "points/P1/velocity", if there is one.
+    pub fn table(&self, path: &str) -> Option<&'a ColumnTable> {
+        self.results.histories.get(&self.metadata.path(path))
+    }
+
+    /// As [`Results::numbers`].
+    pub fn numbers(&self, path: &str) -> Option<&'a [f64]> {
+        self.vectors(path).map(<[[f64; 1]]>::as_flattened)
+    }
+
+    /// As [`Results::vectors`].
+    pub fn vectors<const N: usize>(&self, path: &str) -> Option<&'a [[f64; N]]> {
+        let table = self.table(path).filter(|table| table.width == N)?;
+        Some(table.values.as_chunks().0)
     }
 }

@@ -89,24 +89,26 @@ impl Shapes {
     pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
         let Self { nodes, positions, faces, displacements, pairs, products, stress } = self;
         let (count, coordinates) = (nodes.len(), displacements.len());
-        check_length(path, "body/mesh/positions", count, positions.len())?;
-        check_length(path, "body/large_deflection/products", pairs.len(), products.len())?;
-        lists(path, "body/shapes", displacements, count)?;
-        lists(path, "body/large_deflection/products", products, coordinates)?;
-        below(path, "body/mesh/surface_triangles", faces.as_flattened(), count)?;
-        below(path, "body/large_deflection/pairs", pairs.as_flattened(), coordinates)?;
-        let finite = |quantity, values: &[f64]| match values.iter().find(|value| !value.is_finite()) {
-            Some(&value) => Err(FileError::ConstantNotFinite { path: path.to_path_buf(), quantity, value }),
+        check_length(path, "model/mesh/positions", count, positions.len())?;
+        check_length(path, "model/large_deflection/products", pairs.len(), products.len())?;
+        lists(path, "model/shapes", displacements, count)?;
+        lists(path, "model/large_deflection/products", products, coordinates)?;
+        below(path, "model/mesh/surface_triangles", faces.as_flattened(), count)?;
+        below(path, "model/large_deflection/pairs", pairs.as_flattened(), coordinates)?;
+        let finite = |quantity: &str, values: &[f64]| match values.iter().find(|value| !value.is_finite()) {
+            Some(&value) => {
+                Err(FileError::ConstantNotFinite { path: path.to_path_buf(), quantity: quantity.to_owned(), value })
+            }
             None => Ok(()),
         };
-        finite("body/mesh/positions", positions.as_flattened())?;
-        displacements.iter().try_for_each(|shape| finite("body/shapes", shape.as_flattened()))?;
-        products.iter().try_for_each(|adds| finite("body/large_deflection/products", adds))?;
+        finite("model/mesh/positions", positions.as_flattened())?;
+        displacements.iter().try_for_each(|shape| finite("model/shapes", shape.as_flattened()))?;
+        products.iter().try_for_each(|adds| finite("model/large_deflection/products", adds))?;
         if let Some(StressShapes { nodes, shapes }) = stress {
-            check_length(path, "body/stress/shapes", coordinates + pairs.len(), shapes.len())?;
-            lists(path, "body/stress/shapes", shapes, nodes.len())?;
-            below(path, "body/stress/nodes", nodes, count)?;
-            shapes.iter().try_for_each(|shape| finite("body/stress/shapes", shape.as_flattened()))?;
+            check_length(path, "model/stress/shapes", coordinates + pairs.len(), shapes.len())?;
+            lists(path, "model/stress/shapes", shapes, nodes.len())?;
+            below(path, "model/stress/nodes", nodes, count)?;
+            shapes.iter().try_for_each(|shape| finite("model/stress/shapes", shape.as_flattened()))?;
         }
         Ok(())
     }
@@ -187,15 +189,15 @@ mod tests {
             let error = shapes.check(Path::new("a.h5")).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
         };
-        refused(|s| s.nodes.push(7), "body/mesh/positions has 2 values where 3 are expected");
-        refused(|s| s.faces[0][5] = 2, "body/mesh/surface_triangles names the place 2 in a list of 2");
-        refused(|s| s.pairs[0][1] = 2, "body/large_deflection/pairs names the place 2");
-        refused(|s| s.pairs.clear(), "body/large_deflection/products");
-        refused(|s| s.displacements[1].truncate(1), "body/shapes has 1 values where 2 are expected");
-        refused(|s| s.displacements[0][1][2] = f64::NAN, "body/shapes is NaN");
-        refused(|s| s.positions[1][0] = f64::INFINITY, "body/mesh/positions is inf");
-        refused(|s| s.stress.as_mut().unwrap().nodes[1] = 9, "body/stress/nodes names the place 9");
-        refused(|s| s.stress.as_mut().unwrap().shapes.truncate(2), "body/stress/shapes has 2 values where 3");
+        refused(|s| s.nodes.push(7), "model/mesh/positions has 2 values where 3 are expected");
+        refused(|s| s.faces[0][5] = 2, "model/mesh/surface_triangles names the place 2 in a list of 2");
+        refused(|s| s.pairs[0][1] = 2, "model/large_deflection/pairs names the place 2");
+        refused(|s| s.pairs.clear(), "model/large_deflection/products");
+        refused(|s| s.displacements[1].truncate(1), "model/shapes has 1 values where 2 are expected");
+        refused(|s| s.displacements[0][1][2] = f64::NAN, "model/shapes is NaN");
+        refused(|s| s.positions[1][0] = f64::INFINITY, "model/mesh/positions is inf");
+        refused(|s| s.stress.as_mut().unwrap().nodes[1] = 9, "model/stress/nodes names the place 9");
+        refused(|s| s.stress.as_mut().unwrap().shapes.truncate(2), "model/stress/shapes has 2 values where 3");
     }
 
     #[test]

@@ -2,13 +2,14 @@
 
 use crate::block::Block;
 use crate::checkpoint::{self, Checkpoint, Sums};
-use crate::column::present;
+use crate::column::{SystemRow, Values};
 use crate::container::paths::ResultsPaths;
 use crate::container::room::Room;
 use crate::container::store::{ShapeSource, Store};
 use crate::error::check_length;
+use crate::history::{History, histories};
 use crate::reader::Results;
-use crate::{Column, FileError, Metadata, Shapes, Values};
+use crate::{Column, FileError, Metadata, Shapes};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use whole_file::TemporaryFile;
@@ -44,14 +45,14 @@ pub struct Expected {
 /// flush. [`Writer::finish`] writes the results file and puts it into its place in one go: what is there is always
 /// whole, and is as it was until then.
 #[derive(Debug)]
-pub struct Writer<R: 'static> {
+pub struct Writer<R: SystemRow + 'static> {
     place: ResultsPaths,
     overwrite: bool,
     metadata: Metadata,
     columns: &'static [Column<R>],
     store: Store,
-    /// The columns that the file has, and their values per row.
-    present: Vec<(&'static Column<R>, usize)>,
+    /// The histories that the file has, and their values per row.
+    present: Vec<(History<R>, usize)>,
     /// The rows that have not been written.
     waiting: Block,
     rows_per_write: usize,
@@ -72,7 +73,7 @@ pub fn unfinished(path: impl AsRef<Path>) -> PathBuf {
 
 /// A run that can go on.
 #[derive(Debug)]
-pub struct Resumed<R: 'static> {
+pub struct Resumed<R: SystemRow + 'static> {
     /// Goes on after the rows.
     pub writer: Writer<R>,
     /// The rows up to the checkpoint.
@@ -81,8 +82,8 @@ pub struct Resumed<R: 'static> {
     pub checkpoint: Option<Vec<u64>>,
 }
 
-impl<R> Writer<R> {
-    /// Begins the results file `path` with the metadata, the shapes of the body, if it is to carry them, and empty histories.
+impl<R: SystemRow> Writer<R> {
+    /// Begins the results file `path` with the metadata, the shapes of each body that is to carry them, and empty histories.
     ///
     /// # Errors
     /// [`FileError::PlaceName`] for a name that is empty, contains "/" or NUL or occurs twice, [`FileError::WrongLength`] if there are not as many damping ratios as frequencies,
@@ -92,19 +93,17 @@ impl<R> Writer<R> {
     pub fn create(
         path: impl AsRef<Path>,
         metadata: &Metadata,
-        shapes: Option<&Shapes>,
+        shapes: &[Option<Shapes>],
         columns: &'static [Column<R>],
         expected: Expected,
     ) -> Result<Self, FileError> {
         let place = ResultsPaths::of(path.as_ref());
         metadata.check(&place.path)?;
-        if let Some(shapes) = shapes {
-            shapes.check(&place.path)?;
-        }
+        shapes.iter().flatten().try_for_each(|shapes| shapes.check(&place.path))?;
         place.check(expected.overwrite)?;
 
         let present = with_widths(columns, metadata);
-        let numbers_per_row = present.iter().map(|(_, width)| width).sum();
+        let numbers_per_row = numbers_per_row(&present);
         let rows_per_write = rows_per_write(numbers_per_row);
         let rows = expected.rows.min(FIRST_ROOM / numbers_per_row.max(1)).max(rows_per_write);
         let checkpoint = vec![0; checkpoint::FRAME + expected.checkpoint];
@@ -117,7 +116,7 @@ impl<R> Writer<R> {
             metadata: metadata.clone(),
             columns,
             store,
-            sums: Sums::new(present.len()),
+            sums: Sums::new(1 + present.len()),
             waiting: waiting(&present, rows_per_write),
             present,
             rows_per_write,
@@ -167,7 +166,7 @@ impl<R> Writer<R> {
         };
         results.truncate(rows);
         let present = with_widths(columns, &results.metadata);
-        let rows_per_write = rows_per_write(present.iter().map(|(_, width)| width).sum());
+        let rows_per_write = rows_per_write(numbers_per_row(&present));
         let writer = Self {
             metadata: results.metadata.clone(),
             columns,
@@ -208,11 +207,12 @@ impl<R> Writer<R> {
         }
         let Self { present, waiting: Block { values, .. }, metadata, .. } = self;
         let before = values.len();
-        let mut is_whole = true;
-        for (column, width) in &*present {
+        let mut is_whole = row.bodies().len() == metadata.bodies.len();
+        values.push(row.time());
+        for (history, width) in &*present {
             let first = values.len();
-            column.append(row, metadata, values);
-            is_whole &= values.len() == first + width && !column.has_more(row, metadata);
+            history.append(row, metadata, values);
+            is_whole &= values.len() == first + width && !history.has_more(row, metadata);
         }
         if !(is_whole && are_finite(&values[before..])) {
             self.waiting.truncate(self.rows_buffered);
@@ -225,20 +225,24 @@ impl<R> Writer<R> {
     /// Refuses a row that lacks a value, has more than there are places for, or one that is not finite.
     fn refuse(&self, row: &R) -> Result<(), FileError> {
         let (path, metadata) = (&self.place.part, &self.metadata);
-        if let Some((column, _)) = self.present.iter().find(|(column, _)| column.has_more(row, metadata)) {
-            let places = column.places(metadata).len();
-            let what = if matches!(column.values, Values::Supports(_)) { "supports" } else { "points" };
+        check_length(path, "bodies", metadata.bodies.len(), row.bodies().len())?;
+        if let Some((history, _)) = self.present.iter().find(|(history, _)| history.has_more(row, metadata)) {
+            let places = history.places(metadata).len();
+            let what = if matches!(history.column.values, Values::OfSupports(_)) { "supports" } else { "points" };
             return check_length(path, what, places, places + 1);
         }
-        let (mut values, mut time) = (Vec::new(), None);
-        for (column, width) in &self.present {
+        let time = row.time();
+        let not_finite = |quantity, value| Err(FileError::NotFinite { path: path.clone(), time, quantity, value });
+        if !time.is_finite() {
+            return not_finite("time".to_owned(), time);
+        }
+        let mut values = Vec::new();
+        for (history, width) in &self.present {
             values.clear();
-            column.append(row, metadata, &mut values);
-            let time = *time.get_or_insert(values.first().copied().unwrap_or(f64::NAN));
-            check_length(path, column.path, *width, values.len())?;
+            history.append(row, metadata, &mut values);
+            check_length(path, &history.short_path_of(metadata, None), *width, values.len())?;
             if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-                let quantity = column.quantity(metadata, index);
-                return Err(FileError::NotFinite { path: path.clone(), time, quantity, value: values[index] });
+                return not_finite(history.quantity(metadata, index), values[index]);
             }
         }
         Ok(())
@@ -325,19 +329,23 @@ impl<R> Writer<R> {
 }
 
 /// Bytes of the numbers of a row.
-pub fn bytes_per_row<R>(columns: &'static [Column<R>], metadata: &Metadata) -> u64 {
-    let numbers: usize = with_widths(columns, metadata).iter().map(|(_, width)| width).sum();
-    (numbers * size_of::<f64>()) as u64
+pub fn bytes_per_row<R: SystemRow>(columns: &'static [Column<R>], metadata: &Metadata) -> u64 {
+    (numbers_per_row(&with_widths(columns, metadata)) * size_of::<f64>()) as u64
 }
 
-/// The columns that a file has, and their values per row.
-fn with_widths<R>(columns: &'static [Column<R>], metadata: &Metadata) -> Vec<(&'static Column<R>, usize)> {
-    present(columns, metadata).map(|column| (column, column.width(metadata))).collect()
+/// The histories that a file has, and their values per row.
+fn with_widths<R: SystemRow>(columns: &'static [Column<R>], metadata: &Metadata) -> Vec<(History<R>, usize)> {
+    histories(columns, metadata).map(|history| (history, history.width(metadata))).collect()
 }
 
-/// Room for rows that wait.
-fn waiting<R>(present: &[(&Column<R>, usize)], rows: usize) -> Block {
-    Block::new(present.iter().map(|(_, width)| *width).collect(), rows)
+/// Those of the histories, and the time.
+fn numbers_per_row<R: SystemRow>(present: &[(History<R>, usize)]) -> usize {
+    1 + present.iter().map(|(_, width)| width).sum::<usize>()
+}
+
+/// Room for rows that wait: the time, and the histories.
+fn waiting<R: SystemRow>(present: &[(History<R>, usize)], rows: usize) -> Block {
+    Block::new(std::iter::once(1).chain(present.iter().map(|(_, width)| *width)).collect(), rows)
 }
 
 /// True if all are finite numbers.
@@ -358,7 +366,7 @@ fn rows_per_write(numbers_per_row: usize) -> usize {
 }
 
 /// A sealed unfinished file that has no name yet.
-fn make_room<R>(
+fn make_room<R: SystemRow>(
     place: &ResultsPaths,
     metadata: &Metadata,
     shapes: ShapeSource<'_>,
@@ -371,7 +379,7 @@ fn make_room<R>(
     Ok((file, store))
 }
 
-impl<R> Drop for Writer<R> {
+impl<R: SystemRow> Drop for Writer<R> {
     fn drop(&mut self) {
         // Best effort: there is nobody left to tell. After `finish` there is nothing to do.
         let _ = self.write_waiting();

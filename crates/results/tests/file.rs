@@ -4,14 +4,16 @@ mod rows;
 
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
 use results::*;
-use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata, shapes};
+use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, body, folder, metadata, shapes};
 use std::path::Path;
 
 fn write(path: &Path, rows: usize, metadata: &Metadata) -> Writer {
     let expected = Expected { overwrite: true, ..Expected::default() };
-    let mut writer = Writer::create(path, metadata, None, &COLUMNS, expected).unwrap();
+    let mut writer = Writer::create(path, metadata, &[], &COLUMNS, expected).unwrap();
+    let sizes: Vec<_> =
+        metadata.bodies.iter().map(|body| (body.model.frequencies.len(), body.point_names.len())).collect();
     for i in 0..rows {
-        writer.push(&Row::new(i, metadata.body.frequencies.len(), metadata.point_names.len())).unwrap();
+        writer.push(&Row::of_bodies(i, &sizes)).unwrap();
     }
     writer
 }
@@ -82,7 +84,7 @@ fn a_sample_that_is_not_finite_is_refused_and_those_before_it_stay() {
     let metadata = metadata(2, &["P1"]);
     let mut writer = write(&path, 20, &metadata);
     let mut row = Row::new(20, 2, 1);
-    row.points[0][2][1] = f64::NAN;
+    row.bodies[0].points[0][2][1] = f64::NAN;
     match writer.push(&row) {
         Err(FileError::NotFinite { time, quantity, .. }) => {
             assert_eq!((time, quantity.as_str()), (row.time, "points/P1/acceleration"));
@@ -90,7 +92,7 @@ fn a_sample_that_is_not_finite_is_refused_and_those_before_it_stay() {
         other => panic!("{other:?}"),
     }
     let mut row = Row::new(20, 2, 1);
-    row.modal[1][1] = f64::INFINITY;
+    row.bodies[0].modal[1][1] = f64::INFINITY;
     let error = writer.push(&row).unwrap_err().to_string();
     assert!(error.contains("modal/velocity is inf at time 0.002") && error.contains("smaller step"), "{error}");
     writer.finish().unwrap();
@@ -102,7 +104,7 @@ fn rows_that_could_not_be_written_wait_for_another_try() {
     let (folder, path) = folder();
     let place = path.parent().unwrap().to_owned();
     let away = folder.path().with_extension("away");
-    let mut writer = Writer::create(&path, &metadata(2, &["P1"]), None, &COLUMNS, Expected::default()).unwrap();
+    let mut writer = Writer::create(&path, &metadata(2, &["P1"]), &[], &COLUMNS, Expected::default()).unwrap();
     let rows = 2000;
     let mut refused = 0;
     for i in 0..rows {
@@ -133,10 +135,11 @@ fn fields_that_do_not_fit_are_refused() {
     assert!(!path.exists());
     write_vtu(&path, &grid, &[(&field, &[0.0; 9])], false).unwrap();
     let out = VtkHdf::create(folder.path().join("field.vtkhdf"), &grid, None, &[field], false).unwrap();
-    assert!(matches!(out.write(0, 1, &[0.0; 9]), Err(FileError::WrongLength { expected: 2, found: 1, .. })));
-    assert!(matches!(out.write(0, 0, &[0.0; 2]), Err(FileError::Hdf5 { .. })));
-    assert!(matches!(out.write(1, 0, &[0.0; 9]), Err(FileError::Hdf5 { .. })));
-    out.write(0, 0, &[0.0; 9]).unwrap();
+    assert!(matches!(out.write(0, 0, 1, &[0.0; 9]), Err(FileError::WrongLength { expected: 2, found: 1, .. })));
+    assert!(matches!(out.write(0, 0, 0, &[0.0; 2]), Err(FileError::Hdf5 { .. })));
+    assert!(matches!(out.write(0, 1, 0, &[0.0; 9]), Err(FileError::Hdf5 { .. })));
+    assert!(matches!(out.write(1, 0, 0, &[0.0; 9]), Err(FileError::WrongLength { expected: 1, found: 0, .. })));
+    out.write(0, 0, 0, &[0.0; 9]).unwrap();
 }
 
 #[test]
@@ -160,32 +163,32 @@ fn wrong_lengths_and_names_are_refused() {
     assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 2);
 
     for names in [[""].as_slice(), &["a/b"], &["a\0"], &["a", "a"]] {
-        let error = Writer::create(&path, &metadata(1, names), None, &COLUMNS, Expected::default()).unwrap_err();
+        let error = Writer::create(&path, &metadata(1, names), &[], &COLUMNS, Expected::default()).unwrap_err();
         assert!(matches!(error, FileError::PlaceName { .. }), "{names:?}: {error}");
     }
     let mut unequal = metadata(2, &[]);
-    unequal.body.damping_ratios.pop();
+    unequal.bodies[0].model.damping_ratios.pop();
     assert!(matches!(
-        Writer::create(&path, &unequal, None, &COLUMNS, Expected::default()),
+        Writer::create(&path, &unequal, &[], &COLUMNS, Expected::default()),
         Err(FileError::WrongLength { expected: 2, found: 1, .. })
     ));
     let mut shapes = metadata(2, &[]);
-    shapes.body.static_shapes = 3;
+    shapes.bodies[0].model.static_shapes = 3;
     assert!(matches!(
-        Writer::create(&path, &shapes, None, &COLUMNS, Expected::default()),
+        Writer::create(&path, &shapes, &[], &COLUMNS, Expected::default()),
         Err(FileError::WrongLength { expected: 2, found: 3, .. })
     ));
     let mut nowhere = metadata(2, &["P1"]);
-    nowhere.point_positions.clear();
+    nowhere.bodies[0].point_positions.clear();
     assert!(matches!(
-        Writer::create(&path, &nowhere, None, &COLUMNS, Expected::default()),
+        Writer::create(&path, &nowhere, &[], &COLUMNS, Expected::default()),
         Err(FileError::WrongLength { expected: 1, found: 0, .. })
     ));
     let mut nul = metadata(2, &[]);
     nul.scene_text = "a\0b".into();
     let fresh = path.with_file_name("fresh.h5");
     assert!(matches!(
-        Writer::create(&fresh, &nul, None, &COLUMNS, Expected::default()),
+        Writer::create(&fresh, &nul, &[], &COLUMNS, Expected::default()),
         Err(FileError::NulInText { .. })
     ));
 }
@@ -195,7 +198,7 @@ fn errors_name_the_file_and_what_is_wrong_with_it() {
     let (folder, path) = folder();
     let nowhere = folder.path().join("no such folder").join("run.h5");
     let error =
-        Writer::create(&nowhere, &metadata(0, &[]), None, &COLUMNS, Expected::default()).unwrap_err().to_string();
+        Writer::create(&nowhere, &metadata(0, &[]), &[], &COLUMNS, Expected::default()).unwrap_err().to_string();
     assert!(error.contains("no such folder") && error.contains("create the file"), "{error}");
     let error = Results::open(&nowhere, &COLUMNS).unwrap_err().to_string();
     assert!(error.contains("no such folder") && error.contains("open the file"), "{error}");
@@ -223,7 +226,7 @@ fn an_unfinished_file_has_the_rows_that_are_whole_in_every_column() {
 fn room_for_rows_to_come_costs_no_memory_when_it_is_read() {
     let (_folder, path) = folder();
     let expected = Expected { rows: 100_000, ..Expected::default() };
-    let mut writer = Writer::create(&path, &metadata(3, &["P"]), None, &COLUMNS, expected).unwrap();
+    let mut writer = Writer::create(&path, &metadata(3, &["P"]), &[], &COLUMNS, expected).unwrap();
     (0..700).for_each(|i| writer.push(&Row::new(i, 3, 1)).unwrap());
     drop(writer);
     let part = unfinished(&path);
@@ -244,7 +247,7 @@ fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
     let mut files = Vec::new();
     let overwrite = Expected { overwrite: true, ..Expected::default() };
     for expected in [overwrite, Expected { rows: 3000, checkpoint: 5, ..overwrite }] {
-        let mut writer = Writer::create(&path, &metadata, None, &COLUMNS, expected).unwrap();
+        let mut writer = Writer::create(&path, &metadata, &[], &COLUMNS, expected).unwrap();
         push(&mut writer, 0..2000);
         writer.finish().unwrap();
         assert!(!unfinished(&path).exists());
@@ -252,7 +255,7 @@ fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
         // The clock of HDF5 files has a second's resolution.
         std::thread::sleep(std::time::Duration::from_millis(1100));
     }
-    let mut writer = Writer::create(&path, &metadata, None, &COLUMNS, Expected { checkpoint: 2, ..overwrite }).unwrap();
+    let mut writer = Writer::create(&path, &metadata, &[], &COLUMNS, Expected { checkpoint: 2, ..overwrite }).unwrap();
     push(&mut writer, 0..700);
     writer.flush(&[7, 8]).unwrap();
     push(&mut writer, 700..1500);
@@ -272,7 +275,7 @@ fn of_two_checkpoints_the_last_whole_one_counts() {
     let (_folder, path) = folder();
     let metadata = metadata(1, &[]);
     let expected = Expected { checkpoint: 3, ..Expected::default() };
-    let mut writer = Writer::create(&path, &metadata, None, &COLUMNS, expected).unwrap();
+    let mut writer = Writer::create(&path, &metadata, &[], &COLUMNS, expected).unwrap();
     for i in 0..40 {
         writer.push(&Row::new(i, 1, 0)).unwrap();
         if i % 10 == 9 {
@@ -307,7 +310,7 @@ fn nothing_is_overwritten_that_a_user_would_miss() {
     let (folder, path) = folder();
     let metadata = metadata(1, &[]);
     let create =
-        |overwrite| Writer::create(&path, &metadata, None, &COLUMNS, Expected { overwrite, ..Expected::default() });
+        |overwrite| Writer::create(&path, &metadata, &[], &COLUMNS, Expected { overwrite, ..Expected::default() });
     assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::NothingToResume { .. })));
     write(&path, 5, &metadata).finish().unwrap();
     assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::Complete { .. })));
@@ -373,7 +376,7 @@ fn of_runs_that_begin_at_once_each_has_the_file_to_itself() {
         let outcomes: Vec<Result<(), FileError>> = std::thread::scope(|scope| {
             let run = || {
                 let expected = Expected { overwrite: true, ..Expected::default() };
-                let mut writer = Writer::create(&path, &metadata, None, &COLUMNS, expected)?;
+                let mut writer = Writer::create(&path, &metadata, &[], &COLUMNS, expected)?;
                 (0..5).for_each(|i| writer.push(&Row::new(i, 1, 0)).unwrap());
                 writer.finish()
             };
@@ -400,8 +403,8 @@ fn the_shapes_of_the_body_come_back_bit_for_bit() {
     let (_folder, path) = folder();
     let (metadata, shapes) = (metadata(2, &["P1"]), shapes(2));
     let expected = Expected { checkpoint: 1, ..Expected::default() };
-    let mut writer = Writer::create(&path, &metadata, Some(&shapes), &COLUMNS, expected).unwrap();
-    let read = |path: &Path| Results::open_with_shapes(path, &COLUMNS).unwrap().1.unwrap();
+    let mut writer = Writer::create(&path, &metadata, &[Some(shapes.clone())], &COLUMNS, expected).unwrap();
+    let read = |path: &Path| Results::open_with_shapes(path, &COLUMNS).unwrap().1.remove(0).unwrap();
     let part = unfinished(&path);
     // More than there is room for at first.
     (0..1300).for_each(|i| writer.push(&Row::new(i, 2, 1)).unwrap());
@@ -435,10 +438,10 @@ fn the_shapes_of_the_body_come_back_bit_for_bit() {
     // Without large deflection and without elements.
     let plain = Shapes { faces: Vec::new(), pairs: Vec::new(), products: Vec::new(), stress: None, ..shapes.clone() };
     let other = path.with_file_name("plain.h5");
-    Writer::create(&other, &metadata, Some(&plain), &COLUMNS, expected).unwrap().finish().unwrap();
+    Writer::create(&other, &metadata, &[Some(plain.clone())], &COLUMNS, expected).unwrap().finish().unwrap();
     assert_eq!(read(&other), plain);
     let unlike = Shapes { nodes: vec![1, 2], ..shapes };
-    let refused = Writer::create(path.with_file_name("un.h5"), &metadata, Some(&unlike), &COLUMNS, expected);
+    let refused = Writer::create(path.with_file_name("un.h5"), &metadata, &[Some(unlike)], &COLUMNS, expected);
     assert!(matches!(refused, Err(FileError::WrongLength { .. })));
 }
 
@@ -447,7 +450,7 @@ fn a_file_of_another_version_is_refused_with_its_version_and_the_help() {
     let (_folder, path) = folder();
     write(&path, 3, &metadata(1, &[])).finish().unwrap();
     let mut bytes = std::fs::read(&path).unwrap();
-    assert_eq!(bytes[..24], *b"flexframe results, v. 5\n");
+    assert_eq!(bytes[..24], *b"flexframe results, v. 6\n");
     for (digit, words) in [(b'4', "a results file of version 4"), (b'9', "a results file of version 9")] {
         bytes[22] = digit;
         std::fs::write(&path, &bytes).unwrap();
@@ -455,7 +458,7 @@ fn a_file_of_another_version_is_refused_with_its_version_and_the_help() {
         assert!(matches!(error, FileError::OtherVersion { .. }));
         let text = error.to_string();
         assert!(
-            text.contains(words) && text.contains("reads version 5") && text.contains("run its scene again"),
+            text.contains(words) && text.contains("reads version 6") && text.contains("run its scene again"),
             "{text}"
         );
     }
@@ -468,30 +471,45 @@ fn a_file_of_another_version_is_refused_with_its_version_and_the_help() {
 #[test]
 fn names_types_and_shapes_are_those_of_the_contract() {
     let (_folder, path) = folder();
-    let metadata = Metadata { parts: vec!["hinge".into()], ..metadata(4, &["P1", "P2"]) };
+    let mut metadata = metadata(4, &["P1", "P2"]);
+    metadata.bodies[0].parts = vec!["hinge".into()];
     write(&path, 5, &metadata).finish().unwrap();
     let file = hdf5::File::open(&path).unwrap();
-    let of_columns = COLUMNS
-        .iter()
-        .map(|column| (column.path.to_owned(), [5].into_iter().chain(column.row_shape(&metadata)).collect::<Vec<_>>()));
+    let of_columns = histories(&COLUMNS, &metadata).map(|history| {
+        let shape: Vec<_> = [5].into_iter().chain(history.row_shape(&metadata)).collect();
+        (history.path(&metadata), shape)
+    });
     let of_body: [(&str, &[usize]); 10] = [
-        ("body/rotation_axes", &[1, 3]),
-        ("body/translation_axes", &[0, 3]),
-        ("body/mesh/size", &[3]),
-        ("body/origin", &[3]),
+        ("model/rotation_axes", &[1, 3]),
+        ("model/translation_axes", &[0, 3]),
+        ("model/mesh/size", &[3]),
+        ("model/origin", &[3]),
         ("points/position", &[2, 3]),
-        ("body/mass", &[]),
-        ("body/center_of_mass", &[3]),
-        ("body/inertia", &[3, 3]),
-        ("body/frequencies", &[4]),
-        ("body/damping_ratios", &[4]),
+        ("model/mass", &[]),
+        ("model/center_of_mass", &[3]),
+        ("model/inertia", &[3, 3]),
+        ("model/frequencies", &[4]),
+        ("model/damping_ratios", &[4]),
     ];
-    let shapes: Vec<_> = of_columns.chain(of_body.map(|(name, shape)| (name.to_owned(), shape.to_vec()))).collect();
+    let of_body = of_body.map(|(name, shape)| (format!("bodies/body/{name}"), shape.to_vec()));
+    let mut shapes: Vec<_> = of_columns.chain(of_body).chain([("time".into(), vec![5])]).collect();
+    let of_body = |name: &str, values: usize| (format!("bodies/body/{name}"), vec![5, values]);
     assert_eq!(
-        (shapes.len(), &shapes[1], &shapes[6]),
-        (32, &("attitude".into(), vec![5, 4]), &("modal/displacement".into(), vec![5, 4]))
+        (shapes.len(), &shapes[0], &shapes[5]),
+        (33, &of_body("attitude", 4), &of_body("modal/displacement", 4))
     );
-    assert_eq!(shapes[17], ("points/displacement".into(), vec![5, 2, 3]));
+    assert_eq!(shapes[21], ("system/energy/kinetic".into(), vec![5]));
+    assert_eq!(shapes[16], ("bodies/body/points/displacement".into(), vec![5, 2, 3]));
+    // All that is of a single body has a short path, too.
+    let short = |(name, shape): &(String, Vec<usize>)| {
+        let short = name.strip_prefix("bodies/body/")?;
+        Some((short.replace("model/", "body/"), shape.clone()))
+    };
+    let short: Vec<_> = shapes.iter().filter_map(short).collect();
+    assert!(
+        short.contains(&("points/displacement".into(), vec![5, 2, 3])) && short.contains(&("body/mass".into(), vec![]))
+    );
+    shapes.extend(short);
     let texts = |name: &str| -> Vec<String> {
         let dataset = file.dataset(name).unwrap();
         dataset.read_raw::<VarLenUnicode>().unwrap().iter().map(ToString::to_string).collect()
@@ -538,7 +556,7 @@ fn hdf5_finds_the_numbers_that_were_written() {
     let (_folder, path) = folder();
     let metadata = metadata(3, &["P10", "P2"]);
     let mut writer =
-        Writer::create(&path, &metadata, None, &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
+        Writer::create(&path, &metadata, &[], &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
     (0..700).for_each(|i| writer.push(&Row::new(i, 3, 2)).unwrap());
     writer.flush(&[7, 8]).unwrap();
     let part = unfinished(&path);
@@ -557,21 +575,22 @@ fn hdf5_finds_the_numbers_that_were_written() {
             let is_left = |value: &f64| if name == "time" { value.is_nan() } else { *value == 0.0 };
             assert!(found[700 * width..].iter().all(is_left), "{name}");
         };
-        for column in &COLUMNS[..21] {
-            let width: usize = column.row_shape(&metadata).iter().product();
-            match column.path.strip_prefix("points/") {
-                Some(quantity) => {
-                    let of = |name: &String| results.table(&format!("points/{name}/{quantity}")).unwrap();
-                    let of: Vec<_> = metadata.point_names.iter().map(of).collect();
-                    let rows = (0..700).flat_map(|i| of.iter().flat_map(move |table| table.row(i).unwrap()));
-                    check(column.path, width, &rows.copied().collect::<Vec<_>>());
-                }
-                None => check(column.path, width, results.table(column.path).unwrap().values()),
+        check("time", 1, results.numbers("time").unwrap());
+        assert_eq!(histories(&COLUMNS, &metadata).count(), 21);
+        for history in histories(&COLUMNS, &metadata) {
+            let path = history.path(&metadata);
+            let of = |name: &String| results.table(&history.path_of(&metadata, Some(name))).unwrap();
+            let of: Vec<_> = history.places(&metadata).iter().map(of).collect();
+            let rows = (0..700).flat_map(|i| of.iter().flat_map(move |table| table.row(i).unwrap()));
+            match history.is_of_places() {
+                true => check(&path, history.width(&metadata), &rows.copied().collect::<Vec<_>>()),
+                false => check(&path, history.width(&metadata), results.table(&path).unwrap().values()),
             }
+            assert_eq!(results.dataset(history), numbers(&path)[..700 * history.width(&metadata)]);
         }
         // The run has no hinge.
         assert!(file.dataset("hinge/angle").is_err() && results.table("hinge/angle").is_none());
-        assert_eq!(numbers("body/frequencies"), metadata.body.frequencies);
+        assert_eq!(numbers("body/frequencies"), metadata.bodies[0].model.frequencies);
         if complete == 0 {
             let checkpoint = file.dataset("checkpoint").unwrap();
             assert_eq!(checkpoint.shape(), [2, 6]);
@@ -602,7 +621,7 @@ fn nothing_is_written_through_a_link_or_in_its_place() {
             for overwrite in [false, true] {
                 refused(Writer::check(&path, overwrite), &link);
                 let expected = Expected { overwrite, ..Expected::default() };
-                refused(Writer::create(&path, &metadata, None, &COLUMNS, expected).map(drop), &link);
+                refused(Writer::create(&path, &metadata, &[], &COLUMNS, expected).map(drop), &link);
             }
             if link != path {
                 refused(Writer::resume(&path, &COLUMNS, false).map(drop), &link);
@@ -639,22 +658,64 @@ fn names_that_are_not_utf8() {
 fn constants_are_finite() {
     let (_folder, path) = folder();
     let mut vast = metadata(2, &[]);
-    vast.body.inertia[1][2] = f64::INFINITY;
-    let error = Writer::create(&path, &vast, None, &COLUMNS, Expected::default()).unwrap_err().to_string();
-    assert!(error.contains("body/inertia is inf"), "{error}");
+    vast.bodies[0].model.inertia[1][2] = f64::INFINITY;
+    let error = Writer::create(&path, &vast, &[], &COLUMNS, Expected::default()).unwrap_err().to_string();
+    assert!(error.contains("bodies/body/model/inertia is inf"), "{error}");
 }
 
 #[test]
 fn units_are_in_the_labels_of_the_run() {
-    let label = |unit, [length, mass, time]: [&str; 3]| {
+    let label = |dimension, [length, mass, time]: [&str; 3]| {
         let units = Units { length: length.into(), mass: mass.into(), time: time.into() };
-        Column::<Row>::new("x", unit, "none", "", Values::Number(|row| row.time)).unit(&units)
+        Column::<Row>::of_system(["", "x"], (dimension, "none"), "", Quantity::Number(|row| row.time)).unit(&units)
     };
     let mm = ["mm", "Mg", "s"];
-    assert_eq!(label("1", mm), "1");
-    assert_eq!(label("rad/time^2", mm), "rad/s^2");
-    assert_eq!(label("length mass^(1/2)/time", mm), "mm Mg^(1/2)/s");
-    assert_eq!(label("mass length^2/time^2", mm), "Mg mm^2/s^2");
+    assert_eq!(label(Dimension::Number, mm), "1");
+    assert_eq!(label(Dimension::AngularAcceleration, mm), "rad/s^2");
+    assert_eq!(label(Dimension::Other("length mass^(1/2)/time"), mm), "mm Mg^(1/2)/s");
+    assert_eq!(label(Dimension::Moment, mm), "Mg mm^2/s^2");
     // A label may be any text.
-    assert_eq!(label("mass length/time", ["mass", "time", "length"]), "time mass/length");
+    assert_eq!(label(Dimension::Momentum, ["mass", "time", "length"]), "time mass/length");
+}
+
+/// Bodies of other sizes, one without points, in an unfinished file, one that was resumed, and a finished one.
+#[test]
+fn several_bodies_are_in_one_file() {
+    let (_folder, path) = folder();
+    let mut metadata = metadata(2, &["P1"]);
+    metadata.bodies = vec![body("ring", 2, &["P1", "P2"]), body("block", 0, &[]), body("left arm", 3, &["P1"])];
+    metadata.bodies[2].parts = vec!["hinge".into()];
+    let bodies = [(2, 2), (0, 0), (3, 1)];
+    let all = [Some(shapes(2)), None, Some(shapes(3))];
+    let expected = Expected { checkpoint: 1, ..Expected::default() };
+    let mut writer = Writer::create(&path, &metadata, &all, &COLUMNS, expected).unwrap();
+    (0..900).for_each(|i| writer.push(&Row::of_bodies(i, &bodies)).unwrap());
+    writer.flush(&[7]).unwrap();
+    assert!(matches!(writer.push(&Row::of_bodies(900, &bodies[..2])), Err(FileError::WrongLength { expected: 3, .. })));
+    let error = writer.push(&Row::of_bodies(900, &[(2, 2), (0, 0), (2, 1)])).unwrap_err().to_string();
+    assert!(error.contains("bodies/left arm/modal/displacement has 2 values where 3"), "{error}");
+    drop(writer);
+    let (part, of_part) = Results::open_with_shapes(unfinished(&path), &COLUMNS).unwrap();
+    assert_rows(&part, 900);
+    assert_eq!(of_part, all);
+    Writer::resume(&path, &COLUMNS, false).unwrap().writer.finish().unwrap();
+    let (results, of_finished) = Results::open_with_shapes(&path, &COLUMNS).unwrap();
+    assert_eq!((&of_finished[..], &results.metadata), (&all[..], &metadata));
+    assert_rows(&results, 900);
+    assert!(results.table("bodies/block/hinge/angle").is_none());
+    let [_, _, arm] = results.bodies().collect::<Vec<_>>()[..] else { panic!() };
+    assert_eq!(arm.numbers("hinge/angle").unwrap()[3], 3e-4 + 2000.0 + 19.0);
+    assert_eq!(arm.vectors::<3>("points/P1/velocity"), results.vectors("bodies/left arm/points/P1/velocity"));
+    // A path without a body is of none.
+    assert!(results.table("position").is_none() && results.numbers("time").is_some());
+
+    let file = hdf5::File::open(&path).unwrap();
+    assert!(file.dataset("position").is_err());
+    assert_eq!(file.dataset("bodies/ring/points/velocity").unwrap().shape(), [900, 2, 3]);
+    assert_eq!(file.dataset("bodies/left arm/model/shapes").unwrap().shape(), [4, 3, 3]);
+    assert!(file.dataset("bodies/block/model/shapes").is_err());
+
+    metadata.bodies[1].name = "ring".into();
+    let refused = Writer::create(path.with_file_name("twice.h5"), &metadata, &[], &COLUMNS, expected);
+    assert!(matches!(refused, Err(FileError::PlaceName { kind: "body", .. })));
 }

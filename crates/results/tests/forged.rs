@@ -24,7 +24,7 @@ fn files(path: &Path) -> [Vec<u8>; 2] {
     let mut writer = Writer::create(
         path,
         &metadata,
-        Some(&shapes(2)),
+        &[Some(shapes(2))],
         &COLUMNS,
         Expected { checkpoint: 4, overwrite: true, ..Expected::default() },
     )
@@ -150,11 +150,11 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         // Two in one place, partly in one place, in the head, on the end, beyond it.
         set("/starts/3", json!(start(2))),
         set("/starts/3", json!(start(2) + 8)),
-        set("/starts/3", json!(start(21))),
+        set("/starts/3", json!(start(22))),
         set("/starts/0", json!(0)),
         set("/starts/0", json!(60)),
-        set("/starts/21", json!(length - 8)),
-        set("/starts/21", json!(length)),
+        set("/starts/22", json!(length - 8)),
+        set("/starts/22", json!(length)),
         set("/starts/0", json!(vast)),
         set("/starts/0", json!(vast - 4000)),
         set("/starts/0", json!(-8)),
@@ -163,7 +163,11 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         set("/starts", Value::from([sound["starts"].as_array().unwrap().as_slice(), &[json!(0)]].concat())),
         set("/arrays/0/start", json!(start(2))),
         set("/arrays/3/start", json!(length - 8)),
-        set("/arrays/0/path", json!("body/elsewhere")),
+        set("/arrays/0/path", json!("model/elsewhere")),
+        set("/arrays/0/body", json!(1)),
+        set("/arrays/0/body", json!(vast)),
+        set("/metadata/bodies", json!([])),
+        set("/metadata/bodies/0/name", json!("../body")),
         set("/arrays/3/shape", json!([vast, 3, 3])),
         set("/arrays/3/shape", json!([vast, 0, 3])),
         set("/arrays/3/shape", json!([1_u64 << 61, 1_u64 << 61, 3])),
@@ -177,20 +181,20 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         set("/checkpoint_words", json!(vast / 16 + 1)),
         set("/checkpoint_words", Value::Null),
         set("/metadata", Value::Null),
-        set("/metadata/body/frequencies", json!(vec![1.0; 1000])),
-        set("/metadata/body/frequencies", json!([])),
-        set("/metadata/body/mass", json!("heavy")),
-        set("/metadata/point_names", json!([])),
-        set("/metadata/point_names", json!(["P1", "P2"])),
-        set("/metadata/point_names", json!(["P1", "P1"])),
-        set("/metadata/point_names", json!(["../P1"])),
-        set("/metadata/point_names", json!(["\0"])),
+        set("/metadata/bodies/0/model/frequencies", json!(vec![1.0; 1000])),
+        set("/metadata/bodies/0/model/frequencies", json!([])),
+        set("/metadata/bodies/0/model/mass", json!("heavy")),
+        set("/metadata/bodies/0/point_names", json!([])),
+        set("/metadata/bodies/0/point_names", json!(["P1", "P2"])),
+        set("/metadata/bodies/0/point_names", json!(["P1", "P1"])),
+        set("/metadata/bodies/0/point_names", json!(["../P1"])),
+        set("/metadata/bodies/0/point_names", json!(["\0"])),
         set("/metadata/scene_file", json!([255, 254])),
         sound.to_string().replace("1.0e-4", "1e999").replace("0.0001", "1e999"),
         "".into(),
         "[".repeat(100_000),
         "{\"starts\":[".to_owned() + &"0,".repeat(100_000) + "0]}",
-        "{\"metadata\":{\"point_names\":[".to_owned() + &"\"\",".repeat(100_000) + "\"\"]}}",
+        "{\"metadata\":{\"input_files\":[".to_owned() + &"\"\",".repeat(100_000) + "\"\"]}}",
     ] {
         let shown = &json[..json.len().min(200)];
         let (outcome, memory) = described(&part, &place, &json);
@@ -214,7 +218,7 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         drop(described(&part, &place, &forged.to_string()).0.unwrap());
         Results::open_with_shapes(&place, &COLUMNS).map(|(_, shapes)| shapes)
     };
-    assert_eq!(shapes_of(arrays).unwrap(), Some(shapes(2)));
+    assert_eq!(shapes_of(arrays).unwrap(), [Some(shapes(2))]);
     for lacks in [0, 1, 2, 3, 5, 7, 8] {
         let some: Vec<Value> = arrays.iter().enumerate().filter(|(i, _)| *i != lacks).map(|(_, a)| a.clone()).collect();
         let error = shapes_of(&some).unwrap_err();

@@ -20,7 +20,7 @@ fn child_that_is_killed() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
     let metadata = metadata(2, &["P1"]);
     let expected = Expected { checkpoint: 1, overwrite: true, ..Expected::default() };
-    let mut writer = Writer::create(Path::new(&path), &metadata, Some(&shapes(2)), &COLUMNS, expected).unwrap();
+    let mut writer = Writer::create(Path::new(&path), &metadata, &[Some(shapes(2))], &COLUMNS, expected).unwrap();
     for i in 0..801 {
         writer.push(&Row::new(i, 2, 1)).unwrap();
         if i == 700 {
@@ -64,7 +64,7 @@ fn child_that_flushes_at_every_row() {
         (writer, rows)
     } else {
         let expected = Expected { checkpoint: STATE, overwrite: true, ..Expected::default() };
-        (Writer::create(path, &metadata(2, &["P1"]), Some(&shapes(2)), &COLUMNS, expected).unwrap(), 0)
+        (Writer::create(path, &metadata(2, &["P1"]), &[Some(shapes(2))], &COLUMNS, expected).unwrap(), 0)
     };
     for i in done..ROWS {
         writer.push(&Row::new(i, 2, 1)).unwrap();
@@ -130,7 +130,7 @@ fn checkpoints_that_fail_leave_the_last_whole_one() {
     let _alone = ALONE.lock();
     let (_folder, path) = folder();
     let expected = Expected { checkpoint: STATE, overwrite: true, ..Expected::default() };
-    let mut writer = Writer::create(&path, &metadata(2, &["P1"]), Some(&shapes(2)), &COLUMNS, expected).unwrap();
+    let mut writer = Writer::create(&path, &metadata(2, &["P1"]), &[Some(shapes(2))], &COLUMNS, expected).unwrap();
     for i in 0..2 {
         writer.push(&Row::new(i, 2, 1)).unwrap();
         writer.flush(&[0x55aa + i as u64; STATE]).unwrap();

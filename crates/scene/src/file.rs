@@ -112,12 +112,17 @@ impl Scene {
         })
     }
 
+    /// The text of the scene file: of all bodies, where it has several.
+    pub fn file_text(&self) -> &str {
+        self.whole_file.as_deref().unwrap_or(&self.source)
+    }
+
     /// The place in the scene file of the value with a key path such as
     /// `body.point_masses[2].at` or `output.points.P1` (a name with other characters than
     /// letters, digits, `-` and `_` in quotes); where the file lacks the key, the place of what
     /// would be around it.
     pub fn place(&self, key: &str) -> Place {
-        let text = self.whole_file.as_deref().unwrap_or(&self.source);
+        let text = self.file_text();
         match Document::parse(text, &self.path) {
             Ok(document) => match &self.name {
                 Some(name) => document.of_body(name).place(key),

@@ -8,7 +8,7 @@ use flexframe::columns::COLUMNS;
 use flexframe::fem_tet10::{self, Materials, StressRecovery};
 use flexframe::model::Model;
 use flexframe::rigid_kin::Attitude;
-use flexframe::row::Row;
+use flexframe::row::{BodyRow, Row};
 use flexframe::scene::{Body, Scene};
 use nalgebra::Vector3;
 use results::{Results, unfinished};
@@ -94,8 +94,8 @@ fn a_results_file_becomes_a_table_and_fields() {
     let file = run(folder.path(), SCENE);
     let file = file.to_str().unwrap();
     let results = Results::open(file, &COLUMNS).unwrap();
-    let count = results.metadata.body.frequencies.len();
-    assert!(results.rows() == 21 && results.metadata.body.static_shapes == count - 4 && count > 4);
+    let count = results.metadata.bodies[0].model.frequencies.len();
+    assert!(results.rows() == 21 && results.metadata.bodies[0].model.static_shapes == count - 4 && count > 4);
 
     // All columns, into a folder; the numbers are the same to the last bit.
     assert!(done(&["export", file, "--csv", &at("tables")]).contains("tables/scene.csv"));
@@ -117,7 +117,7 @@ fn a_results_file_becomes_a_table_and_fields() {
     assert!(!heads.contains("drive/") && !heads.contains("slider/"), "{heads}");
     let rows: Vec<Vec<f64>> = lines.map(numbers).collect();
     assert_eq!(rows.len(), 21);
-    let per_row: usize = 1 + 4 + 5 * 3 + 2 * count + 5 + 4 * 3 + 4 * 3 + 2 + 2 * 6 * 3;
+    let per_row: usize = 1 + 4 + 5 * 3 + 2 * count + 5 + 4 * 3 + 4 * 3 + 2 + 2 * 6 * 3 + 6 + 2 * 3;
     assert!(rows.iter().all(|row| row.len() == per_row), "{} {per_row}", rows[0].len());
     assert_eq!(rows[20][1..5], results.vectors::<4>("attitude").unwrap()[20]);
 
@@ -236,12 +236,14 @@ fn what_cannot_be_exported_is_refused_and_an_unfinished_run_is_marked() {
     let part = unfinished(at("cut.h5"));
     let model = Model::build(&scene, |_| ()).unwrap();
     let mut writer =
-        results::Writer::create(at("cut.h5"), &results.metadata, None, &COLUMNS, results::Expected::default()).unwrap();
-    model
-        .start(&scene)
-        .unwrap()
-        .take(3)
-        .for_each(|now| writer.push(&Row { motion: now.unwrap(), stress: Vec::new(), supports: Vec::new() }).unwrap());
+        results::Writer::create(at("cut.h5"), &results.metadata, &[None], &COLUMNS, results::Expected::default())
+            .unwrap();
+    for now in model.start(&scene).unwrap().take(3) {
+        let motion = now.unwrap();
+        let time = motion.time;
+        let body = BodyRow { motion, ..BodyRow::new(&model) };
+        writer.push(&Row { time, bodies: vec![body] }).unwrap();
+    }
     drop(writer);
     let said = done(&["export", part.to_str().unwrap(), "--csv", &at("cut.csv")]);
     assert!(said.contains("the run is unfinished: its rows end at time 0.02"), "{said}");

@@ -56,13 +56,14 @@ fn follows_the_point(scene: &str, point: &str, place: [f64; 3]) {
     let results = Results::open(&file, &COLUMNS).unwrap();
     let page = data(&file.with_extension("html"));
 
-    let times = numbers(&page["motion"]["times"]);
-    let vertices: Vec<[f64; 3]> = vectors(&page["surface"]["vertices"]);
-    let origins: Vec<[f64; 3]> = vectors(&page["motion"]["origins"]);
-    let attitudes: Vec<[f64; 4]> = vectors(&page["motion"]["attitudes"]);
-    let coordinates = numbers(&page["motion"]["coordinates"]);
+    let times = numbers(&page["times"]);
+    let body = &page["bodies"][0];
+    let vertices: Vec<[f64; 3]> = vectors(&body["surface"]["vertices"]);
+    let origins: Vec<[f64; 3]> = vectors(&body["motion"]["origins"]);
+    let attitudes: Vec<[f64; 4]> = vectors(&body["motion"]["attitudes"]);
+    let coordinates = numbers(&body["motion"]["coordinates"]);
     let shapes: Vec<Vec<[f64; 3]>> =
-        page["shapes"].as_array().unwrap().iter().map(|shape| vectors(&shape["displacement"])).collect();
+        body["shapes"].as_array().unwrap().iter().map(|shape| vectors(&shape["displacement"])).collect();
     let drawn = |row: usize, vertex: usize| {
         let [w, x, y, z] = attitudes[row];
         let q = &coordinates[row * shapes.len()..(row + 1) * shapes.len()];
@@ -89,11 +90,12 @@ fn follows_the_point(scene: &str, point: &str, place: [f64; 3]) {
     assert!(moved > 1e-3 * size, "{moved}");
 
     // The von Mises stress there, which the shader makes of the stress of the shapes.
-    assert_eq!(page["stress"]["unit"], "MPa");
-    let stresses: Vec<Vec<[f64; 6]>> = page["stress"]["shapes"].as_array().unwrap().iter().map(vectors).collect();
+    let fields = &body["stress"];
+    assert_eq!(fields["unit"], "MPa");
+    let stresses: Vec<Vec<[f64; 6]>> = fields["shapes"].as_array().unwrap().iter().map(vectors).collect();
     let index = |value: &Value| value.as_u64().unwrap() as usize;
     let products: Vec<[usize; 2]> =
-        page["stress"]["products"].as_array().unwrap().iter().map(|pair| [index(&pair[0]), index(&pair[1])]).collect();
+        fields["products"].as_array().unwrap().iter().map(|pair| [index(&pair[0]), index(&pair[1])]).collect();
     assert_eq!(stresses.len(), shapes.len() + products.len());
     let scene = Scene::parse(&results.metadata.scene_text, &results.metadata.scene_file).unwrap().with_stress_field();
     let model = Model::build(&scene, |_| ()).unwrap();
@@ -113,7 +115,7 @@ fn follows_the_point(scene: &str, point: &str, place: [f64; 3]) {
         peak = peak.max(now);
         worst = worst.max((von_mises(&sum) - now).abs());
     }
-    let legend = page["stress"]["peak"].as_f64().unwrap();
+    let legend = fields["peak"].as_f64().unwrap();
     assert!(peak > 0.0 && legend >= peak * (1.0 - 1e-6), "{peak} {legend}");
     // The shapes are rounded to 1.6e-5 of their own peaks.
     assert!(worst < 2e-4 * legend, "{worst} {legend}");
@@ -146,7 +148,7 @@ fn the_page_opens_on_the_motion_of_a_point_in_units_of_si() {
         let history = histories.iter().find(|history| text(history, "name") == name);
         text(history.unwrap_or_else(|| panic!("{name} in {histories:?}")), "unit")
     };
-    assert_eq!(unit_of("von mises stress"), page["stress"]["unit"]);
+    assert_eq!(unit_of("von mises stress"), page["bodies"][0]["stress"]["unit"]);
     assert_eq!(["kinetic", "linear (global)", "angular (global)"].map(unit_of), ["mJ", "N s", "N mm s"]);
     let balances = page["balances"].as_array().unwrap();
     assert_eq!(balances.iter().map(|balance| text(balance, "unit")).collect::<Vec<_>>(), ["mJ", "N s", "N mm s"]);
@@ -174,13 +176,14 @@ fn a_body_of_matrices_is_drawn_by_its_nodes_which_move_as_the_run_did() {
     succeed(&["report", file.to_str().unwrap()]);
     let page = data(&file.with_extension("html"));
 
-    let vertices: Vec<[f64; 3]> = vectors(&page["surface"]["vertices"]);
+    let body = &page["bodies"][0];
+    let vertices: Vec<[f64; 3]> = vectors(&body["surface"]["vertices"]);
     assert_eq!(vertices.len(), 9);
-    assert_eq!(page["surface"]["triangles"]["base64"], "");
+    assert_eq!(body["surface"]["triangles"]["base64"], "");
     let camera = vertices.iter().position(|x| *x == [6.0, 0.0, 0.0]).unwrap();
     let shapes: Vec<Vec<[f64; 3]>> =
-        page["shapes"].as_array().unwrap().iter().map(|shape| vectors(&shape["displacement"])).collect();
-    let coordinates = numbers(&page["motion"]["coordinates"]);
+        body["shapes"].as_array().unwrap().iter().map(|shape| vectors(&shape["displacement"])).collect();
+    let coordinates = numbers(&body["motion"]["coordinates"]);
     let results = Results::open(&file, &COLUMNS).unwrap();
     let elastic = results.vectors::<3>("points/camera/elastic_displacement_body").unwrap();
     assert_eq!(coordinates.len(), elastic.len() * shapes.len());

@@ -1,5 +1,7 @@
 //! Stress from the scene to the results file, against closed forms.
 
+use std::slice::from_ref;
+
 use flexframe::columns::COLUMNS;
 use flexframe::peak_stress::PeakStress;
 use flexframe::results::Results;
@@ -11,8 +13,8 @@ use crate::examples::{build, repository, scene};
 /// The results file of a scene and the peak of its summary.
 fn outcome(scene: &Scene) -> (Results, Option<PeakStress>) {
     let folder = tempfile::tempdir().unwrap();
-    let (_, report) = run(scene, folder.path(), &RunSettings::default(), |_| ()).unwrap();
-    (Results::open(report.results, &COLUMNS).unwrap(), report.peak_stress)
+    let mut report = run(from_ref(scene), folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
+    (Results::open(report.results, &COLUMNS).unwrap(), report.bodies.remove(0).peak_stress)
 }
 
 /// A scene of the bar of slenderness 70 along x, 202.07 mm long and 10 mm thick, without Poisson's effect.

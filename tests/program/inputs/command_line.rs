@@ -5,7 +5,7 @@ use std::process::{Command, Output};
 
 use flexframe::columns::COLUMNS;
 use hdf5::types::VarLenUnicode;
-use results::{Column, Metadata, Results, Units, Values};
+use results::{Column, Components, Metadata, Results, Scope, Units, histories};
 use serde_json::Value;
 
 fn root() -> PathBuf {
@@ -104,14 +104,14 @@ fn assert_describes_its_columns(path: &Path, rows: usize, metadata: &Metadata) {
     let modes = file.dataset("body/frequencies").unwrap().size();
     assert!(modes > 6);
     let mut paths = Vec::new();
-    for column in &COLUMNS {
-        let path = column.path.to_owned();
-        if column.part.is_some() {
-            assert!(file.dataset(&path).is_err(), "{path}: the ring has no part of it");
-            continue;
-        }
+    for column in COLUMNS.iter().filter(|column| column.part.is_some()) {
+        let path = column.path();
+        assert!(file.dataset(&path).is_err(), "{path}: the ring has no part of it");
+    }
+    for history in histories(&COLUMNS, metadata) {
+        let (column, path) = (history.column, history.path(metadata));
         let dataset = file.dataset(&path).unwrap();
-        let shape: Vec<usize> = std::iter::once(rows).chain(column.row_shape(metadata)).collect();
+        let shape: Vec<usize> = std::iter::once(rows).chain(history.row_shape(metadata)).collect();
         assert_eq!(dataset.shape(), shape, "{path}");
         assert!(dataset.read_raw::<f64>().unwrap().iter().all(|value| value.is_finite()), "{path}");
         let text = |name: &str| dataset.attr(name).unwrap().read_scalar::<VarLenUnicode>().unwrap().to_string();
@@ -135,11 +135,13 @@ fn assert_describes_its_columns(path: &Path, rows: usize, metadata: &Metadata) {
     let mut found = Vec::new();
     datasets(&file, &mut found);
     let mut found: Vec<_> = found.iter().map(|path| path[1..].to_owned()).collect();
+    let about = ["time", "warnings", "input_files", "bodies/body/points/names", "bodies/body/points/position"];
     found.retain(|path| {
-        let of_run = ["points/names", "points/position", "warnings", "input_files"].contains(&path.as_str());
-        !(of_run || path.starts_with("body/") || path.starts_with("effects/"))
+        let is_of_model = ["model", "effects"].iter().any(|group| path.starts_with(&format!("bodies/body/{group}/")));
+        (path.starts_with("bodies/") || path.starts_with("system/")) && !about.contains(&path.as_str()) && !is_of_model
     });
     found.sort();
+    found.dedup();
     paths.sort();
     assert_eq!(found, paths);
 }
@@ -153,18 +155,21 @@ fn datasets(group: &hdf5::Group, out: &mut Vec<String>) {
 #[test]
 fn the_page_on_results_has_the_table_of_columns() {
     let mut table = "| data set | shape | unit | frame | what |\n|---|---|---|---|---|\n".to_owned();
-    for Column { path, unit, frame, description, values, .. } in &COLUMNS {
-        let shape = match values {
-            Values::Number(_) => "T",
-            Values::Points(_) => "T×P×3",
-            Values::Supports(_) => "T×S×3",
-            Values::Vector(_) => "T×3",
-            Values::Quaternion(_) => "T×4",
-            Values::Modal(_) => "T×nf",
-            Values::PointNumbers(1, _) => "T×P",
-            Values::PointNumbers(width, _) => &format!("T×P×{width}"),
+    for column in &COLUMNS {
+        let (group, places) = match column.scope() {
+            Scope::System => ("system/", ""),
+            Scope::Body => ("", ""),
+            Scope::Point => ("", "×P"),
+            Scope::Support => ("", "×S"),
         };
-        table += &format!("| `{path}` | {shape} | {unit} | {frame} | {description} |\n");
+        let values = match column.components() {
+            Components::Number => String::new(),
+            Components::Modes => "×nf".to_owned(),
+            other => format!("×{}", other.names().len()),
+        };
+        let Column { dimension, frame, description, .. } = column;
+        let (path, unit) = (column.path(), dimension.unit());
+        table += &format!("| `{group}{path}` | T{places}{values} | {unit} | {frame} | {description} |\n");
     }
     let page = std::fs::read_to_string(root().join("docs/reference/results.md")).unwrap();
     assert!(page.contains(&(table.clone() + "\n")), "docs/reference/results.md is to have this table:\n{table}");

@@ -1,6 +1,7 @@
 //! A warning means something: a run that is right ends without one.
 
 use std::process::Command;
+use std::slice::from_ref;
 
 use flexframe::advice::Refusal;
 use flexframe::advise::advise;
@@ -21,7 +22,7 @@ fn scene(text: &str) -> Scene {
 
 fn report(text: &str) -> RunReport {
     let folder = tempfile::tempdir().unwrap();
-    let report = run(&scene(text), folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
+    let report = run(&[scene(text)], folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
     // The results file has them, too.
     assert_eq!(Results::open(&report.results, &COLUMNS).unwrap().metadata.warnings, report.warnings);
     report
@@ -48,7 +49,7 @@ fn of_a_shaken_rigid_body() {
          [time]\nend = 20.0\nstep = 1e-3\n[output]\ninterval = 0.1\n",
     );
     // Measured: 4.2e-6 of what came and went.
-    assert!(report.balances.energy < 1e-4 && report.warnings.is_empty(), "{:?}", report.warnings);
+    assert!(report.bodies[0].balances.energy < 1e-4 && report.warnings.is_empty(), "{:?}", report.warnings);
 }
 
 /// Closed form: −gt²/2. Gravity neither turns a soft body nor bends it: what its modes do is rounding.
@@ -60,7 +61,7 @@ fn of_a_body_that_falls() {
          [time]\nend = 0.1\ntolerance = 1e-6\n[output]\ninterval = 0.01\n",
     ));
     assert!(
-        (report.moved[2] + 0.5 * 9810.0 * 0.01).abs() < 1e-6 && report.warnings.is_empty(),
+        (report.bodies[0].moved[2] + 0.5 * 9810.0 * 0.01).abs() < 1e-6 && report.warnings.is_empty(),
         "{:?}",
         report.warnings
     );
@@ -80,7 +81,11 @@ fn of_a_mode_that_dies_of_the_scheme_there_are_two() {
     let model = Model::build(&scene(&ring(210e3, &rest(1e-6))), |_| ()).unwrap();
     let report = report(&ring(210e3, &rest(1.0 / model.body.circular_frequencies[5])));
     let lost = 1.0 - (1.0_f64 - 1.0 / 72.0 + 1.0 / 576.0).powi(100);
-    assert!((report.balances.energy / lost - 1.0).abs() < 1e-3, "{:e} {lost:e}", report.balances.energy);
+    assert!(
+        (report.bodies[0].balances.energy / lost - 1.0).abs() < 1e-3,
+        "{:e} {lost:e}",
+        report.bodies[0].balances.energy
+    );
     let [steps, balance] = &report.warnings[..] else { panic!("{:?}", report.warnings) };
     assert!(steps.contains("mode 6 is the worst") && steps.contains("shorter steps"), "{steps}");
     assert!(balance.contains("open by 7.1e-1") && balance.contains("fewer modes"), "{balance}");
@@ -137,7 +142,7 @@ fn of_a_body_that_bends_far_it_says_what_is_wrong_by_how_much_and_too_far_is_ref
         assert!(warning.contains(words), "{warning}");
     }
     let text = bent_plate(36.0 / unit, "");
-    let failed = run(&scene(&text), tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ());
+    let failed = run(&[scene(&text)], tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ());
     let message = failed.unwrap_err().to_string();
     assert!(message.contains("36.00 times its length"), "{message}");
     assert!(
@@ -154,7 +159,7 @@ fn of_a_load_that_bends_the_body_without_end_the_run_stops() {
     let load = "[[loads]]\nkind = \"force\"\nat = [500.0, 25.0, 10.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = 1e5\n\
                 history = { kind = \"half-sine\", start = 0.0, duration = 0.02 }\n";
     let folder = tempfile::tempdir().unwrap();
-    let failed = run(&scene(&bent_plate(0.0, load)), folder.path(), &RunSettings::default(), |_| ());
+    let failed = run(&[scene(&bent_plate(0.0, load))], folder.path(), &RunSettings::default(), |_| ());
     let message = failed.unwrap_err().to_string();
     assert!(message.contains("at time 0.0") && message.contains("means nothing"), "{message}");
 }
@@ -168,11 +173,12 @@ fn of_modes_that_long_steps_get_wrong_though_the_energy_is_right_there_is_one() 
         scene.time.control = flexframe::scene::StepControl::Fixed(step);
         scene.output.rows = flexframe::scene::Rows::EverySteps(1);
         let table = advise(&scene, &Builder::default(), false, |_| ()).unwrap();
-        let report = run(&scene, tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ()).unwrap().1;
+        let report =
+            run(from_ref(&scene), tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ()).unwrap().1;
         (table.rows.into_iter().find(|row| row.subject.name() == "step").unwrap(), report)
     };
     let (row, report) = with_step(2.5e-3);
-    assert!(report.balances.energy < 1e-5, "{:e}", report.balances.energy);
+    assert!(report.bodies[0].balances.energy < 1e-5, "{:e}", report.bodies[0].balances.energy);
     assert!((0.1..0.3).contains(&row.influence) && row.advised, "{}", row.why);
     let named =
         |text: &str| text.contains("1.8e-1 of the largest modal coordinate") && text.contains("mode 7 is the worst");
@@ -196,8 +202,8 @@ fn of_long_exact_steps() {
     };
     for stepping in ["step = 1e-3", "tolerance = 1e-6"] {
         let report = report(&ring(210e3, &rest(stepping)));
-        assert!(report.step_lengths[1] > 1e-4, "{:?}", report.step_lengths);
-        assert!(report.balances.energy > 1e-2 && report.warnings.is_empty(), "{stepping}: {report}");
+        assert!(report.bodies[0].step_lengths[1] > 1e-4, "{:?}", report.bodies[0].step_lengths);
+        assert!(report.bodies[0].balances.energy > 1e-2 && report.warnings.is_empty(), "{stepping}: {report}");
         assert!(report.to_string().contains("by modes faster than the steps"), "{report}");
     }
 }
@@ -224,33 +230,41 @@ fn clamped(modes: &str, displacement: f64, velocity: f64) -> Scene {
 fn of_large_modes_it_is_the_order_that_is_left_out() {
     let report = |scene: &Scene| {
         let folder = tempfile::tempdir().unwrap();
-        run(scene, folder.path(), &RunSettings::default(), |_| ()).unwrap().1
+        run(from_ref(scene), folder.path(), &RunSettings::default(), |_| ()).unwrap().1
     };
     // By itself where it bends far, and right: no word of it.
     let right = report(&clamped("", 0.15, 0.0));
-    assert!(right.large_modes.contains(&1) && right.left_out.unwrap() < 1e-2 && right.warnings.is_empty(), "{right}");
+    assert!(
+        right.bodies[0].large_modes.contains(&1)
+            && right.bodies[0].left_out.unwrap() < 1e-2
+            && right.warnings.is_empty(),
+        "{right}"
+    );
     assert!(right.to_string().contains("orders beyond the fourth left out"), "{right}");
     // Measured: 3 % at 40 %.
     let far = report(&clamped("large = 2\n", 0.4, 0.0));
     let [warning] = &far.warnings[..] else { panic!("{far}") };
-    assert!((0.01..0.1).contains(&far.left_out.unwrap()), "{far}");
+    assert!((0.01..0.1).contains(&far.bodies[0].left_out.unwrap()), "{far}");
     assert!(warning.contains("% of the forces") && warning.contains("fourth power"), "{warning}");
     // Where it does not bend, there is nothing to leave out.
     let still = report(&clamped("", 1e-5, 0.0));
-    assert!(still.large_modes.is_empty() && still.left_out.is_none() && still.warnings.is_empty(), "{still}");
+    assert!(
+        still.bodies[0].large_modes.is_empty() && still.bodies[0].left_out.is_none() && still.warnings.is_empty(),
+        "{still}"
+    );
 }
 
 #[test]
 fn far_beyond_it_the_run_stops_and_its_file_can_be_read() {
     let scene = clamped("large = 2\n", 0.0, 0.95);
     let folder = tempfile::tempdir().unwrap();
-    let refusal = |result: Result<(Model, RunReport), RunError>| match result {
+    let refusal = |result: Result<(Vec<Model>, RunReport), RunError>| match result {
         Err(RunError::Refused { time, refusal: Refusal::BeyondFourthOrder { error, .. }, .. }) => (time, error),
         other => panic!("{other:?}"),
     };
-    let (time, error) = refusal(run(&scene, folder.path(), &RunSettings::default(), |_| ()));
+    let (time, error) = refusal(run(from_ref(&scene), folder.path(), &RunSettings::default(), |_| ()));
     assert!(time > 1e-4 && error > 0.25, "{time} {error}");
-    let part = unfinished(results_path(&scene, folder.path()));
+    let part = unfinished(results_path(from_ref(&scene), folder.path()).unwrap());
     let rows = Results::open(&part, &COLUMNS).unwrap().rows();
     assert!(rows > 0 && rows as f64 <= 1.0 + time / 1e-4, "{rows} at {time}");
 }
@@ -311,7 +325,7 @@ fn of_a_mesh_that_was_not_read_whole() {
     is_told(&reduce(&imported, &builder, &path("bar.body.h5"), false, false, |_| ()).unwrap().warnings);
     std::fs::remove_file(path("bar.inp")).unwrap();
     let settings = RunSettings { builder: builder.clone(), ..RunSettings::default() };
-    let report = run(&scene("file = \"bar.body.h5\""), folder.path(), &settings, |_| ()).unwrap().1;
+    let report = run(&[scene("file = \"bar.body.h5\"")], folder.path(), &settings, |_| ()).unwrap().1;
     is_told(&report.warnings);
     is_told(&Results::open(&report.results, &COLUMNS).unwrap().metadata.warnings);
     assert!(builder.cache.notes().warnings.is_empty(), "{:?}", builder.cache.notes());

@@ -173,8 +173,8 @@ fn on_supports(rest: &str) -> (Model, Results) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/of_a_test.toml");
     let scene = Scene::parse(&format!("{BEAM}{rest}"), path).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let (model, report) = run(&scene, folder.path(), &RunSettings::default(), |_| ()).unwrap();
-    (model, Results::open(report.results, &COLUMNS).unwrap())
+    let (mut models, report) = run(&[scene], folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    (models.remove(0), Results::open(report.results, &COLUMNS).unwrap())
 }
 
 const CLAMP: &str = "[[constraints]]\nkind = \"support\"\nbox = [[0.0, -1.0, -1.0], [0.0, 1.0, 1.0]]\n\
@@ -191,7 +191,7 @@ fn each_support_of_a_propped_cantilever_has_its_part() {
         "[modes]\nflexible = 2\ndamping_ratio = 0.7\n{CLAMP}{PROP}[effects]\nlarge_deflection = false\n[[loads]]\n\
          kind = \"gravity\"\ndirection = [0.0, -1.0, 0.0]\namplitude = 1e-3\n[time]\nend = 20.0\nstep = 1e-2\n[output]\nevery = 100\n"
     ));
-    assert_eq!(results.metadata.support_names, ["1", "2"]);
+    assert_eq!(results.metadata.bodies[0].support_names, ["1", "2"]);
     let weight = model.body.mass * 1e-3;
     let last = |path: &str| Vector3::from(*results.vectors::<3>(path).unwrap().last().unwrap()) / weight;
     let (clamp, prop) = (last("supports/1/force"), last("supports/2/force"));
@@ -236,7 +236,7 @@ fn two_supports_share_a_force_and_their_sum_is_that_of_dalembert() {
     let moments = ["supports/1/moment", "supports/2/moment", "reaction/moment"].map(|path| forces(&results, path));
     let largest = all.iter().map(|force| force.norm()).fold(0.0, f64::max);
     assert!(largest > 3e-4, "{largest}");
-    let origin = Vector3::from(results.metadata.body.origin);
+    let origin = Vector3::from(results.metadata.bodies[0].model.origin);
     let centers = [0.0, LENGTH].map(|x| Vector3::new(x, 0.0, 0.0) - origin);
     for row in 0..results.rows() {
         let sum = near[row] + far[row];

@@ -19,7 +19,7 @@ const _: () = {
     is_send_and_sync::<dynamics::StepError>();
     is_send_and_sync::<advice::AdviceError>();
     is_send_and_sync::<results::Results>();
-    is_send_and_sync::<results::Writer<dynamics::Observation>>();
+    is_send_and_sync::<results::Writer<flexframe::row::Row>>();
     is_send_and_sync::<scene::Scene>();
     is_send_and_sync::<model::Model>();
 };

@@ -7,7 +7,7 @@ use dynamics::{Observation, Reached, Simulation, StepError};
 use figures::{Animation, FigureError, Frame, View};
 use model::{BuildError, Builder};
 use nalgebra::Vector3;
-use results::Units;
+use results::{BodyResults, Shapes, Units};
 use rigid_kin::Attitude;
 use scene::Scene;
 
@@ -89,37 +89,50 @@ pub enum AnimationError {
     Figure(#[from] FigureError),
 }
 
-/// Runs a scene and draws it into a GIF at `path`, which ends in `.gif`; colours are the deformation. Returns a warning
-/// where the frames are too few to show the spin.
+/// Runs the bodies of a scene and draws them into a GIF at `path`, which ends in `.gif`; colours are the deformation. Rigid bodies
+/// without a mesh are not drawn. Returns a warning where the frames are too few to show the spin.
 ///
 /// # Errors
 /// [`AnimationError`].
 pub fn animate(
-    scene: &Scene,
+    scenes: &[Scene],
     builder: &Builder,
     path: &Path,
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<Option<String>, AnimationError> {
     require_gif(path)?;
-    require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)))?;
+    let scene = scenes.first().ok_or(RunError::NoBody)?;
+    let surface_of = |scene| require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)));
+    scenes.iter().try_for_each(surface_of)?;
     let [from, to] = settings.times(scene.time.end)?;
-    let model = builder.build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
-    let mut simulation =
-        model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
-    simulation.keep_last_step();
+    let mut bodies = Vec::new();
+    let mut simulations = Vec::new();
+    for scene in scenes {
+        let model = builder.build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
+        let Some(surface) = Surface::of_model(&model) else { continue };
+        let mut simulation = model
+            .start(scene)
+            .map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
+        simulation.keep_last_step();
+        simulations.push(simulation);
+        bodies.push(PictureBody { origin: model.body.origin, surface });
+    }
+    if bodies.is_empty() {
+        return Err(AnimationError::NoMesh { scene: scene.path.clone() });
+    }
     let last = settings.frames.clamp(2, MAX_FRAMES) - 1;
-    let surface = Surface::of_model(&model).ok_or_else(|| AnimationError::NoMesh { scene: scene.path.clone() })?;
     let units = run::units(scene);
-    let body = PictureBody { title: &scene.title, units: &units, origin: model.body.origin, surface };
-    let mut picture = Picture::new(body, settings, (to - from) / last as f64);
+    let mut picture = Picture::new(&scene.title, &units, bodies, settings, (to - from) / last as f64);
     for frame in 0..=last {
         let part = frame as f64 / last as f64;
         let due = from * (1.0 - part) + to * part;
-        let now = observed_at(&mut simulation, due)
-            .map_err(|source| AnimationError::Step { scene: scene.path.clone(), source })?;
-        picture.add(due, &now.origin_global, &now.attitude, &now.modal_displacement, &now.omega_body);
-        progress(RunProgress::Motion(simulation.time() / to));
+        let now = simulations.iter_mut().map(|simulation| observed_at(simulation, due)).collect::<Result<Vec<_>, _>>();
+        let now = now.map_err(|source| AnimationError::Step { scene: scene.path.clone(), source })?;
+        let state =
+            |now: &Observation| (now.origin_global, now.attitude, now.modal_displacement.clone(), now.omega_body);
+        picture.add(due, &now.iter().map(state).collect::<Vec<_>>());
+        progress(RunProgress::Motion(due / to));
     }
     picture.save(path)
 }
@@ -136,9 +149,13 @@ pub fn animate_results(
     mut progress: impl FnMut(RunProgress),
 ) -> Result<Option<String>, AnimationError> {
     require_gif(path)?;
-    let Drawn { results, shapes, .. } = Drawn::open(file, Part::Surface).map_err(ExportError::from)?;
-    let shapes = shapes.ok_or_else(|| ExportError::NoMesh { path: file.to_owned() })?;
-    if shapes.faces.is_empty() {
+    let Drawn { results, bodies } = Drawn::open(file, Part::Surface).map_err(ExportError::from)?;
+    let drawn: Vec<(BodyResults<'_>, Shapes)> =
+        results.bodies().zip(bodies).filter_map(|(of, body)| Some((of, body.shapes?))).collect();
+    if drawn.is_empty() {
+        return Err(ExportError::NoMesh { path: file.to_owned() }.into());
+    }
+    if drawn.iter().any(|(_, shapes)| shapes.faces.is_empty()) {
         return Err(ExportError::NoElements { path: file.to_owned() }.into());
     }
     let times = results.numbers("time").unwrap_or_default();
@@ -152,17 +169,23 @@ pub fn animate_results(
     }
     let chosen: Vec<usize> = (0..=last).map(|frame| rows[(frame * (rows.len() - 1) + last / 2) / last]).collect();
     let interval = chosen.windows(2).map(|pair| times[pair[1]] - times[pair[0]]).fold(0.0, f64::max);
+    let (of_bodies, bodies): (Vec<_>, Vec<_>) = (drawn.into_iter())
+        .map(|(of, shapes)| {
+            let body = PictureBody { origin: of.metadata.model.origin.into(), surface: Surface::new(shapes) };
+            (of, body)
+        })
+        .unzip();
     let run = &results.metadata;
-    let (origin, surface) = (run.body.origin.into(), Surface::new(shapes));
-    let body = PictureBody { title: &run.title, units: &run.units, origin, surface };
-    let mut picture = Picture::new(body, settings, interval);
+    let mut picture = Picture::new(&run.title, &run.units, bodies, settings, interval);
     for (frame, row) in chosen.into_iter().enumerate() {
-        let history = |path: &str| results.table(path).and_then(|table| table.row(row)).unwrap_or_default();
-        let vector = |path: &str| Vector3::from_iterator(history(path).iter().copied().chain([0.0; 3]));
-        let attitude = history("attitude").try_into().ok().and_then(|wxyz| Attitude::from_wxyz(wxyz).ok());
-        let attitude = attitude.unwrap_or(Attitude::identity());
-        let (origin, omega) = (vector("origin"), vector("angular_velocity"));
-        picture.add(times[row], &origin, &attitude, history("modal/displacement"), &omega);
+        let state = |of: &BodyResults<'_>| {
+            let history = |path: &str| of.table(path).and_then(|table| table.row(row)).unwrap_or_default();
+            let vector = |path: &str| Vector3::from_iterator(history(path).iter().copied().chain([0.0; 3]));
+            let attitude = history("attitude").try_into().ok().and_then(|wxyz| Attitude::from_wxyz(wxyz).ok());
+            let attitude = attitude.unwrap_or(Attitude::identity());
+            (vector("origin"), attitude, history("modal/displacement").to_vec(), vector("angular_velocity"))
+        };
+        picture.add(times[row], &of_bodies.iter().map(state).collect::<Vec<_>>());
         progress(RunProgress::Motion(frame as f64 / last as f64));
     }
     picture.save(path)
@@ -189,7 +212,9 @@ impl AnimationSettings {
 
 /// A moving picture in the making.
 struct Picture<'a> {
-    body: PictureBody<'a>,
+    title: &'a str,
+    units: &'a Units,
+    bodies: Vec<PictureBody>,
     settings: AnimationSettings,
     /// Longest time from frame to frame.
     interval: f64,
@@ -198,53 +223,62 @@ struct Picture<'a> {
     fastest: f64,
 }
 
-/// The body in a moving picture.
-struct PictureBody<'a> {
-    title: &'a str,
-    units: &'a Units,
+/// A body in a moving picture.
+struct PictureBody {
     /// Origin of the body frame, mesh axes.
     origin: Vector3<f64>,
     surface: Surface,
 }
 
+/// A body in a frame: place of its origin, attitude, modal coordinates, and its spin in body axes.
+type State = (Vector3<f64>, Attitude, Vec<f64>, Vector3<f64>);
+
 impl<'a> Picture<'a> {
     /// A picture without frames.
-    fn new(body: PictureBody<'a>, settings: AnimationSettings, interval: f64) -> Self {
-        Self { body, settings, interval, frames: Vec::new(), fastest: 0.0 }
+    fn new(
+        title: &'a str,
+        units: &'a Units,
+        bodies: Vec<PictureBody>,
+        settings: AnimationSettings,
+        interval: f64,
+    ) -> Self {
+        Self { title, units, bodies, settings, interval, frames: Vec::new(), fastest: 0.0 }
     }
 
-    fn add(
-        &mut self,
-        time: f64,
-        origin_global: &Vector3<f64>,
-        attitude: &Attitude,
-        modal_displacement: &[f64],
-        omega_body: &Vector3<f64>,
-    ) {
-        self.fastest = self.fastest.max(omega_body.norm());
-        let PictureBody { units, origin, surface, .. } = &self.body;
-        let u = surface.displacements(&surface.shapes.coordinates(modal_displacement));
-        let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * self.settings.magnification).collect();
+    fn add(&mut self, time: f64, states: &[State]) {
+        let (mut points, mut values) = (Vec::new(), Vec::new());
+        for (PictureBody { origin, surface }, (origin_global, attitude, q, omega_body)) in
+            self.bodies.iter().zip(states)
+        {
+            self.fastest = self.fastest.max(omega_body.norm());
+            let u = surface.displacements(&surface.shapes.coordinates(q));
+            let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * self.settings.magnification).collect();
+            points.extend(surface.placed(origin, origin_global, attitude, &drawn));
+            values.extend(u.iter().map(Vector3::norm));
+        }
         let decimals = decimals(self.interval);
-        self.frames.push(Frame {
-            points: surface.placed(origin, origin_global, attitude, &drawn),
-            values: u.iter().map(Vector3::norm).collect(),
-            caption: format!("t = {time:.decimals$} {}", units.time),
-        });
+        self.frames.push(Frame { points, values, caption: format!("t = {time:.decimals$} {}", self.units.time) });
     }
 
     /// Writes it. Returns a warning where the frames are too few to show the spin.
     fn save(self, path: &Path) -> Result<Option<String>, AnimationError> {
-        let Self { body: PictureBody { title, units, surface, .. }, settings, interval, frames, fastest } = self;
+        let Self { title, units, bodies, settings, interval, frames, fastest } = self;
         let factor = match settings.magnification {
             1.0 => String::new(),
             factor => format!(" (drawn {factor} times as large)"),
         };
+        // The points of all bodies are in one list.
+        let (mut triangles, mut edges, mut first) = (Vec::new(), Vec::new(), 0);
+        for PictureBody { surface, .. } in &bodies {
+            triangles.extend(surface.triangles.iter().map(|points| points.map(|point| first + point)));
+            edges.extend(surface.edges.iter().map(|points| points.map(|point| first + point)));
+            first += surface.shapes.positions.len() as u32;
+        }
         Animation {
             title: title.to_owned(),
             value_label: format!("displacement by deformation, {}{factor}", units.length),
-            triangles: &surface.triangles,
-            edges: &surface.edges,
+            triangles: &triangles,
+            edges: &edges,
             frames: &frames,
             frame_milliseconds: 50,
             view: settings.view,

@@ -16,7 +16,7 @@ mod variables;
 
 pub use error::FmuError;
 pub use library::{library_path, marker};
-pub use manifest::{MANIFEST, Manifest};
-pub use model::FmuModel;
+pub use manifest::{MANIFEST, Manifest, PackedBody};
+pub use model::{FmuBody, FmuModel};
 pub use pack::{FmuReport, FmuSettings, pack, scene_of_body};
-pub use variables::{Input, Source, Variable};
+pub use variables::{Input, InputKind, Source, Variable};

@@ -12,7 +12,7 @@ use crate::drawn::{Drawn, DrawnError, Part};
 /// A page that could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum HtmlReportError {
-    /// The results file, or the shapes of its body, cannot be read.
+    /// The results file, or the shapes of its bodies, cannot be read.
     #[error(transparent)]
     Drawn(#[from] DrawnError),
     /// A results file that lacks a column of every run.
@@ -43,6 +43,6 @@ pub fn page(file: &Path) -> Result<String, HtmlReportError> {
 }
 
 fn contents_of(file: &Path) -> Result<Report, HtmlReportError> {
-    let Drawn { results, shapes, .. } = Drawn::open(file, Part::Surface)?;
-    contents::contents(file, &results, shapes).ok_or_else(|| HtmlReportError::NoColumns { results: file.to_owned() })
+    let Drawn { results, bodies } = Drawn::open(file, Part::Surface)?;
+    contents::contents(file, &results, bodies).ok_or_else(|| HtmlReportError::NoColumns { results: file.to_owned() })
 }

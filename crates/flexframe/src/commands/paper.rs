@@ -66,16 +66,17 @@ pub fn reproduce(
     if !scene.output.points.contains_key(WATCHED_POINT) {
         return Err(PaperError::MissingPoint { scene: scene.path.clone(), point: WATCHED_POINT });
     }
-    let (model, mut run) = run(scene, folder, settings, progress)?;
+    let (models, mut run) = run(std::slice::from_ref(scene), folder, settings, progress)?;
+    let ([model], [of_plate]) = (&models[..], &run.bodies[..]) else { return Err(only_plates()) };
     let started = Instant::now();
     let results = Results::open(&run.results, &COLUMNS)?;
     let meshed = model.meshed.as_ref().ok_or_else(only_plates)?;
-    let rigid = rigid_plate::histories(&model, &results)?.ok_or_else(only_plates)?;
+    let rigid = rigid_plate::histories(model, &results)?.ok_or_else(only_plates)?;
     let elements = meshed.elements.as_ref().ok_or_else(only_plates)?;
     let lumped = fem_tet10::centroid_lumped_inertia(&meshed.mesh, &elements.materials, &elements.point_masses)
         .map_err(model::BuildError::from)?;
-    let comparison = Comparison::new(&run, &results, &rigid, &lumped);
-    let figures = figures::draw(scene, &model, &results, &rigid, folder)?;
+    let comparison = Comparison::new(of_plate, &results, &rigid, &lumped);
+    let figures = figures::draw(scene, model, &results, &rigid, folder)?;
     run.times.add("figures", started.elapsed());
     let path = folder.join(PAGE);
     write_whole(&path, page::page(scene, &run, &comparison))

@@ -1,126 +1,135 @@
-//! `flexframe run`: a scene from its mesh to its results file.
+//! `flexframe run`: a scene from its meshes to its results file.
+//!
+//! Nothing acts between the bodies of a scene: each is a set of equations of its own with steps of its own, and moves as it would
+//! alone. They meet at the rows ([`row_times`]), which are written together.
 
 mod balances;
-mod bodies;
+mod body;
+mod body_report;
+mod checkpoint;
 mod error;
 mod estimate;
+mod metadata;
 mod recorder;
 mod report;
+mod row_times;
 mod settings;
 mod turn;
 mod watch;
+mod words;
 
 use std::path::Path;
 use std::time::Instant;
 
-use dynamics::{DrivenMotion, Simulation};
-use model::{BuildError, Builder, Model};
-use results::{BodyProperties, Expected, Metadata, Results, Resumed, Units, Writer, unfinished};
-use scene::{Scene, SceneError, StepControl};
+use dynamics::{Initial, Simulation};
+use model::{BuildError, BuildProgress, Builder, Model};
+use results::{Expected, Results, Resumed, Writer, unfinished};
+use scene::{Scene, System};
 
 pub use balances::Balances;
 pub(crate) use balances::Monitor;
-pub use bodies::BodyRuns;
+pub use body::RunBody;
+pub use body_report::BodyRunReport;
 pub use error::{RunError, RunFailure};
 pub use estimate::Estimate;
-pub use report::RunReport;
+pub use metadata::metadata;
+pub(crate) use metadata::units;
+pub use report::{RunReport, SystemReport};
 pub use settings::{RunProgress, RunSettings};
 pub use watch::{Watch, Watched};
 
-use crate::drawn::{mesh_properties, stored_shapes};
-use crate::files::outputs::outputs_of_scene;
+use crate::drawn::stored_shapes;
+use crate::files::outputs::outputs_of_scenes;
 pub use crate::files::results_path::results_path;
 use crate::files::scene_file;
-use crate::report::BodyReport;
-use crate::rows::columns::{COLUMNS, part};
-use crate::rows::effects;
+use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;
+use body::MovingBody;
+use checkpoint::{checkpoint, restored};
 use estimate::LARGE;
+use metadata::metadata_of_file;
 use recorder::Recorder;
 
-/// Runs a scene and writes its results to `<folder>/<name of the scene file>.h5`; until the end they are in an
+/// Runs the bodies of a scene and writes their results to `<folder>/<name of the scene file>.h5`; until the end they are in an
 /// unfinished file beside it ([`results::unfinished`]). `progress` hears how far it is, at every phase and every few
 /// thousand steps.
 ///
 /// # Errors
 /// [`RunError`]. When a step fails, the unfinished file keeps the rows before it.
 pub fn run(
-    scene: &Scene,
-    folder: &Path,
-    settings: &RunSettings,
-    mut progress: impl FnMut(RunProgress),
-) -> Result<(Model, RunReport), RunError> {
-    check(scene, folder, settings)?;
-    let model = settings.builder.build(scene, |p| progress(RunProgress::Build(p)))?;
-    // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
-    progress(RunProgress::Built);
-    let report = run_model(scene, &model, folder, settings, progress)?;
-    Ok((model, report))
-}
-
-/// Runs all bodies of a scene, each to a results file of its own: nothing acts between them, so each moves as it would alone, in
-/// steps of its own. All files are checked before the first run.
-///
-/// # Errors
-/// [`RunError`]. Files of the bodies before the one that fails stay.
-pub fn run_bodies(
     scenes: &[Scene],
     folder: &Path,
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
-) -> Result<BodyRuns, RunError> {
-    scenes.iter().try_for_each(|scene| check(scene, folder, settings))?;
-    let of_body = |scene: &Scene| Ok((scene.name.clone(), run(scene, folder, settings, &mut progress)?.1));
-    Ok(BodyRuns(scenes.iter().map(of_body).collect::<Result<_, RunError>>()?))
+) -> Result<(Vec<Model>, RunReport), RunError> {
+    check(scenes, folder, settings)?;
+    let models = build(scenes, &settings.builder, |p| progress(RunProgress::Build(p)))?;
+    // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
+    progress(RunProgress::Built);
+    let report = run_models(&bodies(scenes, &models), folder, settings, progress)?;
+    Ok((models, report))
 }
 
 /// Refuses a run that could not write its files.
-fn check(scene: &Scene, folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
-    let path = results_path(scene, folder);
-    let outputs = outputs_of_scene(scene, &settings.builder, settings.overwrite);
+fn check(scenes: &[Scene], folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
+    let path = results_path(scenes, folder).ok_or(RunError::NoBody)?;
+    let outputs = outputs_of_scenes(scenes, &settings.builder, settings.overwrite);
     outputs.spare(&path)?;
     outputs.spare(&unfinished(&path))?;
     std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
     Ok(Writer::<Row>::check(&path, settings.overwrite)?)
 }
 
-/// The same of a model that is there already.
+fn build(
+    scenes: &[Scene],
+    builder: &Builder,
+    mut progress: impl FnMut(BuildProgress),
+) -> Result<Vec<Model>, BuildError> {
+    scenes.iter().map(|scene| builder.build(scene, &mut progress)).collect()
+}
+
+/// The bodies of scenes and their models.
+pub(crate) fn bodies<'a>(scenes: &'a [Scene], models: &'a [Model]) -> Vec<RunBody<'a>> {
+    scenes.iter().zip(models).map(|(scene, model)| RunBody { scene, model }).collect()
+}
+
+/// The same of models that are there already.
 ///
 /// # Errors
 /// As [`run`].
-pub fn run_model(
-    scene: &Scene,
-    model: &Model,
+pub fn run_models(
+    bodies: &[RunBody<'_>],
     folder: &Path,
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<RunReport, RunError> {
-    let path = results_path(scene, folder);
+    let scene = bodies.first().ok_or(RunError::NoBody)?.scene;
+    let path = results_path(bodies.iter().map(|body| body.scene), folder).ok_or(RunError::NoBody)?;
     let started = Instant::now();
-    let mut simulation = start(scene, model)?;
-    let checkpoint = simulation.checkpoint().map_err(|source| RunError::Restore { part: path.clone(), source })?.len();
-    let metadata = metadata_of_file(scene, model, &settings.builder);
+    let simulations: Vec<Simulation> = bodies.iter().map(start).collect::<Result<_, _>>()?;
+    let checkpoint = checkpoint(&simulations, &path)?.len();
+    let metadata = metadata_of_file(bodies, &settings.builder).ok_or(RunError::NoBody)?;
     let estimate = Estimate::of_rows(scene, &metadata);
     if estimate.bytes > LARGE && !settings.large {
         return Err(RunError::Large { scene: scene.path.clone(), estimate });
     }
-    let estimate = estimate.with_seconds(&simulation, &settings.stop);
+    let estimate = estimate.with_seconds(&simulations, &settings.stop);
     progress(RunProgress::Estimate(estimate));
     let rows = usize::try_from(estimate.rows).unwrap_or(usize::MAX);
-    let shapes = if settings.rows_alone { None } else { stored_shapes(model).map_err(BuildError::from)? };
+    let shapes = if settings.rows_alone { Vec::new() } else { stored_shapes(bodies).map_err(BuildError::from)? };
     let expected = Expected { rows, checkpoint, overwrite: settings.overwrite };
-    let writer = Writer::create(&path, &metadata, shapes.as_ref(), &COLUMNS, expected)?;
+    let writer = Writer::create(&path, &metadata, &shapes, &COLUMNS, expected)?;
     drop(shapes);
     progress(RunProgress::Motion(0.0));
-    let initial = model.initial(scene);
-    let mut recorder = Recorder::new(scene, model, &initial, writer, estimate)?;
-    recorder.begin(&mut simulation)?;
-    recorder.follow(simulation, started, settings, progress)
+    let initial = initial(bodies);
+    let mut recorder = Recorder::new(moving(bodies, &initial, simulations)?, writer, estimate);
+    recorder.begin()?;
+    recorder.follow(started, settings, progress)
 }
 
 /// Goes on with a run that was cut off, from the last checkpoint in its unfinished file (which may be given by the name
 /// of the results file, too): the finished file is the same as if the run had not been cut off, bit for bit. The scene
-/// is that of the file, read once more: a run needs its loads; its mesh and tables are looked for where they were.
+/// is that of the file, read once more: a run needs its loads; its meshes and tables are looked for where they were.
 ///
 /// # Errors
 /// [`RunError`].
@@ -128,129 +137,61 @@ pub fn resume(
     file: &Path,
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
-) -> Result<(Scene, Model, RunReport), RunError> {
-    let Resumed { writer, results, checkpoint } = Writer::resume(file, &COLUMNS, settings.overwrite)?;
+) -> Result<RunReport, RunError> {
+    let Resumed { writer, results, checkpoint: state } = Writer::resume(file, &COLUMNS, settings.overwrite)?;
     let part = writer.unfinished().to_path_buf();
-    let scene = scene_of(&results)?;
-    outputs_of_scene(&scene, &settings.builder, settings.overwrite).spare(writer.path())?;
-    let estimate = Estimate::of_rows(&scene, &results.metadata);
-    let model = settings.builder.build(&scene, |p| progress(RunProgress::Build(p)))?;
-    progress(RunProgress::Built);
-    let started = Instant::now();
-    let mut simulation = start(&scene, &model)?;
     let changed = |what| RunError::Changed { part: part.clone(), what };
-    let now = metadata_of_file(&scene, &model, &settings.builder);
+    let scenes = scenes_of(&results)?.ok_or_else(|| changed("the list of bodies"))?;
+    outputs_of_scenes(&scenes, &settings.builder, settings.overwrite).spare(writer.path())?;
+    let models = build(&scenes, &settings.builder, |p| progress(RunProgress::Build(p)))?;
+    progress(RunProgress::Built);
+    let bodies = bodies(&scenes, &models);
+    let estimate = Estimate::of_rows(bodies.first().ok_or(RunError::NoBody)?.scene, &results.metadata);
+    let started = Instant::now();
+    let mut simulations: Vec<Simulation> = bodies.iter().map(start).collect::<Result<_, _>>()?;
+    let now = metadata_of_file(&bodies, &settings.builder).ok_or(RunError::NoBody)?;
     if now.program_version != results.metadata.program_version {
         return Err(changed("the version of flexframe"));
     }
-    if now.body != results.metadata.body {
+    let are_same = now.bodies.iter().zip(&results.metadata.bodies).all(|(now, then)| now.model == then.model);
+    if !are_same {
         return Err(changed("the body"));
     }
-
     progress(RunProgress::Motion(0.0));
-    let initial = model.initial(&scene);
-    let report = match checkpoint {
-        Some(checkpoint) => {
-            simulation =
-                simulation.restored(&checkpoint).map_err(|source| RunError::Restore { part: part.clone(), source })?;
-            let mut recorder = Recorder::new(&scene, &model, &initial, writer, estimate)?;
-            recorder.take_up(&mut simulation, &results)?;
-            recorder.follow(simulation, started, settings, progress)?
-        }
-        None => {
-            let mut recorder = Recorder::new(&scene, &model, &initial, writer, estimate)?;
-            recorder.begin(&mut simulation)?;
-            recorder.follow(simulation, started, settings, progress)?
-        }
-    };
-    Ok((scene, model, report))
+    if let Some(state) = &state {
+        simulations =
+            restored(simulations, state).map_err(|source| RunError::Restore { part: part.clone(), source })?;
+    }
+    let initial = initial(&bodies);
+    let mut recorder = Recorder::new(moving(&bodies, &initial, simulations)?, writer, estimate);
+    match state {
+        Some(_) => recorder.take_up(&results)?,
+        None => recorder.begin()?,
+    }
+    recorder.follow(started, settings, progress)
 }
 
-/// The scene of a run that is to go on.
-fn scene_of(results: &Results) -> Result<Scene, SceneError> {
-    let Metadata { scene_text, scene_file, .. } = &results.metadata;
-    Scene::parse(scene_text, scene_file::to_path(scene_file))
+/// The scenes of the bodies of a run that is to go on; `None` where one of them is not there.
+fn scenes_of(results: &Results) -> Result<Option<Vec<Scene>>, RunError> {
+    let metadata = &results.metadata;
+    let system = System::parse(&metadata.scene_text, scene_file::to_path(&metadata.scene_file))?;
+    let scene_of = |name: &str| system.bodies.iter().find(|scene| body::name(scene) == name);
+    Ok(metadata.bodies.iter().map(|body| scene_of(&body.name).cloned()).collect())
 }
 
-fn start(scene: &Scene, model: &Model) -> Result<Simulation, RunError> {
+fn start(RunBody { scene, model }: &RunBody<'_>) -> Result<Simulation, RunError> {
     model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })
 }
 
-/// The metadata in the results file of a run.
-fn metadata_of_file(scene: &Scene, model: &Model, builder: &Builder) -> Metadata {
-    let metadata = metadata(scene, model);
-    Metadata {
-        input_files: builder.files(scene).iter().map(|file| scene_file::to_text(file)).collect(),
-        body: BodyProperties { mesh: mesh_properties(scene, model), ..metadata.body },
-        ..metadata
-    }
+fn initial(bodies: &[RunBody<'_>]) -> Vec<Initial> {
+    bodies.iter().map(|RunBody { scene, model }| model.initial(scene)).collect()
 }
 
-/// The metadata of a run without what only a file has: the files that it read, and the size of its mesh.
-pub fn metadata(scene: &Scene, model: &Model) -> Metadata {
-    let body = BodyReport::new(model);
-    let method = scene.time.method;
-    let (step, tolerance) = match scene.time.control {
-        StepControl::Fixed(step) => (Some(step), None),
-        StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
-    };
-    Metadata {
-        title: scene.title.clone(),
-        units: units(scene),
-        formulation: method.formulation.to_owned(),
-        scheme: method.scheme.to_owned(),
-        step,
-        tolerance,
-        program_version: env!("CARGO_PKG_VERSION").to_owned(),
-        end: scene.time.end,
-        scene_text: scene.source.clone(),
-        scene_file: scene_file::to_text(&scene.path),
-        input_files: Vec::new(),
-        body: BodyProperties {
-            mass: body.mass,
-            center_of_mass: body.center_of_mass,
-            inertia: body.inertia,
-            origin: model.body.origin.into(),
-            static_shapes: model.static_shapes(),
-            frequencies: body.natural_frequencies,
-            damping_ratios: body.damping_ratios,
-            rotation_axes: model.body.motion.rotations().iter().map(|axis| (*axis).into()).collect(),
-            translation_axes: model.body.motion.translations().iter().map(|axis| (*axis).into()).collect(),
-            mesh: None,
-        },
-        point_names: model.points.iter().map(|(name, _)| name.clone()).collect(),
-        point_positions: model.points.iter().map(|(_, p)| (model.body.origin + p.position_body()).into()).collect(),
-        parts: parts(scene, model).map(str::to_owned).collect(),
-        support_names: model.supports.as_ref().map_or(Vec::new(), |supports| supports.names().to_vec()),
-        effects: effects::described(scene, model),
-        refusal: model.refusal.map(|refusal| refusal.to_string()),
-        warnings: Vec::new(),
-    }
-}
-
-/// The labels of a scene's units.
-pub(crate) fn units(scene: &Scene) -> Units {
-    let scene::Units { length, mass, time } = scene.units.clone();
-    Units { length, mass, time }
-}
-
-/// Parts of a run whose file has further columns. In the formulation of the paper there are no reactions.
-fn parts(scene: &Scene, model: &Model) -> impl Iterator<Item = &'static str> {
-    let motion = &model.body.motion;
-    let drive = model.physics.drive.as_ref().map(|drive| drive.motion);
-    let turns = matches!(drive, Some(DrivenMotion::Turn { .. }));
-    let slides = matches!(drive, Some(DrivenMotion::Slide { .. }));
-    let is_held = !motion.is_free() && scene.time.method.abilities.reactions;
-    [
-        (part::CONSTRAINT, true),
-        (part::HINGE, turns || motion.rotations().len() == 1),
-        (part::SLIDER, slides || motion.translations().len() == 1),
-        (part::DRIVE, drive.is_some()),
-        (part::DRIVEN_HINGE, turns),
-        (part::DRIVEN_SLIDER, slides),
-    ]
-    .into_iter()
-    .filter_map(move |(part, has)| (is_held && has).then_some(part))
-    .chain(model.supports.as_ref().map(|_| part::SUPPORTS))
-    .chain(scene.output.stress.then_some(part::STRESS))
+fn moving<'a>(
+    bodies: &[RunBody<'a>],
+    initial: &'a [Initial],
+    simulations: Vec<Simulation>,
+) -> Result<Vec<MovingBody<'a>>, RunError> {
+    let bodies = bodies.iter().zip(initial).zip(simulations);
+    bodies.map(|((body, initial), simulation)| MovingBody::new(*body, initial, simulation)).collect()
 }

@@ -17,7 +17,7 @@ use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
 use keys::Hash;
-use model::{Assembly, BuildProgress, Builder, Model, Variants};
+use model::{Assembly, BuildError, BuildProgress, Builder, Model, Variants};
 use results::{ColumnTable, Results};
 use scene::Scene;
 use serde::Serialize;
@@ -177,7 +177,10 @@ pub fn sweep(
     for (i, row) in plan.rows.iter().enumerate() {
         match row {
             _ if table.rows[i] != RowState::Open || !is_mine(i) => {}
-            Ok(scene) => groups.entry(Assembly::made_of(scene)).or_default().push(i),
+            Ok(scenes) => {
+                let made_of: Vec<String> = scenes.iter().map(Assembly::made_of).collect();
+                groups.entry(made_of.join("\n")).or_default().push(i);
+            }
             Err(words) => table.rows[i] = RowState::Failed(words.clone()),
         }
     }
@@ -187,15 +190,18 @@ pub fn sweep(
         let Some(Ok(first)) = rows.first().map(|row| &plan.rows[*row]) else { continue };
         let mut all_failed =
             |words: &str| rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(words.to_owned()));
-        let assembly = match builder.assemble(first, |p| progress(SweepProgress::Build(p))) {
-            Ok(assembly) => assembly,
+        let assemblies: Result<Vec<_>, _> =
+            first.iter().map(|scene| builder.assemble(scene, |p| progress(SweepProgress::Build(p)))).collect();
+        let assemblies = match assemblies {
+            Ok(assemblies) => assemblies,
             Err(error) => {
                 all_failed(&error.to_string());
                 continue;
             }
         };
-        let variants = match assembly.variants() {
-            Ok(variants) => Mutex::new(variants),
+        let variants = assemblies.iter().map(|assembly| assembly.variants().map(Mutex::new));
+        let variants = match variants.collect::<Result<Vec<_>, BuildError>>() {
+            Ok(variants) => variants,
             Err(error) => {
                 all_failed(&error.to_string());
                 continue;
@@ -295,7 +301,8 @@ const CHANGED: &str = "a file of the body was changed while the sweep ran\n = ru
 fn outputs(plan: &Plan, sweep: &Path, builder: &Builder, overwrite: bool) -> Outputs {
     // Rows with the same body and histories have the same files.
     let same = |scene: &Scene| format!("{:?} {:?} {:?}", scene.body, scene.loads, scene.constraint);
-    let scenes: BTreeMap<String, &Scene> = plan.rows.iter().flatten().map(|scene| (same(scene), scene)).collect();
+    let scenes = plan.rows.iter().flatten().flatten();
+    let scenes: BTreeMap<String, &Scene> = scenes.map(|scene| (same(scene), scene)).collect();
     let files = scenes.into_values().flat_map(|scene| builder.files(scene));
     Outputs::new(std::iter::once(sweep.to_owned()).chain(files).collect(), overwrite)
 }
@@ -310,7 +317,7 @@ fn lock(table: &Path) -> Result<FileLock, SweepError> {
 fn run_rows(
     plan: &Plan,
     rows: &[usize],
-    variants: &Mutex<Variants<'_>>,
+    variants: &[Mutex<Variants<'_>>],
     folder: &Path,
     (threads, settings): (usize, &RunSettings),
     mut tell: impl FnMut(usize, RowState) -> Result<(), SweepError>,
@@ -323,7 +330,7 @@ fn run_rows(
             scope.spawn(move || {
                 while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let outcome = match &plan.rows[*row] {
-                        Ok(scene) => run_row(scene, plan, variants, folder, settings)
+                        Ok(scenes) => run_row(scenes, plan, variants, folder, settings)
                             .map_or_else(RowState::Failed, RowState::Done),
                         Err(words) => RowState::Failed(words.clone()),
                     };
@@ -341,33 +348,37 @@ fn run_rows(
 
 /// The results of a row, or why there are none.
 fn run_row(
-    scene: &Scene,
+    scenes: &[Scene],
     plan: &Plan,
-    variants: &Mutex<Variants<'_>>,
+    variants: &[Mutex<Variants<'_>>],
     folder: &Path,
     settings: &RunSettings,
 ) -> Result<Done, String> {
-    let build = |scene: &Scene| -> Result<Model, String> {
+    let build = |scene: &Scene, variants: &Mutex<Variants<'_>>| -> Result<Model, String> {
         let mut variants = variants.lock().unwrap_or_else(PoisonError::into_inner);
         variants.build(scene, |_| ()).map_err(|error| error.to_string())
     };
     let [asks_run, asks_frequencies] = plan.asks();
     let mut done = Done { results: Vec::new(), warnings: Vec::new() };
-    let mut frequencies = Vec::new();
+    let mut frequencies: BTreeMap<Option<&str>, Vec<f64>> = BTreeMap::new();
     if asks_frequencies {
-        let scene = modes::unloaded(scene);
-        let model = build(&scene)?;
-        modes::require_flexible(&scene, &model).map_err(|error| error.to_string())?;
-        frequencies = model.natural_frequencies();
-        done.warnings = plausible::doubts(&scene, &model);
+        for (scene, variants) in scenes.iter().zip(variants).filter(|(scene, _)| plan.asks_frequencies_of(scene)) {
+            let unloaded = modes::unloaded(scene);
+            let model = build(&unloaded, variants)?;
+            modes::require_flexible(&unloaded, &model).map_err(|error| error.to_string())?;
+            frequencies.insert(scene.name.as_deref(), model.natural_frequencies());
+            done.warnings.extend(plausible::doubts(&unloaded, &model));
+        }
     }
     let folder = TemporaryFolder::inside(folder).map_err(|error| error.to_string())?;
     let mut results = None;
     if asks_run {
-        let run = run::run_model(scene, &build(scene)?, folder.path(), settings, |_| ());
-        done.warnings = run.map_err(|error| error.without_files())?.warnings;
-        let path = run::results_path(scene, folder.path());
-        results = Some(Results::open(path, &COLUMNS).map_err(|error| error.to_string())?);
+        let models = scenes.iter().zip(variants).map(|(scene, variants)| build(scene, variants));
+        let models = models.collect::<Result<Vec<_>, _>>()?;
+        let run = run::run_models(&run::bodies(scenes, &models), folder.path(), settings, |_| ());
+        let run = run.map_err(|error| error.without_files())?;
+        done.warnings = run.warnings;
+        results = Some(Results::open(run.results, &COLUMNS).map_err(|error| error.to_string())?);
     }
     let value = |asked: &Asked| match (asked, &results) {
         (Asked::Final(column), Some(results)) => column_of(results, column, |table| {
@@ -377,7 +388,8 @@ fn run_row(
             let largest = |k: usize| table.column(k)?.max_by(|a, b| a.abs().total_cmp(&b.abs()));
             (0..table.width()).map(largest).collect()
         }),
-        _ => Ok(frequencies.clone()),
+        (Asked::FrequenciesOf(body), _) => Ok(frequencies.get(&Some(body.as_str())).cloned().unwrap_or_default()),
+        _ => Ok(frequencies.get(&None).cloned().unwrap_or_default()),
     };
     done.results = plan.results.values().map(value).collect::<Result<_, String>>()?;
     Ok(done)
@@ -391,8 +403,8 @@ fn column_of(
 ) -> Result<Vec<f64>, String> {
     let table = results.table(column).ok_or_else(|| {
         format!(
-            "the results have no column {column}: docs/reference/results.md lists them, and those of points are \
-             points/NAME/displacement and so on"
+            "the results have no column {column}: docs/reference/results.md lists them; those of points are \
+             points/NAME/displacement and so on, and those of one of several bodies bodies/NAME/position"
         )
     })?;
     numbers(table).ok_or_else(|| format!("the column {column} has no rows"))

@@ -1,18 +1,25 @@
-//! A results file with the shapes of its body, for all that comes after a run.
+//! A results file with the shapes of its bodies, for all that comes after a run.
 
 use std::path::{Path, PathBuf};
 
 use body_file::{BodyFile, BodyFileError};
-use results::{FileError, MeshProperties, Results, Shapes};
+use results::{BodyMetadata, FileError, MeshProperties, Results, Shapes};
 
 use super::{hash, of_body_file};
 use crate::files::scene_file;
 use crate::rows::columns::COLUMNS;
 
-/// A results file, and the shapes of its body.
+/// A results file, and the shapes of its bodies.
 #[derive(Debug)]
 pub(crate) struct Drawn {
     pub results: Results,
+    /// One for each body.
+    pub bodies: Vec<DrawnBody>,
+}
+
+/// A body as it is drawn.
+#[derive(Debug)]
+pub(crate) struct DrawnBody {
     /// On the surface, or on all nodes; `None` for a rigid body without a mesh.
     pub shapes: Option<Shapes>,
     /// Elements, where the whole volume was asked for: corners, then mid-edges 01 12 02 03 23 13.
@@ -74,13 +81,32 @@ pub enum DrawnError {
 }
 
 impl Drawn {
-    /// Reads a results file, finished or not, and the shapes of its body from there, or from the body file that it names.
+    /// Reads a results file, finished or not, and the shapes of its bodies from there, or from the body files that it names.
     ///
     /// # Errors
     /// [`DrawnError`].
     pub fn open(file: &Path, part: Part) -> Result<Self, DrawnError> {
         let (results, carried) = Results::open_with_shapes(file, &COLUMNS)?;
-        let mesh = results.metadata.body.mesh.as_ref().filter(|mesh| !mesh.body_file.is_empty());
+        let bodies = results.metadata.bodies.iter().zip(carried);
+        let scene = |body: &BodyMetadata| match results.metadata.only_body() {
+            Some(_) => results.metadata.scene_file.clone(),
+            None => format!("{} --body {}", results.metadata.scene_file, body.name),
+        };
+        let bodies = bodies.map(|(body, carried)| DrawnBody::of(file, part, body, carried, || scene(body)));
+        let bodies = bodies.collect::<Result<_, _>>()?;
+        Ok(Self { results, bodies })
+    }
+}
+
+impl DrawnBody {
+    fn of(
+        file: &Path,
+        part: Part,
+        body: &BodyMetadata,
+        carried: Option<Shapes>,
+        scene: impl Fn() -> String,
+    ) -> Result<Self, DrawnError> {
+        let mesh = body.model.mesh.as_ref().filter(|mesh| !mesh.body_file.is_empty());
         let from_body_file = match (part, mesh) {
             (Part::Volume, Some(mesh)) => Some((mesh, "it has the surface of the body, and not its inside")),
             (Part::Surface, Some(mesh)) if carried.is_none() => {
@@ -89,10 +115,9 @@ impl Drawn {
             _ => None,
         };
         let Some((mesh, what)) = from_body_file else {
-            return Ok(Self { results, shapes: carried, tetrahedra: Vec::new(), body_file: None });
+            return Ok(Self { shapes: carried, tetrahedra: Vec::new(), body_file: None });
         };
         let places = body_files(file, mesh);
-        let scene = || results.metadata.scene_file.clone();
         let Some(found) = places.iter().find(|place| place.exists()).cloned() else {
             return Err(DrawnError::NoBodyFile { results: file.to_owned(), what, places, scene: scene() });
         };
@@ -101,7 +126,7 @@ impl Drawn {
             return Err(DrawnError::OtherBody { results: file.to_owned(), body_file: found, scene: scene() });
         }
         let (shapes, tetrahedra) = of_body_file::read(&body_file, part == Part::Volume)?;
-        Ok(Self { results, shapes: Some(shapes), tetrahedra, body_file: Some(found) })
+        Ok(Self { shapes: Some(shapes), tetrahedra, body_file: Some(found) })
     }
 }
 

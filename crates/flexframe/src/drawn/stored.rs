@@ -1,6 +1,4 @@
-//! What a results file has of its body: the shapes on the surface, as long as they are not too large for it.
-
-use std::path::Path;
+//! The shapes on the surfaces of bodies in a results file, as long as they are not too large for it.
 
 use fem_tet10::AssemblyError;
 use memory::Bytes;
@@ -10,18 +8,26 @@ use scene::{Body, Scene};
 
 use super::hash;
 use super::of_model::{surface, surface_shapes_of};
-use crate::files::results_path::results_path;
+use crate::commands::run::RunBody;
+use crate::files::results_path::body_file_name;
 use crate::files::scene_file;
 
-/// Shapes of more bytes stay in the body file.
+/// Shapes of more bytes stay in the body file; of several bodies each may have its share of them.
 const MAX_BYTES: u64 = 256_000_000;
 
-/// The shapes that the results file of a run carries: none of a rigid body without a mesh, nor those that are too large.
+/// The shapes that the results file of a run carries of each body: none of a rigid body without a mesh, nor those that are too
+/// large.
 ///
 /// # Errors
 /// [`AssemblyError`] where the stress cannot be computed, for want of memory.
-pub(crate) fn stored_shapes(model: &Model) -> Result<Option<Shapes>, AssemblyError> {
-    if bytes(model) > MAX_BYTES { Ok(None) } else { surface_shapes_of(model) }
+pub(crate) fn stored_shapes(bodies: &[RunBody<'_>]) -> Result<Vec<Option<Shapes>>, AssemblyError> {
+    let fits = |model: &Model| bytes(model) <= share(bodies.len());
+    bodies.iter().map(|body| if fits(body.model) { surface_shapes_of(body.model) } else { Ok(None) }).collect()
+}
+
+/// Bytes that a body may have of a file of several.
+fn share(bodies: usize) -> u64 {
+    MAX_BYTES / (bodies.max(1) as u64)
 }
 
 /// The finite-element model of a body, in the words of a results file.
@@ -38,10 +44,10 @@ pub(crate) fn mesh_properties(scene: &Scene, model: &Model) -> Option<MeshProper
 }
 
 /// A warning where the results file of a run does not carry the shapes.
-pub(crate) fn not_stored(scene: &Scene, model: &Model) -> Option<String> {
-    let bytes = bytes(model);
-    (scene.body.has_elements() && bytes > MAX_BYTES).then(|| {
-        let [bytes, limit] = [bytes, MAX_BYTES].map(|bytes| Bytes(usize::try_from(bytes).unwrap_or(usize::MAX)));
+pub(crate) fn not_stored(RunBody { scene, model }: RunBody<'_>, bodies: usize) -> Option<String> {
+    let (bytes, limit) = (bytes(model), share(bodies));
+    (scene.body.has_elements() && bytes > limit).then(|| {
+        let [bytes, limit] = [bytes, limit].map(|bytes| Bytes(usize::try_from(bytes).unwrap_or(usize::MAX)));
         format!(
             "the shapes on the surface take {bytes}, and a results file carries {limit} of them at the most: report, animate and \
              export --vtkhdf, --vtu and --modes will read them from the body file {}{}",
@@ -58,7 +64,7 @@ pub(crate) fn not_stored(scene: &Scene, model: &Model) -> Option<String> {
 fn body_file(scene: &Scene) -> String {
     match &scene.body {
         Body::File(body) => scene_file::to_text(&body.file),
-        _ => results_path(scene, Path::new("")).with_extension("body.h5").to_string_lossy().into_owned(),
+        _ => body_file_name(scene).to_string_lossy().into_owned(),
     }
 }
 

@@ -80,9 +80,12 @@ impl Failure for FmuError {
             | Self::Library { .. }
             | Self::Write(_) => Kind::Io,
             Self::Platform { .. } => Kind::Refused,
-            Self::Body(_) | Self::NoScene { .. } | Self::Text(_) | Self::Damaged { .. } | Self::Version { .. } => {
-                Kind::Input
-            }
+            Self::Body(_)
+            | Self::NoBody
+            | Self::NoScene { .. }
+            | Self::Text(_)
+            | Self::Damaged { .. }
+            | Self::Version { .. } => Kind::Input,
         }
     }
 
@@ -98,7 +101,7 @@ impl Failure for FmuError {
             | Self::Unreadable { path, .. }
             | Self::Missing { path, .. }
             | Self::Damaged { path } => Details::of_file(path),
-            Self::Platform { .. } | Self::Text(_) | Self::Version { .. } => Details::default(),
+            Self::NoBody | Self::Platform { .. } | Self::Text(_) | Self::Version { .. } => Details::default(),
         }
     }
 }
@@ -306,7 +309,7 @@ impl Failure for RunError {
             Self::Verify { failure, .. } => failure.kind(),
             Self::Stopped { .. } => Kind::Stopped,
             Self::Scene(error) => error.kind(),
-            Self::Restore { .. } | Self::Changed { .. } => Kind::Input,
+            Self::NoBody | Self::Restore { .. } | Self::Changed { .. } => Kind::Input,
             Self::Folder { .. } => Kind::Io,
             Self::Output(error) => error.kind(),
             Self::Large { .. } => Kind::Refused,
@@ -323,6 +326,7 @@ impl Failure for RunError {
             Self::Stopped { part, .. } | Self::Restore { part, .. } | Self::Changed { part, .. } => {
                 Details::of_file(part)
             }
+            Self::NoBody => Details::default(),
             Self::Scene(error) => error.details(),
             Self::Folder { folder, .. } => Details::of_file(folder),
             Self::Output(error) => error.details(),

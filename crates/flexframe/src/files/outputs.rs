@@ -16,6 +16,11 @@ pub fn outputs_of_scene(scene: &Scene, builder: &Builder, overwrite: bool) -> Ou
     Outputs::new(builder.files(scene), overwrite)
 }
 
+/// The same of one that builds the bodies of a scene.
+pub fn outputs_of_scenes(scenes: &[Scene], builder: &Builder, overwrite: bool) -> Outputs {
+    Outputs::new(scenes.iter().flat_map(|scene| builder.files(scene)).collect(), overwrite)
+}
+
 /// The same of one that reads a mesh or geometry.
 pub fn outputs_of_mesh(mesh: &Path, overwrite: bool) -> Outputs {
     Outputs::new(files_of_mesh(mesh), overwrite)
@@ -26,7 +31,8 @@ pub fn outputs_of_results(file: &Path, overwrite: bool) -> Outputs {
     let mut inputs = Vec::new();
     if let Ok(metadata) = Results::metadata_of(file) {
         inputs.extend(metadata.input_files.iter().map(|text| scene_file::to_path(text)));
-        inputs.extend(metadata.body.mesh.iter().flat_map(|mesh| body_files(file, mesh)));
+        let meshes = metadata.bodies.iter().filter_map(|body| body.model.mesh.as_ref());
+        inputs.extend(meshes.flat_map(|mesh| body_files(file, mesh)));
     }
     Outputs::new(inputs, overwrite).and_input(file)
 }

@@ -1,14 +1,21 @@
 //! The columns of a results file of `flexframe run`.
 //!
-//! To add a quantity, compute it in [`Observation`](dynamics::Observation) or in [`Row`] and give it a line here. Writing, reading, the check that numbers are
-//! finite, and the attributes in the file follow from the line; a test says what to put into `docs/reference/results.md`.
+//! To add a quantity, compute it in [`Observation`](dynamics::Observation), [`BodyRow`] or [`Row`] and give it a line here. Writing,
+//! reading, the check that numbers are finite, and the attributes in the file follow from the line; a test says what to put into
+//! `docs/reference/results.md`.
 
-use results::Column;
-use results::Values::{Modal, Number, PointNumbers, Points, Quaternion, Supports, Vector};
+use results::Dimension::{
+    Acceleration, Angle, AngularAcceleration, AngularMomentum, AngularVelocity, Energy, Force, Length, Moment,
+    Momentum, Other, Power, Stress, Velocity,
+};
+use results::Quantities::{Named, Vectors};
+use results::Quantity::{Number, Quaternion, Vector};
+use results::Role::{Direct, Internal};
+use results::{Column, Dimension, Quantities, Quantity, Scope};
 
-use crate::rows::row::Row;
+use crate::rows::row::{BodyRow, Row};
 
-/// Parts of runs whose files have more columns: see [`results::Metadata::parts`].
+/// Parts of bodies that have more columns: see [`results::BodyMetadata::parts`].
 pub mod part {
     /// Something holds the body.
     pub const CONSTRAINT: &str = "constraint";
@@ -28,275 +35,115 @@ pub mod part {
     pub const DRIVEN_SLIDER: &str = "driven slider";
 }
 
-const ENERGY: &str = "mass length^2/time^2";
-const MOMENTUM: &str = "mass length/time";
-const STRESS: &str = "mass/(length time^2)";
-const ANGULAR_MOMENTUM: &str = "mass length^2/time";
-const FORCE: &str = "mass length/time^2";
-const MOMENT: &str = "mass length^2/time^2";
-const POWER: &str = "mass length^2/time^3";
-
-/// Path, unit, frame, description, and how an observation gives the values.
-pub static COLUMNS: [Column<Row>; 40] = [
-    Column::new("time", "time", "none", "time of each row", Number(|now| now.time)),
-    Column::new(
-        "attitude",
-        "1",
-        "body to global",
-        "unit quaternion (w, x, y, z) that takes body components to global ones",
-        Quaternion(|now| now.attitude.wxyz()),
-    ),
-    Column::new(
-        "origin",
-        "length",
-        "global",
-        "position of the origin of the body frame",
-        Vector(|now| now.origin_global.into()),
-    ),
-    Column::new(
-        "position",
-        "length",
-        "global",
-        "position of the centre of mass",
-        Vector(|now| now.position_global.into()),
-    ),
-    Column::new(
-        "velocity",
-        "length/time",
-        "global",
-        "velocity of the centre of mass",
-        Vector(|now| now.velocity_global.into()),
-    ),
-    Column::new(
-        "angular_velocity",
-        "rad/time",
-        "body",
-        "angular velocity of the body frame",
-        Vector(|now| now.omega_body.into()),
-    ),
-    Column::new(
-        "angular_acceleration",
-        "rad/time^2",
-        "body",
-        "angular acceleration of the body frame",
-        Vector(|now| now.alpha_body.into()),
-    ),
+/// All columns; those of the system come last.
+pub static COLUMNS: [Column<Row>; 47] = [
+    // Each body.
+    body(["", "attitude"], (Dimension::Number, "body to global"), "unit quaternion (w, x, y, z) that takes body components to global ones", Quaternion(|now| now.attitude.wxyz())),
+    body(["", "origin"], (Length, "global"), "position of the origin of the body frame", Vector(|now| now.origin_global.into())),
+    body(["", "position"], (Length, "global"), "position of the centre of mass", Vector(|now| now.position_global.into())),
+    body(["", "velocity"], (Velocity, "global"), "velocity of the centre of mass", Vector(|now| now.velocity_global.into())),
+    body(["", "angular_velocity"], (AngularVelocity, "body"), "angular velocity of the body frame", Vector(|now| now.omega_body.into())),
+    body(["", "angular_acceleration"], (AngularAcceleration, "body"), "angular acceleration of the body frame", Vector(|now| now.alpha_body.into())).in_role(Direct),
     // Modes are mass-normalised, hence the root of the mass.
-    Column::new(
-        "modal/displacement",
-        "length mass^(1/2)",
-        "none",
-        "coordinates of the mass-normalised flexible modes and static shapes",
-        Modal(|now| &now.modal_displacement),
-    ),
-    Column::new(
-        "modal/velocity",
-        "length mass^(1/2)/time",
-        "none",
-        "rates of the modal coordinates",
-        Modal(|now| &now.modal_velocity),
-    ),
-    Column::new("energy/kinetic", ENERGY, "none", "kinetic energy", Number(|now| now.kinetic_energy)),
-    Column::new("energy/strain", ENERGY, "none", "strain energy", Number(|now| now.strain_energy)),
-    Column::new("energy/work", ENERGY, "none", "work of the loads since t = 0", Number(|now| now.work.work)),
-    Column::new(
-        "energy/dissipation",
-        ENERGY,
-        "none",
-        "energy that damping has taken since t = 0",
-        Number(|now| now.work.dissipation),
-    ),
-    Column::new(
-        "energy/balance",
-        ENERGY,
-        "none",
-        "kinetic + strain energy - work + dissipation: constant in exact motion",
-        Number(|now| now.energy_balance()),
-    ),
-    Column::new(
-        "momentum/linear",
-        MOMENTUM,
-        "global",
-        "linear momentum",
-        Vector(|now| now.linear_momentum_global.into()),
-    ),
-    Column::new(
-        "momentum/angular",
-        ANGULAR_MOMENTUM,
-        "global",
-        "angular momentum about the centre of mass",
-        Vector(|now| now.angular_momentum_global.into()),
-    ),
-    Column::new(
-        "momentum/linear_balance",
-        MOMENTUM,
-        "global",
-        "linear momentum less the impulse of the loads: constant in exact motion",
-        Vector(|now| now.linear_balance_global().into()),
-    ),
-    Column::new(
-        "momentum/angular_balance",
-        ANGULAR_MOMENTUM,
-        "global",
-        "angular momentum less the angular impulse of the loads, both about the centre of mass: constant in exact motion",
-        Vector(|now| now.angular_balance_global().into()),
-    ),
-    Column::new(
-        "reaction/force",
-        FORCE,
-        "global",
-        "force of the constraints on the body",
-        Vector(|now: &Row| now.attitude.to_global(&now.reaction.force_body).into()),
-    )
-    .only_with(part::CONSTRAINT),
-    Column::new(
-        "reaction/moment",
-        MOMENT,
-        "global",
-        "moment of the constraints on the body about its origin",
-        Vector(|now: &Row| now.attitude.to_global(&now.reaction.moment_body).into()),
-    )
-    .only_with(part::CONSTRAINT),
-    Column::new(
-        "reaction/force_body",
-        FORCE,
-        "body",
-        "force of the constraints on the body",
-        Vector(|now: &Row| now.reaction.force_body.into()),
-    )
-    .only_with(part::CONSTRAINT),
-    Column::new(
-        "reaction/moment_body",
-        MOMENT,
-        "body",
-        "moment of the constraints on the body about its origin",
-        Vector(|now: &Row| now.reaction.moment_body.into()),
-    )
-    .only_with(part::CONSTRAINT),
-    Column::new(
-        "supports/force",
-        FORCE,
-        "global",
-        "force of the support on the body",
-        Supports(|now: &Row, i| Some(now.supports.get(i)?[0])),
-    )
-    .only_with(part::SUPPORTS),
-    Column::new(
-        "supports/moment",
-        MOMENT,
-        "global",
-        "moment of the support on the body, about the mean of the nodes that it holds",
-        Supports(|now: &Row, i| Some(now.supports.get(i)?[1])),
-    )
-    .only_with(part::SUPPORTS),
-    Column::new(
-        "hinge/angle",
-        "rad",
-        "none",
-        "angle that the body has turned by about the hinge since t = 0; it grows beyond a turn",
-        Number(|now: &Row| now.reaction.hinge_angle),
-    )
-    .only_with(part::HINGE),
-    Column::new("hinge/speed", "rad/time", "none", "rate of hinge/angle", Number(|now: &Row| now.reaction.hinge_rate))
-        .only_with(part::HINGE),
-    Column::new(
-        "slider/position",
-        "length",
-        "none",
-        "distance that the body has moved by along the slider since t = 0",
-        Number(|now: &Row| now.reaction.slider_position),
-    )
-    .only_with(part::SLIDER),
-    Column::new(
-        "slider/speed",
-        "length/time",
-        "none",
-        "rate of slider/position",
-        Number(|now: &Row| now.reaction.slider_velocity),
-    )
-    .only_with(part::SLIDER),
-    Column::new(
-        "drive/torque",
-        MOMENT,
-        "none",
-        "torque of the drive on the body, about the hinge",
-        Number(|now: &Row| now.reaction.drive),
-    )
-    .only_with(part::DRIVEN_HINGE),
-    Column::new(
-        "drive/force",
-        FORCE,
-        "none",
-        "force of the drive on the body, along the slider",
-        Number(|now: &Row| now.reaction.drive),
-    )
-    .only_with(part::DRIVEN_SLIDER),
-    Column::new("drive/power", POWER, "none", "power of the drive", Number(|now: &Row| now.reaction.drive_power))
-        .only_with(part::DRIVE),
-    Column::new(
-        "points/displacement",
-        "length",
-        "global",
-        "displacement of the point from its place at t = 0 in the undeformed body",
-        Points(|now, i| Some(now.points.get(i)?.displacement.into())),
-    ),
-    Column::new(
-        "points/velocity",
-        "length/time",
-        "global",
-        "velocity of the point",
-        Points(|now, i| Some(now.points.get(i)?.velocity.into())),
-    ),
-    Column::new(
-        "points/acceleration",
-        "length/time^2",
-        "global",
-        "acceleration of the point",
-        Points(|now, i| Some(now.points.get(i)?.acceleration.into())),
-    ),
-    Column::new(
-        "points/rigid_acceleration",
-        "length/time^2",
-        "global",
-        "part of the point's acceleration that belongs to the rigid motion",
-        Points(|now, i| Some(now.points.get(i)?.rigid_acceleration.into())),
-    ),
-    Column::new(
-        "points/elastic_displacement",
-        "length",
-        "global",
-        "displacement of the point by deformation alone, seen from the body frame",
-        Points(|now, i| Some(now.points.get(i)?.elastic_displacement_global.into())),
-    ),
-    Column::new(
-        "points/elastic_displacement_body",
-        "length",
-        "body",
-        "the same in body axes",
-        Points(|now, i| Some(now.points.get(i)?.elastic_displacement_body.into())),
-    ),
-    Column::new(
-        "points/stress",
-        STRESS,
-        "body",
-        "stress at the point: components xx, yy, zz, xy, yz, zx",
-        PointNumbers(6, |now: &Row, i| Some(&now.stress.get(i)?.components)),
-    )
-    .only_with(part::STRESS),
-    Column::new(
-        "points/von_mises_stress",
-        STRESS,
-        "none",
-        "von Mises stress at the point",
-        PointNumbers(1, |now: &Row, i| Some(&now.stress.get(i)?.von_mises)),
-    )
-    .only_with(part::STRESS),
-    Column::new(
-        "points/principal_stress",
-        STRESS,
-        "none",
-        "principal stresses at the point, the largest first",
-        PointNumbers(3, |now: &Row, i| Some(&now.stress.get(i)?.principal)),
-    )
-    .only_with(part::STRESS),
+    modes("displacement", Other("length mass^(1/2)"), "coordinates of the mass-normalised flexible modes and static shapes", |now| &now.modal_displacement).in_role(Internal),
+    modes("velocity", Other("length mass^(1/2)/time"), "rates of the modal coordinates", |now| &now.modal_velocity).in_role(Internal),
+    body(["energy", "kinetic"], (Energy, "none"), "kinetic energy", Number(|now| now.kinetic_energy)).in_role(Internal),
+    body(["energy", "strain"], (Energy, "none"), "strain energy", Number(|now| now.strain_energy)).in_role(Internal),
+    body(["energy", "work"], (Energy, "none"), "work of the loads since t = 0", Number(|now| now.work.work)).in_role(Internal),
+    body(["energy", "dissipation"], (Energy, "none"), "energy that damping has taken since t = 0", Number(|now| now.work.dissipation)).in_role(Internal),
+    body(["energy", "balance"], (Energy, "none"), "kinetic + strain energy - work + dissipation: constant in exact motion", Number(|now| now.energy_balance())).in_role(Internal),
+    body(["momentum", "linear"], (Momentum, "global"), "linear momentum", Vector(|now| now.linear_momentum_global.into())).in_role(Internal),
+    body(["momentum", "angular"], (AngularMomentum, "global"), "angular momentum about the centre of mass", Vector(|now| now.angular_momentum_global.into())).in_role(Internal),
+    body(["momentum", "linear_balance"], (Momentum, "global"), "linear momentum less the impulse of the loads: constant in exact motion", Vector(|now| now.linear_balance_global().into())).in_role(Internal),
+    body(["momentum", "angular_balance"], (AngularMomentum, "global"), "angular momentum less the angular impulse of the loads, both about the centre of mass: constant in exact motion", Vector(|now| now.angular_balance_global().into())).in_role(Internal),
+    body(["reaction", "force"], (Force, "global"), "force of the constraints on the body", Vector(|now| now.attitude.to_global(&now.reaction.force_body).into())).only_with(part::CONSTRAINT).in_role(Direct),
+    body(["reaction", "moment"], (Moment, "global"), "moment of the constraints on the body about its origin", Vector(|now| now.attitude.to_global(&now.reaction.moment_body).into())).only_with(part::CONSTRAINT).in_role(Direct),
+    body(["reaction", "force_body"], (Force, "body"), "force of the constraints on the body", Vector(|now| now.reaction.force_body.into())).only_with(part::CONSTRAINT).in_role(Direct),
+    body(["reaction", "moment_body"], (Moment, "body"), "moment of the constraints on the body about its origin", Vector(|now| now.reaction.moment_body.into())).only_with(part::CONSTRAINT).in_role(Direct),
+    supports("force", (Force, "global"), "force of the support on the body", Vectors(|now, i| Some(now.supports.get(i)?[0]))).only_with(part::SUPPORTS).in_role(Direct),
+    supports("moment", (Moment, "global"), "moment of the support on the body, about the mean of the nodes that it holds", Vectors(|now, i| Some(now.supports.get(i)?[1]))).only_with(part::SUPPORTS).in_role(Direct),
+    body(["hinge", "angle"], (Angle, "none"), "angle that the body has turned by about the hinge since t = 0; it grows beyond a turn", Number(|now| now.reaction.hinge_angle)).only_with(part::HINGE),
+    body(["hinge", "speed"], (AngularVelocity, "none"), "rate of hinge/angle", Number(|now| now.reaction.hinge_rate)).only_with(part::HINGE),
+    body(["slider", "position"], (Length, "none"), "distance that the body has moved by along the slider since t = 0", Number(|now| now.reaction.slider_position)).only_with(part::SLIDER),
+    body(["slider", "speed"], (Velocity, "none"), "rate of slider/position", Number(|now| now.reaction.slider_velocity)).only_with(part::SLIDER),
+    body(["drive", "torque"], (Moment, "none"), "torque of the drive on the body, about the hinge", Number(|now| now.reaction.drive)).only_with(part::DRIVEN_HINGE).in_role(Direct),
+    body(["drive", "force"], (Force, "none"), "force of the drive on the body, along the slider", Number(|now| now.reaction.drive)).only_with(part::DRIVEN_SLIDER).in_role(Direct),
+    body(["drive", "power"], (Power, "none"), "power of the drive", Number(|now| now.reaction.drive_power)).only_with(part::DRIVE).in_role(Direct),
+    points("displacement", (Length, "global"), "displacement of the point from its place at t = 0 in the undeformed body", Vectors(|now, i| Some(now.points.get(i)?.displacement.into()))),
+    points("velocity", (Velocity, "global"), "velocity of the point", Vectors(|now, i| Some(now.points.get(i)?.velocity.into()))),
+    points("acceleration", (Acceleration, "global"), "acceleration of the point", Vectors(|now, i| Some(now.points.get(i)?.acceleration.into()))).in_role(Direct),
+    points("rigid_acceleration", (Acceleration, "global"), "part of the point's acceleration that belongs to the rigid motion", Vectors(|now, i| Some(now.points.get(i)?.rigid_acceleration.into()))).in_role(Direct),
+    points("elastic_displacement", (Length, "global"), "displacement of the point by deformation alone, seen from the body frame", Vectors(|now, i| Some(now.points.get(i)?.elastic_displacement_global.into()))),
+    points("elastic_displacement_body", (Length, "body"), "the same in body axes", Vectors(|now, i| Some(now.points.get(i)?.elastic_displacement_body.into()))),
+    points("stress", (Stress, "body"), "stress at the point: components xx, yy, zz, xy, yz, zx", Named(&STRESSES, |now, i| Some(&now.stress.get(i)?.components))).only_with(part::STRESS),
+    points("von_mises_stress", (Stress, "none"), "von Mises stress at the point", Quantities::Number(|now, i| Some(now.stress.get(i)?.von_mises))).only_with(part::STRESS),
+    points("principal_stress", (Stress, "none"), "principal stresses at the point, the largest first", Named(&["1", "2", "3"], |now, i| Some(&now.stress.get(i)?.principal))).only_with(part::STRESS),
+    // All bodies together.
+    system(["energy", "kinetic"], (Energy, "none"), "kinetic energy of all bodies", Number(Row::kinetic_energy)),
+    system(["energy", "strain"], (Energy, "none"), "strain energy of all bodies", Number(Row::strain_energy)),
+    system(["energy", "total"], (Energy, "none"), "kinetic + strain energy of all bodies", Number(Row::energy)),
+    system(["energy", "work"], (Energy, "none"), "work of the loads on all bodies since t = 0", Number(Row::work)),
+    system(["energy", "dissipation"], (Energy, "none"), "energy that damping has taken since t = 0", Number(Row::dissipation)),
+    system(["energy", "balance"], (Energy, "none"), "total energy - work + dissipation: constant in exact motion", Number(Row::energy_balance)),
+    system(["momentum", "linear"], (Momentum, "global"), "linear momentum of all bodies", Vector(|now| now.linear_momentum_global().into())),
+    system(["momentum", "angular"], (AngularMomentum, "global"), "angular momentum of all bodies about the global origin", Vector(|now| now.angular_momentum_global().into())),
 ];
+
+/// The column of a path in a results file, such as "energy/work", "bodies/ring/points/P1/velocity" or "system/energy/total".
+pub fn column_of(path: &str) -> Option<&'static Column<Row>> {
+    let parts: Vec<&str> = path.split('/').collect();
+    let (scopes, rest): (&[Scope], &[&str]) = match &parts[..] {
+        ["system", rest @ ..] => (&[Scope::System], rest),
+        ["bodies", _, rest @ ..] => (&[Scope::Body, Scope::Point, Scope::Support], rest),
+        rest => (&[Scope::Body, Scope::Point, Scope::Support], rest),
+    };
+    let is_it = |column: &&Column<Row>| match (rest, column.scope()) {
+        ([group, _, name], Scope::Point | Scope::Support) | ([group, name], Scope::System | Scope::Body) => {
+            [column.group, column.name] == [*group, *name]
+        }
+        ([name], Scope::Body) => ["", *name] == [column.group, column.name],
+        _ => false,
+    };
+    COLUMNS.iter().filter(|column| scopes.contains(&column.scope())).find(is_it)
+}
+
+/// Dimension of a quantity, and the frame of its components.
+type Kind = (Dimension, &'static str);
+
+/// Components of stress.
+const STRESSES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
+
+const fn system(path: [&'static str; 2], kind: Kind, description: &'static str, values: Quantity<Row>) -> Column<Row> {
+    Column::of_system(path, kind, description, values).in_role(Internal)
+}
+
+const fn body(
+    path: [&'static str; 2],
+    kind: Kind,
+    description: &'static str,
+    values: Quantity<BodyRow>,
+) -> Column<Row> {
+    Column::of_body(path, kind, description, values)
+}
+
+const fn modes(
+    name: &'static str,
+    dimension: Dimension,
+    description: &'static str,
+    values: fn(&BodyRow) -> &[f64],
+) -> Column<Row> {
+    Column::of_modes(name, dimension, description, values)
+}
+
+const fn points(name: &'static str, kind: Kind, description: &'static str, values: Quantities<BodyRow>) -> Column<Row> {
+    Column::of_points(name, kind, description, values)
+}
+
+const fn supports(
+    name: &'static str,
+    kind: Kind,
+    description: &'static str,
+    values: Quantities<BodyRow>,
+) -> Column<Row> {
+    Column::of_supports(name, kind, description, values)
+}

@@ -5,10 +5,21 @@ use std::ops::Deref;
 use dynamics::Observation;
 use fem_tet10::{principal_stresses, von_mises};
 use model::Model;
+use nalgebra::Vector3;
+use results::SystemRow;
 
-/// A row of a results file: the motion, and what was asked for besides.
+/// A row of a results file: all bodies at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
+    /// The time.
+    pub time: f64,
+    /// The bodies, in the order of the scene.
+    pub bodies: Vec<BodyRow>,
+}
+
+/// A body in a row: its motion, and what was asked for besides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyRow {
     /// The motion.
     pub motion: Observation,
     /// Stress at the points; empty if not asked for.
@@ -24,12 +35,12 @@ pub struct PointStress {
     /// xx, yy, zz, xy, yz, zx in body axes.
     pub components: [f64; 6],
     /// The von Mises stress.
-    pub von_mises: [f64; 1],
+    pub von_mises: f64,
     /// The principal stresses, the largest first.
     pub principal: [f64; 3],
 }
 
-impl Row {
+impl BodyRow {
     /// Zeros: room for the rows of a model.
     pub fn new(model: &Model) -> Self {
         let stressed = model.stress.as_ref().map_or(0, model::BodyStress::points);
@@ -50,14 +61,74 @@ impl Row {
         for (row, components) in self.stress.iter_mut().zip(stress.at_points(&self.motion.modal_displacement)) {
             *row = PointStress {
                 components,
-                von_mises: [von_mises(&components)],
+                von_mises: von_mises(&components),
                 principal: principal_stresses(&components),
             };
         }
     }
 }
 
-impl Deref for Row {
+impl SystemRow for Row {
+    type Body = BodyRow;
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn bodies(&self) -> &[BodyRow] {
+        &self.bodies
+    }
+}
+
+impl Row {
+    fn sum(&self, of_body: impl Fn(&BodyRow) -> f64) -> f64 {
+        self.bodies.iter().map(of_body).sum()
+    }
+
+    /// Kinetic energy of all bodies.
+    pub fn kinetic_energy(&self) -> f64 {
+        self.sum(|body| body.kinetic_energy)
+    }
+
+    /// Strain energy of all bodies.
+    pub fn strain_energy(&self) -> f64 {
+        self.sum(|body| body.strain_energy)
+    }
+
+    /// Kinetic and strain energy of all bodies.
+    pub fn energy(&self) -> f64 {
+        self.sum(|body| body.energy())
+    }
+
+    /// Work of the loads since the beginning.
+    pub fn work(&self) -> f64 {
+        self.sum(|body| body.work.work)
+    }
+
+    /// Energy that damping has taken since the beginning.
+    pub fn dissipation(&self) -> f64 {
+        self.sum(|body| body.work.dissipation)
+    }
+
+    /// Energy less the work, and with the dissipation: constant in exact motion.
+    pub fn energy_balance(&self) -> f64 {
+        self.sum(|body| body.energy_balance())
+    }
+
+    /// Linear momentum of all bodies.
+    pub fn linear_momentum_global(&self) -> Vector3<f64> {
+        self.bodies.iter().map(|body| body.linear_momentum_global).sum()
+    }
+
+    /// Angular momentum of all bodies about the global origin.
+    pub fn angular_momentum_global(&self) -> Vector3<f64> {
+        let of_body =
+            |body: &BodyRow| body.angular_momentum_global + body.position_global.cross(&body.linear_momentum_global);
+        self.bodies.iter().map(of_body).sum()
+    }
+}
+
+impl Deref for BodyRow {
     type Target = Observation;
 
     fn deref(&self) -> &Observation {

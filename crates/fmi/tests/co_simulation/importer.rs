@@ -23,19 +23,24 @@ pub struct Fmu {
 
 impl Fmu {
     pub fn of(scene: &Scene) -> Self {
+        Self::of_bodies(std::slice::from_ref(scene))
+    }
+
+    pub fn of_bodies(scenes: &[Scene]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let place = |name: &str| folder.path().join(name);
         // The functions are called in this process: the library in the FMU has only to be taken for it.
         fs::write(place("library"), format!("{} fmi2DoStep", marker())).unwrap();
         let settings = FmuSettings { library: Some(place("library")) };
-        let report = pack(scene, &Builder::default(), &place("beam.fmu"), &settings, |_| ()).unwrap();
+        let report = pack(scenes, &Builder::default(), &place("beam.fmu"), &settings, |_| ()).unwrap();
         let mut zip = zip::ZipArchive::new(Cursor::new(fs::read(place("beam.fmu")).unwrap())).unwrap();
         zip.extract(place("unpacked")).unwrap();
         let mut description = String::new();
         zip.by_name("modelDescription.xml").unwrap().read_to_string(&mut description).unwrap();
         let resources = place("unpacked").join("resources");
-        assert_eq!(Manifest::checked(&resources).unwrap().guid, report.guid);
-        let variables = FmuModel::open(&resources).unwrap().variables;
+        let manifest = Manifest::checked(&resources).unwrap();
+        assert_eq!(manifest.guid, report.guid);
+        let variables = FmuModel::open(&resources, &manifest).unwrap().variables;
         Self { guid: report.guid, variables, description, folder }
     }
 

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use flexframe::fmu::FmuModel;
+use flexframe::fmu::{FmuBody, FmuModel};
 use flexframe::model::Builder;
-use flexframe::row::Row;
-use flexframe::scene::Scene;
+use flexframe::row::{BodyRow, Row};
+use flexframe::scene::{Scene, System};
 
 const MATERIAL: &str = "material = { young_modulus = 6.8952e10, poisson_ratio = 0.3, density = 2766.7 }";
 pub const STEP: f64 = 2e-3;
@@ -119,16 +119,41 @@ pub fn rigid() -> Scene {
     Scene::parse(text, "top.toml").unwrap()
 }
 
+/// The beam and a rigid body, as bodies of one scene.
+pub fn bodies() -> Vec<Scene> {
+    let text = format!(
+        r#"
+        title = "two bodies"
+        units = {{ length = "m", mass = "kg", time = "s" }}
+        [bodies.beam]
+        mesh = {:?}
+        {MATERIAL}
+        modes = {{ flexible = 3, damping_ratio = 0.01, static_correction = false }}
+        points = {{ tip = [8.0, 0.0, 0.0] }}
+        initial = {{ angular_velocity = [0.5, 3.0, 1.0] }}
+        [bodies."the top"]
+        rigid = {{ mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[4, 0, 0], [0, 5, 0], [0, 0, 7]] }}
+        initial = {{ angular_velocity = [0.1, 5.0, 0.1], position = [0.0, 4.0, 0.0] }}
+        [time]
+        end = {END}
+        step = {STEP}
+        [output]
+        interval = 0.02
+        "#,
+        mesh()
+    );
+    System::parse(&text, "bodies.toml").unwrap().bodies
+}
+
 /// The rows of a run of the library, without an FMU.
 pub fn own_run(scene: &Scene) -> Vec<Vec<f64>> {
-    let fmu = FmuModel::new(scene.clone(), &Builder::default(), |_| ()).unwrap();
-    let mut row = Row::new(&fmu.model);
-    fmu.model
-        .start(&fmu.scene)
-        .unwrap()
+    let fmu = FmuModel::new(vec![scene.clone()], &Builder::default(), |_| ()).unwrap();
+    let FmuBody { scene, model, .. } = &fmu.bodies[0];
+    let mut row = Row { time: 0.0, bodies: vec![BodyRow::new(model)] };
+    (model.start(scene).unwrap())
         .map(|now| {
-            row.motion = now.unwrap();
-            row.complete(&fmu.model);
+            row.bodies[0].motion = now.unwrap();
+            row.bodies[0].complete(model);
             let mut numbers = Vec::new();
             fmu.numbers(&row, &mut numbers);
             numbers

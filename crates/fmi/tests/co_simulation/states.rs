@@ -95,8 +95,8 @@ fn a_state_that_is_refused_leaves_an_instance_that_has_not_begun_as_it_was_set_u
     let state = other.save().unwrap();
     let mut bytes = other.serialized(state);
     other.free(state);
-    // The last number of the last input, before the one byte that ends the state, is no number.
-    let last = bytes.len() - 9..bytes.len() - 1;
+    // The last number of the last input, before the two bytes that end the state of one body, is no number.
+    let last = bytes.len() - 10..bytes.len() - 2;
     bytes[last].copy_from_slice(&f64::NAN.to_le_bytes());
     let sum = crc32fast::hash(&bytes[4..]).to_le_bytes();
     bytes[..4].copy_from_slice(&sum);

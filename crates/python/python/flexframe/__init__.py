@@ -25,12 +25,13 @@ from flexframe._flexframe import (
 )
 from flexframe.errors import Error, FileError, InputError, RefusedError, RunError
 from flexframe.mesh import write_mesh
-from flexframe.results import Column, Results
+from flexframe.results import BodyResults, Column, Results
 
 __version__ = _flexframe.VERSION
 
 __all__ = [
     "Body",
+    "BodyResults",
     "Column",
     "Error",
     "FileError",

@@ -36,8 +36,9 @@ class Scene:
     From the path of a scene file; or from a dict with the sections and keys of one, such as
     `{"title": "Bar", "units": {...}, "body": {"mesh": "bar.msh", ...}, ...}`. Its lists may be arrays of numpy. Paths in a
     dict are relative to `base` (default: the current folder); `name` stands for it in messages and names its results file
-    (default: "scene"). `body` is the name of a body in a scene of several. With `trust_geometry`, gmsh may do all that a `.geo` file says which the scene names; otherwise one that
-    runs other programs or writes files is refused.
+    (default: "scene"). In a scene of several bodies, `body` names one, to take it alone; `run` takes all of them. With
+    `trust_geometry`, gmsh may do all that a `.geo` file says which the scene names; otherwise one that runs other programs or
+    writes files is refused.
 
     A scene can be pickled and copied. The files that it names are read where it is unpickled.
     """
@@ -59,7 +60,10 @@ class Scene:
         """The title of the run."""
     @property
     def text(self) -> str:
-        """The text of the scene, TOML."""
+        """The text of the scene, TOML; with all bodies, where it has several."""
+    @property
+    def bodies(self) -> list[str]:
+        """Names of its bodies; "body" is that of a single one."""
     @property
     def path(self) -> os.PathLike[str]:
         """The scene file, or `base` and `name` of a dict."""
@@ -72,7 +76,7 @@ class Scene:
 
 @final
 class Body:
-    """The body of a scene: its mesh is read, its modes are found, and it is reduced.
+    """The body of a scene of one: its mesh is read, its modes are found, and it is reduced.
 
     Results of a mesh are kept in the user's cache, as by the program: the same body is there at once the next time, also in
     another process. So a body that is pickled is its scene, and is made again from the cache where it is unpickled.
@@ -288,15 +292,15 @@ class Simulation:
     def __next__(self) -> Row: ...
 
 def run(scene: Scene, folder: _Path, *, overwrite: bool = False, large: bool = False) -> Results:
-    """Runs a scene as the program does, and writes its results to `<folder>/<name of the scene>.h5`. Until the end they are in
-    `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash. What is there is replaced only with
-    `overwrite`, and what the scene reads never; results of more than 1 GB are written only with `large`."""
+    """Runs the bodies of a scene as the program does, and writes their results to `<folder>/<name of the scene>.h5`. Until the
+    end they are in `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash. What is there is replaced
+    only with `overwrite`, and what the scene reads never; results of more than 1 GB are written only with `large`."""
 
 def resume(file: _Path, *, overwrite: bool = False, trust_geometry: bool = False) -> Results:
     """Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit. Another results
     file in its place is replaced only with `overwrite`. `trust_geometry` is that of Scene."""
 
-def _scene(text: str, path: _Path, trust_geometry: bool) -> Scene:
+def _scene(text: str, path: _Path, body: str | None, trust_geometry: bool) -> Scene:
     """The scene that was pickled."""
 
 def read_results(path: _Path) -> Results:

@@ -2,7 +2,7 @@
 // layer for each shape. A frame sends only the coordinates.
 
 import * as THREE from "three";
-import { indices, quantised, single, type Numbers, type Report } from "./data";
+import { indices, quantised, single, type BodyData, type Numbers } from "./data";
 import { rgb } from "./colours";
 import { SCALE } from "./scale.mjs";
 
@@ -130,13 +130,13 @@ export class Body {
     private readonly products: [number, number][] = [];
     private readonly count: number;
 
-    constructor(report: Report) {
-        const surface = report.surface!;
+    constructor(data: BodyData) {
+        const surface = data.surface!;
         const positions = single(surface.vertices);
         const vertices = positions.length / 3;
-        this.count = report.shapes.length;
-        const shapes = report.shapes.map((shape) => quantised(shape.displacement));
-        this.factors = report.shapes.map((shape) => shape.displacement.factor);
+        this.count = data.shapes.length;
+        const shapes = data.shapes.map((shape) => quantised(shape.displacement));
+        this.factors = data.shapes.map((shape) => shape.displacement.factor);
         this.displacementPeaks = peaks(shapes, this.factors, 3, (s, i) => Math.hypot(s[i], s[i + 1], s[i + 2]));
         const vectors = (count = this.count) => Array.from({ length: groups(count) }, () => new THREE.Vector4(0, 0, 0, 0));
         // A body without shapes keeps the sampler, which then has one empty layer.
@@ -153,14 +153,14 @@ export class Body {
             plain: { value: new THREE.Vector3(0.6, 0.66, 0.72) },
             coloured: { value: true },
         };
-        if (report.stress) {
-            const stresses = report.stress.shapes.map((numbers: Numbers) => quantised(numbers));
-            this.stressFactors = report.stress.shapes.map((numbers) => numbers.factor);
+        if (data.stress) {
+            const stresses = data.stress.shapes.map((numbers: Numbers) => quantised(numbers));
+            this.stressFactors = data.stress.shapes.map((numbers) => numbers.factor);
             this.stressPeaks = peaks(stresses, this.stressFactors, 6, vonMises);
             this.uniforms.normalStresses = { value: layers(stresses, 6, 0) };
             this.uniforms.shearStresses = { value: layers(stresses, 6, 3) };
             this.uniforms.stressWeights = { value: vectors(stresses.length) };
-            this.products = report.stress.products;
+            this.products = data.stress.products;
         }
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
@@ -227,8 +227,9 @@ export class Body {
 
     /// What is coloured, and the value at the end of the colours.
     colourBy(field: Field, peak: number) {
-        this.surface.material = this.material(field === "stress" ? "stress" : "plain");
-        this.uniforms.coloured.value = field !== "none";
+        const stressed = field === "stress" && this.stressPeaks !== null;
+        this.surface.material = this.material(stressed ? "stress" : "plain");
+        this.uniforms.coloured.value = stressed || field === "displacement"; // without stress a body is plain
         this.uniforms.peak.value = peak;
     }
 

@@ -4,27 +4,33 @@ export interface Numbers { type: "f64" | "f32" | "i16" | "u16" | "u32"; factor: 
 export interface Component { name: string; values: Numbers }
 export interface History { group: string; name: string; unit: string; least_range: number; components: Component[] }
 export interface Balance {
-    name: string; law: string; unit: string; least_range: number; error_peak: number; term_peak: number;
+    group: string; name: string; law: string; unit: string; least_range: number; error_peak: number; term_peak: number;
     terms: Component[]; errors: Component[];
 }
 export interface Shape {
     name: string; kind: "natural" | "static" | "second order";
     frequency: number | null; damping_ratio: number | null; displacement: Numbers;
 }
+export interface BodyData {
+    name: string;
+    facts: [string, string][];
+    surface: { vertices: Numbers; triangles: Numbers; edges: Numbers } | null;
+    shapes: Shape[];
+    displacement_peak: number;
+    stress: { unit: string; peak: number; shapes: Numbers[]; products: [number, number][] } | null;
+    motion: { origins: Numbers; attitudes: Numbers; coordinates: Numbers };
+    effects: [string, string, string, string][];
+}
 export interface Report {
     title: string; program: string; unfinished: string | null;
     units: { length: string; time: string; frequency: string };
     facts: [string, string][];
     rows: number;
-    surface: { vertices: Numbers; triangles: Numbers; edges: Numbers } | null;
-    shapes: Shape[];
-    displacement_peak: number;
-    stress: { unit: string; peak: number; shapes: Numbers[]; products: [number, number][] } | null;
-    motion: { times: Numbers; origins: Numbers; attitudes: Numbers; coordinates: Numbers };
+    times: Numbers;
+    bodies: BodyData[];
     history_times: Numbers;
     histories: History[];
     balances: Balance[];
-    effects: [string, string, string, string][];
     scene: [string, string];
     warnings: string[];
 }

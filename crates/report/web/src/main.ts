@@ -16,7 +16,8 @@ function header(report: Report) {
     state.textContent = report.unfinished === null ? "Complete run" : "Unfinished run";
     state.classList.toggle("unfinished", report.unfinished !== null);
     const facts = document.getElementById("facts")!;
-    for (const [label, value] of report.facts) {
+    const [only] = report.bodies;
+    for (const [label, value] of report.bodies.length > 1 ? report.facts : [...only.facts, ...report.facts]) {
         const pair = document.createElement("div");
         pair.append(document.createElement("dt"), document.createElement("dd"));
         pair.firstElementChild!.textContent = label;

@@ -1,26 +1,15 @@
-// The state of the body at any time between the rows.
+// The state of the bodies at any time between the rows.
 
-import { double, single, type Report } from "./data";
+import { double, single, type BodyData, type Report } from "./data";
 
+/// The motion of all bodies, which have their rows at the same times.
 export class Motion {
     readonly times: Float64Array;
-    readonly origins: Float32Array;
-    readonly coordinates: Float32Array;
-    readonly shapes: number;
-    private readonly attitudes: Float32Array;
-    /// Filled by `at`.
-    readonly origin: [number, number, number] = [0, 0, 0];
-    /// x, y, z, w
-    readonly attitude: [number, number, number, number] = [0, 0, 0, 1];
-    readonly q: Float32Array;
+    readonly bodies: BodyMotion[];
 
     constructor(report: Report) {
-        this.times = double(report.motion.times);
-        this.origins = single(report.motion.origins);
-        this.attitudes = single(report.motion.attitudes);
-        this.coordinates = single(report.motion.coordinates);
-        this.shapes = report.shapes.length;
-        this.q = new Float32Array(this.shapes);
+        this.times = double(report.times);
+        this.bodies = report.bodies.map((body) => new BodyMotion(body));
     }
 
     get start() { return this.times[0]; }
@@ -32,12 +21,37 @@ export class Motion {
         return rowAt(this.times, time);
     }
 
-    /// Straight between two rows; the attitude on the shorter way.
+    /// Sets the states of all bodies.
     at(time: number): void {
         const a = this.row(time);
         const b = Math.min(a + 1, this.times.length - 1);
         const span = this.times[b] - this.times[a];
         const f = span > 0 ? Math.min(1, Math.max(0, (time - this.times[a]) / span)) : 0;
+        for (const body of this.bodies) body.between(a, b, f);
+    }
+}
+
+export class BodyMotion {
+    readonly origins: Float32Array;
+    readonly coordinates: Float32Array;
+    readonly shapes: number;
+    private readonly attitudes: Float32Array;
+    /// Filled by `between`.
+    readonly origin: [number, number, number] = [0, 0, 0];
+    /// x, y, z, w
+    readonly attitude: [number, number, number, number] = [0, 0, 0, 1];
+    readonly q: Float32Array;
+
+    constructor(body: BodyData) {
+        this.origins = single(body.motion.origins);
+        this.attitudes = single(body.motion.attitudes);
+        this.coordinates = single(body.motion.coordinates);
+        this.shapes = body.shapes.length;
+        this.q = new Float32Array(this.shapes);
+    }
+
+    /// Straight between two rows; the attitude on the shorter way.
+    between(a: number, b: number, f: number): void {
         const between = (list: Float32Array, width: number, i: number) =>
             list[width * a + i] * (1 - f) + list[width * b + i] * f;
         for (let i = 0; i < 3; i++) this.origin[i] = between(this.origins, 3, i);

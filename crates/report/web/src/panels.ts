@@ -2,8 +2,9 @@
 
 import type { Clock } from "./clock";
 import { onSchemeChange } from "./colours";
-import { double, single, type Component, type Report } from "./data";
+import { double, single, type BodyData, type Component, type Report } from "./data";
 import { number, withUnit } from "./format";
+import type { Motion } from "./motion";
 import { Plot, PlotGroup } from "./plot";
 import type { Viewer } from "./viewer";
 
@@ -85,60 +86,94 @@ function histories(panel: HTMLElement, report: Report, clock: Clock, times: Floa
 }
 
 function balances(panel: HTMLElement, report: Report, clock: Clock, times: Float64Array): PlotGroup {
-    const rows = report.balances.map(({ name, unit, error_peak, term_peak }) => [
-        name, withUnit(number(error_peak, 3), unit), withUnit(number(term_peak, 3), unit),
+    const rows = report.balances.map(({ group, name, unit, error_peak, term_peak }) => [
+        group ? `${group}: ${name}` : name, withUnit(number(error_peak, 3), unit), withUnit(number(term_peak, 3), unit),
         term_peak > 0 ? number(error_peak / term_peak, 2) : "–",
     ]);
     panel.append(table(["Balance", "Greatest error", "Greatest term", "Ratio"], rows, [1, 2, 3]));
     const group = new PlotGroup(clock, times);
     onSchemeChange(() => group.recolour());
+    const names = [...new Set(report.balances.map((balance) => balance.group))];
+    const select = make("select");
+    names.forEach((name) => select.add(new Option(name)));
+    const parts = make("div");
+    const draw = () => {
+        group.clear();
+        parts.replaceChildren();
+        for (const { name, law, unit, least_range, terms, errors } of report.balances.filter((balance) => balance.group === select.value)) {
+            const part = make("section");
+            part.append(make("h3", name), make("p", law, "muted"));
+            parts.append(part);
+            new Plot(part, group, "Terms", unit, least_range, courses(terms));
+            new Plot(part, group, "Error", unit, least_range, courses(errors));
+        }
+    };
+    select.addEventListener("change", draw);
+    const label = make(names.length > 1 ? "label" : "span");
+    if (names.length > 1) label.append("Of ", select);
     const bar = make("div", "", "bar");
-    bar.append(make("span"), zoomButtons(group, report.units.time));
-    panel.append(bar);
-    for (const { name, law, unit, least_range, terms, errors } of report.balances) {
-        const part = make("section");
-        part.append(make("h3", name), make("p", law, "muted"));
-        panel.append(part);
-        new Plot(part, group, "Terms", unit, least_range, courses(terms));
-        new Plot(part, group, "Error", unit, least_range, courses(errors));
-    }
+    bar.append(label, zoomButtons(group, report.units.time));
+    panel.append(bar, parts);
+    draw();
     return group;
 }
 
-function shapes(panel: HTMLElement, report: Report, viewer: Viewer, coordinates: Float32Array) {
-    const count = report.shapes.length;
-    const greatest = new Array<number>(count).fill(0);
-    coordinates.forEach((q, i) => (greatest[i % count] = Math.max(greatest[i % count], Math.abs(q))));
-    const kinds = { natural: "mode", static: "static shape", "second order": "second-order shape" };
-    const rows = report.shapes.map((shape, k): Cell[] => {
-        let name: Cell = shape.name;
-        if (report.surface) {
-            name = make("button", shape.name, "link");
-            name.setAttribute("aria-label", `Show ${shape.name} alone`);
-            name.addEventListener("click", () => viewer.show(k));
-        }
-        return [
-            name, kinds[shape.kind],
-            shape.frequency === null ? "–" : number(shape.frequency, 5),
-            shape.damping_ratio === null ? "–" : number(shape.damping_ratio, 3),
-            number(greatest[k], 3),
-        ];
+/// Something of each body; of several under their names.
+function ofBodies(panel: HTMLElement, report: Report, fill: (of: BodyData, body: number) => HTMLElement | null) {
+    report.bodies.forEach((of, body) => {
+        const part = fill(of, body);
+        if (!part) return;
+        if (report.bodies.length > 1) panel.append(make("h3", of.name));
+        panel.append(part);
     });
+}
+
+function bodies(panel: HTMLElement, report: Report) {
+    const labels = [...new Set(report.bodies.flatMap(({ facts }) => facts.map(([label]) => label)))];
+    const rows = report.bodies.map(({ name, facts }) =>
+        [name, ...labels.map((label) => facts.find(([known]) => known === label)?.[1] ?? "–")]);
+    panel.append(table(["Body", ...labels], rows));
+}
+
+function shapes(panel: HTMLElement, report: Report, viewer: Viewer, motion: Motion) {
+    const kinds = { natural: "mode", static: "static shape", "second order": "second-order shape" };
     const { frequency } = report.units;
-    panel.append(table(["Shape", "Kind", `Frequency, ${frequency}`, "Damping ratio", "Greatest |coordinate|"], rows, [2, 3, 4]));
+    ofBodies(panel, report, (of, body) => {
+        const count = of.shapes.length;
+        if (count === 0) return null;
+        const greatest = new Array<number>(count).fill(0);
+        motion.bodies[body].coordinates.forEach((q, i) => (greatest[i % count] = Math.max(greatest[i % count], Math.abs(q))));
+        const rows = of.shapes.map((shape, k): Cell[] => {
+            let name: Cell = shape.name;
+            if (of.surface) {
+                name = make("button", shape.name, "link");
+                name.setAttribute("aria-label", `Show ${report.bodies.length > 1 ? `${of.name}, ` : ""}${shape.name} alone`);
+                name.addEventListener("click", () => viewer.show({ body, shape: k }));
+            }
+            return [
+                name, kinds[shape.kind],
+                shape.frequency === null ? "–" : number(shape.frequency, 5),
+                shape.damping_ratio === null ? "–" : number(shape.damping_ratio, 3),
+                number(greatest[k], 3),
+            ];
+        });
+        return table(["Shape", "Kind", `Frequency, ${frequency}`, "Damping ratio", "Greatest |coordinate|"], rows, [2, 3, 4]);
+    });
     const notes = [];
-    if (report.surface) notes.push("Choose a shape to see it alone.");
-    if (report.shapes.some((shape) => shape.kind !== "natural"))
+    if (report.bodies.some((body) => body.surface)) notes.push("Choose a shape to see it alone.");
+    if (report.bodies.some((body) => body.shapes.some((shape) => shape.kind !== "natural")))
         notes.push("Static and second-order shapes are no vibration modes: they have no natural frequency.");
     panel.append(make("p", notes.join(" "), "muted"));
 }
 
 function effects(panel: HTMLElement, report: Report) {
-    const rows = report.effects.map(([name, state, measure, reason]): Cell[] => {
-        const mark = make("span", state, state === "on" ? "mark on" : "mark");
-        return [name, mark, measure, reason];
+    ofBodies(panel, report, (of) => {
+        const rows = of.effects.map(([name, state, measure, reason]): Cell[] => {
+            const mark = make("span", state, state === "on" ? "mark on" : "mark");
+            return [name, mark, measure, reason];
+        });
+        return rows.length > 0 ? table(["Effect", "State", "Measure", "Why"], rows) : null;
     });
-    panel.append(table(["Effect", "State", "Measure", "Why"], rows));
 }
 
 function scene(panel: HTMLElement, report: Report) {
@@ -167,8 +202,9 @@ export function panels(report: Report, clock: Clock, viewer: Viewer): Panels {
     const parts: [string, boolean, (panel: HTMLElement) => PlotGroup | void][] = [
         ["Histories", report.histories.length > 0, (panel) => histories(panel, report, clock, times)],
         ["Balances", report.balances.length > 0, (panel) => balances(panel, report, clock, times)],
-        ["Shapes", report.shapes.length > 0, (panel) => shapes(panel, report, viewer, clock.motion.coordinates)],
-        ["Effects", report.effects.length > 0, (panel) => effects(panel, report)],
+        ["Bodies", report.bodies.length > 1, (panel) => bodies(panel, report)],
+        ["Shapes", report.bodies.some((body) => body.shapes.length > 0), (panel) => shapes(panel, report, viewer, clock.motion)],
+        ["Effects", report.bodies.some((body) => body.effects.length > 0), (panel) => effects(panel, report)],
         ["Scene", report.scene[1] !== "", (panel) => scene(panel, report)],
     ];
     const list = document.getElementById("tabs")!;

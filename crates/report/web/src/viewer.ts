@@ -1,6 +1,6 @@
 // The picture of the body with its controls.
 
-import type { Field } from "./body";
+import type { Body, Field } from "./body";
 import { nextStep, type Clock } from "./clock";
 import { onSchemeChange } from "./colours";
 import { SCALE } from "./scale.mjs";
@@ -16,10 +16,13 @@ const MOST_EXAGGERATION = 1e6;
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 
+/// A shape of a body, by their numbers.
+export interface BodyShape { body: number; shape: number }
+
 export class Viewer {
     private stage: Stage | null = null;
     /// The shape that is shown alone; none where the run is shown.
-    private shape: number | null = null;
+    private shape: BodyShape | null = null;
     private swinging = true;
     private phase = 0.25;
     private exaggeration = 1;
@@ -37,7 +40,7 @@ export class Viewer {
             element("no-picture").hidden = false;
             element("canvas").hidden = true;
         }
-        if (!report.surface) this.field = "none";
+        if (!this.surfaces) this.field = "none";
         this.fillSubjects();
         this.fillColours();
         this.connect();
@@ -47,12 +50,15 @@ export class Viewer {
         this.showExaggeration();
         if (this.stage) {
             motion.at(motion.start);
-            this.stage.place(motion.origin, motion.attitude);
+            this.stage.place(motion.bodies);
             this.stage.resize();
-            this.stage.lookAt(null);
+            this.stage.lookAt(this.stage.followed);
         }
         requestAnimationFrame((now) => this.frame(now));
     }
+
+    private get several() { return this.report.bodies.length > 1; }
+    private get surfaces() { return this.report.bodies.some(({ surface }) => surface); }
 
     get playing() { return this.shape === null ? this.clock.playing : this.swinging; }
 
@@ -63,15 +69,14 @@ export class Viewer {
     }
 
     /// A shape alone, or the run.
-    show(shape: number | null) {
+    show(shape: BodyShape | null) {
         this.shape = shape;
         this.swinging = !matchMedia("(prefers-reduced-motion: reduce)").matches;
         this.phase = 0.25; // at its greatest
         if (shape !== null) this.clock.playing = false;
-        element<HTMLSelectElement>("subject").value = shape === null ? "run" : String(shape);
-        this.stage?.place(shape === null ? this.motion.origin : [0, 0, 0], [0, 0, 0, 1]);
+        element<HTMLSelectElement>("subject").value = shape === null ? "run" : `${shape.body} ${shape.shape}`;
         this.prepare();
-        this.stage?.lookAt(null);
+        this.resetView();
         this.showLegend();
         this.showTime();
         this.showExaggeration();
@@ -85,30 +90,34 @@ export class Viewer {
     }
 
     resetView() {
-        const { following } = this.stage ?? { following: true };
-        this.stage?.lookAt(following || this.shape !== null ? null : this.motion);
+        this.stage?.lookAt(this.shape?.body ?? this.stage.followed);
         this.changed = true;
     }
 
-    private shapeText(k: number): string {
-        const { name, frequency } = this.report.shapes[k];
-        return frequency === null ? name : `${name}: ${withUnit(number(frequency), this.report.units.frequency)}`;
+    private shapeText({ body, shape }: BodyShape): string {
+        const of = this.report.bodies[body];
+        const { name, frequency } = of.shapes[shape];
+        const text = frequency === null ? name : `${name}: ${withUnit(number(frequency), this.report.units.frequency)}`;
+        return this.several ? `${of.name}, ${text}` : text;
     }
 
     private fillSubjects() {
         const select = element<HTMLSelectElement>("subject");
         select.add(new Option("the run", "run"));
-        if (!this.report.surface) return;
-        this.report.shapes.forEach((_, k) => {
-            select.add(new Option(this.shapeText(k), String(k)));
+        this.report.bodies.forEach(({ surface, shapes }, body) => {
+            if (!surface) return;
+            shapes.forEach((_, shape) => select.add(new Option(this.shapeText({ body, shape }), `${body} ${shape}`)));
         });
-        select.addEventListener("change", () => this.show(select.value === "run" ? null : Number(select.value)));
+        select.addEventListener("change", () => {
+            const [body, shape] = select.value.split(" ").map(Number);
+            this.show(select.value === "run" ? null : { body, shape });
+        });
     }
 
     private fillColours() {
         const select = element<HTMLSelectElement>("colour");
-        if (this.report.surface) select.add(new Option("displacement", "displacement"));
-        if (this.report.surface && this.report.stress) select.add(new Option("von Mises stress", "stress"));
+        if (this.surfaces) select.add(new Option("displacement", "displacement"));
+        if (this.report.bodies.some(({ surface, stress }) => surface && stress)) select.add(new Option("von Mises stress", "stress"));
         select.add(new Option("none", "none"));
         select.addEventListener("change", () => {
             this.field = select.value as Field;
@@ -141,26 +150,56 @@ export class Viewer {
         };
         const { stage } = this;
         if (!stage) return;
-        element<HTMLInputElement>("axes").checked = !stage.body?.hasFacets;
-        for (const part of document.querySelectorAll<HTMLElement>(".of-surface")) part.hidden = !stage.body;
-        element("outline").parentElement!.hidden = !stage.body?.hasFacets;
-        const without = element("no-surface");
-        without.hidden = stage.body?.hasFacets ?? false;
-        without.textContent = stage.body
-            ? "This body comes from matrices: its nodes are shown, for it has no elements and so no surface."
-            : "This body has no mesh: its axes are shown.";
-        check("follow", (on) => {
-            stage.following = on;
-            if (this.frames > 0) this.resetView();
-        });
-        check("outline", (on) => { if (stage.body) stage.body.outline.visible = on; });
-        check("axes", (on) => { stage.bodyAxes.visible = on; });
+        const drawn = stage.bodies.filter(({ body }) => body);
+        const hasFacets = drawn.length > 0 && drawn.every(({ body }) => body!.hasFacets);
+        element<HTMLInputElement>("axes").checked = drawn.length < stage.bodies.length || !hasFacets;
+        for (const part of document.querySelectorAll<HTMLElement>(".of-surface")) part.hidden = drawn.length === 0;
+        element("outline").parentElement!.hidden = !drawn.some(({ body }) => body!.hasFacets);
+        this.tellOfSurfaces(stage);
+        this.connectFollowing(stage);
+        check("outline", (on) => drawn.forEach(({ body }) => (body!.outline.visible = on)));
+        check("axes", () => this.showSurroundings());
         check("path", () => this.showSurroundings());
         new ResizeObserver(() => {
             stage.resize();
             this.changed = true;
         }).observe(element("canvas"));
         onSchemeChange(() => this.recolour());
+    }
+
+    /// Says which bodies are shown by something else than their surface.
+    private tellOfSurfaces(stage: Stage) {
+        const named = (is: (body: Body | null) => boolean, of: string, all: string) => {
+            const names = this.report.bodies.filter((_, i) => is(stage.bodies[i].body)).map(({ name }) => name);
+            return names.length === 0 ? [] : [this.several ? `${of} ${names.join(", ")}.` : all];
+        };
+        const words = [
+            ...named((body) => body !== null && !body.hasFacets, "Only nodes are known of",
+                "This body comes from matrices: its nodes are shown, for it has no elements and so no surface."),
+            ...named((body) => body === null, "Without a mesh, shown by their axes:", "This body has no mesh: its axes are shown."),
+        ];
+        const without = element("no-surface");
+        without.hidden = words.length === 0;
+        without.textContent = words.join(" ");
+    }
+
+    /// Which body the camera goes with; of several none at first, so that all are seen.
+    private connectFollowing(stage: Stage) {
+        const box = element<HTMLInputElement>("follow");
+        const select = element<HTMLSelectElement>("followed");
+        this.report.bodies.forEach(({ name }, i) => select.add(new Option(name, String(i))));
+        select.hidden = !this.several;
+        box.checked = stage.followed !== null;
+        if (this.several) element("follow-label").textContent = "Follow";
+        const follow = () => {
+            stage.followed = box.checked ? Number(select.value) : null;
+            if (this.frames > 0) this.resetView();
+        };
+        box.addEventListener("change", follow);
+        select.addEventListener("change", () => {
+            box.checked = true;
+            follow();
+        });
     }
 
     recolour() {
@@ -176,25 +215,30 @@ export class Viewer {
     }
 
     private showSurroundings() {
-        this.stage?.showSurroundings(this.shape === null, element<HTMLInputElement>("path").checked);
+        const checked = (id: string) => element<HTMLInputElement>(id).checked;
+        this.stage?.show(this.shape?.body ?? null, checked("path"), checked("axes"));
     }
 
     /// Greatest value of the field: over the run, or of a shape where its coordinate is 1.
     private peak(): number {
-        const body = this.stage?.body;
-        if (this.field === "none" || !body) return 0;
-        if (this.shape !== null) return (this.field === "stress" ? body.stressPeaks! : body.displacementPeaks)[this.shape];
-        return this.field === "stress" ? this.report.stress!.peak : this.report.displacement_peak;
+        if (this.field === "none" || !this.stage) return 0;
+        if (this.shape !== null) {
+            const body = this.stage.bodies[this.shape.body].body!;
+            return (this.field === "stress" ? body.stressPeaks?.[this.shape.shape] : body.displacementPeaks[this.shape.shape]) ?? 0;
+        }
+        const of = this.report.bodies.map((body) => (this.field === "stress" ? body.stress?.peak : body.displacement_peak) ?? 0);
+        return Math.max(...of);
     }
 
     private showLegend() {
         this.changed = true;
         this.showSurroundings();
         const peak = this.peak();
-        this.stage?.body?.colourBy(this.field, peak);
+        for (const { body } of this.stage?.bodies ?? []) body?.colourBy(this.field, peak);
         element("legend").hidden = this.field === "none" || !this.stage;
         const alone = this.shape !== null;
-        const unit = alone ? "relative" : this.field === "stress" ? this.report.stress!.unit : this.report.units.length;
+        const stress = this.report.bodies.find((body) => body.stress)?.stress?.unit;
+        const unit = alone ? "relative" : this.field === "stress" ? stress! : this.report.units.length;
         element("legend-name").textContent = `${this.field === "stress" ? "Von Mises stress" : "Displacement"}, ${unit}`;
         const ticks = [1, 0.75, 0.5, 0.25, 0].map((part) => {
             const tick = document.createElement("span");
@@ -228,21 +272,22 @@ export class Viewer {
         element("caption").textContent = this.shape === null ? "" : this.shapeText(this.shape);
     }
 
-    /// Sets the state of the body for this moment.
+    /// Sets the state of the bodies for this instant.
     private prepare() {
         const { stage, motion } = this;
         if (!stage) return;
         if (this.shape === null) {
             motion.at(this.clock.time);
-            stage.place(motion.origin, motion.attitude);
-            stage.body?.deform(motion.q, this.exaggeration);
+            stage.place(motion.bodies);
+            stage.bodies.forEach(({ body }, i) => body?.deform(motion.bodies[i].q, this.exaggeration));
             return;
         }
-        const greatest = stage.body!.displacementPeaks[this.shape];
-        const q = new Float32Array(motion.shapes);
-        q[this.shape] = Math.sin(2 * Math.PI * this.phase);
-        stage.place([0, 0, 0], [0, 0, 0, 1]);
-        stage.body!.deform(q, greatest > 0 ? (SWING * stage.radius) / greatest : 0, true);
+        const staged = stage.bodies[this.shape.body];
+        const greatest = staged.body!.displacementPeaks[this.shape.shape];
+        const q = new Float32Array(motion.bodies[this.shape.body].shapes);
+        q[this.shape.shape] = Math.sin(2 * Math.PI * this.phase);
+        stage.placeAlone(this.shape.body);
+        staged.body!.deform(q, greatest > 0 ? (SWING * staged.radius) / greatest : 0, true);
     }
 
     private frame(now: number) {

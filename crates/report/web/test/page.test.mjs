@@ -184,8 +184,31 @@ test("a body of which only nodes are known is drawn by them, and the page says s
     assert.match(await page.textContent("#no-surface"), /nodes are shown/);
     assert.ok(await page.isVisible("#colour"));
     assert.ok(!(await page.isVisible("#outline")));
-    await page.selectOption("#subject", "0");
+    await page.selectOption("#subject", "0 0");
     assert.ok((await pixels(page)).body.part > 0.005, "a shape alone");
+});
+
+test("several bodies are drawn together, named, and followed one at a time", async (t) => {
+    const page = await open(t, browser, "several");
+    assert.deepEqual(await page.locator("#names > *").allTextContents(), ["plate", "left arm", "hub"]);
+    assert.match(await page.textContent("#no-surface"), /shown by their axes: hub\./);
+    const all = await pixels(page, 0.02);
+    assert.ok(all.body.part > 0.005, `${all.body.part} of the picture`);
+    // Nearer, and in the middle.
+    await page.selectOption("#followed", "1");
+    const arm = await pixels(page, 0.02);
+    assert.notEqual(arm.sum, all.sum);
+    assert.ok(arm.body.part > all.body.part, `${arm.body.part} of the picture, and ${all.body.part} with all bodies`);
+    assert.ok(await page.isChecked("#follow"));
+    const shapes = await page.locator("#subject option").allTextContents();
+    assert.ok(shapes.some((text) => text.startsWith("left arm, mode 1")), shapes.join());
+    await page.selectOption("#subject", "1 0");
+    assert.match(await page.textContent("#caption"), /^left arm, mode 1: /);
+    const tabs = await page.locator("#tabs > *").allTextContents();
+    const bodies = tabs.indexOf("Bodies");
+    assert.ok(bodies >= 0, tabs.join());
+    await page.click(`#tab-${bodies}`);
+    for (const name of ["plate", "left arm", "hub"]) assert.match(await page.textContent(`#panel-${bodies}`), new RegExp(name));
 });
 
 /// Pixels of a plot that are coloured: how many, and from which to which part of its height.

@@ -14,9 +14,10 @@ pub(crate) struct Description {
     pub rows: usize,
     /// Words of each of the two places for a checkpoint; none in a finished file.
     pub checkpoint_words: Option<usize>,
-    /// First byte of each history, in the order of the columns, and of the checkpoints; 0 where there is nothing.
+    /// First byte of the times, of each history in the order of [`histories`](crate::histories), and of the checkpoints; 0 where
+    /// there is nothing.
     pub starts: Vec<u64>,
-    /// The shapes of the body; none of a body that has none, or where they are elsewhere.
+    /// The shapes of the bodies; none of a body that has none, or where they are elsewhere.
     pub arrays: Vec<StoredArray>,
     /// Metadata of the run.
     pub metadata: Metadata,
@@ -25,7 +26,7 @@ pub(crate) struct Description {
 /// Bytes of the numbers of a file.
 #[derive(Debug)]
 pub(crate) struct Ranges {
-    /// Of each history, in the order of the columns.
+    /// Of the times, and of each history in order.
     pub histories: Vec<Range<u64>>,
     /// Of the two places for a checkpoint.
     pub checkpoints: Range<u64>,
@@ -48,7 +49,7 @@ impl Description {
     }
 
     /// The bytes of each history and of the checkpoints, from the values per row of the histories, and those of the arrays.
-    /// `None` if they are not all within `free`, each in a place of its own.
+    /// `None` if they are not all within `free`, each in a place of its own, or are of a body that is not there.
     pub(crate) fn ranges(&self, widths: impl Iterator<Item = usize>, free: Range<u64>) -> Option<Ranges> {
         let size = |numbers: usize, each: usize| Some((numbers.checked_mul(each)?.checked_mul(8)?) as u64);
         let sizes = widths.map(|width| size(self.rows, width));
@@ -56,8 +57,11 @@ impl Description {
         let mut starts = self.starts.iter();
         let range = |start: u64, size: u64| Some(start..start.checked_add(size)?);
         let mut histories: Vec<_> = sizes.map(|size| range(*starts.next()?, size?)).collect::<Option<_>>()?;
-        let arrays: Vec<_> =
-            self.arrays.iter().map(|array| range(array.start, array.bytes()?)).collect::<Option<_>>()?;
+        let of_array = |array: &StoredArray| {
+            self.metadata.bodies.get(array.body)?;
+            range(array.start, array.bytes()?)
+        };
+        let arrays: Vec<_> = self.arrays.iter().map(of_array).collect::<Option<_>>()?;
         let mut sorted: Vec<&Range<u64>> = histories.iter().chain(&arrays).filter(|range| !range.is_empty()).collect();
         sorted.sort_unstable_by_key(|range| range.start);
         let apart = sorted.windows(2).all(|pair| pair[0].end <= pair[1].start);

@@ -10,11 +10,11 @@
 //!
 //! | bytes | what, integers in 64 bits, the lowest byte first |
 //! |---|---|
-//! | 0–24 | `flexframe results, v. 5` and a line feed |
+//! | 0–24 | `flexframe results, v. 6` and a line feed |
 //! | 24–32 | CRC-32 of all bytes after it that are not left out |
 //! | 32–40 | bytes of the file |
 //! | 40–48 | bytes of the description |
-//! | 48– | the description as JSON: `rows`, `checkpoint_words`, `starts` (first byte of each history and of the checkpoints, 0 where there is nothing), `arrays` (shapes of the body: `path`, `shape`, `start`), `metadata` |
+//! | 48– | the description as JSON: `rows`, `checkpoint_words`, `starts` (first byte of the times, of each history and of the checkpoints, 0 where there is nothing), `arrays` (shapes of the bodies: `body`, `path`, `shape`, `start`), `metadata` |
 
 use crate::FileError;
 use std::fs::File;
@@ -23,10 +23,10 @@ use std::iter::once;
 use std::ops::Range;
 use std::path::Path;
 
-const MAGIC: &[u8; 24] = b"flexframe results, v. 5\n";
+const MAGIC: &[u8; 24] = b"flexframe results, v. 6\n";
 
 /// The version in it.
-pub(crate) const VERSION: &str = "5";
+pub(crate) const VERSION: &str = "6";
 
 /// Bytes of the magic text that are those of every version.
 const ANY_VERSION: usize = 21;

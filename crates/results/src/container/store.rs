@@ -1,12 +1,13 @@
 //! The numbers of an open results file, written and read at their places without HDF5.
 
 use crate::checkpoint::{Sums, little_endian};
-use crate::column::present;
+use crate::column::SystemRow;
 use crate::container::description::{Description, Ranges};
 use crate::container::lock::Locked;
 use crate::container::room::Room;
 use crate::container::seal::Apart;
 use crate::container::{seal, structure};
+use crate::history::histories;
 use crate::shapes::Shapes;
 use crate::shapes::stored::{Datasets, StoredArray};
 use crate::{Column, FileError, Metadata};
@@ -27,7 +28,7 @@ const NUMBER: usize = size_of::<f64>();
 pub(crate) struct Store {
     file: Locked,
     description: Description,
-    /// Bytes of the histories and their values per row.
+    /// Bytes of the times and the histories, and their values per row.
     columns: Vec<(Range<u64>, usize)>,
     /// Bytes of the two places for a checkpoint.
     checkpoints: Range<u64>,
@@ -38,13 +39,14 @@ pub(crate) struct Store {
 /// Where the shapes of a new file come from.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ShapeSource<'a> {
-    Given(Option<&'a Shapes>),
+    /// Those of each body, in order; none of the bodies after the last.
+    Given(&'a [Option<Shapes>]),
     File(&'a Store),
 }
 
 impl Store {
     /// Makes the file at `place`, called `path` in messages. It has no seal yet.
-    pub(crate) fn create<R>(
+    pub(crate) fn create<R: SystemRow>(
         place: &Path,
         path: &Path,
         metadata: &Metadata,
@@ -52,7 +54,7 @@ impl Store {
         columns: &'static [Column<R>],
         room: Room,
     ) -> Result<Self, FileError> {
-        let count = present(columns, metadata).count();
+        let count = 1 + histories(columns, metadata).count();
         let starts = vec![u64::MAX; count + usize::from(room.checkpoint_words.is_some())];
         let mut description = Description {
             rows: room.rows,
@@ -81,17 +83,17 @@ impl Store {
     }
 
     /// Opens a sealed file for reading.
-    pub(crate) fn open<R>(path: &Path, columns: &'static [Column<R>]) -> Result<Self, FileError> {
+    pub(crate) fn open<R: SystemRow>(path: &Path, columns: &'static [Column<R>]) -> Result<Self, FileError> {
         Self::open_as(path, columns, "open the file", OpenOptions::new().read(true), File::try_lock_shared)
     }
 
     /// Opens a sealed file for writing.
-    pub(crate) fn open_to_write<R>(path: &Path, columns: &'static [Column<R>]) -> Result<Self, FileError> {
+    pub(crate) fn open_to_write<R: SystemRow>(path: &Path, columns: &'static [Column<R>]) -> Result<Self, FileError> {
         let options = OpenOptions::new().read(true).write(true).clone();
         Self::open_as(path, columns, "open the file for writing", &options, File::try_lock)
     }
 
-    fn open_as<R>(
+    fn open_as<R: SystemRow>(
         path: &Path,
         columns: &'static [Column<R>],
         action: &str,
@@ -114,7 +116,7 @@ impl Store {
     }
 
     /// A description may be any: what it claims must be within the file after it, each in a place of its own.
-    fn new<R>(
+    fn new<R: SystemRow>(
         file: Locked,
         path: &Path,
         columns: &'static [Column<R>],
@@ -123,8 +125,9 @@ impl Store {
     ) -> Result<Self, FileError> {
         let failed = |error| FileError::system(path, "read the file", &error);
         let length = file.metadata().map_err(failed)?.len();
-        let widths: Vec<usize> =
-            present(columns, &description.metadata).map(|column| column.width(&description.metadata)).collect();
+        let metadata = &description.metadata;
+        let of_histories = histories(columns, metadata).map(|history| history.width(metadata));
+        let widths: Vec<usize> = std::iter::once(1).chain(of_histories).collect();
         let ranges = description.ranges(widths.iter().copied(), seal::HEAD + described as u64..length);
         let Some(Ranges { histories, checkpoints, arrays }) = ranges else {
             let what = "its histories are not within it, each in a place of its own".into();
@@ -238,15 +241,19 @@ impl Store {
             .map_err(|error| FileError::system(path, "write the checkpoint", &error))
     }
 
-    /// The shapes of the body, if the file has them.
-    pub(crate) fn read_shapes(&self, path: &Path) -> Result<Option<Shapes>, FileError> {
-        if self.description.arrays.is_empty() {
+    /// The shapes of each body, if the file has them.
+    pub(crate) fn read_shapes(&self, path: &Path) -> Result<Vec<Option<Shapes>>, FileError> {
+        (0..self.metadata().bodies.len()).map(|body| self.read_shapes_of(body, path)).collect()
+    }
+
+    fn read_shapes_of(&self, body: usize, path: &Path) -> Result<Option<Shapes>, FileError> {
+        if self.description.arrays.iter().all(|array| array.body != body) {
             return Ok(None);
         }
-        let read =
-            Shapes::read(self).map_err(|error| FileError::system(path, "read the shapes of the body", &error))?;
+        let read = Shapes::read(&OfBody { store: self, body });
+        let read = read.map_err(|error| FileError::system(path, "read the shapes of the body", &error))?;
         let Some(shapes) = read else {
-            let what = "its shapes of the body are not whole".into();
+            let what = "its shapes of a body are not whole".into();
             return Err(FileError::Damaged { path: path.to_path_buf(), what });
         };
         shapes.check(path)?;
@@ -256,9 +263,9 @@ impl Store {
     /// Writes the shapes to their places.
     fn put(&self, shapes: ShapeSource<'_>) -> io::Result<()> {
         match shapes {
-            ShapeSource::Given(None) => Ok(()),
-            ShapeSource::Given(Some(shapes)) => {
-                for ((_, _, lists), range) in shapes.stored().into_iter().zip(&self.arrays) {
+            ShapeSource::Given(bodies) => {
+                let lists = bodies.iter().flatten().flat_map(Shapes::stored);
+                for ((_, _, lists), range) in lists.zip(&self.arrays) {
                     let mut start = range.start;
                     for bytes in lists.bytes() {
                         self.write_at(start, &bytes)?;
@@ -270,11 +277,6 @@ impl Store {
             ShapeSource::File(other) => (self.arrays.iter().zip(&other.arrays))
                 .try_for_each(|(to, from)| self.copy(to.start, other, from.start, from.end - from.start)),
         }
-    }
-
-    /// The array of a path, and its bytes.
-    fn array(&self, path: &str) -> Option<(&StoredArray, &Range<u64>)> {
-        self.description.arrays.iter().zip(&self.arrays).find(|(array, _)| array.path == path)
     }
 
     fn write_at(&self, start: u64, bytes: &[u8]) -> io::Result<()> {
@@ -322,27 +324,43 @@ impl Store {
 impl ShapeSource<'_> {
     /// The arrays that they are in a file, at no place yet: no place takes more digits.
     fn arrays(&self) -> Vec<StoredArray> {
-        let array = |path: &str, shape| StoredArray { path: path.to_owned(), shape, start: u64::MAX };
+        let array = |body, path: &str, shape| StoredArray { body, path: path.to_owned(), shape, start: u64::MAX };
         match self {
-            Self::Given(shapes) => shapes
-                .map_or_else(Vec::new, |shapes| shapes.stored())
-                .into_iter()
-                .map(|(path, shape, _)| array(path, shape))
-                .collect(),
-            Self::File(store) => {
-                store.description.arrays.iter().map(|found| array(&found.path, found.shape.clone())).collect()
+            Self::Given(bodies) => {
+                let of_body = |(body, shapes): (usize, &Option<Shapes>)| {
+                    let stored = shapes.as_ref().map_or_else(Vec::new, Shapes::stored);
+                    stored.into_iter().map(|(path, shape, _)| array(body, path, shape)).collect::<Vec<_>>()
+                };
+                bodies.iter().enumerate().flat_map(of_body).collect()
             }
+            Self::File(store) => (store.description.arrays.iter())
+                .map(|found| array(found.body, &found.path, found.shape.clone()))
+                .collect(),
         }
     }
 }
 
-impl Datasets for Store {
+/// The arrays of one body in a store.
+struct OfBody<'a> {
+    store: &'a Store,
+    body: usize,
+}
+
+impl OfBody<'_> {
+    /// The array of a path, and its bytes.
+    fn array(&self, path: &str) -> Option<(&StoredArray, &Range<u64>)> {
+        let mut arrays = self.store.description.arrays.iter().zip(&self.store.arrays);
+        arrays.find(|(array, _)| array.body == self.body && array.path == path)
+    }
+}
+
+impl Datasets for OfBody<'_> {
     fn shape(&self, path: &str) -> Option<&[usize]> {
         self.array(path).map(|(array, _)| &*array.shape)
     }
 
     fn whole(&self, path: &str) -> io::Result<Vec<u32>> {
-        self.array(path).map_or_else(|| Ok(Vec::new()), |(_, bytes)| self.read_numbers(bytes, u32::from_le_bytes))
+        self.array(path).map_or_else(|| Ok(Vec::new()), |(_, bytes)| self.store.read_numbers(bytes, u32::from_le_bytes))
     }
 
     fn numbers(&self, path: &str) -> io::Result<Vec<Vec<f64>>> {
@@ -351,7 +369,7 @@ impl Datasets for Store {
         let each = (bytes.end - bytes.start).checked_div(lists).unwrap_or_default();
         let list = |i: u64| {
             let start = bytes.start + i * each;
-            self.read_words(&(start..start + each), f64::from_bits)
+            self.store.read_words(&(start..start + each), f64::from_bits)
         };
         (0..lists).map(list).collect()
     }

@@ -2,11 +2,14 @@
 //!
 //! HDF5 only makes files here. It opens none that was there before, see [`mod@crate::container::seal`].
 
-use crate::column::present;
+use crate::column::SystemRow;
 use crate::container::room::Room;
 use crate::container::seal;
+use crate::history::{History, histories};
+use crate::metadata::BODIES;
 use crate::shapes::stored::{ShapeDataset, StoredArray};
-use crate::{Column, FileError, MeshProperties, Metadata, Units};
+use crate::{BodyMetadata, BodyProperties, Column, FileError, MeshProperties, Metadata, Units};
+use hdf5::Group;
 use hdf5::dataset::Layout;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::VarLenUnicode;
@@ -14,9 +17,9 @@ use ndarray::{ArrayView2, ArrayViewD, aview0, aview1};
 use std::path::Path;
 
 /// Makes the file at `place` (called `path` in messages), which begins with a number of bytes that HDF5 leaves alone, and
-/// closes it. Gives the first byte of each history, in the order of the columns, and of the checkpoints, and that of each
-/// array; 0 where there is nothing.
-pub(crate) fn make<R>(
+/// closes it. Gives the first byte of the times, of each history in order, and of the checkpoints, and that of each array; 0
+/// where there is nothing.
+pub(crate) fn make<R: SystemRow>(
     place: &Path,
     path: &Path,
     metadata: &Metadata,
@@ -33,31 +36,21 @@ pub(crate) fn make<R>(
     builder.with_fapl(|plist| plist.alignment(1, 8).file_locking(false));
     let file = builder.create(place).map_err(FileError::hdf5(path, "create the file"))?;
     write_root_attributes(path, &file, metadata, room.checkpoint_words.is_none())?;
-    write_body(path, &file, metadata)?;
-    write_points(path, &file, metadata)?;
-    if !metadata.support_names.is_empty() {
-        let names = metadata.support_names.iter().map(String::as_str);
-        write_texts(
-            path,
-            &file,
-            "supports/names",
-            names,
-            "names of the supports, in the order of the other data sets",
-        )?;
-    }
     let inputs = metadata.input_files.iter().map(String::as_str);
     write_texts(path, &file, "input_files", inputs, "files that the run read, where they were")?;
-    write_effects(path, &file, metadata)?;
     let warnings = metadata.warnings.iter().map(String::as_str);
     write_texts(path, &file, "warnings", warnings, "what should be known of the run; empty in an unfinished file")?;
+    for body in &metadata.bodies {
+        write_body(path, &file, body, &metadata.units)?;
+    }
     let arrays = (arrays.iter())
-        .filter_map(|array| Some((array, array.dataset()?)))
-        .map(|(array, dataset)| create_array(path, &file, array, dataset, &metadata.units))
+        .filter_map(|array| Some((array, metadata.bodies.get(array.body)?, array.dataset()?)))
+        .map(|(array, body, dataset)| create_array(path, &file, array, (body, dataset), &metadata.units))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut datasets = present(columns, metadata)
-        .enumerate()
-        .map(|(i, column)| create_history(path, &file, column, metadata, room, i == 0))
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut datasets = vec![create_times(path, &file, metadata, room)?];
+    for history in histories(columns, metadata) {
+        datasets.push(create_history(path, &file, history, metadata, room)?);
+    }
     if let Some(words) = room.checkpoint_words {
         let checkpoint = file
             .new_dataset::<u64>()
@@ -69,6 +62,9 @@ pub(crate) fn make<R>(
             .map_err(FileError::hdf5(path, "create dataset checkpoint"))?;
         datasets.push(checkpoint);
     }
+    if let Some(body) = metadata.only_body() {
+        write_short_paths(&file, body).map_err(FileError::hdf5(path, "write the short paths"))?;
+    }
     // An empty dataset has no place.
     let starts = |datasets: &[hdf5::Dataset]| datasets.iter().map(|dataset| dataset.offset().unwrap_or(0)).collect();
     let starts = [starts(&datasets), starts(&arrays)];
@@ -78,28 +74,52 @@ pub(crate) fn make<R>(
     Ok(starts)
 }
 
-/// Room for rows. Where no row has been written, the time of an unfinished file is NaN: it is the first history, and says
-/// which rows there are. The others are left as the operating system makes a longer file, zeros that nobody has to write.
-fn create_history<R>(
+/// Links at the root to all that is of a single body, for scripts that know nothing of bodies. Its model is `body` there.
+fn write_short_paths(file: &hdf5::File, body: &BodyMetadata) -> hdf5::Result<()> {
+    for name in file.group(&format!("{BODIES}/{}", body.name))?.member_names()? {
+        let short = if name == MODEL { "body" } else { &name };
+        file.link_soft(&format!("/{}", body.path(&name)), short)?;
+    }
+    Ok(())
+}
+
+/// Group of what is known of a body without its motion.
+const MODEL: &str = "model";
+
+/// Room for the times. Where no row has been written, the time of an unfinished file is NaN, which says which rows there are.
+fn create_times(path: &Path, file: &hdf5::File, metadata: &Metadata, room: Room) -> Result<hdf5::Dataset, FileError> {
+    let is_unfinished = room.checkpoint_words.is_some();
+    let times = create_rows(file, &[room.rows], if is_unfinished { FillTime::Alloc } else { FillTime::Never }, "time");
+    let times = times.map_err(FileError::hdf5(path, "make room for time"))?;
+    describe(path, &times, &metadata.units.time, "none", "time of each row")?;
+    Ok(times)
+}
+
+/// Room for the rows of a history. It is left as the operating system makes a longer file, zeros that nobody has to write.
+fn create_history<R: SystemRow>(
     path: &Path,
     file: &hdf5::File,
-    column: &Column<R>,
+    history: History<R>,
     metadata: &Metadata,
     room: Room,
-    is_time: bool,
 ) -> Result<hdf5::Dataset, FileError> {
-    let name = column.path;
-    let shape: Vec<usize> = std::iter::once(room.rows).chain(column.row_shape(metadata)).collect();
+    let (name, column) = (history.path(metadata), history.column);
+    let shape: Vec<usize> = std::iter::once(room.rows).chain(history.row_shape(metadata)).collect();
+    let dataset = create_rows(file, &shape, FillTime::Never, &name);
+    let dataset = dataset.map_err(FileError::hdf5(path, format!("make room for {name}")))?;
+    describe(path, &dataset, &column.unit(&metadata.units), column.frame, column.description)?;
+    Ok(dataset)
+}
+
+fn create_rows(file: &hdf5::File, shape: &[usize], fill: FillTime, name: &str) -> hdf5::Result<hdf5::Dataset> {
     let builder = file
         .new_dataset::<f64>()
         .layout(Layout::Contiguous)
         .alloc_time(Some(AllocTime::Early))
-        .fill_time(if is_time && room.checkpoint_words.is_some() { FillTime::Alloc } else { FillTime::Never })
+        .fill_time(fill)
         .fill_value(f64::NAN)
         .obj_track_times(false);
-    let dataset = builder.shape(shape).create(name).map_err(FileError::hdf5(path, format!("make room for {name}")))?;
-    describe(path, &dataset, &column.unit(&metadata.units), column.frame, column.description)?;
-    Ok(dataset)
+    builder.shape(shape).create(name)
 }
 
 /// Room for one of the arrays of the shapes.
@@ -107,36 +127,52 @@ fn create_array(
     path: &Path,
     file: &hdf5::File,
     StoredArray { shape, .. }: &StoredArray,
-    ShapeDataset { path: name, is_whole, unit, frame, description }: &ShapeDataset,
+    (body, ShapeDataset { path: name, is_whole, unit, frame, description }): (&BodyMetadata, &ShapeDataset),
     units: &Units,
 ) -> Result<hdf5::Dataset, FileError> {
+    let name = &body.path(name);
     let builder = if *is_whole { file.new_dataset::<u32>() } else { file.new_dataset::<f64>() };
     let builder = builder.layout(Layout::Contiguous).alloc_time(Some(AllocTime::Early)).fill_time(FillTime::Never);
-    let dataset = builder.obj_track_times(false).shape(shape.as_slice()).create(*name);
+    let dataset = builder.obj_track_times(false).shape(shape.as_slice()).create(name.as_str());
     let dataset = dataset.map_err(FileError::hdf5(path, format!("make room for {name}")))?;
     describe(path, &dataset, &units.in_labels(unit), frame, description)?;
     Ok(dataset)
 }
 
+/// Everything of a body that does not change with time.
+fn write_body(path: &Path, file: &hdf5::File, body: &BodyMetadata, units: &Units) -> Result<(), FileError> {
+    let name = format!("{BODIES}/{}", body.name);
+    let group = file.create_group(&name).map_err(FileError::hdf5(path, format!("write {name}")))?;
+    write_model(path, &group, &body.model, units)?;
+    write_points(path, &group, body, units)?;
+    if !body.support_names.is_empty() {
+        let names = body.support_names.iter().map(String::as_str);
+        let description = "names of the supports, in the order of the other data sets";
+        write_texts(path, &group, "supports/names", names, description)?;
+    }
+    write_effects(path, &group, body)?;
+    body.refusal.iter().try_for_each(|refusal| write_text(path, &group, "refusal", refusal))
+}
+
 /// The effects of the motion, a list for each of their texts.
-fn write_effects(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {
-    let effects = || metadata.effects.iter();
-    write_texts(path, file, "effects/name", effects().map(|effect| &*effect.name), "name of each effect")?;
+fn write_effects(path: &Path, group: &Group, body: &BodyMetadata) -> Result<(), FileError> {
+    let effects = || body.effects.iter();
+    write_texts(path, group, "effects/name", effects().map(|effect| &*effect.name), "name of each effect")?;
     let states = effects().map(|effect| &*effect.state);
-    write_texts(path, file, "effects/state", states, "on or off in the run; – of one that cannot act")?;
+    write_texts(path, group, "effects/state", states, "on or off in the run; – of one that cannot act")?;
     let measures = effects().map(|effect| &*effect.measure);
-    write_texts(path, file, "effects/measure", measures, "size of each effect, a formula and its value")?;
+    write_texts(path, group, "effects/measure", measures, "size of each effect, a formula and its value")?;
     let reasons = effects().map(|effect| &*effect.reason);
-    write_texts(path, file, "effects/reason", reasons, "reason of each state")
+    write_texts(path, group, "effects/reason", reasons, "reason of each state")
 }
 
 /// Names and places of the points.
-fn write_points(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {
-    let names = metadata.point_names.iter().map(String::as_str);
-    write_texts(path, file, "points/names", names, "names of the points, in the order of the other data sets")?;
-    let positions = ArrayView2::from(metadata.point_positions.as_slice());
+fn write_points(path: &Path, group: &Group, body: &BodyMetadata, units: &Units) -> Result<(), FileError> {
+    let names = body.point_names.iter().map(String::as_str);
+    write_texts(path, group, "points/names", names, "names of the points, in the order of the other data sets")?;
+    let positions = ArrayView2::from(body.point_positions.as_slice());
     let description = "position of the point in the undeformed body";
-    write_constant(path, file, "points/position", positions.into_dyn(), [&metadata.units.length, "mesh", description])
+    write_constant(path, group, "points/position", positions.into_dyn(), [&units.length, "mesh", description])
 }
 
 fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, complete: bool) -> Result<(), FileError> {
@@ -155,9 +191,6 @@ fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, co
     for (name, text) in texts {
         write_text(path, file, name, text)?;
     }
-    if let Some(refusal) = &metadata.refusal {
-        write_text(path, file, "refusal", refusal)?;
-    }
     for (name, number) in [("step", metadata.step), ("tolerance", metadata.tolerance), ("end", Some(metadata.end))] {
         let Some(number) = number else { continue };
         file.new_attr::<f64>()
@@ -171,9 +204,9 @@ fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, co
         .map_err(FileError::hdf5(path, "write the attribute complete"))
 }
 
-fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {
-    let body = &metadata.body;
-    let Units { length, mass, time } = &metadata.units;
+/// Mass properties and modes.
+fn write_model(path: &Path, group: &Group, body: &BodyProperties, units: &Units) -> Result<(), FileError> {
+    let Units { length, mass, time } = units;
     let frequency_unit = if time == "s" { "Hz".into() } else { format!("1/{time}") };
     let inertia_unit = format!("{mass} {length}^2");
     let inertia = ArrayView2::from(&body.inertia);
@@ -219,27 +252,22 @@ fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(),
             "unit vectors along which the support lets the origin move: three of a free body, one of a slider, none",
         ),
     ] {
-        write_constant(path, file, &format!("body/{name}"), values, [unit, frame, description])?;
+        write_constant(path, group, &format!("{MODEL}/{name}"), values, [unit, frame, description])?;
     }
-    write_texts(
-        path,
-        file,
-        "body/kinds",
-        body.kinds(),
-        "whether each coordinate is of a natural mode or a static shape",
-    )?;
+    let description = "whether each coordinate is of a natural mode or a static shape";
+    write_texts(path, group, "model/kinds", body.kinds(), description)?;
     match &body.mesh {
-        Some(mesh) => write_mesh(path, file, mesh, length),
+        Some(mesh) => write_mesh(path, group, mesh, length),
         None => Ok(()),
     }
 }
 
 /// Size of the finite-element model, and where all of it is.
-fn write_mesh(path: &Path, file: &hdf5::File, mesh: &MeshProperties, length: &str) -> Result<(), FileError> {
+fn write_mesh(path: &Path, group: &Group, mesh: &MeshProperties, length: &str) -> Result<(), FileError> {
     let MeshProperties { nodes, elements, size, body_file, shapes_hash } = mesh;
     let size = aview1(size).into_dyn();
-    write_constant(path, file, "body/mesh/size", size, [length, "mesh", "extent of the whole mesh along its axes"])?;
-    let group = file.group("body").map_err(FileError::hdf5(path, "write body"))?;
+    write_constant(path, group, "model/mesh/size", size, [length, "mesh", "extent of the whole mesh along its axes"])?;
+    let group = group.group(MODEL).map_err(FileError::hdf5(path, "write the model"))?;
     for (name, count) in [("mesh_nodes", nodes), ("mesh_elements", elements)] {
         group
             .new_attr::<i64>()
@@ -254,12 +282,12 @@ fn write_mesh(path: &Path, file: &hdf5::File, mesh: &MeshProperties, length: &st
 /// A data set of numbers, with its unit, frame and description.
 fn write_constant(
     path: &Path,
-    file: &hdf5::File,
+    group: &Group,
     name: &str,
     values: ArrayViewD<'_, f64>,
     [unit, frame, description]: [&str; 3],
 ) -> Result<(), FileError> {
-    let dataset = file
+    let dataset = group
         .new_dataset_builder()
         .with_data(values)
         .obj_track_times(false)
@@ -271,7 +299,7 @@ fn write_constant(
 /// A data set of texts.
 fn write_texts<'a>(
     path: &Path,
-    file: &hdf5::File,
+    group: &Group,
     name: &str,
     texts: impl Iterator<Item = &'a str>,
     description: &str,
@@ -280,7 +308,7 @@ fn write_texts<'a>(
         .map(str::parse)
         .collect::<Result<_, _>>()
         .map_err(|_| FileError::NulInText { path: path.to_path_buf(), attribute: name.into() })?;
-    let dataset = file
+    let dataset = group
         .new_dataset_builder()
         .with_data(&texts)
         .obj_track_times(false)

@@ -1,16 +1,29 @@
 //! VTKHDF, ParaView's own layout of an HDF5 file (version 2.0, ParaView 5.12 and later).
 //!
-//! The mesh is there once: all steps begin at the same points and cells, and `PointDataOffsets` says where the values of
-//! each step are. ParaView then keeps the mesh while time goes on. Steps are written one by one.
+//! A mesh is there once: all steps begin at the same points and cells, and `PointDataOffsets` says where the values of
+//! each step are. ParaView then keeps the mesh while time goes on. Steps are written one by one. Several meshes are a collection
+//! (version 2.1): a group for each by its name, with its steps, and a tree that links to them.
 
 use crate::FileError;
 use crate::error::check_length;
 use crate::paraview::fields::{Field, Grid};
+use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::types::FixedAscii;
 use hdf5::{Group, H5Type};
 use ndarray::{ArrayView, ArrayView1, ArrayView2, Dimension, s};
 use std::path::{Path, PathBuf};
 use whole_file::TemporaryFile;
+
+/// A mesh of a collection, with its fields.
+#[derive(Debug, Clone, Copy)]
+pub struct Block<'a> {
+    /// Name in ParaView, without `/`.
+    pub name: &'a str,
+    /// The mesh.
+    pub grid: &'a Grid,
+    /// The fields.
+    pub fields: &'a [Field],
+}
 
 /// A file that is being written. It takes its place in [`VtkHdf::finish`]; if it is dropped before, nothing has happened.
 #[derive(Debug)]
@@ -18,13 +31,13 @@ pub struct VtkHdf {
     file: hdf5::File,
     place: TemporaryFile,
     path: PathBuf,
-    points: usize,
-    datasets: Vec<hdf5::Dataset>,
+    /// Points of each mesh, and the datasets of its fields.
+    blocks: Vec<(usize, Vec<hdf5::Dataset>)>,
     overwrite: bool,
 }
 
 impl VtkHdf {
-    /// Begins a file with the fields at these times; without times, of a state that has none.
+    /// Begins a file of one mesh with the fields at these times; without times, of a state that has none.
     ///
     /// # Errors
     /// [`FileError::Exists`], [`FileError::System`] and [`FileError::Hdf5`].
@@ -35,46 +48,63 @@ impl VtkHdf {
         fields: &[Field],
         overwrite: bool,
     ) -> Result<Self, FileError> {
-        let path = path.as_ref();
+        Self::begin(path.as_ref(), overwrite, |root| Ok(vec![create_block(root, grid, times, fields)?]))
+    }
+
+    /// Begins a file of several meshes, which ParaView shows as a collection.
+    ///
+    /// # Errors
+    /// As [`VtkHdf::create`].
+    pub fn create_collection(
+        path: impl AsRef<Path>,
+        blocks: &[Block<'_>],
+        times: Option<&[f64]>,
+        overwrite: bool,
+    ) -> Result<Self, FileError> {
+        Self::begin(path.as_ref(), overwrite, |root| {
+            write_kind(root, [2, 1], "PartitionedDataSetCollection")?;
+            let tree = ordered_group(root, TREE)?;
+            let create = |(i, Block { name, grid, fields }): (usize, &Block<'_>)| {
+                let name = if *name == TREE { "Assembly (body)" } else { name };
+                let group = root.create_group(name)?;
+                group.new_attr::<i64>().create("Index")?.write_scalar(&(i as i64))?;
+                // Names in the tree are those of XML.
+                ordered_group(&tree, &format!("body{i}"))?.link_soft(&format!("/{ROOT}/{name}"), name)?;
+                create_block(&group, grid, times, fields)
+            };
+            blocks.iter().enumerate().map(create).collect()
+        })
+    }
+
+    fn begin(
+        path: &Path,
+        overwrite: bool,
+        blocks: impl FnOnce(&Group) -> hdf5::Result<Vec<(usize, Vec<hdf5::Dataset>)>>,
+    ) -> Result<Self, FileError> {
         let place = temporary(path, overwrite)?;
-        let failed = |what: &str| FileError::hdf5(path, format!("write {what}"));
         let mut builder = hdf5::File::with_options();
         // HDF5 would lock the file, and a process that is started meanwhile would keep the lock to its end.
         builder.with_fapl(|plist| plist.file_locking(false));
         let file = builder.create(&place).map_err(FileError::hdf5(path, "create the file"))?;
-        let group = file.create_group("VTKHDF").map_err(failed("VTKHDF"))?;
-        write_head(&group, grid).map_err(failed("the mesh"))?;
-        let steps = times.map_or(1, <[f64]>::len);
-        let points = grid.points.len();
-        let data = group.create_group("PointData").map_err(failed("PointData"))?;
-        let create = |field: &Field| {
-            let builder = data.new_dataset::<f64>();
-            match field.components {
-                1 => builder.shape(steps * points).create(field.name.as_str()),
-                components => builder.shape((steps * points, components)).create(field.name.as_str()),
-            }
-            .map_err(failed(&field.name))
-        };
-        let datasets = fields.iter().map(create).collect::<Result<_, _>>()?;
-        if let Some(times) = times {
-            write_steps(&group, times, points, fields).map_err(failed("Steps"))?;
-        }
-        Ok(Self { file, place, path: path.to_owned(), points, datasets, overwrite })
+        let blocks = ordered_group(&file, ROOT).and_then(|root| blocks(&root));
+        let blocks = blocks.map_err(FileError::hdf5(path, "write the mesh"))?;
+        Ok(Self { file, place, path: path.to_owned(), blocks, overwrite })
     }
 
-    /// Writes a field of a step, point by point; both are numbered from 0.
+    /// Writes a field of a step of a mesh, point by point; all three are numbered from 0.
     ///
     /// # Errors
-    /// [`FileError::WrongLength`] for a field that there is not; [`FileError::Hdf5`], also for a list of another length than
-    /// points times components, and for a step that there is not.
-    pub fn write(&self, step: usize, field: usize, values: &[f64]) -> Result<(), FileError> {
-        let count = self.datasets.len();
+    /// [`FileError::WrongLength`] for a mesh or a field that there is not; [`FileError::Hdf5`], also for a list of another length
+    /// than points times components, and for a step that there is not.
+    pub fn write(&self, block: usize, step: usize, field: usize, values: &[f64]) -> Result<(), FileError> {
+        let (points, datasets) = self.blocks.get(block).map_or((0, &[][..]), |(points, sets)| (*points, sets));
+        let count = datasets.len();
         check_length(&self.path, "the fields", count.max(field + 1), count)?;
-        let dataset = &self.datasets[field];
-        let rows = step * self.points..(step + 1) * self.points;
-        let written = match values.len() / self.points.max(1) {
+        let dataset = &datasets[field];
+        let rows = step * points..(step + 1) * points;
+        let written = match values.len() / points.max(1) {
             1 => dataset.write_slice(ArrayView1::from(values), s![rows]),
-            components => ArrayView2::from_shape((self.points, components), values)
+            components => ArrayView2::from_shape((points, components), values)
                 .map_err(|error| hdf5::Error::Internal(error.to_string()))
                 .and_then(|values| dataset.write_slice(values, s![rows, ..])),
         };
@@ -86,7 +116,7 @@ impl VtkHdf {
     /// # Errors
     /// [`FileError::Exists`], [`FileError::System`] and [`FileError::Hdf5`].
     pub fn finish(self) -> Result<(), FileError> {
-        drop(self.datasets);
+        drop(self.blocks);
         self.file.close().map_err(FileError::hdf5(&self.path, "write the file"))?;
         put(self.place, &self.path, self.overwrite)
     }
@@ -111,12 +141,50 @@ pub(crate) fn put(place: TemporaryFile, path: &Path, overwrite: bool) -> Result<
     })
 }
 
+/// Group of everything that VTK reads.
+const ROOT: &str = "VTKHDF";
+/// Group of the tree of a collection.
+const TREE: &str = "Assembly";
+
+/// A group that keeps the order of what is in it, as VTK wants of collections.
+fn ordered_group(parent: &Group, name: &str) -> hdf5::Result<Group> {
+    let order = LinkCreationOrder::Indexed;
+    parent.create_group_builder().with_gcpl(|plist| plist.link_creation_order(order)).create(name)
+}
+
+fn write_kind(group: &Group, version: [i64; 2], kind: &str) -> hdf5::Result<()> {
+    group.new_attr_builder().with_data(&version).create("Version")?;
+    let text = FixedAscii::<28>::from_ascii(kind).map_err(|error| hdf5::Error::Internal(error.to_string()))?;
+    group.new_attr::<FixedAscii<28>>().create("Type")?.write_scalar(&text)
+}
+
+/// A mesh with room for its fields: the number of its points, and a dataset for each field.
+fn create_block(
+    group: &Group,
+    grid: &Grid,
+    times: Option<&[f64]>,
+    fields: &[Field],
+) -> hdf5::Result<(usize, Vec<hdf5::Dataset>)> {
+    write_head(group, grid)?;
+    let (steps, points) = (times.map_or(1, <[f64]>::len), grid.points.len());
+    let data = group.create_group("PointData")?;
+    let create = |field: &Field| {
+        let builder = data.new_dataset::<f64>();
+        match field.components {
+            1 => builder.shape(steps * points).create(field.name.as_str()),
+            components => builder.shape((steps * points, components)).create(field.name.as_str()),
+        }
+    };
+    let datasets = fields.iter().map(create).collect::<Result<_, _>>()?;
+    if let Some(times) = times {
+        write_steps(group, times, points, fields)?;
+    }
+    Ok((points, datasets))
+}
+
 /// Version, type and mesh.
 fn write_head(group: &Group, grid: &Grid) -> hdf5::Result<()> {
-    group.new_attr_builder().with_data(&[2_i64, 0]).create("Version")?;
-    let kind =
-        FixedAscii::<16>::from_ascii("UnstructuredGrid").map_err(|error| hdf5::Error::Internal(error.to_string()))?;
-    group.new_attr::<FixedAscii<16>>().create("Type")?.write_scalar(&kind)?;
+    write_kind(group, [2, 0], "UnstructuredGrid")?;
     let (cells, each) = (grid.cells(), grid.cells.points());
     for (name, count) in [
         ("NumberOfPoints", grid.points.len()),

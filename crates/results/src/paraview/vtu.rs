@@ -35,17 +35,31 @@ pub fn write_vtu(
     put(place, path, overwrite)
 }
 
-/// Writes the list of files, each with its time, by their names in the same folder.
+/// A file in a list.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PvdEntry {
+    /// Its time.
+    pub time: f64,
+    /// Number of its mesh among those of this time, from 0.
+    pub part: usize,
+    /// Name of this mesh.
+    pub name: String,
+    /// Name of the file, in the folder of the list.
+    pub file: String,
+}
+
+/// Writes the list of files.
 ///
 /// # Errors
 /// [`FileError::Exists`] and [`FileError::System`].
-pub fn write_pvd(path: impl AsRef<Path>, files: &[(f64, String)], overwrite: bool) -> Result<(), FileError> {
+pub fn write_pvd(path: impl AsRef<Path>, files: &[PvdEntry], overwrite: bool) -> Result<(), FileError> {
     let path = path.as_ref();
     let place = temporary(path, overwrite)?;
     let mut text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n".to_owned();
-    for (time, name) in files {
+    for PvdEntry { time, part, name, file } in files {
+        let [name, file] = [name, file].map(|text| escaped(text));
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{}\"/>", escaped(name));
+        let _ = writeln!(text, "<DataSet timestep=\"{time:?}\" part=\"{part}\" name=\"{name}\" file=\"{file}\"/>");
     }
     text += "</Collection>\n</VTKFile>\n";
     std::fs::write(&place, text).map_err(|error| FileError::system(path, "write the file", &error))?;

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::io;
 
-/// A kind of dataset, of which a file has one or none.
+/// A kind of dataset, of which a body has one or none.
 #[derive(Debug)]
 pub(crate) struct ShapeDataset {
-    /// Path of the dataset.
+    /// Path of the dataset in the group of its body.
     pub path: &'static str,
     /// True of integers of 32 bits, false of floating-point numbers of 64.
     pub is_whole: bool,
@@ -21,15 +21,15 @@ pub(crate) struct ShapeDataset {
     pub description: &'static str,
 }
 
-const NODES: &str = "body/mesh/nodes";
-const POSITIONS: &str = "body/mesh/positions";
-const FACES: &str = "body/mesh/surface_triangles";
-const SHAPES: &str = "body/shapes";
-const PAIRS: &str = "body/large_deflection/pairs";
-const PRODUCTS: &str = "body/large_deflection/products";
-const STRESS_NODES: &str = "body/stress/nodes";
-const STRESS_SHAPES: &str = "body/stress/shapes";
-const STRESS_PRODUCTS: &str = "body/stress/products";
+const NODES: &str = "model/mesh/nodes";
+const POSITIONS: &str = "model/mesh/positions";
+const FACES: &str = "model/mesh/surface_triangles";
+const SHAPES: &str = "model/shapes";
+const PAIRS: &str = "model/large_deflection/pairs";
+const PRODUCTS: &str = "model/large_deflection/products";
+const STRESS_NODES: &str = "model/stress/nodes";
+const STRESS_SHAPES: &str = "model/stress/shapes";
+const STRESS_PRODUCTS: &str = "model/stress/products";
 
 /// All of them.
 pub(crate) const DATASETS: [ShapeDataset; 9] = [
@@ -81,7 +81,9 @@ const fn numbers(
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StoredArray {
-    /// Path of one of [`DATASETS`].
+    /// Number of its body.
+    pub body: usize,
+    /// Path of one of [`DATASETS`], in the group of the body.
     pub path: String,
     pub shape: Vec<usize>,
     /// First byte in the file, 0 where it is empty.
@@ -122,10 +124,10 @@ impl Lists<'_> {
     }
 }
 
-/// A reader of the datasets of a file: the numbers of one, list by list, each with as many numbers as its shape after the
+/// A reader of the datasets of a body: the numbers of one, list by list, each with as many numbers as its shape after the
 /// first index says.
 pub(crate) trait Datasets {
-    /// The shape of a dataset; `None` if the file does not have it.
+    /// The shape of a dataset; `None` if the body does not have it.
     fn shape(&self, path: &str) -> Option<&[usize]>;
     /// The lists of a dataset of integers, as one.
     fn whole(&self, path: &str) -> io::Result<Vec<u32>>;

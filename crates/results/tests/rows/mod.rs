@@ -1,6 +1,6 @@
 //! Rows that the tests write, and that they find again.
 
-use results::Values::{Modal, Number, Points, Quaternion, Vector};
+use results::Quantity::{Number, Quaternion, Vector};
 use results::*;
 use std::path::PathBuf;
 
@@ -17,7 +17,15 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
         scene_text: "title = \"ω₂\"\n".repeat(10_000), // more than an attribute of fixed length can hold
         scene_file: "platten/frei.toml".into(),
         input_files: vec!["platten/frei.toml".into(), "netz ω.msh".into()],
-        body: BodyProperties {
+        bodies: vec![body("body", modes, point_names)],
+        warnings: Vec::new(),
+    }
+}
+
+pub fn body(name: &str, modes: usize, point_names: &[&str]) -> BodyMetadata {
+    BodyMetadata {
+        name: name.into(),
+        model: BodyProperties {
             mass: 0.00935,
             center_of_mass: [0.1, -0.2, 0.3],
             inertia: [[5.5, 0.1, 0.2], [0.1, 2112.7, 0.3], [0.2, 0.3, 2117.8]],
@@ -46,7 +54,6 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
             reason: "It is slow.".into(),
         }],
         refusal: None,
-        warnings: Vec::new(),
     }
 }
 
@@ -70,55 +77,93 @@ pub fn shapes(modes: usize) -> Shapes {
 pub type Writer = results::Writer<Row>;
 pub type Resumed = results::Resumed<Row>;
 
-/// The widths are known to `sealed`, too. The last column is in the file of a run with a hinge only.
+/// The widths are known to `sealed`, too. The last column is of a body with a hinge only.
 pub static COLUMNS: [Column<Row>; 22] = [
-    column("time", Number(|row| row.time)),
-    column("attitude", Quaternion(|row| [row.time, 0.1, 0.2, 0.3])),
-    column("position", Vector(|row| row.vector(1.0))),
-    column("velocity", Vector(|row| row.vector(2.0))),
-    column("angular_velocity", Vector(|row| row.vector(3.0))),
-    column("angular_acceleration", Vector(|row| row.vector(4.0))),
-    column("modal/displacement", Modal(|row| &row.modal[0])),
-    column("modal/velocity", Modal(|row| &row.modal[1])),
-    column("energy/kinetic", Number(|row| row.time + 5.0)),
-    column("energy/strain", Number(|row| row.time + 6.0)),
-    column("energy/work", Number(|row| row.time + 14.0)),
-    column("energy/dissipation", Number(|row| row.time + 15.0)),
-    column("energy/balance", Number(|row| row.time + 16.0)),
-    column("momentum/linear", Vector(|row| row.vector(7.0))),
-    column("momentum/angular", Vector(|row| row.vector(8.0))),
-    column("momentum/linear_balance", Vector(|row| row.vector(17.0))),
-    column("momentum/angular_balance", Vector(|row| row.vector(18.0))),
-    column("points/displacement", Points(|row, i| Some(row.points.get(i)?[0]))),
-    column("points/velocity", Points(|row, i| Some(row.points.get(i)?[1]))),
-    column("points/acceleration", Points(|row, i| Some(row.points.get(i)?[2]))),
-    column("points/rigid_acceleration", Points(|row, i| Some(row.points.get(i)?[3]))),
-    column("hinge/angle", Number(|row| row.time + 19.0)).only_with("hinge"),
+    Column::of_system(["energy", "kinetic"], KIND, "of a test", Number(|row: &Row| row.time + 20.0)),
+    of_body("", "attitude", Quaternion(|row| [row.time, 0.1, 0.2, 0.3])),
+    of_body("", "position", Vector(|row| row.vector(1.0))),
+    of_body("", "velocity", Vector(|row| row.vector(2.0))),
+    of_body("", "angular_velocity", Vector(|row| row.vector(3.0))),
+    of_body("", "angular_acceleration", Vector(|row| row.vector(4.0))),
+    Column::of_modes("displacement", KIND.0, "of a test", |row: &Body| &row.modal[0]),
+    Column::of_modes("velocity", KIND.0, "of a test", |row: &Body| &row.modal[1]),
+    of_body("energy", "kinetic", Number(|row| row.time + 5.0)),
+    of_body("energy", "strain", Number(|row| row.time + 6.0)),
+    of_body("energy", "work", Number(|row| row.time + 14.0)),
+    of_body("energy", "dissipation", Number(|row| row.time + 15.0)),
+    of_body("energy", "balance", Number(|row| row.time + 16.0)),
+    of_body("momentum", "linear", Vector(|row| row.vector(7.0))),
+    of_body("momentum", "angular", Vector(|row| row.vector(8.0))),
+    of_body("momentum", "linear_balance", Vector(|row| row.vector(17.0))),
+    of_body("momentum", "angular_balance", Vector(|row| row.vector(18.0))),
+    of_points("displacement", |row, i| Some(row.points.get(i)?[0])),
+    of_points("velocity", |row, i| Some(row.points.get(i)?[1])),
+    of_points("acceleration", |row, i| Some(row.points.get(i)?[2])),
+    of_points("rigid_acceleration", |row, i| Some(row.points.get(i)?[3])),
+    of_body("hinge", "angle", Number(|row| row.time + 19.0)).only_with("hinge"),
 ];
 
-const fn column(path: &'static str, values: Values<Row>) -> Column<Row> {
-    Column::new(path, "mass length^2/time^2", "none", "of a test", values)
+const KIND: (Dimension, &str) = (Dimension::Energy, "none");
+
+const fn of_body(group: &'static str, name: &'static str, values: Quantity<Body>) -> Column<Row> {
+    Column::of_body([group, name], KIND, "of a test", values)
+}
+
+const fn of_points(name: &'static str, values: fn(&Body, usize) -> Option<[f64; 3]>) -> Column<Row> {
+    Column::of_points(name, KIND, "of a test", Quantities::Vectors(values))
 }
 
 /// Distinct numbers for every row, so that nothing can be swapped unseen.
 #[derive(Debug)]
 pub struct Row {
     pub time: f64,
+    pub bodies: Vec<Body>,
+}
+
+#[derive(Debug)]
+pub struct Body {
+    time: f64,
     pub modal: [Vec<f64>; 2],
     /// The vectors of each point.
     pub points: Vec<[[f64; 3]; 4]>,
 }
 
+impl SystemRow for Row {
+    type Body = Body;
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+}
+
 impl Row {
     pub fn new(i: usize, modes: usize, points: usize) -> Self {
+        Self::of_bodies(i, &[(modes, points)])
+    }
+
+    /// Of bodies with so many modes and points.
+    pub fn of_bodies(i: usize, bodies: &[(usize, usize)]) -> Self {
         let time = i as f64 * 1e-4;
-        let mut row = Self {
+        let body =
+            |(b, (modes, points)): (usize, &(usize, usize))| Body::new(time + 1000.0 * b as f64, *modes, *points);
+        Self { time, bodies: bodies.iter().enumerate().map(body).collect() }
+    }
+}
+
+impl Body {
+    fn new(time: f64, modes: usize, points: usize) -> Self {
+        let mut body = Self {
             time,
             modal: [1.0, -3.0].map(|factor| (0..modes).map(|k| factor * (time + k as f64)).collect()),
             points: Vec::new(),
         };
-        row.points = (0..points).map(|p| [10.0, 11.0, 12.0, 13.0].map(|k| row.vector(100.0 * p as f64 + k))).collect();
-        row
+        let vectors = |p: usize| [10.0, 11.0, 12.0, 13.0].map(|k| body.vector(100.0 * p as f64 + k));
+        body.points = (0..points).map(vectors).collect();
+        body
     }
 
     fn vector(&self, k: f64) -> [f64; 3] {
@@ -126,14 +171,14 @@ impl Row {
     }
 }
 
-/// The first `rows` rows are those of [`Row::new`], in every column.
+/// The first `rows` rows are those of [`Row::of_bodies`], in every column.
 pub fn assert_rows(results: &Results, rows: usize) {
     assert_eq!(results.rows(), rows);
-    let Metadata { body, point_names, .. } = &results.metadata;
+    let sizes = |body: &BodyMetadata| (body.model.frequencies.len(), body.point_names.len());
+    let bodies: Vec<_> = results.metadata.bodies.iter().map(sizes).collect();
     for i in 0..rows {
-        let row = Row::new(i, body.frequencies.len(), point_names.len());
-        assert!(results.is_row(i, &COLUMNS, &row), "row {i}");
-        assert!(!results.is_row(i, &COLUMNS, &Row::new(i + 1, body.frequencies.len(), point_names.len())));
+        assert!(results.is_row(i, &COLUMNS, &Row::of_bodies(i, &bodies)), "row {i}");
+        assert!(!results.is_row(i, &COLUMNS, &Row::of_bodies(i + 1, &bodies)));
     }
 }
 

@@ -37,10 +37,12 @@ pub fn left_out(description: &Value, length: usize) -> Vec<Range<usize>> {
     let number = |value: &Value| value.as_u64().map_or(0, |number| number as usize);
     let Some(words) = description["checkpoint_words"].as_u64() else { return Vec::new() };
     let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
-    let modes = list(&description["metadata"]["body"]["frequencies"]).len();
-    let points = list(&description["metadata"]["point_names"]).len();
+    let body = &description["metadata"]["bodies"][0];
+    let modes = list(&body["model"]["frequencies"]).len();
+    let points = list(&body["point_names"]).len();
+    // Time, then the body, and the energy of the system.
     let widths = [1, 4, 3, 3, 3, 3, modes, modes, 1, 1, 1, 1, 1, 3, 3, 3, 3];
-    let widths = widths.into_iter().chain(std::iter::repeat_n(3 * points, 4));
+    let widths = widths.into_iter().chain(std::iter::repeat_n(3 * points, 4)).chain([1]);
     let sizes = widths.map(|width| number(&description["rows"]).saturating_mul(8 * width));
     let sizes = sizes.chain([(words as usize).saturating_mul(16)]);
     let mut ranges: Vec<_> = (list(&description["starts"]).iter().map(number).zip(sizes))

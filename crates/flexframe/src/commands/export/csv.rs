@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use results::{Column, Metadata, Results, Values};
+use results::{Components, History, Metadata, Results, SystemRow, histories};
 use whole_file::WholeFile;
 
 use super::Exported;
@@ -20,8 +20,8 @@ struct Part {
 }
 
 /// Writes the rows of a results file, finished or not, as a table: a row of heads, such as `position x [mm]`, and then a
-/// row for each row. `columns` are paths of the columns, or what some begin with, such as `energy` or `points/P1`; all if
-/// there are none. The time comes first in any case. To a folder it goes under the name of the results file.
+/// row for each row. `columns` are paths of the columns, or what some begin with, such as `energy` or `points/P1`, of several
+/// bodies `bodies/ring/energy`; all if there are none. The time comes first in any case. To a folder it goes under the name of the results file.
 ///
 /// The table of an unfinished run begins with a line that says so, after a `#`.
 ///
@@ -103,60 +103,42 @@ impl Table {
 
 fn chosen(file: &Path, results: &Results, columns: &[String]) -> Result<Vec<Part>, ExportError> {
     let metadata = &results.metadata;
-    let has = |column: &&Column<_>| column.part.is_none_or(|part| metadata.parts.iter().any(|has| has == part));
-    let all: Vec<Part> = COLUMNS.iter().filter(has).flat_map(|column| parts(column, metadata)).collect();
+    let time = Part { path: "time".to_owned(), heads: vec![format!("time [{}]", metadata.units.time)] };
+    let all: Vec<Part> = histories(&COLUMNS, metadata).flat_map(|history| parts(history, metadata)).collect();
     let is_of = |part: &Part, asked: &str| {
         let rest = part.path.strip_prefix(asked.trim_end_matches('/'));
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
     };
-    if let Some(found) = columns.iter().find(|asked| !all.iter().any(|part| is_of(part, asked))) {
-        let columns = all.into_iter().map(|part| part.path).collect();
+    let is_known = |asked: &String| std::iter::once(&time).chain(&all).any(|part| is_of(part, asked));
+    if let Some(found) = columns.iter().find(|asked| !is_known(asked)) {
+        let columns = std::iter::once(time).chain(all).map(|part| part.path).collect();
         return Err(ExportError::NoColumn { path: file.to_owned(), found: found.clone(), columns });
     }
-    let is_chosen =
-        |part: &Part| columns.is_empty() || part.path == "time" || columns.iter().any(|asked| is_of(part, asked));
-    Ok(all.into_iter().filter(is_chosen).collect())
+    let is_chosen = |part: &Part| columns.is_empty() || columns.iter().any(|asked| is_of(part, asked));
+    Ok(std::iter::once(time).chain(all.into_iter().filter(is_chosen)).collect())
 }
 
-/// The histories of a column: one, or one for each point.
-fn parts<R>(column: &Column<R>, metadata: &Metadata) -> Vec<Part> {
+/// The parts of a history: itself, or one for each point.
+fn parts<R: SystemRow>(history: History<R>, metadata: &Metadata) -> Vec<Part> {
+    let column = history.column;
     let unit = column.unit(&metadata.units);
-    let part = |path: String, names: Vec<String>| {
+    let names: Vec<String> = match (column.components(), history.body(metadata)) {
+        (Components::Number, _) => vec![String::new()],
+        (Components::Modes, Some(body)) => (body.model.kinds().enumerate())
+            .map(|(k, kind)| if kind == "natural mode" { format!("{}", k + 1) } else { format!("{} {kind}", k + 1) })
+            .collect(),
+        (components, _) => components.names().iter().map(|name| (*name).to_owned()).collect(),
+    };
+    let part = |place: Option<&str>| {
+        let path = history.short_path_of(metadata, place);
         let head = |name: &String| {
             if name.is_empty() { format!("{path} [{unit}]") } else { format!("{path} {name} [{unit}]") }
         };
-        let heads = names.iter().map(head).collect();
-        Part { path, heads }
+        Part { heads: names.iter().map(head).collect(), path }
     };
-    let list = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
-    let one = |names| vec![part(column.path.to_owned(), names)];
-    match column.values {
-        Values::Number(_) => one(list(&[""])),
-        Values::Vector(_) => one(list(&["x", "y", "z"])),
-        Values::Quaternion(_) => one(list(&["w", "x", "y", "z"])),
-        Values::Modal(_) => one((metadata.body.kinds().enumerate())
-            .map(|(k, kind)| if kind == "natural mode" { format!("{}", k + 1) } else { format!("{} {kind}", k + 1) })
-            .collect()),
-        Values::Points(_) => {
-            let quantity = column.path.trim_start_matches("points/");
-            let of_point = |name: &String| part(format!("points/{name}/{quantity}"), list(&["x", "y", "z"]));
-            metadata.point_names.iter().map(of_point).collect()
-        }
-        Values::Supports(_) => {
-            let quantity = column.path.trim_start_matches("supports/");
-            let of_support = |name: &String| part(format!("supports/{name}/{quantity}"), list(&["x", "y", "z"]));
-            metadata.support_names.iter().map(of_support).collect()
-        }
-        Values::PointNumbers(count, _) => {
-            let quantity = column.path.trim_start_matches("points/");
-            let names = match (quantity, count) {
-                (_, 1) => list(&[""]),
-                ("stress", 6) => list(&["xx", "yy", "zz", "xy", "yz", "zx"]),
-                _ => (1..=count).map(|i| i.to_string()).collect(),
-            };
-            let of_point = |name: &String| part(format!("points/{name}/{quantity}"), names.clone());
-            metadata.point_names.iter().map(of_point).collect()
-        }
+    match history.is_of_places() {
+        true => history.places(metadata).iter().map(|name| part(Some(name))).collect(),
+        false => vec![part(None)],
     }
 }
 

@@ -1,28 +1,37 @@
-//! The motion in a results file on the mesh of its body: shapes times modal coordinates.
+//! The motion in a results file on the meshes of its bodies: shapes times modal coordinates.
 
 use std::path::Path;
 
 use fem_tet10::von_mises;
 use figures::facets;
 use nalgebra::{Matrix3, Vector3};
-use results::{CellKind, Grid, Results, Shapes, StressShapes};
+use results::{BodyMetadata, BodyResults, CellKind, Grid, Results, Shapes, StressShapes};
 use rigid_kin::Attitude;
 
 use super::error::ExportError;
 use super::rows::ExportRows;
-use crate::drawn::{Drawn, Part};
+use crate::drawn::{Drawn, DrawnBody, Part};
 
-/// The rows of a results file, and the shapes of its body.
+/// The rows of a results file, and the meshes of its bodies.
 #[derive(Debug)]
 pub struct Motion {
     pub(super) results: Results,
-    pub(super) shapes: Shapes,
-    pub(super) grid: Grid,
-    /// A sentence about stress that is not known.
-    pub(super) without_stress: Option<String>,
+    /// The bodies that have a mesh of elements.
+    pub(super) bodies: Vec<MeshedBody>,
 }
 
-/// Positions of all points of the grid at a row, and their stress.
+/// A body on its mesh.
+#[derive(Debug)]
+pub(super) struct MeshedBody {
+    /// Its number among all bodies.
+    number: usize,
+    pub shapes: Shapes,
+    pub grid: Grid,
+    /// A sentence about stress that is not known.
+    pub without_stress: Option<String>,
+}
+
+/// Positions of all points of a grid at a row, and their stress.
 #[derive(Debug, Default)]
 pub(super) struct Placed {
     /// Displacement by deformation, body components, point by point.
@@ -34,20 +43,54 @@ pub(super) struct Placed {
 }
 
 impl Motion {
-    /// Reads a results file, finished or not, with the shapes of its body on the surface, which it carries, or in the whole
-    /// volume, which is in the body file.
+    /// Reads a results file, finished or not, with the shapes of its bodies on the surface, which it carries, or in the whole
+    /// volume, which is in body files.
     ///
     /// # Errors
-    /// [`ExportError`].
+    /// [`ExportError`]; also where no body has a mesh of elements.
     pub fn open(file: &Path, volume: bool) -> Result<Self, ExportError> {
         let part = if volume { Part::Volume } else { Part::Surface };
-        let Drawn { results, shapes, tetrahedra, body_file } = Drawn::open(file, part)?;
-        let Some(mesh) = &results.metadata.body.mesh else {
+        let Drawn { results, bodies } = Drawn::open(file, part)?;
+        let meshes: Vec<_> = results.metadata.bodies.iter().map(|body| body.model.mesh.as_ref()).collect();
+        if meshes.iter().all(Option::is_none) {
             return Err(ExportError::NoMesh { path: file.to_owned() });
-        };
-        let Some(shapes) = shapes.filter(|_| mesh.elements > 0) else {
+        }
+        let has_elements = |number: usize| meshes[number].is_some_and(|mesh| mesh.elements > 0);
+        let bodies: Vec<MeshedBody> = (bodies.into_iter().enumerate())
+            .filter(|(number, _)| has_elements(*number))
+            .filter_map(|(number, body)| MeshedBody::new(number, body, volume))
+            .collect();
+        if bodies.is_empty() {
             return Err(ExportError::NoElements { path: file.to_owned() });
-        };
+        }
+        Ok(Self { results, bodies })
+    }
+
+    /// True if it is of one body, and not of a system.
+    pub(super) fn is_single(&self) -> bool {
+        self.results.metadata.only_body().is_some()
+    }
+
+    /// A warning about an export of these results.
+    pub(super) fn warning(&self) -> Option<String> {
+        self.warning_with(ExportRows::warning(&self.results))
+    }
+
+    /// The same of an export without rows.
+    pub(super) fn warning_without_rows(&self) -> Option<String> {
+        self.warning_with(None)
+    }
+
+    fn warning_with(&self, first: Option<String>) -> Option<String> {
+        let of_bodies = self.bodies.iter().filter_map(|body| body.without_stress.clone());
+        let sentences: Vec<String> = first.into_iter().chain(of_bodies).collect();
+        (!sentences.is_empty()).then(|| sentences.join("; "))
+    }
+}
+
+impl MeshedBody {
+    fn new(number: usize, DrawnBody { shapes, tetrahedra, body_file }: DrawnBody, volume: bool) -> Option<Self> {
+        let shapes = shapes?;
         let points = shapes.positions.clone();
         let grid = if volume {
             // VTK has the middles of 13 and 23 the other way round.
@@ -62,19 +105,21 @@ impl Motion {
             let file = file.display();
             format!("{file} has no stress, so that the export has none: flexframe reduce SCENE --stress -o {file} makes it with it")
         });
-        Ok(Self { results, shapes, grid, without_stress })
+        Some(Self { number, shapes, grid, without_stress })
     }
 
-    /// A warning about an export of these results.
-    pub(super) fn warning(&self) -> Option<String> {
-        let sentences: Vec<String> =
-            ExportRows::warning(&self.results).into_iter().chain(self.without_stress.clone()).collect();
-        (!sentences.is_empty()).then(|| sentences.join("; "))
+    /// Everything of it that does not change with time.
+    pub fn metadata<'m>(&self, motion: &'m Motion) -> &'m BodyMetadata {
+        &motion.results.metadata.bodies[self.number]
+    }
+
+    fn results<'m>(&self, motion: &'m Motion) -> Option<BodyResults<'m>> {
+        motion.results.bodies().nth(self.number)
     }
 
     /// The stress of a coordinate at all points, in the order of VTK's symmetric tensors, which is that of
     /// [`fem_tet10::COMPONENTS`]; where materials meet, that with the larger von Mises stress.
-    pub(super) fn stress_of(&self, stress: &StressShapes, coordinate: usize) -> Vec<f64> {
+    pub fn stress_of(&self, stress: &StressShapes, coordinate: usize) -> Vec<f64> {
         let mut larger = vec![[0.0; 6]; self.grid.points.len()];
         for (node, value) in stress.nodes.iter().zip(stress.shapes.get(coordinate).into_iter().flatten()) {
             let so_far = &mut larger[*node as usize];
@@ -86,14 +131,15 @@ impl Motion {
     }
 
     /// Positions of the points at a row, `r + Aᵀ (X + Ψ ξ)`, and their stress.
-    pub(super) fn place(&self, row: usize, out: &mut Placed) {
-        let history = |path: &str| self.results.table(path).and_then(|table| table.row(row)).unwrap_or_default();
+    pub fn place(&self, motion: &Motion, row: usize, out: &mut Placed) {
+        let results = self.results(motion);
+        let history = |path: &str| results.and_then(|results| results.table(path)?.row(row)).unwrap_or_default();
         let vector = |path: &str| Vector3::from_iterator(history(path).iter().copied().chain([0.0; 3]));
         let q = history("modal/displacement");
         out.elastic = self.shapes.displaced(&self.shapes.coordinates(q)).into_flattened();
         let attitude = history("attitude").try_into().ok().and_then(|wxyz| Attitude::from_wxyz(wxyz).ok());
         let to_global: Matrix3<f64> = attitude.unwrap_or(Attitude::identity()).global_to_body().transpose();
-        let (origin, at_origin) = (Vector3::from(self.results.metadata.body.origin), vector("origin"));
+        let (origin, at_origin) = (Vector3::from(self.metadata(motion).model.origin), vector("origin"));
         out.displacement.clear();
         for (x, u) in self.grid.points.iter().zip(out.elastic.as_chunks::<3>().0) {
             let x = Vector3::from(*x);

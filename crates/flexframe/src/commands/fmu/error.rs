@@ -21,6 +21,9 @@ pub enum FmuError {
     /// The body cannot be made.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// No body.
+    #[error("there is no body to pack; give one or more")]
+    NoBody,
     /// The motion cannot start.
     #[error("{}", source.in_scene(scene))]
     Start {

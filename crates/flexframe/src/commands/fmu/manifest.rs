@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use keys::{Digest, Hash};
+use scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use super::error::FmuError;
@@ -18,13 +19,24 @@ pub struct Manifest {
     pub guid: String,
     /// The version of flexframe that has packed it.
     pub program_version: String,
+    /// The bodies.
+    pub bodies: Vec<PackedBody>,
     /// The BLAKE3 hash of every other file.
     pub files: BTreeMap<String, String>,
 }
 
+/// A body among the resources of an FMU.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PackedBody {
+    /// Its name; none of a single one.
+    pub name: Option<String>,
+    /// The file of the scene of it alone.
+    pub scene: String,
+}
+
 impl Manifest {
-    /// The list of the files in a folder; `names` are relative to it.
-    pub(super) fn of(folder: &Path, names: &[String]) -> Result<Self, FmuError> {
+    /// The list of the files in a folder, and of the bodies in them; `names` are relative to it.
+    pub(super) fn of(folder: &Path, names: &[String], bodies: Vec<PackedBody>) -> Result<Self, FmuError> {
         let mut files = BTreeMap::new();
         let program_version = env!("CARGO_PKG_VERSION").to_owned();
         let mut digest = Digest::new().text(&program_version);
@@ -34,10 +46,13 @@ impl Manifest {
             digest = digest.text(name).hash(&hash);
             files.insert(name.clone(), hash.to_string());
         }
+        for PackedBody { name, scene } in &bodies {
+            digest = digest.text(name.as_deref().unwrap_or_default()).text(scene);
+        }
         let digits = digest.finish().to_string();
         let part = |from: usize, to: usize| digits.get(from..to).unwrap_or_default();
         let guid = format!("{{{}-{}-{}-{}-{}}}", part(0, 8), part(8, 12), part(12, 16), part(16, 20), part(20, 32));
-        Ok(Self { guid, program_version, files })
+        Ok(Self { guid, program_version, bodies, files })
     }
 
     /// Reads the manifest of an unpacked FMU, and checks every file that it names.
@@ -59,5 +74,13 @@ impl Manifest {
             }
         }
         Ok(manifest)
+    }
+
+    /// The scenes of the bodies.
+    pub(super) fn scenes(&self, resources: &Path) -> Result<Vec<Scene>, FmuError> {
+        let scene = |PackedBody { name, scene }: &PackedBody| {
+            Ok(Scene { name: name.clone(), ..Scene::read(resources.join(scene))? })
+        };
+        self.bodies.iter().map(scene).collect()
     }
 }

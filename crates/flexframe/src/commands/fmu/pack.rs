@@ -15,9 +15,9 @@ use zip::{CompressionMethod, ZipWriter};
 use super::description::describe;
 use super::error::FmuError;
 use super::library::Library;
-use super::manifest::{MANIFEST, Manifest};
+use super::manifest::{MANIFEST, Manifest, PackedBody};
 use super::model::FmuModel;
-use super::packed_scene::{BODY, PackedScene, SCENE};
+use super::packed_scene::PackedScene;
 use super::variables::Source;
 use crate::files::json;
 use crate::files::write_error::WriteError;
@@ -90,50 +90,34 @@ pub fn scene_of_body(file: &Path) -> Result<Scene, FmuError> {
     Ok(Scene::parse(&text, file)?)
 }
 
-/// Packs a scene and its body as an FMU, whole or not at all.
+/// Packs the bodies of a scene as an FMU, whole or not at all.
 ///
 /// # Errors
 /// [`FmuError`].
 pub fn pack(
-    scene: &Scene,
+    scenes: &[Scene],
     builder: &Builder,
     output: &Path,
     settings: &FmuSettings,
     mut progress: impl FnMut(BuildProgress),
 ) -> Result<FmuReport, FmuError> {
-    if matches!(scene.body, Body::Matrices(_)) {
-        let (found, expected) =
-            ("a body of matrices, which no body file holds yet", "a body with a mesh, or a rigid one");
-        return Err(scene.refuse("body.matrices", found, expected, "give the body a mesh to pack it").into());
-    }
+    scenes.iter().try_for_each(check)?;
     let library = Library::find(settings.library.as_deref())?;
-    if !matches!(scene.modes.flexible, Flexible::Count(_)) {
-        let help = "give the number of modes to keep; `flexframe modes` shows their frequencies";
-        let found = "\"auto\", which goes by the loads of the scene";
-        return Err(scene
-            .refuse("modes.flexible", found, "a number, since nobody knows the forces from outside", help)
-            .into());
-    }
-    let is_rigid = matches!(scene.body, Body::Rigid(_));
     let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
     let resources = temporary.path();
-    let packed = PackedScene::new(&scene.source, scene.path.parent().unwrap_or(Path::new("")), is_rigid)?;
-    let mut names = vec![SCENE.to_owned()];
-    std::fs::write(resources.join(SCENE), &packed.text).map_err(WriteError::of(&resources.join(SCENE)))?;
-    for (from, name) in packed.tables {
-        let to = resources.join(&name);
-        std::fs::copy(&from, to).map_err(|source| FmuError::Unreadable { path: from, source })?;
-        names.push(name);
+    let (mut names, mut bodies) = (Vec::new(), Vec::new());
+    for (i, scene) in scenes.iter().enumerate() {
+        // The only body of its own scene has no number.
+        let prefix = scene.name.as_ref().map_or_else(String::new, |_| format!("{}-", i + 1));
+        bodies.push(pack_body((scene, builder), resources, &prefix, &mut names, &mut progress)?);
     }
-    if !is_rigid {
-        builder.write_body(&scene.clone().for_unknown_forces(), &resources.join(BODY), false, &mut progress)?;
-        names.push(BODY.to_owned());
-    }
+    let manifest = Manifest::of(resources, &names, bodies)?;
     // What is packed is what will be opened. Its files have been found by now; messages name the scene that was given.
-    let opened = Scene::read(resources.join(SCENE))?;
-    let named = Scene { path: scene.path.clone(), source: scene.source.clone(), ..opened };
-    let fmu = FmuModel::new(named, &Builder::default(), progress)?;
-    let manifest = Manifest::of(resources, &names)?;
+    let opened = manifest.scenes(resources)?.into_iter().zip(scenes).map(|(opened, given)| {
+        let Scene { path, source, whole_file, .. } = given.clone();
+        Scene { path, source, whole_file, ..opened }
+    });
+    let fmu = FmuModel::new(opened.collect(), &Builder::default(), progress)?;
     let text = serde_json::to_string_pretty(&manifest).map_err(|error| FmuError::Text(error.to_string()))?;
     std::fs::write(resources.join(MANIFEST), text).map_err(WriteError::of(&resources.join(MANIFEST)))?;
     names.push(MANIFEST.to_owned());
@@ -143,6 +127,50 @@ pub fn pack(
         .map_err(WriteError::of(output))?;
     write_whole(output, &bytes).map_err(WriteError::of(output))?;
     Ok(FmuReport::new(output, &fmu, manifest, bytes.len()))
+}
+
+/// Refuses a body that cannot be packed.
+fn check(scene: &Scene) -> Result<(), FmuError> {
+    if matches!(scene.body, Body::Matrices(_)) {
+        let (found, expected) =
+            ("a body of matrices, which no body file holds yet", "a body with a mesh, or a rigid one");
+        return Err(scene.refuse("body.matrices", found, expected, "give the body a mesh to pack it").into());
+    }
+    if !matches!(scene.modes.flexible, Flexible::Count(_)) {
+        let help = "give the number of modes to keep; `flexframe modes` shows their frequencies";
+        let found = "\"auto\", which goes by the loads of the scene";
+        return Err(scene
+            .refuse("modes.flexible", found, "a number, since nobody knows the forces from outside", help)
+            .into());
+    }
+    Ok(())
+}
+
+/// Writes the scene of a body, its tables and its body file into the resources, and adds their names.
+fn pack_body(
+    (scene, builder): (&Scene, &Builder),
+    resources: &Path,
+    prefix: &str,
+    names: &mut Vec<String>,
+    progress: &mut impl FnMut(BuildProgress),
+) -> Result<PackedBody, FmuError> {
+    let [scene_name, body_name] = ["scene.toml", "body.h5"].map(|name| format!("{prefix}{name}"));
+    let body_file = (!matches!(scene.body, Body::Rigid(_))).then_some(body_name);
+    let folder = scene.path.parent().unwrap_or(Path::new(""));
+    let packed = PackedScene::new(&scene.source, folder, body_file.as_deref(), prefix)?;
+    let place = resources.join(&scene_name);
+    std::fs::write(&place, &packed.text).map_err(WriteError::of(&place))?;
+    names.push(scene_name.clone());
+    for (from, name) in packed.tables {
+        let to = resources.join(&name);
+        std::fs::copy(&from, to).map_err(|source| FmuError::Unreadable { path: from, source })?;
+        names.push(name);
+    }
+    if let Some(body_file) = body_file {
+        builder.write_body(&scene.clone().for_unknown_forces(), &resources.join(&body_file), false, progress)?;
+        names.push(body_file);
+    }
+    Ok(PackedBody { name: scene.name.clone(), scene: scene_name })
 }
 
 /// The name of a file as a name in C.

@@ -6,12 +6,7 @@ use toml::{Table, Value};
 
 use super::error::FmuError;
 
-/// The body file of the FMU.
-pub(super) const BODY: &str = "body.h5";
-/// The scene of the FMU.
-pub(super) const SCENE: &str = "scene.toml";
-
-/// A scene that finds everything in its own folder.
+/// A scene of one body that finds everything in its own folder.
 pub(super) struct PackedScene {
     pub text: String,
     /// Tables of histories: where they are, and their names in the FMU.
@@ -19,16 +14,17 @@ pub(super) struct PackedScene {
 }
 
 impl PackedScene {
-    /// The packed form of a scene in a folder; a body with a mesh becomes that of the [`BODY`].
-    pub fn new(text: &str, folder: &Path, is_rigid: bool) -> Result<Self, FmuError> {
+    /// The packed form of a scene in a folder. With a `body_file`, the body becomes that of it; names of tables begin with
+    /// `prefix`.
+    pub fn new(text: &str, folder: &Path, body_file: Option<&str>, prefix: &str) -> Result<Self, FmuError> {
         let mut scene: Table = toml::from_str(text).map_err(|error| FmuError::Text(error.to_string()))?;
-        if !is_rigid {
-            let body = Table::from_iter([("file".to_owned(), Value::from(BODY))]);
+        if let Some(file) = body_file {
+            let body = Table::from_iter([("file".to_owned(), Value::from(file))]);
             scene.insert("body".to_owned(), Value::Table(body));
         }
         let mut tables = Vec::new();
         for (_, value) in scene.iter_mut().filter(|(key, _)| *key != "body") {
-            take_tables(value, folder, &mut tables);
+            take_tables(value, folder, prefix, &mut tables);
         }
         let text = toml::to_string(&scene).map_err(|error| FmuError::Text(error.to_string()))?;
         Ok(Self { text, tables })
@@ -36,17 +32,17 @@ impl PackedScene {
 }
 
 /// Names the files of all histories of the kind "table" in `value` anew.
-fn take_tables(value: &mut Value, folder: &Path, tables: &mut Vec<(PathBuf, String)>) {
+fn take_tables(value: &mut Value, folder: &Path, prefix: &str, tables: &mut Vec<(PathBuf, String)>) {
     match value {
-        Value::Array(entries) => entries.iter_mut().for_each(|entry| take_tables(entry, folder, tables)),
+        Value::Array(entries) => entries.iter_mut().for_each(|entry| take_tables(entry, folder, prefix, tables)),
         Value::Table(table) => {
             let is_table = table.get("kind").and_then(Value::as_str) == Some("table");
             if let Some(Value::String(file)) = table.get_mut("file").filter(|_| is_table) {
-                let name = format!("table{}.csv", tables.len() + 1);
+                let name = format!("{prefix}table{}.csv", tables.len() + 1);
                 tables.push((folder.join(&*file), name.clone()));
                 *file = name;
             }
-            table.iter_mut().for_each(|(_, value)| take_tables(value, folder, tables));
+            table.iter_mut().for_each(|(_, value)| take_tables(value, folder, prefix, tables));
         }
         _ => {}
     }
@@ -70,7 +66,7 @@ mod tests {
             kind = "force"
             history = { kind = "product", factors = [{ kind = "step", at = 1.0 }, { kind = "table", file = "/b.csv" }] }
         "#;
-        let packed = PackedScene::new(text, Path::new("scenes"), false).unwrap();
+        let packed = PackedScene::new(text, Path::new("scenes"), Some("body.h5"), "").unwrap();
         let scene: Table = toml::from_str(&packed.text).unwrap();
         assert_eq!(scene["body"].as_table().unwrap(), &Table::from_iter([("file".to_owned(), Value::from("body.h5"))]));
         assert_eq!(scene["loads"][0]["history"]["file"].as_str(), Some("table1.csv"));

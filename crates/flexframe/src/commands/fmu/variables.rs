@@ -1,11 +1,11 @@
 //! The variables of an FMU: inputs, and the columns of a results file as outputs.
 
 use dynamics::{DrivenMotion, Effect};
-use model::Model;
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
-use results::{Column, Metadata, Values};
-use scene::{Load, Scene};
+use results::{Components, Dimension, History, Metadata, Role, histories};
+use scene::Load;
 
+use crate::commands::run::RunBody;
 use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;
 
@@ -29,7 +29,16 @@ pub enum Source {
 
 /// A number that the importing program sets. Each is held from one communication point to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Input {
+pub struct Input {
+    /// Number of its body.
+    pub body: usize,
+    /// Its kind.
+    pub kind: InputKind,
+}
+
+/// Kinds of inputs of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InputKind {
     /// The factor on a load of the scene, by its number among those that act.
     Factor(usize),
     /// A component of a force at a point of the output, global axes.
@@ -43,7 +52,7 @@ pub enum Input {
 impl Input {
     /// Its value until it is set.
     pub fn start(self) -> f64 {
-        if matches!(self, Self::Factor(_)) { 1.0 } else { 0.0 }
+        if matches!(self.kind, InputKind::Factor(_)) { 1.0 } else { 0.0 }
     }
 }
 
@@ -60,90 +69,102 @@ pub struct Variable {
     pub source: Source,
 }
 
-/// Forces of the body at the moment follow the inputs at once.
-const DIRECT: [&str; 4] = ["angular_acceleration", "acceleration", "rigid_acceleration", "drive/"];
-/// Columns for looking at, not for wiring.
-const LOCAL: [&str; 3] = ["modal/", "energy/", "momentum/"];
-
-/// All variables of a model: the time, the inputs, then the columns of a results file.
-pub(super) fn variables(scene: &Scene, model: &Model, metadata: &Metadata) -> Vec<Variable> {
+/// All variables of a model: the time, the inputs of each body, then the columns of a results file.
+pub(super) fn variables(bodies: &[RunBody<'_>], metadata: &Metadata) -> Vec<Variable> {
     let mut all =
         vec![Variable { name: "time".to_owned(), description: "time".to_owned(), unit: "time", source: Source::Time }];
-    inputs(scene, model, &mut all);
+    for (i, body) in bodies.iter().enumerate() {
+        inputs(i, body, &Of::body(metadata, i), &mut all);
+    }
     let mut place = 0;
-    for column in COLUMNS.iter().filter(|column| column.is_in(metadata)) {
-        let count: usize = column.row_shape(metadata).iter().product();
-        for index in 0..count {
-            if column.path != "time" {
-                all.push(of_column(column, metadata, index, place + index));
-            }
-        }
+    for history in histories(&COLUMNS, metadata) {
+        let count = history.width(metadata);
+        all.extend((0..count).map(|index| of_history(history, metadata, index, place + index)));
         place += count;
     }
     all
 }
 
-fn inputs(scene: &Scene, model: &Model, all: &mut Vec<Variable>) {
-    let mut add = |name: String, description: String, unit: &'static str, input: Input| {
-        all.push(Variable { name, description, unit, source: Source::Input(input) });
-    };
-    let acts = |load: &Load| model.physics.effects[Effect::Gravity] || !matches!(load, Load::Gravity(_));
-    for (acting, (i, _)) in scene.loads.iter().enumerate().filter(|(_, load)| acts(load)).enumerate() {
-        let description = format!("factor on load {} of the scene, counted from 1, beside its own history", i + 1);
-        add(format!("loads[{}].factor", i + 1), description, "1", Input::Factor(acting));
-    }
-    for (point, (name, _)) in model.points.iter().enumerate() {
-        let name_of = |what: &str, axis: usize| format!("points.{}.{what}[{}]", identifier(name), axis + 1);
-        for (axis, letter) in AXES.iter().enumerate() {
-            let description = format!("force on the point {name}, {letter} (global)");
-            add(name_of("force", axis), description, "mass length/time^2", Input::Force(point, axis));
-        }
-        for (axis, letter) in AXES.iter().enumerate() {
-            let description = format!("moment on the point {name}, {letter} (global)");
-            add(name_of("moment", axis), description, "mass length^2/time^2", Input::Moment(point, axis));
+/// The thing that variables are of, as their names and descriptions have it: nothing of a single body.
+struct Of {
+    prefix: String,
+    words: String,
+}
+
+impl Of {
+    fn body(metadata: &Metadata, body: usize) -> Self {
+        match metadata.bodies.get(body).filter(|_| metadata.only_body().is_none()) {
+            Some(body) => {
+                Self { prefix: format!("{}.", identifier(&body.name)), words: format!(" of the body {}", body.name) }
+            }
+            None => Self { prefix: String::new(), words: String::new() },
         }
     }
-    if let Some(drive) = &model.physics.drive {
-        let unit = match drive.motion {
-            DrivenMotion::Turn { .. } => "rad/time^2",
-            DrivenMotion::Slide { .. } => "length/time^2",
-        };
-        let description = "acceleration of the drive, added to that of the scene".to_owned();
-        add("drive.acceleration".to_owned(), description, unit, Input::DriveAcceleration);
+
+    fn history(history: History<Row>, metadata: &Metadata) -> Self {
+        match history.body {
+            Some(body) => Self::body(metadata, body),
+            None => Self { prefix: "system.".to_owned(), words: String::new() },
+        }
     }
 }
 
-const AXES: [&str; 3] = ["x", "y", "z"];
-
-fn of_column(column: &Column<Row>, metadata: &Metadata, index: usize, place: usize) -> Variable {
-    let Column { path, frame, description, unit, .. } = column;
-    let places = column.places(metadata);
-    let each: usize = column.row_shape(metadata).iter().product::<usize>() / places.len().max(1);
-    let (mut name, point) = match (path.split_once('/'), places.get(index / each.max(1))) {
-        (Some((group, quantity)), Some(point)) => {
-            (format!("{group}.{}.{quantity}", identifier(point)), format!(" {point}"))
+fn inputs(body: usize, RunBody { scene, model }: &RunBody<'_>, of: &Of, all: &mut Vec<Variable>) {
+    let Of { prefix, words } = of;
+    let mut add = |name: String, description: String, unit: &'static str, kind: InputKind| {
+        let source = Source::Input(Input { body, kind });
+        all.push(Variable { name: format!("{prefix}{name}"), description, unit, source });
+    };
+    let acts = |load: &Load| model.physics.effects[Effect::Gravity] || !matches!(load, Load::Gravity(_));
+    for (acting, (i, _)) in scene.loads.iter().enumerate().filter(|(_, load)| acts(load)).enumerate() {
+        let whole = if words.is_empty() { " of the scene" } else { words };
+        let description = format!("factor on load {}{whole}, counted from 1, beside its own history", i + 1);
+        add(format!("loads[{}].factor", i + 1), description, "1", InputKind::Factor(acting));
+    }
+    let axes = Components::Vector.names();
+    for (point, (name, _)) in model.points.iter().enumerate() {
+        let name_of = |what: &str, axis: usize| format!("points.{}.{what}[{}]", identifier(name), axis + 1);
+        for (axis, letter) in axes.iter().enumerate() {
+            let description = format!("force on the point {name}{words}, {letter} (global)");
+            add(name_of("force", axis), description, Dimension::Force.unit(), InputKind::Force(point, axis));
         }
-        _ => (path.replace('/', "."), String::new()),
-    };
-    let component = index % each.max(1);
-    let names: &[&str] = match column.values {
-        Values::Quaternion(_) => &["w", "x", "y", "z"],
-        Values::PointNumbers(6, _) => &["xx", "yy", "zz", "xy", "yz", "zx"],
-        Values::Vector(_) | Values::Points(_) | Values::Supports(_) => &AXES,
-        _ => &[],
-    };
-    let mut description = format!("{description}{point}");
-    if each > 1 || matches!(column.values, Values::Modal(_)) {
+        for (axis, letter) in axes.iter().enumerate() {
+            let description = format!("moment on the point {name}{words}, {letter} (global)");
+            add(name_of("moment", axis), description, Dimension::Moment.unit(), InputKind::Moment(point, axis));
+        }
+    }
+    if let Some(drive) = &model.physics.drive {
+        let dimension = match drive.motion {
+            DrivenMotion::Turn { .. } => Dimension::AngularAcceleration,
+            DrivenMotion::Slide { .. } => Dimension::Acceleration,
+        };
+        let description = format!("acceleration of the drive{words}, added to that of the scene");
+        add("drive.acceleration".to_owned(), description, dimension.unit(), InputKind::DriveAcceleration);
+    }
+}
+
+fn of_history(history: History<Row>, metadata: &Metadata, index: usize, place: usize) -> Variable {
+    let column = history.column;
+    let Of { prefix, words } = Of::history(history, metadata);
+    let each = history.values_of_each(metadata).max(1);
+    let point = history.places(metadata).get(index / each);
+    let [group, of_point] = [column.group.to_owned(), point.map_or_else(String::new, |name| identifier(name))];
+    let parts = [group.as_str(), &of_point, column.name];
+    let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    let mut name = format!("{prefix}{}", parts.join("."));
+    let mut description =
+        format!("{}{}{words}", column.description, point.map_or_else(String::new, |name| format!(" {name}")));
+    let component = index % each;
+    if column.components() != Components::Number {
         name += &format!("[{}]", component + 1);
+        let names = column.components().names();
         description += &names.get(component).map_or_else(|| format!(", {}", component + 1), |name| format!(", {name}"));
     }
-    if *frame != "none" {
-        description += &format!(" ({frame})");
+    if column.frame != "none" {
+        description += &format!(" ({})", column.frame);
     }
-    let is_direct = DIRECT.iter().any(|direct| path.trim_start_matches("points/").starts_with(direct))
-        || path.starts_with("reaction/");
-    let is_output = !LOCAL.iter().any(|group| path.starts_with(group));
-    Variable { name, description, unit, source: Source::Row { place, is_direct, is_output } }
+    let (is_direct, is_output) = (column.role == Role::Direct, column.role != Role::Internal);
+    Variable { name, description, unit: column.dimension.unit(), source: Source::Row { place, is_direct, is_output } }
 }
 
 /// Characters that a name in quotes may not have in it.

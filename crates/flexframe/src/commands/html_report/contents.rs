@@ -5,13 +5,17 @@ use std::path::Path;
 use fem_tet10::von_mises;
 use nalgebra::Vector3;
 use report::{
-    Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
+    Balance, Body, Component, Effect, Fact, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
     Surface, Units,
 };
-use results::{BodyProperties, Column, EffectProperties, MeshProperties, Results, Shapes, StressShapes, Values};
+use results::{
+    BodyProperties, BodyResults, Components, EffectProperties, History, MeshProperties, Metadata, Results, Scope,
+    Shapes, StressShapes, histories,
+};
 
 use crate::commands::html_report::quantities::Quantities;
 use crate::commands::modes::frequency_unit;
+use crate::drawn::DrawnBody;
 use crate::files::scene_file;
 use crate::report::quantity;
 use crate::rows::columns::COLUMNS;
@@ -20,42 +24,58 @@ use crate::rows::units::UnitLabels;
 use crate::surface;
 
 /// All of it; `None` where the file has not got the columns that it needs.
-pub(super) fn contents(file: &Path, results: &Results, shapes: Option<Shapes>) -> Option<Report> {
+pub(super) fn contents(file: &Path, results: &Results, drawn: Vec<DrawnBody>) -> Option<Report> {
     let run = &results.metadata;
-    let (body, units) = (&run.body, &run.units);
-    let surface = shapes.map(surface::Surface::new);
+    let units = &run.units;
     let quantities = Quantities::new(results);
     let scene_file = scene_file::to_path(&run.scene_file);
+    let bodies = results.bodies().zip(drawn).map(|(of, drawn)| body(of, drawn.shapes, results));
     Some(Report {
         title: run.title.clone(),
         program: format!("flexframe {}", run.program_version),
         state: state(file, results)?,
         units: Units { length: units.length.clone(), time: units.time.clone(), frequency: frequency_unit(&units.time) },
         facts: facts(results)?,
-        surface: surface.as_ref().map(|surface| reference(surface, body)),
-        shapes: surface.as_ref().map_or_else(Vec::new, |surface| described(&surface.shapes, body)),
-        stress: surface.as_ref().and_then(|surface| stress(&surface.shapes, results)),
-        motion: motion(results, surface.as_ref().map(|surface| &surface.shapes))?,
-        histories: in_order().flat_map(|column| histories(column, results, &quantities)).collect(),
+        times: results.numbers("time")?.to_vec(),
+        bodies: bodies.collect::<Option<_>>()?,
+        histories: in_order(run).into_iter().flat_map(|history| courses(history, results, &quantities)).collect(),
         balances: balances(results, &quantities)?,
-        effects: effects(results),
         scene: SceneText {
             file: scene_file.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             text: run.scene_text.clone(),
         },
-        warnings: warnings(results),
+        warnings: warnings(run),
     })
 }
 
-/// The columns in the order in which they are looked at: first the motion of the points, last the quaternion.
-fn in_order() -> impl Iterator<Item = &'static Column<Row>> {
-    let mut columns: Vec<_> = COLUMNS.iter().collect();
-    columns.sort_by_key(|column| match column.values {
-        Values::Points(_) | Values::PointNumbers(..) => 0,
-        Values::Quaternion(_) => 2,
-        _ => 1,
+fn body(of: BodyResults<'_>, shapes: Option<Shapes>, results: &Results) -> Option<Body> {
+    let model = &of.metadata.model;
+    let surface = shapes.map(surface::Surface::new);
+    Some(Body {
+        name: of.metadata.name.clone(),
+        facts: facts_of_body(model, &results.metadata.units),
+        surface: surface.as_ref().map(|surface| reference(surface, model)),
+        shapes: surface.as_ref().map_or_else(Vec::new, |surface| described(&surface.shapes, model)),
+        stress: surface.as_ref().and_then(|surface| stress(&surface.shapes, of, results)),
+        motion: motion(of, results.rows(), surface.as_ref().map(|surface| &surface.shapes))?,
+        effects: of.metadata.effects.iter().map(effect).collect(),
+    })
+}
+
+/// The histories in the order in which they are looked at: body by body, first the motion of the points, last the quaternion.
+/// Those of the system are the same as those of a single body.
+fn in_order(run: &Metadata) -> Vec<History<Row>> {
+    let is_several = run.only_body().is_none();
+    let mut all: Vec<_> = histories(&COLUMNS, run).filter(|history| history.body.is_some() || is_several).collect();
+    all.sort_by_key(|history| {
+        let within = match (history.column.scope(), history.column.components()) {
+            (Scope::Point, _) => 0,
+            (_, Components::Quaternion) => 2,
+            _ => 1,
+        };
+        (history.body.unwrap_or(usize::MAX), within)
     });
-    columns.into_iter()
+    all
 }
 
 fn state(file: &Path, results: &Results) -> Option<RunState> {
@@ -73,10 +93,20 @@ fn state(file: &Path, results: &Results) -> Option<RunState> {
     Some(RunState::Unfinished(words))
 }
 
+fn fact(label: &str, value: String) -> Fact {
+    Fact { label: label.to_owned(), value }
+}
+
+/// Facts about the run.
 fn facts(results: &Results) -> Option<Vec<Fact>> {
-    let units = &results.metadata.units;
-    let body = &results.metadata.body;
-    let fact = |label: &str, value: String| Fact { label: label.to_owned(), value };
+    let Metadata { units, bodies, scheme, formulation, .. } = &results.metadata;
+    let last = results.numbers("time")?.last().copied().unwrap_or_default();
+    let several = (bodies.len() > 1).then(|| fact("Bodies", bodies.len().to_string()));
+    let time = fact("Time", format!("{} {} in {} rows", quantity(last), units.time, results.rows()));
+    Some(several.into_iter().chain([time, fact("Scheme", format!("{scheme} ({formulation})"))]).collect())
+}
+
+fn facts_of_body(body: &BodyProperties, units: &results::Units) -> Vec<Fact> {
     let mut facts = vec![fact("Mass", format!("{} {}", quantity(body.mass), units.mass))];
     match &body.mesh {
         Some(MeshProperties { nodes, elements: 0, .. }) => {
@@ -92,10 +122,7 @@ fn facts(results: &Results) -> Option<Vec<Fact>> {
         (modes, 0) => fact("Shapes", format!("{modes} modes")),
         (modes, fixed) => fact("Shapes", format!("{modes} modes, {fixed} static")),
     });
-    let last = results.numbers("time")?.last().copied().unwrap_or_default();
-    facts.push(fact("Time", format!("{} {} in {} rows", quantity(last), units.time, results.rows())));
-    facts.push(fact("Scheme", format!("{} ({})", results.metadata.scheme, results.metadata.formulation)));
-    Some(facts)
+    facts
 }
 
 /// Number of natural modes, which come before the static shapes.
@@ -131,9 +158,9 @@ fn described(shapes: &Shapes, body: &BodyProperties) -> Vec<Shape> {
 
 /// The stress of each shape, and of each product of two large modes; at a node between materials, of the one whose von Mises
 /// stress is largest in all rows.
-fn stress(shapes: &Shapes, results: &Results) -> Option<StressField> {
+fn stress(shapes: &Shapes, of: BodyResults<'_>, results: &Results) -> Option<StressField> {
     let stress = shapes.stress.as_ref().filter(|_| !shapes.displacements.is_empty())?;
-    let modal = results.table("modal/displacement")?;
+    let modal = of.table("modal/displacement")?;
     let rows: Vec<_> = (0..results.rows()).filter_map(|row| Some(shapes.stress_coordinates(modal.row(row)?))).collect();
     let sites = most_stressed(stress, &rows);
     let results::Units { length, mass, time } = &results.metadata.units;
@@ -162,133 +189,152 @@ fn most_stressed(stress: &StressShapes, rows: &[Vec<f64>]) -> Vec<usize> {
     places.chunk_by(|a, b| stress.nodes[*a] == stress.nodes[*b]).filter_map(of_node).collect()
 }
 
-fn motion(results: &Results, shapes: Option<&Shapes>) -> Option<Motion> {
-    let modal = results.table("modal/displacement")?;
-    let of_row = |q: &[f64]| shapes.map_or_else(|| q.to_vec(), |shapes| shapes.coordinates(q));
-    let coordinates: Option<Vec<_>> = (0..results.rows()).map(|row| Some(of_row(modal.row(row)?))).collect();
+fn motion(of: BodyResults<'_>, rows: usize, shapes: Option<&Shapes>) -> Option<Motion> {
+    let modal = of.table("modal/displacement")?;
+    // Without a surface there are no shapes to be seen.
+    let of_row = |q: &[f64]| shapes.map_or_else(Vec::new, |shapes| shapes.coordinates(q));
+    let coordinates: Option<Vec<_>> = (0..rows).map(|row| Some(of_row(modal.row(row)?))).collect();
     Some(Motion {
-        times: results.numbers("time")?.to_vec(),
-        origins: results.vectors::<3>("origin")?.to_vec(),
-        attitudes: results.vectors::<4>("attitude")?.to_vec(),
+        origins: of.vectors::<3>("origin")?.to_vec(),
+        attitudes: of.vectors::<4>("attitude")?.to_vec(),
         coordinates: coordinates?.concat(),
     })
 }
 
-/// A column as histories: one, or one for each point. The time is none.
-fn histories(column: &Column<Row>, results: &Results, quantities: &Quantities<'_>) -> Vec<History> {
-    let (unit, least_range) = (quantities.unit(column), quantities.least_range(column));
+/// The name of a body in front of what is of it; nothing of a single body, and that of all bodies of the system.
+fn prefix(history: History<Row>, run: &Metadata) -> String {
+    match history.body(run) {
+        None => "all bodies: ".to_owned(),
+        Some(_) if run.only_body().is_some() => String::new(),
+        Some(body) => format!("{}: ", body.name),
+    }
+}
+
+/// A history as courses: one, or one for each point.
+fn courses(history: History<Row>, results: &Results, quantities: &Quantities<'_>) -> Vec<report::History> {
+    let (run, column) = (&results.metadata, history.column);
+    let (unit, least_range) = (quantities.unit(column), quantities.least_range(history));
     let frame = if column.frame == "none" { String::new() } else { format!(" ({})", column.frame) };
-    let history = |group: String, name: &str, path: &str| {
-        let table = results.table(path)?;
+    let course = |group: String, place: Option<&str>| {
+        let table = results.table(&history.path_of(run, place))?;
         let components = (0..table.width())
             .map(|k| Component {
-                name: component_name(column, k, table.width(), &results.metadata.body),
+                name: component_name(history, k, run),
                 values: table.column(k).into_iter().flatten().collect(),
             })
             .collect::<Vec<_>>();
-        let name = format!("{}{frame}", name.replace('_', " "));
-        (!components.is_empty()).then(|| History { group, name, unit: unit.clone(), least_range, components })
+        let (name, unit) = (format!("{}{frame}", column.name.replace('_', " ")), unit.clone());
+        (!components.is_empty()).then_some(report::History { group, name, unit, least_range, components })
     };
-    let path = column.path;
-    if path == "time" {
-        return Vec::new();
-    }
-    let places = match column.values {
-        Values::Points(_) | Values::PointNumbers(..) => Some(("point", "points/")),
-        Values::Supports(_) => Some(("support", "supports/")),
-        _ => None,
-    };
-    match places.and_then(|(kind, prefix)| Some((kind, prefix, path.strip_prefix(prefix)?))) {
-        Some((kind, prefix, name)) => (column.places(&results.metadata).iter())
-            .filter_map(|place| history(format!("{kind} {place}"), name, &format!("{prefix}{place}/{name}")))
-            .collect(),
-        None => {
-            let (group, name) = path.split_once('/').unwrap_or(("body", path));
-            let group = if group == "modal" { "modal coordinates" } else { group };
-            history(group.to_owned(), name, path).into_iter().collect()
-        }
-    }
-}
-
-fn component_name(column: &Column<Row>, k: usize, width: usize, body: &BodyProperties) -> String {
-    match column.values {
-        Values::Modal(_) => {
-            let modes = width - body.static_shapes.min(width);
-            if k < modes { format!("{}", k + 1) } else { format!("static {}", k + 1) }
-        }
-        Values::Quaternion(_) => ["w", "x", "y", "z"][k].to_owned(),
-        Values::Vector(_) | Values::Points(_) | Values::Supports(_) => ["x", "y", "z"][k].to_owned(),
-        Values::PointNumbers(6, _) => ["xx", "yy", "zz", "xy", "yz", "zx"][k].to_owned(),
-        Values::PointNumbers(count, _) if count > 1 => format!("{}", k + 1),
-        Values::Number(_) | Values::PointNumbers(..) => String::new(),
-    }
-}
-
-/// The three balances, each with its terms and with its change since the first row.
-fn balances(results: &Results, quantities: &Quantities<'_>) -> Option<Vec<Balance>> {
-    let balance = |name: &str, law: &str, terms: &[(&str, &str)], error: &str| {
-        let column = COLUMNS.iter().find(|column| column.path == error)?;
-        let components = |path: &str, name: &str, from_first: bool| -> Option<Vec<Component>> {
-            let table = results.table(path)?;
-            let component = |k: usize| {
-                let values: Vec<f64> = table.column(k)?.collect();
-                let first = if from_first { values.first().copied().unwrap_or_default() } else { 0.0 };
-                let axis = if table.width() == 1 { "" } else { ["x", "y", "z"][k] };
-                let name = [name, axis].into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
-                Some(Component { name, values: values.iter().map(|value| value - first).collect() })
+    let places = match column.scope() {
+        Scope::Point => "point",
+        Scope::Support => "support",
+        Scope::System | Scope::Body => {
+            let group = match (column.components(), column.group) {
+                (Components::Modes, _) => "modal coordinates",
+                (_, "") => "body",
+                (_, group) => group,
             };
-            (0..table.width()).map(component).collect()
+            return course(format!("{}{group}", prefix(history, run)), None).into_iter().collect();
+        }
+    };
+    let name_of = |place: &str| match history.body(run).filter(|_| run.only_body().is_none()) {
+        Some(body) => format!("{places} {}.{place}", body.name),
+        None => format!("{places} {place}"),
+    };
+    history.places(run).iter().filter_map(|place| course(name_of(place), Some(place))).collect()
+}
+
+fn component_name(history: History<Row>, k: usize, run: &Metadata) -> String {
+    match (history.column.components(), history.body(run)) {
+        (Components::Modes, Some(body)) if k < natural_modes(&body.model) => format!("{}", k + 1),
+        (Components::Modes, _) => format!("static {}", k + 1),
+        (components, _) => components.names().get(k).copied().unwrap_or_default().to_owned(),
+    }
+}
+
+/// Terms of the balance of energy: names of the columns.
+const ENERGIES: [&str; 4] = ["kinetic", "strain", "work", "dissipation"];
+
+/// The balances of each body, and the energy of several together: their terms, and their change since the first row.
+fn balances(results: &Results, quantities: &Quantities<'_>) -> Option<Vec<Balance>> {
+    let energy = ("Energy", "kinetic + strain energy − work of the loads + dissipation is constant");
+    let linear = ("Linear momentum", "momentum less the impulse of the loads is constant (global axes)");
+    let angular = (
+        "Angular momentum",
+        "angular momentum less the angular impulse of the loads, about the centre of mass, is constant (global axes)",
+    );
+    let run = &results.metadata;
+    let of = |body: Option<usize>, words, group: &str, terms: &[&str], error: &str| {
+        let history = |name: &str| {
+            let mut all = histories(&COLUMNS, run).filter(|history| history.body == body);
+            all.find(|history| [history.column.group, history.column.name] == [group, name])
         };
-        let terms: Vec<Vec<Component>> =
-            terms.iter().map(|(path, name)| components(path, name, false)).collect::<Option<_>>()?;
-        Some(Balance {
-            name: name.to_owned(),
-            law: law.to_owned(),
-            unit: quantities.unit(column),
-            least_range: quantities.least_range(column),
-            terms: terms.into_iter().flatten().collect(),
-            errors: components(error, "", true)?,
-        })
+        balance(
+            results,
+            quantities,
+            words,
+            terms.iter().map(|name| history(name)).collect::<Option<Vec<_>>>()?,
+            history(error)?,
+        )
     };
-    let energies = [
-        ("energy/kinetic", "kinetic"),
-        ("energy/strain", "strain"),
-        ("energy/work", "work"),
-        ("energy/dissipation", "dissipation"),
-    ];
-    Some(vec![
-        balance(
-            "Energy",
-            "kinetic + strain energy − work of the loads + dissipation is constant",
-            &energies,
-            "energy/balance",
-        )?,
-        balance(
-            "Linear momentum",
-            "momentum less the impulse of the loads is constant (global axes)",
-            &[("momentum/linear", "")],
-            "momentum/linear_balance",
-        )?,
-        balance(
-            "Angular momentum",
-            "angular momentum less the angular impulse of the loads, about the centre of mass, is constant (global axes)",
-            &[("momentum/angular", "")],
-            "momentum/angular_balance",
-        )?,
-    ])
+    let mut all = Vec::new();
+    for body in (0..run.bodies.len()).map(Some) {
+        all.push(of(body, energy, "energy", &ENERGIES, "balance")?);
+        all.push(of(body, linear, "momentum", &["linear"], "linear_balance")?);
+        all.push(of(body, angular, "momentum", &["angular"], "angular_balance")?);
+    }
+    if run.only_body().is_none() {
+        all.push(of(None, energy, "energy", &ENERGIES, "balance")?);
+    }
+    Some(all)
 }
 
-fn effects(results: &Results) -> Vec<Effect> {
-    let effect = |effect: &EffectProperties| {
-        let EffectProperties { name, state, measure, reason } = effect.clone();
-        Effect { name, state, measure, reason }
+fn balance(
+    results: &Results,
+    quantities: &Quantities<'_>,
+    (name, law): (&str, &str),
+    terms: Vec<History<Row>>,
+    error: History<Row>,
+) -> Option<Balance> {
+    let run = &results.metadata;
+    let components = |history: History<Row>, name: &str, from_first: bool| -> Option<Vec<Component>> {
+        let table = results.table(&history.path(run))?;
+        let component = |k: usize| {
+            let values: Vec<f64> = table.column(k)?.collect();
+            let first = if from_first { values.first().copied().unwrap_or_default() } else { 0.0 };
+            let axis = history.column.components().names().get(k).copied().unwrap_or_default();
+            let name = [name, axis].into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
+            Some(Component { name, values: values.iter().map(|value| value - first).collect() })
+        };
+        (0..table.width()).map(component).collect()
     };
-    results.metadata.effects.iter().map(effect).collect()
+    // A single term needs no name.
+    let name_of = |term: &History<Row>| if terms.len() > 1 { term.column.name } else { "" };
+    let of_terms = terms.iter().map(|term| components(*term, name_of(term), false)).collect::<Option<Vec<_>>>()?;
+    Some(Balance {
+        group: prefix(error, run).trim_end_matches(": ").to_owned(),
+        name: name.to_owned(),
+        law: law.to_owned(),
+        unit: quantities.unit(error.column),
+        least_range: quantities.least_range(error),
+        terms: of_terms.into_iter().flatten().collect(),
+        errors: components(error, "", true)?,
+    })
 }
 
-/// Known errors of the model, and warnings of the run.
-fn warnings(results: &Results) -> Vec<String> {
-    let refusal = &results.metadata.refusal;
-    let of_run = results.metadata.warnings.iter().filter(|warning| Some(*warning) != refusal.as_ref()).cloned();
-    refusal.iter().cloned().chain(of_run).collect()
+fn effect(effect: &EffectProperties) -> Effect {
+    let EffectProperties { name, state, measure, reason } = effect.clone();
+    Effect { name, state, measure, reason }
+}
+
+/// Known errors of the models, and warnings of the run.
+fn warnings(run: &Metadata) -> Vec<String> {
+    let refusals = run.bodies.iter().filter_map(|body| {
+        let refusal = body.refusal.as_ref()?;
+        Some(if run.only_body().is_some() { refusal.clone() } else { format!("body {}: {refusal}", body.name) })
+    });
+    let refusals: Vec<String> = refusals.collect();
+    let of_run = run.warnings.iter().filter(|warning| !refusals.contains(*warning)).cloned();
+    refusals.iter().cloned().chain(of_run).collect()
 }

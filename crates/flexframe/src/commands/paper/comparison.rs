@@ -6,7 +6,7 @@ use results::Results;
 use serde::Serialize;
 
 use super::rigid_plate::{RigidHistories, WATCHED_POINT};
-use crate::commands::run::RunReport;
+use crate::commands::run::BodyRunReport;
 
 /// Table 1 of the paper: frequencies of its modes 7 to 16, the flexible modes 1 to 10, Hz.
 pub(super) const TABLE_1: [f64; 10] =
@@ -72,8 +72,13 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    pub(super) fn new(run: &RunReport, results: &Results, rigid: &RigidHistories, lumped: &LumpedInertia) -> Self {
-        let inertia = Matrix3::from_fn(|i, j| run.body.inertia[i][j]);
+    pub(super) fn new(
+        plate: &BodyRunReport,
+        results: &Results,
+        rigid: &RigidHistories,
+        lumped: &LumpedInertia,
+    ) -> Self {
+        let inertia = Matrix3::from_fn(|i, j| plate.body.inertia[i][j]);
         let mut moments: [f64; 3] = SymmetricEigen::new(inertia).eigenvalues.into();
         moments.sort_by(f64::total_cmp);
         let beside_printed =
@@ -83,16 +88,16 @@ impl Comparison {
         let (alpha, omega) = (history("angular_acceleration"), history("angular_velocity"));
         let beside = |ours: &[[f64; 3]], theirs: &[[f64; 3]], axis: usize| compare(ours, theirs, axis);
         let transverse = |rows: &[[f64; 3]]| largest(rows, 0).max(largest(rows, 2)) / largest(rows, 1);
-        let names = &results.metadata.point_names;
-        let displacements = || names.iter().flat_map(|name| history(&format!("points/{name}/displacement")));
+        let names = results.metadata.bodies.iter().flat_map(|body| &body.point_names);
+        let displacements = || names.clone().flat_map(|name| history(&format!("points/{name}/displacement")));
         let norm = |d: &[f64; 3]| d.iter().map(|c| c * c).sum::<f64>().sqrt();
         Self {
             frequencies: TABLE_1
                 .iter()
-                .zip(&run.body.natural_frequencies)
+                .zip(&plate.body.natural_frequencies)
                 .map(|(paper, here)| Pair { paper: *paper, here: *here })
                 .collect(),
-            mass: Pair { paper: PRINTED_MASS, here: run.body.mass },
+            mass: Pair { paper: PRINTED_MASS, here: plate.body.mass },
             moments: beside_printed(moments),
             lumped_moments: beside_printed(lumped.principal_moments),
             fig_5: transverse(alpha),

@@ -128,7 +128,7 @@ pub(super) fn draw(
     }
 
     // Eight lines that hide one another in one chart, by name.
-    let names: BTreeSet<_> = results.metadata.point_names.iter().collect();
+    let names: BTreeSet<_> = results.metadata.bodies.iter().flat_map(|body| &body.point_names).collect();
     let displacements = |name: &String| vectors(&format!("points/{name}/displacement"));
     let sizes = names.iter().flat_map(|name| displacements(name)).map(|d| d.iter().map(|x| x * x).sum::<f64>().sqrt());
     let grid = ChartGrid {

@@ -29,7 +29,8 @@ fn write_page(out: &mut String, scene: &Scene, run: &RunReport, c: &Comparison) 
     writeln!(out, "```text\n{run}\n```\n")?;
 
     writeln!(out, "## What the paper does not give, and what was assumed\n")?;
-    let (nodes, elements) = run.mesh.as_ref().map_or((0, 0), |mesh| (mesh.nodes, mesh.elements));
+    let mesh = run.bodies.first().and_then(|plate| plate.mesh.as_ref());
+    let (nodes, elements) = mesh.map_or((0, 0), |mesh| (mesh.nodes, mesh.elements));
     writeln!(
         out,
         "* **Its mesh** (MATLAB's PDE toolbox). Here: gmsh, {nodes} nodes and {elements} ten-node tetrahedra. Each point mass sits on \
@@ -37,7 +38,12 @@ fn write_page(out: &mut String, scene: &Scene, run: &RunReport, c: &Comparison) 
          the mesh, the others hardly do."
     )?;
     writeln!(out, "* **The history of its force** (Fig. 4 is only a picture). {}", force_in_words(scene))?;
-    writeln!(out, "* **The length of its run.** Here {} {time}: {}.", scene.time.end, run.steps_in_words())?;
+    writeln!(
+        out,
+        "* **The length of its run.** Here {} {time}: {}.",
+        scene.time.end,
+        run.bodies.first().map_or_else(String::new, |plate| plate.steps_in_words(run))
+    )?;
     writeln!(
         out,
         "* **Damping** is 5 % \"for all the modes\" in the paper; rigid modes have no frequency to take a share of, so \

@@ -27,18 +27,22 @@ pub enum RunError {
         source: Box<StartError>,
     },
     /// A step failed. The states before it are in the unfinished file.
-    #[error("{source} (the states before it are in {results})", results = results.display())]
+    #[error("{}{source} (the states before it are in {results})", prefix(body.as_deref()), results = results.display())]
     Step {
         /// The unfinished file.
         results: PathBuf,
+        /// The body, where there are several.
+        body: Option<String>,
         /// The reason.
         source: StepError,
     },
     /// The motion has come where the model is known to be wrong. The states before it are in the unfinished file.
-    #[error("at time {time:.6}: {refusal} (the states up to there are in {})", results.display())]
+    #[error("{}at time {time:.6}: {refusal} (the states up to there are in {})", prefix(body.as_deref()), results.display())]
     Refused {
         /// The unfinished file.
         results: PathBuf,
+        /// The body, where there are several.
+        body: Option<String>,
         /// When it was so for the first time.
         time: f64,
         /// The reason.
@@ -102,6 +106,9 @@ pub enum RunError {
         /// Its estimate.
         estimate: Estimate,
     },
+    /// A run of no body.
+    #[error("there is no body to run; give one or more")]
+    NoBody,
     /// The output folder cannot be made.
     #[error("{}: cannot make the output folder: {source}\n = {}", folder.display(), help_of_writing(source))]
     Folder {
@@ -116,11 +123,18 @@ impl RunError {
     /// The error without the files of the run, for those who do not keep them.
     pub(crate) fn without_files(&self) -> String {
         match self {
-            Self::Step { source, .. } => source.to_string(),
-            Self::Refused { time, refusal, .. } => format!("at time {time:.6}: {refusal}"),
+            Self::Step { source, body, .. } => format!("{}{source}", prefix(body.as_deref())),
+            Self::Refused { time, refusal, body, .. } => {
+                format!("{}at time {time:.6}: {refusal}", prefix(body.as_deref()))
+            }
             other => other.to_string(),
         }
     }
+}
+
+/// The body of a message, where there are several.
+fn prefix(body: Option<&str>) -> String {
+    body.map_or_else(String::new, |name| format!("body {name}: "))
 }
 
 /// Reason of a run that did not come to its end.

@@ -7,9 +7,10 @@ use std::time::Instant;
 use dynamics::{Reached, Simulation};
 use memory::Bytes;
 use results::{Metadata, bytes_per_row};
-use scene::{Rows, Scene, StepControl};
+use scene::Scene;
 use serde::Serialize;
 
+use super::row_times::RowTimes;
 use crate::rows::columns::COLUMNS;
 
 /// A larger file is only written for who has asked for it.
@@ -35,39 +36,29 @@ pub struct Estimate {
 impl Estimate {
     /// Estimate of the rows of a scene, without a look at its steps.
     pub(super) fn of_rows(scene: &Scene, metadata: &Metadata) -> Self {
-        let rows = rows(scene);
+        let rows = RowTimes::new(scene).count();
         Self { rows, bytes: rows.saturating_mul(bytes_per_row(&COLUMNS, metadata)), seconds: None }
     }
 
-    /// With the time, by a trial that leaves the simulation as it is.
-    pub(super) fn with_seconds(self, simulation: &Simulation, stop: &AtomicBool) -> Self {
-        Self { seconds: seconds(simulation.clone(), stop), ..self }
+    /// With the time of all bodies together, by trials that leave their simulations as they are.
+    pub(super) fn with_seconds(self, simulations: &[Simulation], stop: &AtomicBool) -> Self {
+        let trial = TRIAL / simulations.len().max(1) as f64;
+        Self { seconds: simulations.iter().map(|simulation| seconds(simulation.clone(), trial, stop)).sum(), ..self }
     }
 }
 
-/// Rows that a scene asks for.
-fn rows(scene: &Scene) -> u64 {
-    let spacing = match (scene.output.rows, scene.time.control) {
-        (Rows::Interval(interval), _) => interval,
-        (Rows::EverySteps(steps), StepControl::Fixed(step)) => steps as f64 * step,
-        // No scene has that.
-        (Rows::EverySteps(_), StepControl::Tolerance(_)) => scene.time.end,
-    };
-    ((scene.time.end / spacing * (1.0 - 1e-12)).ceil() as u64).saturating_add(1)
-}
-
 /// The time of the later half of some steps, which under step control have found their length by then, for the whole motion.
-fn seconds(mut simulation: Simulation, stop: &AtomicBool) -> Option<f64> {
+fn seconds(mut simulation: Simulation, trial: f64, stop: &AtomicBool) -> Option<f64> {
     let (started, end) = (Instant::now(), simulation.end());
     let mut before = (0.0, 0.0);
     loop {
         let reached = simulation.advance(STEPS_PER_LOOK).ok()?;
         let (time, taken) = (simulation.time(), started.elapsed().as_secs_f64());
-        let is_over = taken >= TRIAL || time >= TRIAL_PART * end || stop.load(Ordering::Relaxed);
+        let is_over = taken >= trial || time >= TRIAL_PART * end || stop.load(Ordering::Relaxed);
         if is_over || reached == Reached::End {
             return (time > before.0).then(|| (taken - before.1) / (time - before.0) * end);
         }
-        if taken <= 0.5 * TRIAL && time <= 0.5 * TRIAL_PART * end {
+        if taken <= 0.5 * trial && time <= 0.5 * TRIAL_PART * end {
             before = (time, taken);
         }
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use foreign_program::read_at_most;
 use keys::{Digest, Hash, Key};
 use model::files_of_body;
-use scene::{AssignError, Body, Scene, SceneError, assign};
+use scene::{AssignError, Body, Scene, SceneError, System, assign, text_of};
 use serde::Deserialize;
 use toml::{Table, Value};
 
@@ -49,6 +49,18 @@ pub(super) enum Asked {
     Peak(String),
     /// The natural frequencies of the body, cycles per time, as `flexframe modes` has them. They take no run.
     Frequencies,
+    /// The same of the body of this name.
+    FrequenciesOf(String),
+}
+
+impl Asked {
+    /// The column of a run.
+    pub fn column(&self) -> Option<&str> {
+        match self {
+            Self::Final(column) | Self::Peak(column) => Some(column),
+            Self::Frequencies | Self::FrequenciesOf(_) => None,
+        }
+    }
 }
 
 /// A range of numbers.
@@ -70,8 +82,8 @@ pub(super) struct Plan {
     /// Keys of the scene, in alphabetical order, and their values in each row.
     pub parameters: Vec<(String, Vec<Value>)>,
     pub results: BTreeMap<String, Asked>,
-    /// The scene of each row, or why it is none.
-    pub rows: Vec<Result<Scene, String>>,
+    /// The scenes of the bodies in each row, or why there are none.
+    pub rows: Vec<Result<Vec<Scene>, String>>,
     /// Hash for each row: of its scene and of the bytes of all files that are read for it.
     pub identities: Vec<u64>,
 }
@@ -91,8 +103,9 @@ impl Plan {
             SceneError::Unreadable { path, cause, .. } => SceneError::Unreadable { path, cause, help: SCENE_CURE },
             other => other,
         };
-        let scene =
-            Scene::read(&scene_path).map_err(|error| SweepError::Scene { key: None, source: of_scene(error) })?;
+        let unreadable = |error| SweepError::Scene { key: None, source: of_scene(error) };
+        let of_all = text_of(&scene_path).map_err(unreadable)?;
+        let system = System::parse(&of_all, &scene_path).map_err(unreadable)?;
 
         let invalid = |key: &str, found: String, expected: &str| SweepError::Invalid {
             path: path.to_owned(),
@@ -140,11 +153,11 @@ impl Plan {
         let mut first_refusal = None;
         for row in 0..count {
             let values: Vec<_> = parameters.iter().map(|(key, values)| (key.clone(), values[row].clone())).collect();
-            let text = assign(&scene.source, &values).map_err(|AssignError { key, found, expected }| {
+            let text = assign(&of_all, &values).map_err(|AssignError { key, found, expected }| {
                 invalid(&format!("parameters.\"{key}\""), found, &expected)
             })?;
-            rows.push(match Scene::parse(&text, &scene.path) {
-                Ok(scene) => Ok(scene),
+            rows.push(match System::parse(&text, &scene_path) {
+                Ok(System { bodies }) => Ok(bodies),
                 Err(refusal) => {
                     let words = refusal.to_string();
                     first_refusal.get_or_insert((row, refusal));
@@ -158,44 +171,76 @@ impl Plan {
             let source: SceneError = source;
             return Err(SweepError::Scene { key: Some(in_words(&parameters, row)), source });
         }
-        let identity = format!("{of_sweep}\n{}", scene.source);
+        check_bodies(&system, &file.results).map_err(|(key, found, expected)| invalid(&key, found, &expected))?;
+        let identity = format!("{of_sweep}\n{of_all}");
         let identities = identities(&rows);
-        Ok(Self { title: scene.title, identity, parameters, results: file.results, rows, identities })
+        let title = system.bodies.first().map_or_else(String::new, |scene| scene.title.clone());
+        Ok(Self { title, identity, parameters, results: file.results, rows, identities })
     }
 
     /// True if something is asked of a run, and if the frequencies are asked for.
     pub fn asks(&self) -> [bool; 2] {
-        let is_asked =
-            |frequencies: bool| self.results.values().any(|asked| (*asked == Asked::Frequencies) == frequencies);
-        [is_asked(false), is_asked(true)]
+        let is_asked = |run: bool| self.results.values().any(|asked| asked.column().is_some() == run);
+        [is_asked(true), is_asked(false)]
     }
 
-    /// True if the files of the body of a row have changed since the sweep was read.
-    pub fn has_changed(&self, row: usize) -> bool {
-        self.rows[row].as_ref().is_ok_and(|scene| identity(scene, &contents(&scene.body)) != self.identities[row])
+    /// True if the frequencies of the body of a scene are asked for.
+    pub fn asks_frequencies_of(&self, scene: &Scene) -> bool {
+        self.results.values().any(|asked| match asked {
+            Asked::Frequencies => scene.name.is_none(),
+            Asked::FrequenciesOf(body) => scene.name.as_ref() == Some(body),
+            Asked::Final(_) | Asked::Peak(_) => false,
+        })
     }
+
+    /// True if the files of the bodies of a row have changed since the sweep was read.
+    pub fn has_changed(&self, row: usize) -> bool {
+        self.rows[row]
+            .as_ref()
+            .is_ok_and(|scenes| identity(scenes, |scene| contents(&scene.body)) != self.identities[row])
+    }
+}
+
+/// Refuses results of a body that the scene does not have: the key, what was found, and what was expected.
+fn check_bodies(system: &System, results: &BTreeMap<String, Asked>) -> Result<(), (String, String, String)> {
+    let names: Vec<&str> = system.bodies.iter().filter_map(|scene| scene.name.as_deref()).collect();
+    for (name, asked) in results {
+        let (found, expected) = match asked {
+            Asked::Frequencies if !names.is_empty() => (
+                "frequencies of no body".to_owned(),
+                format!("{{ frequencies-of = \"NAME\" }} of one of {}", names.join(", ")),
+            ),
+            Asked::FrequenciesOf(body) if !names.contains(&body.as_str()) => match names.is_empty() {
+                true => (format!("the body `{body}`"), "\"frequencies\", since a single body has no name".to_owned()),
+                false => (format!("the body `{body}`"), format!("one of {}", names.join(", "))),
+            },
+            _ => continue,
+        };
+        return Err((format!("results.{name}"), found, expected));
+    }
+    Ok(())
 }
 
 /// Hash for each row.
-fn identities(rows: &[Result<Scene, String>]) -> Vec<u64> {
+fn identities(rows: &[Result<Vec<Scene>, String>]) -> Vec<u64> {
     // The files of each body are read once.
     let mut bodies: BTreeMap<String, Hash> = BTreeMap::new();
-    let of_row = |row: &Result<Scene, String>| match row {
-        Ok(scene) => {
-            let body = bodies.entry(format!("{:?}", scene.body)).or_insert_with(|| contents(&scene.body));
-            identity(scene, body)
-        }
-        Err(_) => 0,
-    };
+    let mut contents_of =
+        |scene: &Scene| *bodies.entry(format!("{:?}", scene.body)).or_insert_with(|| contents(&scene.body));
+    let of_row = |row: &Result<Vec<Scene>, String>| row.as_ref().map_or(0, |scenes| identity(scenes, &mut contents_of));
     rows.iter().map(of_row).collect()
 }
 
-/// A number for the text of a scene, the tables as they were read, and what its body is read from.
-fn identity(scene: &Scene, body: &Hash) -> u64 {
-    let key = Key::new().of("row", 1).with("scene", scene.source.as_str());
-    let key = scene.tables().fold(key, |key, table| key.with("table", table.points.as_flattened()));
+/// A number for the texts of the scenes, the tables as they were read, and what the bodies are read from.
+fn identity(scenes: &[Scene], mut contents_of: impl FnMut(&Scene) -> Hash) -> u64 {
+    let of_scene = |key: Key, scene: &Scene| {
+        let key = key.with("scene", scene.source.as_str());
+        let key = scene.tables().fold(key, |key, table| key.with("table", table.points.as_flattened()));
+        key.with("body", &contents_of(scene))
+    };
+    let key = scenes.iter().fold(Key::new().of("row", 1), of_scene);
     let mut first = [0; 8];
-    first.copy_from_slice(&key.with("body", body).finish().as_bytes()[..8]);
+    first.copy_from_slice(&key.finish().as_bytes()[..8]);
     u64::from_be_bytes(first)
 }
 

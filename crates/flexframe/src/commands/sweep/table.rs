@@ -184,6 +184,9 @@ impl Table {
                 Asked::Final(column) => format!("{column} at the end; NaN where there is none"),
                 Asked::Peak(column) => format!("value of largest size of {column} over time; NaN where there is none"),
                 Asked::Frequencies => "natural frequencies, cycles per time; NaN where there is none".to_owned(),
+                Asked::FrequenciesOf(body) => {
+                    format!("natural frequencies of the body {body}, cycles per time; NaN where there is none")
+                }
             };
             datasets.push(declared(path.clone(), Kind::F64, &[count, width], words));
             let mut numbers = vec![f64::NAN; count * width];

@@ -10,6 +10,7 @@ use whole_file::WholeFile;
 use super::plan::{Asked, Plan};
 use super::table::{RowState, Table};
 use crate::report::quantity;
+use crate::rows::columns::column_of;
 
 /// More rows than this are thinned: the file has them all.
 const ROWS: usize = 20;
@@ -120,10 +121,13 @@ fn heads_of(plan: &Plan, widths: &[usize]) -> Vec<String> {
     let of_result = |((name, asked), width): ((&String, &Asked), &usize)| -> Vec<String> {
         match (asked, *width) {
             (Asked::Final(_) | Asked::Peak(_), 1) => vec![name.clone()],
-            (Asked::Final(column) | Asked::Peak(column), 3) if !column.starts_with("modal/") => {
-                ["x", "y", "z"].map(|axis| format!("{name} {axis}")).into()
+            (asked, width) => {
+                let column = asked.column().and_then(column_of);
+                let names = column.map_or(&[][..], |column| column.components().names());
+                let of_component =
+                    |k: usize| names.get(k).map_or_else(|| (k + 1).to_string(), |name| (*name).to_owned());
+                (0..width).map(|k| format!("{name} {}", of_component(k))).collect()
             }
-            (_, width) => (1..=width).map(|k| format!("{name} {k}")).collect(),
         }
     };
     let parameters = plan.parameters.iter().map(|(key, _)| key.clone());

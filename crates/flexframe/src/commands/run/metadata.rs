@@ -1,0 +1,107 @@
+//! The metadata of a results file.
+
+use dynamics::DrivenMotion;
+use model::Builder;
+use results::{BodyMetadata, BodyProperties, Metadata, Units};
+use scene::{Scene, StepControl};
+
+use super::body::RunBody;
+use crate::drawn::mesh_properties;
+use crate::files::scene_file;
+use crate::report::BodyReport;
+use crate::rows::columns::part;
+use crate::rows::effects;
+
+/// The metadata in the results file of a run; `None` without a body.
+pub(super) fn metadata_of_file(bodies: &[RunBody<'_>], builder: &Builder) -> Option<Metadata> {
+    let mut metadata = metadata(bodies)?;
+    let mut files: Vec<String> = Vec::new();
+    for (RunBody { scene, model }, body) in bodies.iter().zip(&mut metadata.bodies) {
+        for file in builder.files(scene) {
+            let file = scene_file::to_text(&file);
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
+        body.model.mesh = mesh_properties(scene, model);
+    }
+    Some(Metadata { input_files: files, ..metadata })
+}
+
+/// The metadata of a run without what only a file has: the files that it read, and the sizes of meshes. `None` without a body.
+pub fn metadata(bodies: &[RunBody<'_>]) -> Option<Metadata> {
+    let scene = bodies.first()?.scene;
+    let method = scene.time.method;
+    let (step, tolerance) = match scene.time.control {
+        StepControl::Fixed(step) => (Some(step), None),
+        StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
+    };
+    Some(Metadata {
+        title: scene.title.clone(),
+        units: units(scene),
+        formulation: method.formulation.to_owned(),
+        scheme: method.scheme.to_owned(),
+        step,
+        tolerance,
+        program_version: env!("CARGO_PKG_VERSION").to_owned(),
+        end: scene.time.end,
+        scene_text: scene.file_text().to_owned(),
+        scene_file: scene_file::to_text(&scene.path),
+        input_files: Vec::new(),
+        bodies: bodies.iter().map(body_metadata).collect(),
+        warnings: Vec::new(),
+    })
+}
+
+fn body_metadata(of: &RunBody<'_>) -> BodyMetadata {
+    let RunBody { scene, model } = *of;
+    let body = BodyReport::new(model);
+    BodyMetadata {
+        name: of.name().to_owned(),
+        model: BodyProperties {
+            mass: body.mass,
+            center_of_mass: body.center_of_mass,
+            inertia: body.inertia,
+            origin: model.body.origin.into(),
+            static_shapes: model.static_shapes(),
+            frequencies: body.natural_frequencies,
+            damping_ratios: body.damping_ratios,
+            rotation_axes: model.body.motion.rotations().iter().map(|axis| (*axis).into()).collect(),
+            translation_axes: model.body.motion.translations().iter().map(|axis| (*axis).into()).collect(),
+            mesh: None,
+        },
+        point_names: model.points.iter().map(|(name, _)| name.clone()).collect(),
+        point_positions: model.points.iter().map(|(_, p)| (model.body.origin + p.position_body()).into()).collect(),
+        parts: parts(of).map(str::to_owned).collect(),
+        support_names: model.supports.as_ref().map_or(Vec::new(), |supports| supports.names().to_vec()),
+        effects: effects::described(scene, model),
+        refusal: model.refusal.map(|refusal| refusal.to_string()),
+    }
+}
+
+/// The labels of a scene's units.
+pub(crate) fn units(scene: &Scene) -> Units {
+    let scene::Units { length, mass, time } = scene.units.clone();
+    Units { length, mass, time }
+}
+
+/// Parts of a body that has further columns. In the formulation of the paper there are no reactions.
+fn parts<'a>(RunBody { scene, model }: &RunBody<'a>) -> impl Iterator<Item = &'static str> + use<'a> {
+    let motion = &model.body.motion;
+    let drive = model.physics.drive.as_ref().map(|drive| drive.motion);
+    let turns = matches!(drive, Some(DrivenMotion::Turn { .. }));
+    let slides = matches!(drive, Some(DrivenMotion::Slide { .. }));
+    let is_held = !motion.is_free() && scene.time.method.abilities.reactions;
+    [
+        (part::CONSTRAINT, true),
+        (part::HINGE, turns || motion.rotations().len() == 1),
+        (part::SLIDER, slides || motion.translations().len() == 1),
+        (part::DRIVE, drive.is_some()),
+        (part::DRIVEN_HINGE, turns),
+        (part::DRIVEN_SLIDER, slides),
+    ]
+    .into_iter()
+    .filter_map(move |(part, has)| (is_held && has).then_some(part))
+    .chain(model.supports.as_ref().map(|_| part::SUPPORTS))
+    .chain(scene.output.stress.then_some(part::STRESS))
+}
