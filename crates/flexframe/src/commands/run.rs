@@ -1,7 +1,7 @@
 //! `flexframe run`: a scene from its meshes to its results file.
 //!
 //! Nothing acts between the bodies of a scene: each is a set of equations of its own with steps of its own, and moves as it would
-//! alone. They meet at the rows ([`row_times`]), which are written together.
+//! alone. They meet at the rows (`row_times`), which are written together.
 
 mod balances;
 mod body;

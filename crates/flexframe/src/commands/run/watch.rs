@@ -35,9 +35,9 @@ pub struct Watch<'a> {
 pub struct Watched {
     /// How far the balances are from closed.
     pub balances: Balances,
-    /// See [`RunReport::right_unsummed`](super::RunReport::right_unsummed).
+    /// See `right_unsummed` of the report of a body.
     pub right_unsummed: bool,
-    /// See [`RunReport::left_out`](super::RunReport::left_out).
+    /// See `left_out` of the report of a body.
     pub left_out: Option<f64>,
     /// Angle along the way of the attitude, ∫|ω| dt, rad.
     pub turned: f64,
