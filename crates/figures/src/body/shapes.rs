@@ -40,7 +40,7 @@ pub struct ShapeGrid<'a> {
     pub title: String,
     /// Name of the coloured quantity, with its unit.
     pub value_label: String,
-    /// The surface, by indices of points; see [`facets()`](crate::body::facets()).
+    /// The surface, by indices of points; see [`facets()`](crate::facets()).
     pub triangles: &'a [[u32; 3]],
     /// Edges drawn as lines, by indices of points; see [`sharp_edges`](crate::sharp_edges).
     pub edges: &'a [[u32; 2]],
