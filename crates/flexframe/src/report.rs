@@ -51,6 +51,18 @@ impl<R: Serialize> Serialize for OfBodies<R> {
     }
 }
 
+/// The list `bodies`, and of a single one its keys.
+pub(crate) fn list_of_bodies<B: Serialize, S: Serializer>(list: &[B], serializer: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Bodies<'a, B> {
+        bodies: &'a [B],
+        #[serde(flatten)]
+        single: Option<&'a B>,
+    }
+    let single = list.first().filter(|_| list.len() == 1);
+    Bodies { bodies: list, single }.serialize(serializer)
+}
+
 /// Times of the phases, seconds, in the order in which they were passed.
 #[derive(Debug, Clone, Default)]
 pub struct Times(Vec<(&'static str, f64)>);

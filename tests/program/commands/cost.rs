@@ -8,7 +8,7 @@ use std::time::Duration;
 use dynamics::{Method, Observation, Rows, StepControl};
 use flexframe::cost::{CostReport, CostSettings, LadderRun, Line, Measured, Outcome, Setting, price_list};
 use model::{Builder, Model};
-use scene::{METHODS, Scene};
+use scene::{METHODS, Scene, System};
 
 const TARGET: f64 = 1e-4;
 
@@ -36,7 +36,7 @@ fn list() -> &'static (CostReport, String) {
     LIST.get_or_init(|| {
         let folder = tempfile::tempdir().unwrap();
         let settings = settings(40_000, TARGET);
-        let report = price_list(&scene("step = 3e-5"), &Builder::default(), folder.path(), settings, |_| ()).unwrap();
+        let report = price_list(&[scene("step = 3e-5")], &Builder::default(), folder.path(), settings, |_| ()).unwrap();
         assert_eq!(report.files.len(), 4);
         assert!(report.files.iter().all(|file| std::fs::metadata(file).unwrap().len() > 1000));
         let csv = std::fs::read_to_string(folder.path().join("cost.csv")).unwrap();
@@ -161,7 +161,7 @@ fn the_answer_reaches_the_target_when_the_scene_is_run_with_it() {
 fn a_target_beyond_reach_is_said_to_be() {
     let folder = tempfile::tempdir().unwrap();
     let report =
-        price_list(&scene("step = 3e-5"), &Builder::default(), folder.path(), settings(1000, 1e-30), |_| ()).unwrap();
+        price_list(&[scene("step = 3e-5")], &Builder::default(), folder.path(), settings(1000, 1e-30), |_| ()).unwrap();
     let answer = report.answer.unwrap();
     assert!(answer.run.is_none() && answer.lines.is_empty() && answer.smallest_error > 1e-20);
     assert!(answer.to_string().contains("no setting that was tried"), "{answer}");
@@ -173,7 +173,7 @@ fn a_run_that_takes_longer_than_the_patience_is_stopped_and_named() {
     let patience = Duration::from_millis(20);
     let settings = CostSettings { patience, timed_for: Duration::from_millis(1), ..settings(1_000_000, TARGET) };
     // Five million steps, which take some seconds.
-    let report = price_list(&scene("step = 1e-8"), &Builder::default(), folder.path(), settings, |_| ()).unwrap();
+    let report = price_list(&[scene("step = 1e-8")], &Builder::default(), folder.path(), settings, |_| ()).unwrap();
     let rows: Vec<&LadderRun> = report.lines.iter().flat_map(|line| &line.rows).collect();
     let own = rows.iter().find(|row| row.of_scene).unwrap();
     let Outcome::OutOfPatience(stopped) = &own.outcome else { panic!("{own:?}") };
@@ -201,7 +201,7 @@ fn a_run_that_takes_longer_than_the_patience_is_stopped_and_named() {
 #[test]
 fn the_worst_quantity_of_the_modes_is_named_with_the_others_beside_it() {
     let report = &list().0;
-    let errors = report.modes[1].errors.unwrap();
+    let errors = report.bodies[0].modes[1].errors.unwrap();
     // The half-sine strikes the point: its acceleration needs the most modes.
     assert!(errors.largest() == errors.acceleration.unwrap() && errors.displacement < errors.velocity, "{errors:?}");
     let words = report.answer.as_ref().unwrap().modes.as_ref().unwrap();
@@ -218,7 +218,7 @@ fn the_worst_quantity_of_the_modes_is_named_with_the_others_beside_it() {
 
 #[test]
 fn modes_left_out_are_an_error_of_their_own() {
-    let modes = &list().0.modes;
+    let modes = &list().0.bodies[0].modes;
     let counts: Vec<usize> = modes.iter().map(|row| row.flexible).collect();
     assert_eq!(counts, [2, 4, 8, 16]);
     assert!(modes.is_sorted_by(|a, b| a.highest_frequency < b.highest_frequency));
@@ -315,4 +315,61 @@ fn the_command_prints_the_list_or_the_answer() {
         let refused = flexframe(folder.path(), &["cost", "ring.toml", &format!("--target={wrong}")]);
         assert_eq!(refused.status.code(), Some(2), "{wrong}");
     }
+}
+
+/// Two rigid bodies, one of which tumbles fast.
+const SEVERAL: &str = r#"
+title = "Two tops"
+units = { length = "m", mass = "kg", time = "s" }
+[bodies.slow]
+rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[1.0, 0, 0], [0, 2.0, 0], [0, 0, 2.5]] }
+initial = { angular_velocity = [0.1, 1.0, 0.2] }
+[bodies.fast]
+rigid = { mass = 2.0, center_of_mass = [0, 0, 0], inertia = [[1.0, 0, 0], [0, 1.5, 0], [0, 0, 2.0]] }
+initial = { angular_velocity = [0.2, 7.0, 0.3] }
+points = { tip = [1.0, 0.0, 0.0] }
+[time]
+end = 1.0
+step = 0.01
+"#;
+
+/// Conserved: the errors and steps of lists of each body alone.
+#[test]
+fn of_several_bodies_an_error_is_that_of_the_worst_and_work_is_that_of_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let priced = |scenes: &[Scene], name: &str| {
+        let settings = CostSettings { target: None, ..settings(2000, 0.0) };
+        price_list(scenes, &Builder::default(), &folder.path().join(name), settings, |_| ()).unwrap()
+    };
+    let scenes = System::parse(SEVERAL, "tops.toml").unwrap().bodies;
+    let both = priced(&scenes, "both");
+    assert_eq!(both.bodies.iter().map(|body| body.name.as_str()).collect::<Vec<_>>(), ["slow", "fast"]);
+    assert_eq!((both.bodies[0].points, both.bodies[1].points), (0, 1));
+    let [slow, fast] = [&scenes[..1], &scenes[1..]].map(|scene| priced(scene, &scene[0].name.clone().unwrap()));
+    let rows = |report: &CostReport| -> Vec<(&'static str, f64, Measured)> {
+        let lines = report.lines.iter().filter(|line| line.formulation == "conservative" && !line.controlled);
+        lines.flat_map(|line| runs(line).into_iter().map(|(step, run)| (line.scheme, step, run.clone()))).collect()
+    };
+    let [slow, fast] = [slow, fast].map(|report| rows(&report));
+    let mut compared = 0;
+    for (scheme, step, run) in rows(&both) {
+        let alone = |rows: &[(&str, f64, Measured)]| {
+            rows.iter().find(|row| (row.0, row.1) == (scheme, step)).map(|row| row.2.clone())
+        };
+        let (Some(slow), Some(fast)) = (alone(&slow), alone(&fast)) else { continue };
+        assert_eq!(run.steps, slow.steps + fast.steps);
+        assert_eq!(run.evaluations, slow.evaluations + fast.evaluations);
+        if fast.error > 1e-6 {
+            compared += 1;
+            assert!((run.error / slow.error.max(fast.error) - 1.0).abs() < 1e-3, "{scheme} {step}: {run:?}");
+        }
+    }
+    assert!(compared > 2, "{compared}");
+    // Words and data have both.
+    let words = both.to_string();
+    for part in ["2 bodies, 1 s", "slow       0 flexible modes, 0 points", "fast       0 flexible modes, 1 points"] {
+        assert!(words.contains(part), "{part}: {words}");
+    }
+    let json = serde_json::to_value(&both).unwrap();
+    assert!(json["bodies"][1]["initial_spin"].as_f64().unwrap() > 7.0 && json.get("initial_spin").is_none(), "{json}");
 }

@@ -24,7 +24,7 @@ use std::path::Path;
 
 use advice::Subject;
 use dynamics::{Method, StepControl};
-use model::{BuildProgress, Builder};
+use model::{BuildError, BuildProgress, Builder, Model};
 use scene::{Flexible, Scene};
 
 pub use answer::Answer;
@@ -34,12 +34,13 @@ pub use ladder::{LadderRun, Line, Measured, Outcome, Stopped};
 pub use machine::Machine;
 pub use modes::{ModesRow, modes_warning};
 pub use reference::ReferenceReport;
-pub use report::CostReport;
+pub use report::{CostBody, CostReport};
 pub use run::Errors;
 pub use setting::Setting;
 pub use settings::CostSettings;
 pub use short::{duration, setting};
 
+use crate::commands::run::RunBody;
 pub use crate::commands::run::RunFailure;
 
 use crate::commands::advise::settled;
@@ -62,39 +63,31 @@ pub enum CostProgress {
     },
 }
 
-/// Measures what accuracy costs on a scene, and writes `cost.csv`, and `work_precision` as SVG, PDF and PNG to `folder`.
+/// Measures what accuracy costs on the bodies of a scene, and writes `cost.csv`, and `work_precision` as SVG, PDF and PNG to
+/// `folder`. An error is that of the worst body, a time that of all of them.
 ///
 /// # Errors
 /// [`CostError`]. A run that fails is a row that says so.
 pub fn price_list(
-    scene: &Scene,
+    scenes: &[Scene],
     builder: &Builder,
     folder: &Path,
     settings: CostSettings,
     mut progress: impl FnMut(CostProgress),
 ) -> Result<CostReport, CostError> {
-    let scene = &scene.clone().without_rows();
-    let assembly = builder.assemble(scene, |p| progress(CostProgress::Build(p)))?;
-    let mut variants = assembly.variants()?;
-    let model = variants.build(scene, |p| progress(CostProgress::Build(p)))?;
-    let flexible = model.body.flexible() - model.static_shapes();
-    // The same effects with each number of modes, and no static shapes, which stand for modes that are left out.
-    let mut settled = settled(scene, &model, Some((Subject::StaticCorrection, false)));
-    let mut with_modes = Vec::new();
-    for count in modes::counts(flexible, variants.available()?).into_iter().rev() {
-        settled.modes.flexible = Flexible::Count(count);
-        with_modes.insert(0, variants.build(&settled, |p| progress(CostProgress::Build(p)))?);
-    }
-    drop(variants);
-    drop(assembly);
-    let case = PreparedScene::new(scene, &model);
+    let scenes: Vec<Scene> = scenes.iter().map(|scene| scene.clone().without_rows()).collect();
+    let scene = scenes.first().ok_or(CostError::NoBody)?;
+    let built = scenes.iter().map(|scene| Built::new(scene, builder, |p| progress(CostProgress::Build(p))));
+    let built = built.collect::<Result<Vec<_>, _>>()?;
+    let bodies = || scenes.iter().zip(&built).map(|(scene, built)| RunBody { scene, model: &built.model });
+    let case = PreparedScene::new(bodies().collect());
 
     let ladders: Vec<(Method, bool)> = METHODS
         .into_iter()
         .flat_map(|method| [(method, false), (method, true)])
         .filter(|(method, controlled)| !controlled || method.estimates_error)
         .collect();
-    let total = ladders.len() as u64 + 3;
+    let total = (ladders.len() + 2 + built.len()) as u64;
     let mut done = 0;
     let mut step = |parts: u64| {
         done += parts;
@@ -122,33 +115,73 @@ pub fn price_list(
         refine(&case, &evaluator, &mut lines, target);
     }
     ladder::mark_front(&mut lines);
-    let (modes, modes_failure) = match modes::compare(&settled, &with_modes, &settings) {
-        Ok(modes) => (modes, None),
-        Err((count, failure)) => (Vec::new(), Some(format!("with {count} modes: {failure}"))),
+    let of_body = |(body, built): (RunBody<'_>, &Built)| {
+        let of_body = built.report(body, &settings);
+        step(1);
+        of_body
     };
-    step(1);
+    let bodies: Vec<CostBody> = bodies().zip(&built).map(of_body).collect();
 
     let mut report = CostReport {
         title: scene.title.clone(),
         scene: scene.path.clone(),
         time_unit: scene.units.time.clone(),
         machine: Machine::this(),
-        flexible,
-        highest_frequency: model.natural_frequencies().last().copied(),
-        initial_spin: nalgebra::Vector3::from(scene.initial.angular_velocity).norm(),
         end: scene.time.end,
-        points: model.points.len(),
         reference: reference.report(),
         paper_limit: paper_limit.as_ref().map(|limit| limit.report_against(&reference, case.scales())),
         paper_limit_failure,
-        answer: settings.target.map(|target| Answer::new(target, scene, &lines, &modes, flexible)),
+        answer: settings.target.map(|target| Answer::new(target, scene.output.rows, &lines, &bodies)),
         lines,
-        modes,
-        modes_failure,
+        bodies,
         files: Vec::new(),
     };
     report.files = files::write(&report, folder)?;
     Ok(report)
+}
+
+/// A body that is built.
+struct Built {
+    model: Model,
+    /// The same effects whatever the number of modes, and no static shapes, which stand for modes that are left out.
+    settled: Scene,
+    /// Its models with more and more modes.
+    with_modes: Vec<Model>,
+}
+
+impl Built {
+    fn new(scene: &Scene, builder: &Builder, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+        let assembly = builder.assemble(scene, &mut progress)?;
+        let mut variants = assembly.variants()?;
+        let model = variants.build(scene, &mut progress)?;
+        let mut settled = settled(scene, &model, Some((Subject::StaticCorrection, false)));
+        let mut with_modes = Vec::new();
+        for count in modes::counts(Self::flexible(&model), variants.available()?).into_iter().rev() {
+            settled.modes.flexible = Flexible::Count(count);
+            with_modes.insert(0, variants.build(&settled, &mut progress)?);
+        }
+        Ok(Self { model, settled, with_modes })
+    }
+
+    fn flexible(model: &Model) -> usize {
+        model.body.flexible() - model.static_shapes()
+    }
+
+    fn report(&self, body: RunBody<'_>, settings: &CostSettings) -> CostBody {
+        let (modes, modes_failure) = match modes::compare(&self.settled, &self.with_modes, settings) {
+            Ok(modes) => (modes, None),
+            Err((count, failure)) => (Vec::new(), Some(format!("with {count} modes: {failure}"))),
+        };
+        CostBody {
+            name: body.name().to_owned(),
+            flexible: Self::flexible(&self.model),
+            highest_frequency: self.model.natural_frequencies().last().copied(),
+            initial_spin: nalgebra::Vector3::from(body.scene.initial.angular_velocity).norm(),
+            points: self.model.points.len(),
+            modes,
+            modes_failure,
+        }
+    }
 }
 
 /// Method and control that the scene asks for itself.
@@ -161,7 +194,7 @@ impl Reference {
         ReferenceReport { step: self.step, steps: self.steps, own_error: self.error, errors: None }
     }
 
-    fn report_against(&self, other: &Self, scales: &run::Scales) -> ReferenceReport {
+    fn report_against(&self, other: &Self, scales: &[run::Scales]) -> ReferenceReport {
         let errors = Errors::between(&self.trajectory, &other.trajectory, scales);
         ReferenceReport { errors: Some(errors), ..self.report() }
     }

@@ -568,6 +568,7 @@ impl Failure for CostError {
     fn kind(&self) -> Kind {
         match self {
             Self::Build(error) => error.kind(),
+            Self::NoBody => Kind::Input,
             Self::Reference { failure, .. } => failure.kind(),
             Self::Figure(error) => error.kind(),
             Self::Write(error) => error.kind(),
@@ -578,6 +579,7 @@ impl Failure for CostError {
     fn details(&self) -> Details {
         match self {
             Self::Build(error) => error.details(),
+            Self::NoBody => Details::default(),
             Self::Reference { scene, .. } => Details::of_file(scene),
             Self::Figure(error) => error.details(),
             Self::Write(error) => error.details(),

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::slice::from_ref;
 use std::time::Duration;
 
 use flexframe::cost::{
@@ -46,10 +47,10 @@ pub fn accuracy_page(
     for scene in scenes {
         let folder = lists.join(name_of(&scene.path));
         let settings = CostSettings::with_patience(patience);
-        reports.push((scene, price_list(scene, &Builder::default(), &folder, settings, |_| ())?));
+        reports.push((scene, price_list(from_ref(scene), &Builder::default(), &folder, settings, |_| ())?));
     }
     let spin = match fastest(&reports) {
-        Some((scene, report)) if report.initial_spin > 0.0 => spin_rates(scene)?,
+        Some((scene, report)) if initial_spin(report) > 0.0 => spin_rates(scene)?,
         _ => Vec::new(),
     };
     std::fs::create_dir_all(&pictures).map_err(WriteError::of(&pictures))?;
@@ -66,9 +67,14 @@ pub fn accuracy_page(
     Ok(files)
 }
 
+/// |ω| at the beginning of a scene, each of which has one body.
+fn initial_spin(report: &CostReport) -> f64 {
+    report.bodies.first().map_or(0.0, |body| body.initial_spin)
+}
+
 /// The scene that spins fastest at the beginning.
 fn fastest<'a, 's>(reports: &'a [(&'s Scene, CostReport)]) -> Option<&'a (&'s Scene, CostReport)> {
-    reports.iter().max_by(|a, b| a.1.initial_spin.total_cmp(&b.1.initial_spin))
+    reports.iter().max_by(|a, b| initial_spin(&a.1).total_cmp(&initial_spin(&b.1)))
 }
 
 fn name_of(path: &Path) -> String {
@@ -144,8 +150,8 @@ fn write_scene(out: &mut String, scene: &Scene, report: &CostReport, pictures: &
         "`examples/accuracy/{file}`: {} {time}, {} flexible modes, spin {:.1} rad/{time} at the beginning. The reference \
          takes {} steps of {:.2e} {time}; its own error is {:.0e}.\n",
         report.end,
-        report.flexible,
-        report.initial_spin,
+        report.bodies.first().map_or(0, |body| body.flexible),
+        initial_spin(report),
         report.reference.steps,
         report.reference.step,
         report.reference.own_error.largest()
@@ -263,7 +269,8 @@ fn paper_in_words(report: &CostReport) -> String {
 }
 
 fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
-    let Some(most) = report.modes.last() else { return Ok(()) };
+    let Some(body) = report.bodies.first() else { return Ok(()) };
+    let Some(most) = body.modes.last() else { return Ok(()) };
     writeln!(
         out,
         "What the modes cost: the same motion with fewer and more of them, against {} (steps leave {:.0e}).\n",
@@ -276,7 +283,7 @@ fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
         frequency_unit(&report.time_unit)
     )?;
     let optional = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1e}"));
-    for row in &report.modes {
+    for row in &body.modes {
         let errors = match row.errors {
             Some(e) => format!(
                 "{:.1e} | {:.1e} | {} | {} | {} | {}",
@@ -297,14 +304,14 @@ fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
             duration(row.seconds_per_step)
         )?;
     }
-    if let Some(warning) = modes_warning(&report.modes, report.flexible, 0.0) {
+    if let Some(warning) = modes_warning(&body.modes, body.flexible, 0.0) {
         writeln!(out, "\n{warning}")?;
     }
     Ok(())
 }
 
 fn write_spin(out: &mut String, report: &CostReport, rows: &[SpinRow]) -> std::fmt::Result {
-    let (time, omega) = (&report.time_unit, report.initial_spin);
+    let (time, omega) = (&report.time_unit, initial_spin(report));
     writeln!(out, "\n## Spin that the paper's scheme gains or loses\n")?;
     writeln!(
         out,

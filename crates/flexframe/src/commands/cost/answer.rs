@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-use scene::{Rows, Scene};
+use scene::Rows;
 use serde::Serialize;
 
 use super::case::PreparedScene;
 use super::ladder::{Evaluator, LadderRun, Line, Outcome, settings_between};
-use super::modes::ModesRow;
+use super::report::CostBody;
 use super::setting::Setting;
 use super::short::{duration, setting};
 use crate::files::json;
@@ -67,7 +67,7 @@ fn first_reaching(line: &Line, target: f64) -> Option<(usize, f64)> {
 }
 
 impl Answer {
-    pub(super) fn new(target: f64, scene: &Scene, lines: &[Line], modes: &[ModesRow], flexible: usize) -> Self {
+    pub(super) fn new(target: f64, rows: Rows, lines: &[Line], bodies: &[CostBody]) -> Self {
         let runs =
             || lines.iter().flat_map(|line| line.rows.iter().filter_map(move |row| Some((line, row, row.measured()?))));
         let best = runs()
@@ -86,9 +86,9 @@ impl Answer {
             lines: best.map_or_else(Vec::new, |(line, row)| time_lines(line, row)),
             run: best.map(|(_, row)| row.clone()),
             smallest_error: runs().map(|(_, _, measured)| measured.error).fold(f64::INFINITY, f64::min),
-            needs_interval: matches!(scene.output.rows, Rows::EverySteps(_))
+            needs_interval: matches!(rows, Rows::EverySteps(_))
                 && best.is_some_and(|(_, row)| matches!(row.setting, Setting::Tolerance(_))),
-            modes: super::modes::modes_warning(modes, flexible, target),
+            modes: CostBody::modes_warning(bodies, target),
             out_of_patience: out_of_patience(lines),
         }
     }

@@ -1,39 +1,49 @@
-//! A scene with its model, ready to be run in any way.
+//! The bodies of a scene with their models, ready to be run in any way.
 
 use dynamics::{Method, Rows, SetupError, Simulation, StepControl};
 use model::{Model, StartError};
 use scene::Scene;
 
 use super::run::Scales;
+use crate::commands::run::RunBody;
 
 /// Times at which runs are compared; runs with longer steps are compared at a divisor of this.
 const COMPARED: u64 = 100;
 
-/// A scene with its model.
+/// Bodies with their models.
 pub(super) struct PreparedScene<'a> {
-    scene: &'a Scene,
-    model: &'a Model,
-    scales: Scales,
+    bodies: Vec<RunBody<'a>>,
+    scales: Vec<Scales>,
 }
 
 impl<'a> PreparedScene<'a> {
-    pub(super) fn new(scene: &'a Scene, model: &'a Model) -> Self {
-        Self { scene, model, scales: Scales::of_body(model, scene.time.end) }
+    pub(super) fn new(bodies: Vec<RunBody<'a>>) -> Self {
+        let scales = bodies.iter().map(|body| Scales::of_body(body.model, body.scene.time.end)).collect();
+        Self { bodies, scales }
+    }
+
+    /// One body.
+    pub(super) fn alone(scene: &'a Scene, model: &'a Model) -> Self {
+        Self::new(vec![RunBody { scene, model }])
     }
 
     pub(super) fn end(&self) -> f64 {
-        self.scene.time.end
+        self.bodies.first().map_or(0.0, |body| body.scene.time.end)
     }
 
-    /// Sizes below which a quantity does not move.
-    pub(super) fn scales(&self) -> &Scales {
+    /// Sizes of each body below which a quantity does not move.
+    pub(super) fn scales(&self) -> &[Scales] {
         &self.scales
     }
 
-    /// The motion from its beginning, with rows at the times of comparison.
-    pub(super) fn begin(&self, method: Method, control: StepControl) -> Result<Simulation, StartError> {
+    /// The motion of each body from its beginning, with rows at the times of comparison.
+    pub(super) fn begin(&self, method: Method, control: StepControl) -> Result<Vec<Simulation>, StartError> {
+        self.bodies.iter().map(|body| self.begin_body(body, method, control)).collect()
+    }
+
+    fn begin_body(&self, body: &RunBody<'_>, method: Method, control: StepControl) -> Result<Simulation, StartError> {
         let interval = self.end() / self.intervals(control) as f64;
-        self.model.start_with(self.scene, method, control, Rows::Interval(interval))
+        body.model.start_with(body.scene, method, control, Rows::Interval(interval))
     }
 
     /// Equal parts of the run at whose ends it is compared: the most that leave the steps as long as asked.
@@ -48,13 +58,14 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
-    /// The longest fixed step that the method allows, at most the whole run.
+    /// The longest fixed step that the method allows for all bodies, at most the whole run.
     pub(super) fn longest_step(&self, method: Method) -> f64 {
-        match self.begin(method, StepControl::Fixed(self.end())) {
+        let of_body = |body| match self.begin_body(body, method, StepControl::Fixed(self.end())) {
             Err(StartError::Setup(
                 SetupError::StepBeyondLimit { limit, .. } | SetupError::StepBeyondSpin { limit, .. },
             )) => limit,
             _ => self.end(),
-        }
+        };
+        self.bodies.iter().map(of_body).fold(self.end(), f64::min)
     }
 }

@@ -15,6 +15,9 @@ pub enum CostError {
     /// The scene cannot be built.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// No body was given.
+    #[error("there is no body to run")]
+    NoBody,
     /// No run of the reference came to its end.
     #[error(
         "{scene}: no reference can be made: a run of {steps} steps of the exponential scheme failed: {failure}; make the \

@@ -172,28 +172,25 @@ impl Evaluator<'_> {
         method: Method,
         control: StepControl,
     ) -> Result<Measured, RunFailure> {
-        let simulation = case.begin(method, control)?;
-        let run = Trajectory::follow(simulation.clone(), self.settings.patience)?;
-        let timing = Timing::of(&simulation, self.settings.timed_for, self.settings.patience)?;
+        let simulations = case.begin(method, control)?;
+        let run = Trajectory::follow(simulations.clone(), self.settings.patience)?;
+        let timing = Timing::of(&simulations, self.settings.timed_for, self.settings.patience)?;
         let errors = Errors::between(&run, &self.reference.trajectory, case.scales());
         let least = RANKED_ABOVE * self.reference.error.largest();
         let limit = self.limit(method).map(|limit| &limit.trajectory);
-        let spin = |against: &Trajectory| {
-            let spin = against.final_spin();
-            (spin > 0.0).then(|| run.final_spin() / spin - 1.0)
-        };
+        let spin = |against: &Trajectory| run.spin_against(against);
         Ok(Measured {
             error: errors.largest().max(least),
             at_reference: errors.largest() <= least,
             errors,
             step_errors: limit.map(|limit| Errors::between(&run, limit, case.scales())),
-            energy: run.balances.energy,
-            angular_momentum: run.balances.angular_momentum,
+            energy: run.energy,
+            angular_momentum: run.angular_momentum,
             spin: spin(&self.reference.trajectory),
             step_spin: limit.and_then(spin),
-            steps: run.stats.accepted,
-            rejected: run.stats.rejected,
-            evaluations: run.stats.evaluations,
+            steps: run.steps,
+            rejected: run.rejected,
+            evaluations: run.evaluations,
             seconds: timing.shortest.as_secs_f64(),
             spread: timing.longest.as_secs_f64() / timing.shortest.as_secs_f64(),
             repeats: timing.repeats,

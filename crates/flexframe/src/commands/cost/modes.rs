@@ -56,14 +56,14 @@ pub(super) fn compare(
     let Some(richest) = models.last() else { return Ok(Vec::new()) };
     let method = Method::EXPONENTIAL;
     let budget = settings.budget(5);
-    let most = converge(&PreparedScene::new(scene, richest), method, budget, CONVERGED)
+    let most = converge(&PreparedScene::alone(scene, richest), method, budget, CONVERGED)
         .map_err(|(_, failure)| (richest.body.flexible(), failure))?;
     let control = StepControl::Fixed(most.step);
     let row = |model: &Model| -> Result<ModesRow, RunFailure> {
-        let case = PreparedScene::new(scene, model);
-        let simulation = case.begin(method, control)?;
-        let seconds_per_step = seconds_per_step(&simulation, settings.timed_for)?;
-        let run = Trajectory::follow(simulation, budget.time)?;
+        let case = PreparedScene::alone(scene, model);
+        let simulations = case.begin(method, control)?;
+        let seconds_per_step = seconds_per_step(&simulations, settings.timed_for)?;
+        let run = Trajectory::follow(simulations, budget.time)?;
         let flexible = model.body.flexible();
         let is_most = flexible == richest.body.flexible();
         Ok(ModesRow {

@@ -99,6 +99,6 @@ pub(super) fn converge(
 }
 
 fn follow(case: &PreparedScene<'_>, method: Method, steps: u64, patience: Duration) -> Result<Trajectory, RunFailure> {
-    let simulation = case.begin(method, StepControl::Fixed(case.end() / steps as f64))?;
-    Trajectory::follow(simulation, patience)
+    let simulations = case.begin(method, StepControl::Fixed(case.end() / steps as f64))?;
+    Trajectory::follow(simulations, patience)
 }

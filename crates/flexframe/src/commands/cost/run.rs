@@ -1,13 +1,13 @@
-//! One run, observed at the times of comparison, and the errors of one run against another.
+//! One run of all bodies, observed at the times of comparison, and the errors of one run against another.
 
 use std::time::{Duration, Instant};
 
-use dynamics::{Observation, PointMotion, Reached, Simulation, Stats};
+use dynamics::{Observation, PointMotion, Reached, Simulation};
 use model::Model;
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use crate::commands::run::{Balances, Monitor, RunFailure};
+use crate::commands::run::{Monitor, RunFailure};
 use crate::files::json;
 
 /// Motion smaller than this fraction of the body is rounding.
@@ -16,17 +16,34 @@ const STILL: f64 = 1e-12;
 /// Steps between two looks at the clock. Shorter runs come to their end whatever the patience is.
 const STEPS_PER_LOOK: u64 = 1000;
 
-/// Leads a run on until its patience is used up.
+/// Leads bodies to their end, one after the other, until its patience is used up.
 struct Watch {
     started: Instant,
     patience: Duration,
-    /// Steps tried at the last look.
+    bodies: usize,
+    /// Bodies that have come to their end.
+    ended: usize,
+    /// Steps of the present body tried at the last look.
     looked: u64,
 }
 
 impl Watch {
-    fn new(patience: Duration) -> Self {
-        Self { started: Instant::now(), patience, looked: 0 }
+    fn new(patience: Duration, bodies: usize) -> Self {
+        Self { started: Instant::now(), patience, bodies, ended: 0, looked: 0 }
+    }
+
+    /// Leads a body to its end.
+    fn lead(
+        &mut self,
+        simulation: &mut Simulation,
+        mut at_row: impl FnMut(&mut Simulation) -> Result<(), RunFailure>,
+    ) -> Result<(), RunFailure> {
+        while self.advance(simulation)? != Reached::End {
+            at_row(simulation)?;
+        }
+        self.ended += 1;
+        self.looked = 0;
+        Ok(())
     }
 
     /// Goes on to the next row, or to the end.
@@ -39,7 +56,7 @@ impl Watch {
             if simulation.time() < simulation.end() && tried - self.looked >= STEPS_PER_LOOK {
                 self.looked = tried;
                 if self.started.elapsed() >= self.patience {
-                    let reached = simulation.time() / simulation.end();
+                    let reached = (self.ended as f64 + simulation.time() / simulation.end()) / self.bodies as f64;
                     return Err(RunFailure::OutOfPatience { patience: self.patience.as_secs_f64(), reached });
                 }
             }
@@ -53,37 +70,65 @@ impl Watch {
 /// A run, observed at equally spaced times.
 #[derive(Debug, Clone)]
 pub(super) struct Trajectory {
-    /// At the beginning and after each interval.
-    pub observations: Vec<Observation>,
-    pub stats: Stats,
-    pub balances: Balances,
+    /// Of each body at the beginning and after each interval.
+    pub bodies: Vec<Vec<Observation>>,
+    /// Steps of all bodies.
+    pub steps: u64,
+    /// Steps tried in vain.
+    pub rejected: u64,
+    /// Evaluations of the rates.
+    pub evaluations: u64,
+    /// How far the balance of energy is from closed, of the worst body.
+    pub energy: f64,
+    /// The same of angular momentum.
+    pub angular_momentum: f64,
     /// How long it took, observations included.
     pub time: Duration,
 }
 
 impl Trajectory {
-    /// Runs a simulation to its end, if that takes no longer than the patience.
-    pub(super) fn follow(mut simulation: Simulation, patience: Duration) -> Result<Self, RunFailure> {
-        let mut watch = Watch::new(patience);
-        let mut observations = Vec::new();
-        let mut monitor = Monitor::default();
-        let mut observe = |simulation: &mut Simulation| -> Result<(), RunFailure> {
-            let now = simulation.observation()?;
-            monitor.watch(&now);
-            observations.push(now);
-            Ok(())
+    /// Runs simulations to their end, if that takes no longer than the patience.
+    pub(super) fn follow(simulations: Vec<Simulation>, patience: Duration) -> Result<Self, RunFailure> {
+        let mut watch = Watch::new(patience, simulations.len());
+        let mut all = Self {
+            bodies: Vec::new(),
+            steps: 0,
+            rejected: 0,
+            evaluations: 0,
+            energy: 0.0,
+            angular_momentum: 0.0,
+            time: Duration::ZERO,
         };
-        observe(&mut simulation)?;
-        while watch.advance(&mut simulation)? != Reached::End {
+        for mut simulation in simulations {
+            let mut observations = Vec::new();
+            let mut monitor = Monitor::default();
+            let mut observe = |simulation: &mut Simulation| -> Result<(), RunFailure> {
+                let now = simulation.observation()?;
+                monitor.watch(&now);
+                observations.push(now);
+                Ok(())
+            };
             observe(&mut simulation)?;
+            watch.lead(&mut simulation, observe)?;
+            let (balances, stats) = (monitor.balances(), simulation.stats());
+            all.bodies.push(observations);
+            all.steps += stats.accepted;
+            all.rejected += stats.rejected;
+            all.evaluations += stats.evaluations;
+            all.energy = all.energy.max(balances.energy);
+            all.angular_momentum = all.angular_momentum.max(balances.angular_momentum);
         }
-        let balances = monitor.balances();
-        Ok(Self { observations, stats: simulation.stats(), balances, time: watch.started.elapsed() })
+        all.time = watch.started.elapsed();
+        Ok(all)
     }
 
-    /// |ω| at the end.
-    pub(super) fn final_spin(&self) -> f64 {
-        self.observations.last().map_or(0.0, |last| last.omega_body.norm())
+    /// |ω| at the end over that of another run, less one, of the body where that is farthest from zero; none where no body
+    /// spins.
+    pub(super) fn spin_against(&self, other: &Self) -> Option<f64> {
+        let spin = |body: &Vec<Observation>| body.last().map_or(0.0, |last| last.omega_body.norm());
+        let spins = self.bodies.iter().zip(&other.bodies).map(|(ours, theirs)| (spin(ours), spin(theirs)));
+        let changes = spins.filter(|(_, theirs)| *theirs > 0.0).map(|(ours, theirs)| ours / theirs - 1.0);
+        changes.max_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 }
 
@@ -98,25 +143,18 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// Runs the simulation from its beginning at least three times, and so often that it takes `at_least` in all. A run that
+    /// Runs the simulations from their beginning at least three times, and so often that it takes `at_least` in all. A run that
     /// takes longer than the patience is the last, and does not count.
     ///
     /// # Errors
     /// The error of the first run.
-    pub(super) fn of(simulation: &Simulation, at_least: Duration, patience: Duration) -> Result<Self, RunFailure> {
+    pub(super) fn of(simulations: &[Simulation], at_least: Duration, patience: Duration) -> Result<Self, RunFailure> {
         let mut timing = Self { shortest: Duration::MAX, longest: Duration::ZERO, repeats: 0 };
         let mut sum = Duration::ZERO;
         while timing.repeats < 3 || (sum < at_least && timing.repeats < 1000) {
-            let mut simulation = simulation.clone();
-            let mut watch = Watch::new(patience);
-            let ended = loop {
-                match watch.advance(&mut simulation) {
-                    Ok(Reached::End) => break Ok(()),
-                    Ok(_) => {}
-                    Err(failure) => break Err(failure),
-                }
-            };
-            match ended {
+            let mut simulations = simulations.to_vec();
+            let mut watch = Watch::new(patience, simulations.len());
+            match simulations.iter_mut().try_for_each(|simulation| watch.lead(simulation, |_| Ok(()))) {
                 Err(RunFailure::OutOfPatience { .. }) if timing.repeats > 0 => break,
                 ended => ended?,
             }
@@ -132,20 +170,17 @@ impl Timing {
 
 /// Time of a step, seconds: the shortest of the means over three stretches from the beginning of the run, each of which
 /// takes `at_least` or the whole run.
-pub(super) fn seconds_per_step(simulation: &Simulation, at_least: Duration) -> Result<f64, RunFailure> {
+pub(super) fn seconds_per_step(simulations: &[Simulation], at_least: Duration) -> Result<f64, RunFailure> {
     let mut shortest = f64::INFINITY;
     for _ in 0..3 {
-        let mut simulation = simulation.clone();
-        let mut watch = Watch::new(at_least);
-        loop {
-            match watch.advance(&mut simulation) {
-                Ok(Reached::End) | Err(RunFailure::OutOfPatience { .. }) => break,
-                Ok(_) => {}
-                Err(failure) => return Err(failure),
-            }
+        let mut simulations = simulations.to_vec();
+        let mut watch = Watch::new(at_least, simulations.len());
+        match simulations.iter_mut().try_for_each(|simulation| watch.lead(simulation, |_| Ok(()))) {
+            Ok(()) | Err(RunFailure::OutOfPatience { .. }) => {}
+            Err(failure) => return Err(failure),
         }
-        let steps = simulation.stats().accepted.max(1) as f64;
-        shortest = shortest.min(watch.started.elapsed().as_secs_f64() / steps);
+        let steps: u64 = simulations.iter().map(|simulation| simulation.stats().accepted).sum();
+        shortest = shortest.min(watch.started.elapsed().as_secs_f64() / steps.max(1) as f64);
     }
     Ok(shortest)
 }
@@ -194,15 +229,32 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Errors of `run` against `reference`, at the times that both have. Modes that only one of them has are left out.
-    pub(super) fn between(run: &Trajectory, reference: &Trajectory, scales: &Scales) -> Self {
-        let (ours, theirs) = (&run.observations, &reference.observations);
+    /// Errors of `run` against `reference`, at the times that both have: of each quantity, of the worst body. Modes that only one of
+    /// them has are left out.
+    pub(super) fn between(run: &Trajectory, reference: &Trajectory, scales: &[Scales]) -> Self {
+        let bodies = run.bodies.iter().zip(&reference.bodies).zip(scales);
+        bodies.map(|((ours, theirs), scales)| Self::of_body(ours, theirs, scales)).fold(Self::default(), Self::or_worse)
+    }
+
+    /// The larger of each.
+    fn or_worse(self, other: Self) -> Self {
+        let worse = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(f64::max);
+        Self {
+            attitude: self.attitude.max(other.attitude),
+            modal: worse(self.modal, other.modal),
+            displacement: worse(self.displacement, other.displacement),
+            velocity: worse(self.velocity, other.velocity),
+            acceleration: worse(self.acceleration, other.acceleration),
+        }
+    }
+
+    fn of_body(ours: &[Observation], theirs: &[Observation], scales: &Scales) -> Self {
         let stride = |list: &[Observation], other: &[Observation]| {
             (list.len().saturating_sub(1) / other.len().saturating_sub(1).max(1)).max(1)
         };
         let pairs = || {
-            let theirs = theirs.iter().step_by(stride(theirs, ours));
-            ours.iter().step_by(stride(ours, &reference.observations)).zip(theirs)
+            let compared = theirs.iter().step_by(stride(theirs, ours));
+            ours.iter().step_by(stride(ours, theirs)).zip(compared)
         };
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let relative = |error: f64, peak: f64, still: f64| (peak > still).then(|| error / peak);

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use super::ladder::{LadderRun, Line, Outcome};
-use super::report::CostReport;
+use super::modes::modes_warning;
+use super::report::{CostBody, CostReport};
 use super::short::{duration, setting};
 use crate::commands::modes::frequency_unit;
 
@@ -23,11 +24,24 @@ impl CostReport {
     fn write_list(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let time = &self.time_unit;
         writeln!(f, "{}", self.title)?;
-        write!(f, "  scene      {} flexible modes", self.flexible)?;
-        if let Some(highest) = self.highest_frequency {
-            write!(f, " to {highest:.2} {}", frequency_unit(time))?;
+        let in_words = |body: &CostBody| {
+            let to = |highest| format!(" to {highest:.2} {}", frequency_unit(time));
+            let to = body.highest_frequency.map_or_else(String::new, to);
+            (format!("{} flexible modes{to}", body.flexible), format!("{} points", body.points))
+        };
+        match &self.bodies[..] {
+            [body] => {
+                let (modes, points) = in_words(body);
+                writeln!(f, "  scene      {modes}, {} {time}, {points}", self.end)?;
+            }
+            several => {
+                writeln!(f, "  scene      {} bodies, {} {time}", several.len(), self.end)?;
+                for body in several {
+                    let (modes, points) = in_words(body);
+                    writeln!(f, "  {:<10} {modes}, {points}", body.name)?;
+                }
+            }
         }
-        writeln!(f, ", {} {time}, {} points", self.end, self.points)?;
         writeln!(f, "  machine    {}", self.machine)?;
         let reference = &self.reference;
         let parts: Vec<String> =
@@ -78,14 +92,18 @@ impl CostReport {
              error: largest of attitude (rad), modal coordinates, displacement, velocity and acceleration of the points \
              (of their peaks)"
         )?;
-        self.write_modes(f)
+        self.bodies.iter().try_for_each(|body| self.write_modes(f, body))
     }
 
-    fn write_modes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(why) = &self.modes_failure {
-            return writeln!(f, "\n  Numbers of modes are not compared: {why}");
+    fn write_modes(&self, f: &mut fmt::Formatter<'_>, body: &CostBody) -> fmt::Result {
+        let of = if self.bodies.len() == 1 { String::new() } else { format!(" of body {}", body.name) };
+        if let Some(why) = &body.modes_failure {
+            return writeln!(f, "\n  Numbers of modes{of} are not compared: {why}");
         }
-        let (Some(first), Some(most)) = (self.modes.first(), self.modes.last()) else { return Ok(()) };
+        let (Some(first), Some(most)) = (body.modes.first(), body.modes.last()) else { return Ok(()) };
+        if !of.is_empty() {
+            write!(f, "\n  body {}", body.name)?;
+        }
         writeln!(
             f,
             "\n  modes   to, {:<6} {:>9}  {:>9} {:>9} {:>9} {:>9} {:>9}  {:>9}",
@@ -98,7 +116,7 @@ impl CostReport {
             "accel.",
             "time/step"
         )?;
-        for row in &self.modes {
+        for row in &body.modes {
             write!(f, "  {:>5}  {:>9.2}  ", row.flexible, row.highest_frequency)?;
             match row.errors {
                 Some(e) => write!(
@@ -120,7 +138,7 @@ impl CostReport {
             "  the same motion with {} to {} modes; the steps leave an error of {:.0e}",
             first.flexible, most.flexible, most.step_error
         )?;
-        match super::modes::modes_warning(&self.modes, self.flexible, 0.0) {
+        match modes_warning(&body.modes, body.flexible, 0.0) {
             Some(words) => writeln!(f, "  {words}"),
             None => Ok(()),
         }

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::body_report::BodyRunReport;
 use super::estimate::Estimate;
 use crate::files::json;
-use crate::report::Times;
+use crate::report::{Times, list_of_bodies};
 use crate::rows::row::Row;
 
 /// Report of `flexframe run`.
@@ -34,7 +34,7 @@ pub struct RunReport {
     #[serde(serialize_with = "json::number")]
     pub steps_per_second: f64,
     /// Each body, in the order of the scene. As JSON, what is told of a single one stands beside the list, too.
-    #[serde(flatten, serialize_with = "bodies")]
+    #[serde(flatten, serialize_with = "list_of_bodies")]
     pub bodies: Vec<BodyRunReport>,
     /// All bodies together, at the end.
     pub system: SystemReport,
@@ -70,16 +70,4 @@ impl SystemReport {
             angular_momentum: last.angular_momentum_global().into(),
         }
     }
-}
-
-/// The list of the bodies, and of a single one its keys.
-fn bodies<S: Serializer>(list: &[BodyRunReport], serializer: S) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Bodies<'a> {
-        bodies: &'a [BodyRunReport],
-        #[serde(flatten)]
-        single: Option<&'a BodyRunReport>,
-    }
-    let single = list.first().filter(|_| list.len() == 1);
-    Bodies { bodies: list, single }.serialize(serializer)
 }
