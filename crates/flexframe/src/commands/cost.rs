@@ -5,6 +5,7 @@
 //! them shows what those left out would change.
 
 mod answer;
+mod body;
 mod case;
 mod error;
 mod files;
@@ -28,13 +29,14 @@ use model::{BuildError, BuildProgress, Builder, Model};
 use scene::{Flexible, Scene};
 
 pub use answer::Answer;
+pub use body::CostBody;
 pub use error::CostError;
 pub use files::files;
 pub use ladder::{LadderRun, Line, Measured, Outcome, Stopped};
 pub use machine::Machine;
 pub use modes::{ModesRow, modes_warning};
 pub use reference::ReferenceReport;
-pub use report::{CostBody, CostReport};
+pub use report::CostReport;
 pub use run::Errors;
 pub use setting::Setting;
 pub use settings::CostSettings;

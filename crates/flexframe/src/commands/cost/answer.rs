@@ -5,9 +5,9 @@ use std::fmt;
 use scene::Rows;
 use serde::Serialize;
 
+use super::body::CostBody;
 use super::case::PreparedScene;
 use super::ladder::{Evaluator, LadderRun, Line, Outcome, settings_between};
-use super::report::CostBody;
 use super::setting::Setting;
 use super::short::{duration, setting};
 use crate::files::json;

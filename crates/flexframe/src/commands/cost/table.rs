@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use super::body::CostBody;
 use super::ladder::{LadderRun, Line, Outcome};
 use super::modes::modes_warning;
-use super::report::{CostBody, CostReport};
+use super::report::CostReport;
 use super::short::{duration, setting};
 use crate::commands::modes::frequency_unit;
 
