@@ -156,6 +156,18 @@ pub enum SetupError {
         /// The physics.
         what: &'static str,
     },
+    /// Joints that cannot be closed.
+    #[error(
+        "the joints cannot be closed at the beginning: \"{joint}\" stays open by {left:.3e} and its rate by {rate:.3e}; put its bodies so that its markers meet, give velocities that the joints allow, or remove a joint that contradicts the others"
+    )]
+    NotAssembled {
+        /// Name of the joint that is farthest from closed.
+        joint: Box<str>,
+        /// Largest residual of a position or an angle.
+        left: f64,
+        /// Largest residual of a velocity.
+        rate: f64,
+    },
     /// An error of a method or a load from outside.
     #[error(transparent)]
     Custom(#[from] CustomError),
@@ -253,6 +265,16 @@ pub enum StepError {
         step: f64,
         /// The tolerance.
         tolerance: f64,
+    },
+    /// Newton's method does not converge in a fixed step.
+    #[error(
+        "at time {time}: the equations of a step of {step:.3e} could not be solved; take a smaller step, or `tolerance` instead of `step`; where the joints lock or a mechanism passes a singular position, no step may do"
+    )]
+    Newton {
+        /// Start of the step.
+        time: f64,
+        /// Its length.
+        step: f64,
     },
     /// Step control of a scheme that does not estimate its error.
     #[error("at time {time}: this scheme does not estimate its error; give it a step instead of a tolerance")]

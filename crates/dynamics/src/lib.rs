@@ -70,6 +70,7 @@ pub use system::joint::{Joint, JointDrive, Row};
 pub use system::marker::Marker;
 pub use system::motion::{MarkerMotion, MarkerWrench};
 pub use system::radau::{Failed, SystemMotion, Tried};
+pub use system::simulation::{Assembled, SystemSetup, SystemSimulation};
 pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 

@@ -16,4 +16,6 @@ pub(crate) mod motion;
 pub(crate) mod radau;
 mod reactions;
 mod relaxed;
+mod saved;
+pub(crate) mod simulation;
 pub(crate) mod stage;

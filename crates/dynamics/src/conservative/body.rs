@@ -133,6 +133,11 @@ impl ConservativeBody {
         self.mass
     }
 
+    /// Its radius of gyration: of J₀ about the origin, √(trace/2m).
+    pub(crate) fn radius_of_gyration(&self) -> f64 {
+        (0.5 * self.inertia.trace() / self.mass).sqrt()
+    }
+
     /// J₀ about the origin, body axes.
     pub(crate) fn undeformed_inertia(&self) -> &Matrix3<f64> {
         &self.inertia

@@ -77,7 +77,7 @@ impl EnergyAccount {
     }
 
     /// Takes a step into account, after which work and dissipation since the beginning are these.
-    fn exchange(&mut self, done: [f64; 2]) {
+    pub(crate) fn exchange(&mut self, done: [f64; 2]) {
         self.exchanged += (done[0] - self.done[0]).abs() + (done[1] - self.done[1]).abs();
         self.done = done;
     }
@@ -88,7 +88,7 @@ impl EnergyAccount {
     }
 
     /// Checks the energy at a time; the `rate` is the largest of ω_k and 2 ζ_k ω_k.
-    fn check(&mut self, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
+    pub(crate) fn check(&mut self, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
         let Energies { time, internal, .. } = *now;
         let start = *self.start.get_or_insert(*now);
         let put_in = (now.work - start.work) - (now.translation - start.translation);

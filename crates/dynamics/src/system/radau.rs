@@ -64,27 +64,27 @@ pub struct SystemMotion {
     pub(super) system: System,
     scheme: Collocation,
     pub(super) pattern: Pattern,
-    time: f64,
+    pub(super) time: f64,
     /// The list of each body, as in a [`State`] of it.
     pub(super) bodies: Vec<State>,
     pub(super) start: Start,
     pub(super) first: Stage,
     pub(super) stages: [Stage; STAGES],
     /// λ and μ at the stages.
-    multipliers: [Vec<f64>; STAGES],
+    pub(super) multipliers: [Vec<f64>; STAGES],
     velocity_multipliers: [Vec<f64>; STAGES],
     /// Increments of the stages of the last step, and its length; zero before the first.
-    last: [[Vec<f64>; 2]; STAGES],
-    last_length: f64,
+    pub(super) last: [[Vec<f64>; 2]; STAGES],
+    pub(super) last_length: f64,
     pub(super) matrices: Matrices,
     room: Room,
     /// The largest energy so far.
-    largest_energy: f64,
+    pub(super) largest_energy: f64,
     /// Work of the drives of joints since the beginning.
-    drive_work: f64,
+    pub(super) drive_work: f64,
     /// Work of the force elements since the beginning.
-    element_work: f64,
-    evaluations: u64,
+    pub(super) element_work: f64,
+    pub(super) evaluations: u64,
     /// λ of index 1, where they were last asked for.
     pub(super) reactions: Vec<f64>,
 }
@@ -177,14 +177,14 @@ impl SystemMotion {
     /// # Errors
     /// [`RateError`] where a body's velocities cannot be found.
     pub fn energy(&self) -> Result<f64, RateError> {
-        let mut sum = 0.0;
-        for (body, state) in self.system.bodies.iter().zip(&self.bodies) {
-            let mut e = body.evaluation();
-            body.evaluate_at(state, state.time, &mut e)?;
-            let energies = body.energies(state.time, &e);
-            sum += energies.map_or(0.0, |energies| energies.internal + energies.translation);
-        }
-        Ok(sum)
+        (0..self.bodies.len()).map(|body| self.energy_of(body)).sum()
+    }
+
+    fn energy_of(&self, body: usize) -> Result<f64, RateError> {
+        let (body, state) = (&self.system.bodies[body], &self.bodies[body]);
+        let mut e = body.evaluation();
+        body.evaluate_at(state, state.time, &mut e)?;
+        Ok(body.energies(state.time, &e).map_or(0.0, |energies| energies.internal + energies.translation))
     }
 
     /// Work of the drives of joints since the beginning.
@@ -216,7 +216,7 @@ impl SystemMotion {
     /// [`RateError`] where a body's velocities cannot be found.
     pub fn residuals(&mut self) -> Result<[&[f64]; 2], RateError> {
         self.begin();
-        self.evaluate_first()?;
+        self.evaluate_first(self.time)?;
         Ok([&self.first.constraints.residuals, &self.first.constraint_rates])
     }
 
@@ -241,13 +241,18 @@ impl SystemMotion {
     /// # Errors
     /// [`Failed`] where the inertia of a body is singular.
     pub fn assemble(&mut self) -> Result<[f64; 2], Failed> {
+        self.assemble_by(self.time)
+    }
+
+    /// The same with the branches of drives that hold at a time.
+    fn assemble_by(&mut self, branch_time: f64) -> Result<[f64; 2], Failed> {
         self.begin();
-        self.evaluate_first()?;
+        self.evaluate_first(branch_time)?;
         let [.., last] = &mut self.stages;
         last.x.copy_from_slice(&self.first.x);
         last.y.copy_from_slice(&self.first.y);
         last.inertia.clone_from(&self.first.inertia);
-        self.end(self.time, ASSEMBLY)
+        self.end([self.time, branch_time], ASSEMBLY)
     }
 
     /// Tries a step of length `h` that ends at `end`, with Newton's method as exact as `exactness`, and goes on where
@@ -257,7 +262,8 @@ impl SystemMotion {
     /// [`Failed`]; the state stays.
     pub fn try_step(&mut self, h: f64, end: f64, exactness: f64, tolerance: f64) -> Result<Tried, Failed> {
         self.begin();
-        self.evaluate_first()?;
+        let branch_time = self.time + 0.5 * h;
+        self.evaluate_first(branch_time)?;
         self.predict(h);
         let passes = self.newton(h, exactness)?;
         let error = self.error(h);
@@ -269,7 +275,7 @@ impl SystemMotion {
             self.last_length = h;
             self.add_work(h);
             self.sum_momenta(h);
-            self.end(end, h)?;
+            self.end([end, branch_time], h)?;
         }
         Ok(Tried { error, passes })
     }
@@ -282,35 +288,78 @@ impl SystemMotion {
     pub fn advance(&mut self, end: f64, tolerance: f64, h: &mut f64) -> Result<u64, StepError> {
         let mut steps = 0;
         while self.time < end {
-            let left = end - self.time;
-            let parts = (left / *h).ceil().max(1.0);
-            let length = if *h * 1.01 >= left { left } else { left / parts };
-            let to = if length == left { end } else { self.time + length };
-            match self.try_step(length, to, EXACTNESS * tolerance, tolerance) {
-                Ok(Tried { error, passes }) => {
-                    let mut factor = (0.9 * (tolerance / error.max(1e-300)).powf(0.25)).clamp(0.2, 4.0);
-                    if error <= tolerance {
-                        steps += 1;
-                        if passes > 7 {
-                            factor = factor.min(0.7);
-                        } else if passes > 5 {
-                            factor = factor.min(1.0);
-                        }
-                        // A last step that was cut short says little of the next.
-                        *h = if factor >= 1.0 { h.max(length * factor) } else { length * factor };
-                    } else {
-                        *h = length * factor.min(0.9);
-                    }
-                }
-                Err(Failed::Newton) => *h = 0.4 * length,
-                Err(Failed::Rates(error)) if length < 1e-12 * end => return Err(error.in_step(self.time, length)),
-                Err(Failed::Rates(_)) => *h = 0.25 * length,
-            }
-            if *h < 1e-13 * end {
-                return Err(StepError::Tolerance { time: self.time, step: *h, tolerance });
-            }
+            steps += u64::from(self.try_towards(end, tolerance, h)?.is_some());
         }
         Ok(steps)
+    }
+
+    /// Tries one step towards `end` with an estimated error of at most `tolerance`, about as long as `h`, which becomes the
+    /// length of the next try. Returns the length of the step where it was taken.
+    ///
+    /// # Errors
+    /// [`StepError`] where no step is short enough.
+    pub(super) fn try_towards(&mut self, end: f64, tolerance: f64, h: &mut f64) -> Result<Option<f64>, StepError> {
+        let left = end - self.time;
+        let parts = (left / *h).ceil().max(1.0);
+        let length = if *h * 1.01 >= left { left } else { left / parts };
+        let to = if length == left { end } else { self.time + length };
+        let mut taken = None;
+        match self.try_step(length, to, EXACTNESS * tolerance, tolerance) {
+            Ok(Tried { error, passes }) => {
+                let mut factor = (0.9 * (tolerance / error.max(1e-300)).powf(0.25)).clamp(0.2, 4.0);
+                if error <= tolerance {
+                    taken = Some(length);
+                    if passes > 7 {
+                        factor = factor.min(0.7);
+                    } else if passes > 5 {
+                        factor = factor.min(1.0);
+                    }
+                    // A last step that was cut short says little of the next.
+                    *h = if factor >= 1.0 { h.max(length * factor) } else { length * factor };
+                } else {
+                    *h = length * factor.min(0.9);
+                }
+            }
+            Err(Failed::Newton) => *h = 0.4 * length,
+            Err(Failed::Rates(error)) if length < 1e-12 * end => return Err(error.in_step(self.time, length)),
+            Err(Failed::Rates(_)) => *h = 0.25 * length,
+        }
+        if *h < 1e-13 * end {
+            return Err(StepError::Tolerance { time: self.time, step: *h, tolerance });
+        }
+        Ok(taken)
+    }
+
+    /// Takes the motion past a jump of a load or a drive at its time: where the rate of a drive jumps, so do the velocities. The
+    /// energy that this takes is work of the drives.
+    ///
+    /// # Errors
+    /// [`RateError`] where the inertia of a body is singular.
+    pub(super) fn pass_discontinuity(&mut self) -> Result<(), RateError> {
+        self.last_length = 0.0;
+        if self.system.joints.iter().all(|joint| joint.drive.is_none()) {
+            return Ok(());
+        }
+        // The discontinuity itself is where it is but for rounding.
+        let branch_time = self.time + 1e-12 * self.time.abs();
+        let energies = |motion: &Self| {
+            (0..motion.bodies.len()).map(|body| motion.energy_of(body)).collect::<Result<Vec<f64>, _>>()
+        };
+        let before = energies(self)?;
+        match self.assemble_by(branch_time) {
+            Ok(_) => {}
+            Err(Failed::Rates(error)) => return Err(error),
+            Err(Failed::Newton) => return Err(RateError::Inertia),
+        }
+        let after = energies(self)?;
+        for (body, (before, after)) in before.into_iter().zip(after).enumerate() {
+            let mut list = self.system.bodies[body].list_mut(&mut self.bodies[body]);
+            let mut slow = *list.slow();
+            slow[part::WORK] += after - before;
+            list.set_slow(&slow);
+            self.drive_work += after - before;
+        }
+        Ok(())
     }
 
     /// Takes the state as the start of a step.
@@ -333,11 +382,12 @@ impl SystemMotion {
         }
     }
 
-    pub(super) fn evaluate_first(&mut self) -> Result<(), RateError> {
+    /// Finds the rates where the system is, by the branches of loads and drives that hold at a time.
+    pub(super) fn evaluate_first(&mut self, branch_time: f64) -> Result<(), RateError> {
         let Self { first, system, start, .. } = self;
         first.x.fill(0.0);
         first.y.fill(0.0);
-        first.evaluate(system, start, [start.time, start.time])?;
+        first.evaluate(system, start, [start.time, branch_time])?;
         self.velocity_multipliers[0].fill(0.0);
         first.find_x_rates(system, &self.velocity_multipliers[0])?;
         self.evaluations += 1;
@@ -528,32 +578,34 @@ impl SystemMotion {
         });
     }
 
-    /// Adds the integrals over a step: works, impulses, dissipation.
+    /// Adds the integrals over a step: works, impulses, dissipation. What joints and elements do to a body counts as its loads do,
+    /// so that its balances close.
     fn add_work(&mut self, h: f64) {
-        let stages = self.stages.iter().zip(&self.multipliers).zip(self.scheme.weights);
-        for ((stage, lambda), weight) in stages {
+        let Self { stages, multipliers, scheme, bodies, system, .. } = self;
+        for ((stage, lambda), weight) in stages.iter_mut().zip(&*multipliers).zip(scheme.weights) {
             let power: f64 = lambda.iter().zip(&stage.constraints.own_rates).map(|(lambda, rate)| -lambda * rate).sum();
             self.drive_work += h * weight * power;
             self.element_work += h * weight * stage.element_power;
-        }
-        for (b, state) in self.bodies.iter_mut().enumerate() {
-            let body = &self.system.bodies[b];
-            let mut slow = *body.list(state).slow();
-            for (stage, weight) in self.stages.iter().zip(self.scheme.weights) {
-                let rates = stage.evaluations[b].rates.slow();
+            stage.find_joint_forces(lambda);
+            for (b, state) in bodies.iter_mut().enumerate() {
+                let mut list = system.bodies[b].list_mut(state);
+                let mut slow = *list.slow();
+                let mut rates = *stage.evaluations[b].rates.slow();
+                stage.add_joint_exchange(system, b, &mut rates);
                 for k in part::WORK..slow.len() {
                     slow[k] += h * weight * rates[k];
                 }
+                list.set_slow(&slow);
             }
-            body.list_mut(state).set_slow(&slow);
         }
     }
 
     /// Projects the end of a step, and takes it for the state. Returns the largest residual and rate that are left.
-    fn end(&mut self, end: f64, h: f64) -> Result<[f64; 2], Failed> {
+    /// The second time says which branches of the drives hold.
+    fn end(&mut self, times: [f64; 2], h: f64) -> Result<[f64; 2], Failed> {
         let Self { stages: [.., last], system, start, matrices, pattern, room, scheme, .. } = self;
         last.place(system, start);
-        last.find_constraints(system, [end, end]);
+        last.find_constraints(system, times);
         if !matrices.factor_real(system, pattern, last, scheme.real / h) {
             return Err(Failed::Rates(RateError::Inertia));
         }
@@ -561,7 +613,7 @@ impl SystemMotion {
         let (mut left, real) = (f64::INFINITY, &mut room.real);
         for _ in 0..MAX_PROJECTIONS {
             last.place(system, start);
-            last.find_constraints(system, [end, end]);
+            last.find_constraints(system, times);
             let largest = last.constraints.residuals.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
             if largest >= 0.5 * left || largest == 0.0 {
                 left = largest.min(left);
@@ -580,13 +632,15 @@ impl SystemMotion {
             last.add_in_body_axes(system, &mut real.x, &mut real.y);
         }
         // Velocities.
-        last.evaluate(system, start, [end, end])?;
+        last.evaluate(system, start, times)?;
         self.evaluations += 1;
         real.y.fill(0.0);
         let rates = last.project_velocities(system, &mut real.y, |rates| matrices.of_mass.solve(pattern, rates));
         for (b, state) in self.bodies.iter_mut().enumerate() {
             let body = &system.bodies[b];
             let (first, end_of_body) = (system.first[b], system.first[b + 1]);
+            let [impulse, angular_impulse] =
+                [0, 3].map(|part| last.attitudes[b].tr_mul(&vector(&real.y, first + part)));
             about_global_origin(&mut real.y[first..end_of_body], &last.positions[b], &last.attitudes[b]);
             let turned = attitude_at(&state.values, 0).advanced_by(&vector(&last.x, first + 3));
             let momentum = start.bodies[b].momentum + vector(&last.y, first) + vector(&real.y, first);
@@ -601,6 +655,10 @@ impl SystemMotion {
             put(&mut slow, part::POSITION, &position);
             put(&mut slow, part::MOMENTUM, &momentum);
             put(&mut slow, part::PI, &pi);
+            let impulse = impulse + get(&slow, part::IMPULSE);
+            put(&mut slow, part::IMPULSE, &impulse);
+            let angular_impulse = angular_impulse + get(&slow, part::ANGULAR_IMPULSE);
+            put(&mut slow, part::ANGULAR_IMPULSE, &angular_impulse);
             list.set_slow(&slow);
             let [q, p] = list.modes_mut();
             for k in 0..q.len() {
@@ -608,9 +666,9 @@ impl SystemMotion {
                 q[k] = start.q[at] + last.x[at];
                 p[k] = start.p[at] + last.y[at] + real.y[at];
             }
-            state.time = end;
+            state.time = times[0];
         }
-        self.time = end;
+        self.time = times[0];
         Ok([left, rates])
     }
 }

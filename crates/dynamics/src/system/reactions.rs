@@ -28,7 +28,7 @@ impl SystemMotion {
     /// [`RateError`] where the inertia of a body is singular.
     pub fn find_reactions(&mut self) -> Result<(), RateError> {
         self.begin();
-        self.evaluate_first()?;
+        self.evaluate_first(self.time)?;
         let velocities = std::mem::take(&mut self.first.velocities);
         let mut change = std::mem::take(&mut self.reactions);
         self.find_row_accelerations(&velocities, &mut change);

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{f_inverse, transformation_matrix};
 
 use crate::conservative::Evaluation;
-use crate::conservative::{get, part, set};
+use crate::conservative::{Slow, get, part, set};
 use crate::equations::Equations;
 use crate::error::RateError;
 use crate::system::constraints::Constraints;
@@ -295,6 +295,23 @@ impl Stage {
             about_global_origin(&mut self.forces[first..end], &self.positions[b], &self.attitudes[b]);
         }
         out.iter_mut().zip(self.y_rates.iter().zip(&self.forces)).for_each(|(out, (rate, force))| *out = rate + force);
+    }
+
+    /// Finds what joints with these multipliers and the elements do to the bodies, for [`Self::add_joint_exchange`].
+    pub fn find_joint_forces(&mut self, multipliers: &[f64]) {
+        self.forces.copy_from_slice(&self.element_forces);
+        self.constraints.add_forces(multipliers, &mut self.forces);
+    }
+
+    /// Adds to the rates of a body's work and impulses what joints and elements do to it.
+    pub fn add_joint_exchange(&self, system: &System, b: usize, rates: &mut Slow) {
+        let own = system.first[b]..system.first[b + 1];
+        let (forces, velocities) = (&self.forces[own.clone()], &self.velocities[own]);
+        rates[part::WORK] += forces.iter().zip(velocities).map(|(force, velocity)| force * velocity).sum::<f64>();
+        for (which, first) in [(part::IMPULSE, 0), (part::ANGULAR_IMPULSE, 3)] {
+            let sum = get(rates, which) + self.attitudes[b].tr_mul(&vector(forces, first));
+            set(rates, which, &sum);
+        }
     }
 
     /// Removes the part of the velocities that the rows forbid, and the momenta that go with it, by `solve` of A λ = G v.

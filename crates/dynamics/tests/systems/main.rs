@@ -5,3 +5,4 @@ mod elements;
 mod flexible;
 mod mechanism;
 mod rigid;
+mod run;

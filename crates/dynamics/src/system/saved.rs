@@ -1,0 +1,94 @@
+//! The state of a system between its steps: for watchers, and for checkpoints.
+
+use serde::{Deserialize, Serialize};
+
+use crate::conservative::part;
+use crate::equations::Equations;
+use crate::observation::moment::Moment;
+use crate::simulation::checkpoint::{CheckpointError, counts, expect, finite, fixed_room};
+use crate::state::State;
+use crate::system::collocation::STAGES;
+use crate::system::joint::Joint;
+use crate::system::radau::SystemMotion;
+use crate::system::stage::vector;
+
+/// A motion in a checkpoint.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct SavedMotion {
+    time: f64,
+    bodies: Vec<State>,
+    last: Vec<Vec<f64>>,
+    last_length: f64,
+    multipliers: Vec<Vec<f64>>,
+    sums: [f64; 3],
+    #[serde(with = "fixed_room")]
+    evaluations: u64,
+}
+
+impl SystemMotion {
+    /// The motion of a body at the end of the last step.
+    pub(super) fn moment(&self, body: usize) -> Moment<'_> {
+        let [.., last] = &self.stages;
+        let (first, end) = (self.system.first[body], self.system.first[body + 1]);
+        Moment {
+            time: self.time,
+            omega_body: vector(&last.velocities, first + 3),
+            modal_displacement: last.body_place(&self.system, body).q,
+            modal_velocity: &last.velocities[first + 6..end],
+        }
+    }
+
+    /// Work and dissipation of a body since the beginning.
+    pub(super) fn work_and_dissipation(&self, body: usize) -> [f64; 2] {
+        let list = self.system.bodies[body].list(&self.bodies[body]);
+        [part::WORK, part::DISSIPATION].map(|part| list.slow()[part])
+    }
+
+    /// All that a later step depends on.
+    pub(super) fn saved(&self) -> SavedMotion {
+        SavedMotion {
+            time: self.time,
+            bodies: self.bodies.clone(),
+            last: self.last.concat(),
+            last_length: self.last_length,
+            multipliers: self.multipliers.to_vec(),
+            sums: [self.largest_energy, self.drive_work, self.element_work],
+            evaluations: self.evaluations,
+        }
+    }
+
+    /// Takes up a state that [`Self::saved`] has given.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] for lists of other lengths, and numbers that are not finite.
+    pub(super) fn take_up(&mut self, saved: SavedMotion) -> Result<(), CheckpointError> {
+        let SavedMotion { time, bodies, last, last_length, multipliers, sums, evaluations } = saved;
+        let lists = [bodies.len(), last.len(), multipliers.len()];
+        expect("the number of bodies", lists == [self.bodies.len(), 2 * STAGES, STAGES])?;
+        for ((body, state), own) in self.system.bodies.iter().zip(&bodies).zip(&self.bodies) {
+            expect("the state of a body", state.values.len() == own.values.len())?;
+            body.layout().check(state)?;
+        }
+        expect("the last step", last.iter().all(|list| list.len() == self.system.coordinates()))?;
+        expect("the multipliers", multipliers.iter().all(|list| list.len() == self.pattern.len()))?;
+        finite("the motion", last.iter().chain(&multipliers).flatten().chain(&sums).chain([&time, &last_length]))?;
+        counts(&[evaluations])?;
+        (self.time, self.bodies, self.last_length, self.evaluations) = (time, bodies, last_length, evaluations);
+        for (own, saved) in
+            self.last.iter_mut().flatten().chain(&mut self.multipliers).zip(last.iter().chain(&multipliers))
+        {
+            own.copy_from_slice(saved);
+        }
+        [self.largest_energy, self.drive_work, self.element_work] = sums;
+        Ok(())
+    }
+
+    /// The joint that is farthest from closed where the last step has ended, or where the bodies have been put together.
+    pub(super) fn worst_joint(&self) -> Option<&Joint> {
+        let [.., last] = &self.stages;
+        let open = |row: usize| last.constraints.residuals[row].abs().max(last.constraint_rates[row].abs());
+        let worst = (0..self.pattern.len()).max_by(|a, b| open(*a).total_cmp(&open(*b)))?;
+        let of_joints = self.system.joints.iter().flat_map(|joint| joint.rows.iter().map(move |_| joint));
+        of_joints.into_iter().nth(worst)
+    }
+}

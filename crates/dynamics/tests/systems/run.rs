@@ -1,0 +1,145 @@
+//! Runs of bodies with joints: rows, discontinuities, balances, checkpoints.
+
+use std::sync::Arc;
+
+use dynamics::{
+    ConservativeBody, History, Joint, JointDrive, Marker, MotionState, Observation, Physics, PointForce, PointShapes,
+    Reached, Rows, SetupError, SharedLoad, StepControl, System, SystemSetup, SystemSimulation, Table, TurnSpring,
+};
+use modal::{BodyPoint, ReducedBody, RigidMotion};
+use nalgebra::{Matrix3, Vector3};
+use rigid_kin::Attitude;
+
+/// Two rods of 1 m and 1 kg that hang from each other and from the ground in a field of gravity, with a spring between them.
+fn pendulum(control: StepControl, drive: Option<JointDrive>) -> SystemSetup {
+    let inertia = Matrix3::from_diagonal(&Vector3::new(1e-3, 1.0 / 12.0, 1.0 / 12.0));
+    let rod = ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
+    let center = PointShapes::new(&rod, &BodyPoint::rigid(Vector3::zeros()));
+    let weight: SharedLoad = Arc::new(PointForce::dead(center, Vector3::new(0.0, -9.81, 0.0), History::Constant));
+    let body = ConservativeBody::new(&rod, &[], vec![weight], &Physics::default()).unwrap();
+    let axes = Matrix3::identity();
+    let end = |body: usize, x: f64| Marker::on_rigid(body, Vector3::x() * x, axes);
+    let first = Joint::revolute("first", [Marker::on_ground(Vector3::zeros(), axes), end(0, -0.5)]);
+    let first = match drive {
+        Some(drive) => first.turned_by(drive),
+        None => first,
+    };
+    let second = Joint::revolute("second", [end(0, 0.5), end(1, -0.5)]);
+    let spring =
+        TurnSpring { markers: [end(0, 0.5), end(1, -0.5)], stiffness: 2.0, damping: 0.1, free_angle: 0.5, stops: None };
+    let system = System::new(vec![body.clone(), body], vec![first, second]).unwrap();
+    let at = |x: f64| MotionState {
+        time: 0.0,
+        attitude: Attitude::identity(),
+        origin_global: Vector3::x() * x,
+        velocity_global: Vector3::zeros(),
+        omega_body: Vector3::zeros(),
+        modal_displacement: Vec::new(),
+        modal_velocity: Vec::new(),
+    };
+    SystemSetup {
+        system: system.with_elements(vec![Arc::new(spring)]).unwrap(),
+        states: vec![at(0.5), at(1.5)],
+        relaxed: false,
+        control,
+        end: 2.0,
+        rows: Rows::Interval(0.25),
+        points: vec![Vec::new(), vec![PointShapes::new(&rod, &BodyPoint::rigid(Vector3::x() * 0.5))]],
+    }
+}
+
+fn rows(mut simulation: SystemSimulation) -> Vec<Vec<Observation>> {
+    let mut rows = Vec::new();
+    loop {
+        let mut row: Vec<Observation> = (0..2).map(|body| simulation.room(body)).collect();
+        simulation.observe(&mut row).unwrap();
+        rows.push(row);
+        loop {
+            match simulation.advance_watched(10, |_, _| ()).unwrap() {
+                Reached::End => return rows,
+                Reached::Row => break,
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Conserved: energy less the work of loads, joints and springs, and momenta less their impulses, of each body.
+#[test]
+fn the_balances_of_each_body_close_with_what_joints_and_springs_do() {
+    let rows = rows(SystemSimulation::new(pendulum(StepControl::Tolerance(1e-8), None)).unwrap());
+    assert_eq!(
+        rows.iter().map(|row| row[0].time).collect::<Vec<_>>(),
+        (0..9).map(|k| 0.25 * f64::from(k)).collect::<Vec<_>>()
+    );
+    let mut exchanged = 0.0_f64;
+    for row in &rows {
+        for body in row {
+            exchanged = exchanged.max(body.work.work.abs());
+            assert!(body.energy_balance().abs() < 1e-7, "{}", body.energy_balance());
+            assert!(body.linear_balance_global().norm() < 1e-7);
+            assert!(body.angular_balance_global().norm() < 1e-7);
+        }
+    }
+    assert!(exchanged > 1.0);
+    // The joint holds the tip of the first rod where the second begins.
+    let last = &rows[8];
+    let tip = last[0].origin_global + last[0].attitude.to_global(&(Vector3::x() * 0.5));
+    let start = last[1].origin_global - last[1].attitude.to_global(&(Vector3::x() * 0.5));
+    assert!((tip - start).norm() < 1e-12);
+}
+
+/// Regression only: the same bits with and without an interruption.
+#[test]
+fn a_run_goes_on_from_a_checkpoint_bit_for_bit() {
+    for control in [StepControl::Tolerance(1e-6), StepControl::Fixed(0.01)] {
+        let whole = rows(SystemSimulation::new(pendulum(control, None)).unwrap());
+        let mut cut = SystemSimulation::new(pendulum(control, None)).unwrap();
+        while cut.time() < 0.9 {
+            cut.advance_watched(1, |_, _| ()).unwrap();
+        }
+        let checkpoint = cut.checkpoint().unwrap();
+        let resumed = SystemSimulation::new(pendulum(control, None)).unwrap().restored(&checkpoint).unwrap();
+        assert_eq!(checkpoint.len(), resumed.checkpoint().unwrap().len());
+        let mut resumed = resumed;
+        while resumed.advance_watched(100, |_, _| ()).unwrap() != Reached::Row {}
+        let rest = rows(resumed);
+        assert_eq!(rest[..], whole[whole.len() - rest.len()..]);
+    }
+}
+
+/// Closed form: the angle of a drive that starts and stops at a jump of its rate.
+#[test]
+fn a_drive_whose_rate_jumps_takes_the_bodies_with_it() {
+    let history = History::Table(Table::new(vec![0.0, 0.55, 1.3, 3.0], vec![0.0, 0.0, 1.0, 1.0]).unwrap());
+    let drive = JointDrive { amplitude: 0.6, history };
+    let rows = rows(SystemSimulation::new(pendulum(StepControl::Tolerance(1e-6), Some(drive))).unwrap());
+    for row in rows {
+        let angle = 0.6 * ((row[0].time - 0.55) / 0.75).clamp(0.0, 1.0);
+        let [w, _, _, z] = row[0].attitude.wxyz();
+        assert!((2.0 * z.atan2(w) - angle).abs() < 1e-10, "{} {} {angle}", row[0].time, 2.0 * z.atan2(w));
+        let open = row.iter().map(Observation::energy_balance).sum::<f64>();
+        println!("{} open {open:e} angle {angle}", row[0].time);
+        assert!(open.abs() < 1e-5, "{open:e}");
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_moved_or_refused_with_the_name_of_the_joint() {
+    let mut setup = pendulum(StepControl::Tolerance(1e-6), None);
+    setup.states[1].origin_global.x = 1.6;
+    let simulation = SystemSimulation::new(setup).unwrap();
+    let moved: Vec<f64> = simulation.assembled().iter().map(|body| body.moved).collect();
+    assert!(moved[1] > 1e-3 && moved.iter().sum::<f64>() < 0.2, "{moved:?}");
+
+    let SystemSetup { system, .. } = pendulum(StepControl::Tolerance(1e-6), None);
+    let axes = Matrix3::identity();
+    let far = Joint::spherical(
+        "too far",
+        [Marker::on_ground(Vector3::x() * 5.0, axes), Marker::on_rigid(1, Vector3::x() * 0.5, axes)],
+    );
+    let joints = system.joints().iter().cloned().chain([far]).collect();
+    let system = System::new(system.bodies().to_vec(), joints).unwrap();
+    let refused = SystemSimulation::new(SystemSetup { system, ..pendulum(StepControl::Tolerance(1e-6), None) });
+    assert!(matches!(refused, Err(SetupError::NotAssembled { .. })), "{refused:?}");
+}
