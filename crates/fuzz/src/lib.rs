@@ -31,6 +31,12 @@ impl SystemRow for Row {
     fn bodies(&self) -> &[Body] {
         &self.bodies
     }
+
+    type Joint = ();
+
+    fn joints(&self) -> &[()] {
+        &[]
+    }
 }
 
 const VELOCITY: (Dimension, &str) = (Dimension::Velocity, "global");
@@ -70,6 +76,7 @@ pub fn write_results(
         scene_file: "fuzz.toml".into(),
         input_files: Vec::new(),
         bodies: (0..bodies).map(|i| body(format!("B{i}"), modes, points)).collect(),
+        joints: Vec::new(),
         warnings: Vec::new(),
     };
     let mut writer =

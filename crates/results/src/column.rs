@@ -1,7 +1,7 @@
 //! The columns of a results file: data, from which the writer, the reader and the documentation are made.
 
 use crate::dimension::Dimension;
-use crate::metadata::{BodyMetadata, Units};
+use crate::metadata::{BodyMetadata, JointMetadata, Units};
 use std::fmt::Debug;
 
 /// A row of a results file, as far as its columns look at it.
@@ -12,6 +12,10 @@ pub trait SystemRow: Debug {
     fn time(&self) -> f64;
     /// The bodies, in the order of [`Metadata::bodies`](crate::Metadata::bodies).
     fn bodies(&self) -> &[Self::Body];
+    /// The part of a row that is of one joint.
+    type Joint: Debug;
+    /// The joints, in the order of [`Metadata::joints`](crate::Metadata::joints).
+    fn joints(&self) -> &[Self::Joint];
 }
 
 /// A column of a results file: time histories of a quantity, of the system or of each body. Rows are of type `R`.
@@ -31,7 +35,8 @@ pub struct Column<R: SystemRow> {
     pub description: &'static str,
     /// Numbers of a row.
     pub values: Values<R>,
-    /// Part that a body must have for its histories, one of [`BodyMetadata::parts`]; all bodies have it if `None`.
+    /// Part that a body or a joint must have for its histories, one of [`BodyMetadata::parts`] or [`JointMetadata::parts`]; all
+    /// have it if `None`.
     pub part: Option<&'static str>,
     /// Use of the numbers where the body is a part of a larger model.
     pub role: Role,
@@ -48,6 +53,8 @@ pub enum Scope {
     Point,
     /// Each support of each body.
     Support,
+    /// Each joint.
+    Joint,
 }
 
 /// Use of numbers where the body is a part of a larger model, as in an FMU.
@@ -74,6 +81,8 @@ pub enum Values<R: SystemRow> {
     OfPoints(Quantities<R::Body>),
     /// Those of each support of a body: T×S×….
     OfSupports(Quantities<R::Body>),
+    /// Those of a joint.
+    OfJoint(Quantity<R::Joint>),
 }
 
 /// Numbers of one thing.
@@ -230,7 +239,17 @@ impl<R: SystemRow> Column<R> {
         Self::new(["supports", name], kind, description, Values::OfSupports(values))
     }
 
-    /// The same of bodies with this part only.
+    /// A column of each joint.
+    pub const fn of_joint(
+        path: [&'static str; 2],
+        kind: (Dimension, &'static str),
+        description: &'static str,
+        values: Quantity<R::Joint>,
+    ) -> Self {
+        Self::new(path, kind, description, Values::OfJoint(values))
+    }
+
+    /// The same of bodies or joints with this part only.
     #[must_use]
     pub const fn only_with(self, part: &'static str) -> Self {
         Self { part: Some(part), ..self }
@@ -249,6 +268,7 @@ impl<R: SystemRow> Column<R> {
             Values::OfBody(_) | Values::OfModes(_) => Scope::Body,
             Values::OfPoints(_) => Scope::Point,
             Values::OfSupports(_) => Scope::Support,
+            Values::OfJoint(_) => Scope::Joint,
         }
     }
 
@@ -259,6 +279,7 @@ impl<R: SystemRow> Column<R> {
             Values::OfBody(quantity) => quantity.components(),
             Values::OfModes(_) => Components::Modes,
             Values::OfPoints(quantities) | Values::OfSupports(quantities) => quantities.components(),
+            Values::OfJoint(quantity) => quantity.components(),
         }
     }
 
@@ -280,6 +301,15 @@ impl<R: SystemRow> Column<R> {
 
     /// True if a body has histories of it.
     pub fn is_of(&self, body: &BodyMetadata) -> bool {
-        self.scope() != Scope::System && self.part.is_none_or(|part| body.parts.iter().any(|has| has == part))
+        !matches!(self.scope(), Scope::System | Scope::Joint) && self.is_of_parts(&body.parts)
+    }
+
+    /// True if a joint has histories of it.
+    pub fn is_of_joint(&self, joint: &JointMetadata) -> bool {
+        self.scope() == Scope::Joint && self.is_of_parts(&joint.parts)
+    }
+
+    fn is_of_parts(&self, parts: &[String]) -> bool {
+        self.part.is_none_or(|part| parts.iter().any(|has| has == part))
     }
 }

@@ -1,18 +1,20 @@
 //! Histories: the columns of a table as a file has them, for the system and for each of its bodies.
 
 use crate::column::{Column, Components, Scope, SystemRow, Values};
-use crate::metadata::{BodyMetadata, Metadata};
+use crate::metadata::{BodyMetadata, JointMetadata, Metadata};
 
 /// Group of what is of all bodies together.
 const SYSTEM: &str = "system";
 
-/// A history in a file: a column, of the system or of one of its bodies.
+/// A history in a file: a column, of the system, or of one of its bodies or joints.
 #[derive(Debug)]
 pub struct History<R: SystemRow + 'static> {
     /// The column.
     pub column: &'static Column<R>,
-    /// Number of the body in [`Metadata::bodies`]; none for the system.
+    /// Number of the body in [`Metadata::bodies`]; none for the system and for joints.
     pub body: Option<usize>,
+    /// Number of the joint in [`Metadata::joints`]; none for the system and for bodies.
+    pub joint: Option<usize>,
 }
 
 impl<R: SystemRow> Clone for History<R> {
@@ -23,24 +25,34 @@ impl<R: SystemRow> Clone for History<R> {
 
 impl<R: SystemRow> Copy for History<R> {}
 
-/// The histories of a file with this metadata, in their order: body after body, and then the system.
+/// The histories of a file with this metadata, in their order: body after body, joint after joint, and then the
+/// system.
 pub fn histories<R: SystemRow>(
     columns: &'static [Column<R>],
     metadata: &Metadata,
 ) -> impl Iterator<Item = History<R>> + Clone {
     let of_system = columns.iter().filter(|column| column.scope() == Scope::System);
-    let of_system = of_system.map(|column| History { column, body: None });
+    let of_system = of_system.map(|column| History { column, body: None, joint: None });
+    let of_joints = metadata.joints.iter().enumerate().flat_map(move |(i, joint)| {
+        let of_joint = columns.iter().filter(move |column| column.is_of_joint(joint));
+        of_joint.map(move |column| History { column, body: None, joint: Some(i) })
+    });
     let of_bodies = metadata.bodies.iter().enumerate().flat_map(move |(i, body)| {
         let of_body = columns.iter().filter(move |column| column.is_of(body));
-        of_body.map(move |column| History { column, body: Some(i) })
+        of_body.map(move |column| History { column, body: Some(i), joint: None })
     });
-    of_bodies.chain(of_system)
+    of_bodies.chain(of_joints).chain(of_system)
 }
 
 impl<R: SystemRow> History<R> {
     /// Its body, if it is of one.
     pub fn body<'m>(&self, metadata: &'m Metadata) -> Option<&'m BodyMetadata> {
         metadata.bodies.get(self.body?)
+    }
+
+    /// Its joint, if it is of one.
+    pub fn joint<'m>(&self, metadata: &'m Metadata) -> Option<&'m JointMetadata> {
+        metadata.joints.get(self.joint?)
     }
 
     /// Path of its dataset, such as "bodies/ring/energy/work".
@@ -51,7 +63,11 @@ impl<R: SystemRow> History<R> {
     /// The same of one place, such as "bodies/ring/points/P1/velocity". This is no dataset of its own.
     pub fn path_of(&self, metadata: &Metadata, place: Option<&str>) -> String {
         let path = self.column.path_of(place);
-        self.body(metadata).map_or_else(|| format!("{SYSTEM}/{path}"), |body| body.path(&path))
+        match (self.body(metadata), self.joint(metadata)) {
+            (Some(body), _) => body.path(&path),
+            (None, Some(joint)) => joint.path(&path),
+            (None, None) => format!("{SYSTEM}/{path}"),
+        }
     }
 
     /// Its path for people, or that of one of its places: without the body in a file of a single one.
@@ -68,7 +84,7 @@ impl<R: SystemRow> History<R> {
         match self.column.scope() {
             Scope::Point => &body.point_names,
             Scope::Support => &body.support_names,
-            Scope::System | Scope::Body => &[],
+            Scope::System | Scope::Body | Scope::Joint => &[],
         }
     }
 
@@ -113,6 +129,11 @@ impl<R: SystemRow> History<R> {
             (Values::OfModes(values), Some(body)) => out.extend_from_slice(values(body)),
             (Values::OfPoints(quantities) | Values::OfSupports(quantities), Some(body)) => {
                 quantities.append(body, self.places(metadata).len(), out);
+            }
+            (Values::OfJoint(quantity), _) => {
+                if let Some(joint) = self.joint.and_then(|i| row.joints().get(i)) {
+                    quantity.append(joint, out);
+                }
             }
             (_, None) => {}
         }

@@ -116,6 +116,20 @@ pub struct BodyMetadata {
     pub refusal: Option<String>,
 }
 
+/// Everything of one joint that does not change with time.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointMetadata {
+    /// Its name, which is that of its group.
+    pub name: String,
+    /// Its kind, such as "revolute".
+    pub kind: String,
+    /// The two markers that it joins, such as "arm.root", or "ground".
+    pub between: [String; 2],
+    /// Further parts of it, so that it has the columns that ask for them ([`Column::part`](crate::Column::part)).
+    pub parts: Vec<String>,
+}
+
 /// Everything in a results file that does not change with time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -145,6 +159,9 @@ pub struct Metadata {
     pub input_files: Vec<String>,
     /// The bodies, at least one, in the order of the scene.
     pub bodies: Vec<BodyMetadata>,
+    /// The joints, in the order of the scene.
+    #[serde(default)]
+    pub joints: Vec<JointMetadata>,
     /// Warnings of the run, each a sentence or more: see [`Writer::warn`](crate::Writer::warn).
     pub warnings: Vec<String>,
 }
@@ -155,6 +172,13 @@ impl BodyProperties {
         let count = self.frequencies.len();
         let natural = count.saturating_sub(self.static_shapes);
         (0..count).map(move |k| if k < natural { "natural mode" } else { "static shape" })
+    }
+}
+
+impl JointMetadata {
+    /// Path of something of this joint, from its path in the joint's group.
+    pub(crate) fn path(&self, path: &str) -> String {
+        format!("{JOINTS}/{}/{path}", self.name)
     }
 }
 
@@ -223,6 +247,7 @@ impl Metadata {
         check_length(path, "the list of bodies", self.bodies.len().max(1), self.bodies.len())?;
         check_names(path, "body", self.bodies.iter().map(|body| &body.name))?;
         self.bodies.iter().try_for_each(|body| body.check(path))?;
+        check_names(path, "joint", self.joints.iter().map(|joint| &joint.name))?;
         for (quantity, values) in
             [("end", &[self.end][..]), ("step", self.step.as_slice()), ("tolerance", self.tolerance.as_slice())]
         {
@@ -257,3 +282,6 @@ fn check_finite(path: &Path, quantity: impl Fn() -> String, values: &[f64]) -> R
 
 /// Group of the bodies.
 pub(crate) const BODIES: &str = "bodies";
+
+/// Group of the joints.
+pub(crate) const JOINTS: &str = "joints";

@@ -201,6 +201,7 @@ impl Results {
         let is = |path: &str, values: &[f64]| self.table(path).and_then(|table| table.row(i)) == Some(values);
         let mut values = Vec::new();
         row.bodies().len() == metadata.bodies.len()
+            && row.joints().len() == metadata.joints.len()
             && is("time", &[row.time()])
             && histories(columns, metadata).all(|history| {
                 values.clear();

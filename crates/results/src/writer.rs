@@ -207,7 +207,7 @@ impl<R: SystemRow> Writer<R> {
         }
         let Self { present, waiting: Block { values, .. }, metadata, .. } = self;
         let before = values.len();
-        let mut is_whole = row.bodies().len() == metadata.bodies.len();
+        let mut is_whole = row.bodies().len() == metadata.bodies.len() && row.joints().len() == metadata.joints.len();
         values.push(row.time());
         for (history, width) in &*present {
             let first = values.len();
@@ -226,6 +226,7 @@ impl<R: SystemRow> Writer<R> {
     fn refuse(&self, row: &R) -> Result<(), FileError> {
         let (path, metadata) = (&self.place.part, &self.metadata);
         check_length(path, "bodies", metadata.bodies.len(), row.bodies().len())?;
+        check_length(path, "joints", metadata.joints.len(), row.joints().len())?;
         if let Some((history, _)) = self.present.iter().find(|(history, _)| history.has_more(row, metadata)) {
             let places = history.places(metadata).len();
             let what = if matches!(history.column.values, Values::OfSupports(_)) { "supports" } else { "points" };

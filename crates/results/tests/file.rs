@@ -719,3 +719,30 @@ fn several_bodies_are_in_one_file() {
     let refused = Writer::create(path.with_file_name("twice.h5"), &metadata, &[], &COLUMNS, expected);
     assert!(matches!(refused, Err(FileError::PlaceName { kind: "body", .. })));
 }
+
+#[test]
+fn joints_have_groups_beside_those_of_the_bodies() {
+    let (_folder, path) = folder();
+    let joint = |name: &str, parts: &[&str]| JointMetadata {
+        name: name.into(),
+        kind: "revolute".into(),
+        between: ["body.tip".into(), "ground".into()],
+        parts: parts.iter().map(|part| part.to_string()).collect(),
+    };
+    let joints = vec![joint("stiff", &[]), joint("shoulder", &["turns"])];
+    let metadata = Metadata { joints, ..metadata(0, &[]) };
+    let mut writer = Writer::create(&path, &metadata, &[], &COLUMNS, Expected::default()).unwrap();
+    for i in 0..3 {
+        writer.push(&Row { joints: vec![-1.0, 0.5 * i as f64], ..Row::new(i, 0, 0) }).unwrap();
+    }
+    let lacks = writer.push(&Row::new(3, 0, 0)).unwrap_err();
+    assert!(matches!(lacks, FileError::WrongLength { expected: 2, found: 0, .. }), "{lacks}");
+    writer.finish().unwrap();
+    let results = Results::open(&path, &COLUMNS).unwrap();
+    assert_eq!(results.metadata, metadata);
+    assert_eq!(results.numbers("joints/shoulder/angle"), Some(&[0.0, 0.5, 1.0][..]));
+    assert_eq!(results.numbers("joints/stiff/angle"), None);
+    let file = hdf5::File::open(&path).unwrap();
+    let kind = file.group("joints/stiff").unwrap().attr("kind").unwrap();
+    assert_eq!(kind.read_scalar::<hdf5::types::VarLenUnicode>().unwrap().as_str(), "revolute");
+}

@@ -6,9 +6,9 @@ use crate::column::SystemRow;
 use crate::container::room::Room;
 use crate::container::seal;
 use crate::history::{History, histories};
-use crate::metadata::BODIES;
+use crate::metadata::{BODIES, JOINTS};
 use crate::shapes::stored::{ShapeDataset, StoredArray};
-use crate::{BodyMetadata, BodyProperties, Column, FileError, MeshProperties, Metadata, Units};
+use crate::{BodyMetadata, BodyProperties, Column, FileError, JointMetadata, MeshProperties, Metadata, Units};
 use hdf5::Group;
 use hdf5::dataset::Layout;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
@@ -43,6 +43,7 @@ pub(crate) fn make<R: SystemRow>(
     for body in &metadata.bodies {
         write_body(path, &file, body, &metadata.units)?;
     }
+    metadata.joints.iter().try_for_each(|joint| write_joint(path, &file, joint))?;
     let arrays = (arrays.iter())
         .filter_map(|array| Some((array, metadata.bodies.get(array.body)?, array.dataset()?)))
         .map(|(array, body, dataset)| create_array(path, &file, array, (body, dataset), &metadata.units))
@@ -152,6 +153,16 @@ fn write_body(path: &Path, file: &hdf5::File, body: &BodyMetadata, units: &Units
     }
     write_effects(path, &group, body)?;
     body.refusal.iter().try_for_each(|refusal| write_text(path, &group, "refusal", refusal))
+}
+
+/// The kind of a joint and what it joins.
+fn write_joint(path: &Path, file: &hdf5::File, joint: &JointMetadata) -> Result<(), FileError> {
+    let name = format!("{JOINTS}/{}", joint.name);
+    let group = file.create_group(&name).map_err(FileError::hdf5(path, format!("write {name}")))?;
+    write_text(path, &group, "kind", &joint.kind)?;
+    let [first, second] = &joint.between;
+    write_text(path, &group, "first", first)?;
+    write_text(path, &group, "second", second)
 }
 
 /// The effects of the motion, a list for each of their texts.

@@ -18,6 +18,7 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
         scene_file: "platten/frei.toml".into(),
         input_files: vec!["platten/frei.toml".into(), "netz ω.msh".into()],
         bodies: vec![body("body", modes, point_names)],
+        joints: Vec::new(),
         warnings: Vec::new(),
     }
 }
@@ -77,8 +78,8 @@ pub fn shapes(modes: usize) -> Shapes {
 pub type Writer = results::Writer<Row>;
 pub type Resumed = results::Resumed<Row>;
 
-/// The widths are known to `sealed`, too. The last column is of a body with a hinge only.
-pub static COLUMNS: [Column<Row>; 22] = [
+/// The widths are known to `sealed`, too. The last but one is of a body with a hinge only.
+pub static COLUMNS: [Column<Row>; 23] = [
     Column::of_system(["energy", "kinetic"], KIND, "of a test", Number(|row: &Row| row.time + 20.0)),
     of_body("", "attitude", Quaternion(|row| [row.time, 0.1, 0.2, 0.3])),
     of_body("", "position", Vector(|row| row.vector(1.0))),
@@ -101,6 +102,7 @@ pub static COLUMNS: [Column<Row>; 22] = [
     of_points("acceleration", |row, i| Some(row.points.get(i)?[2])),
     of_points("rigid_acceleration", |row, i| Some(row.points.get(i)?[3])),
     of_body("hinge", "angle", Number(|row| row.time + 19.0)).only_with("hinge"),
+    Column::of_joint(["", "angle"], KIND, "of a test", Number(|joint: &f64| *joint)).only_with("turns"),
 ];
 
 const KIND: (Dimension, &str) = (Dimension::Energy, "none");
@@ -118,6 +120,8 @@ const fn of_points(name: &'static str, values: fn(&Body, usize) -> Option<[f64; 
 pub struct Row {
     pub time: f64,
     pub bodies: Vec<Body>,
+    /// The angle of each joint.
+    pub joints: Vec<f64>,
 }
 
 #[derive(Debug)]
@@ -138,6 +142,12 @@ impl SystemRow for Row {
     fn bodies(&self) -> &[Body] {
         &self.bodies
     }
+
+    type Joint = f64;
+
+    fn joints(&self) -> &[f64] {
+        &self.joints
+    }
 }
 
 impl Row {
@@ -150,7 +160,7 @@ impl Row {
         let time = i as f64 * 1e-4;
         let body =
             |(b, (modes, points)): (usize, &(usize, usize))| Body::new(time + 1000.0 * b as f64, *modes, *points);
-        Self { time, bodies: bodies.iter().enumerate().map(body).collect() }
+        Self { time, bodies: bodies.iter().enumerate().map(body).collect(), joints: Vec::new() }
     }
 }
 
