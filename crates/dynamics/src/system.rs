@@ -4,6 +4,7 @@
 //! multipliers, Eqs. (J1)–(J8) of `docs/method/systems.md`.
 
 pub(crate) mod collocation;
+pub(crate) mod connections;
 pub(crate) mod constraints;
 pub(crate) mod description;
 pub(crate) mod element;

@@ -1,8 +1,10 @@
 //! The rows of all joints of a system, and what they do to its bodies.
 
+use crate::system::connections::Connections;
 use crate::system::elimination::inverse::Number;
 use crate::system::joint::Joint;
-use crate::system::marker::{BodyPlace, MarkerPlace};
+use crate::system::joint::wrench::RowWrench;
+use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
 
 /// One end of a row: the entries of G for the coordinates of one body.
 #[derive(Debug, Clone)]
@@ -21,43 +23,79 @@ pub(crate) struct Constraints {
     pub residuals: Vec<f64>,
     /// g_t: rates of the residuals by drives alone (m).
     pub own_rates: Vec<f64>,
-    /// The ends of each row that are on bodies.
+    /// The ends of each row that are on bodies: one for each body. After the rows of joints and couplings come the coordinates of
+    /// the forces of joints.
     pub ends: Vec<Vec<End>>,
+    /// The coordinates of the forces of joints.
+    pub coordinates: Vec<f64>,
 }
 
 impl Constraints {
-    /// Room for the rows of these joints; `first` are the first coordinates of the bodies, and their number.
-    pub fn new(joints: &[Joint], first: &[usize]) -> Self {
-        let ends: Vec<Vec<End>> = joints
-            .iter()
-            .flat_map(|joint| joint.rows.iter().map(|_| &joint.markers))
-            .map(|markers| {
-                let of_bodies = markers.iter().filter_map(|marker| marker.body());
-                of_bodies
-                    .map(|body| End { body, first: first[body], entries: vec![0.0; first[body + 1] - first[body]] })
-                    .collect()
-            })
-            .collect();
-        Self { residuals: vec![0.0; ends.len()], own_rates: vec![0.0; ends.len()], ends }
+    /// Room for the rows of these connections; `first` are the first coordinates of the bodies, and their number.
+    pub fn new(connections: &Connections, first: &[usize]) -> Self {
+        let of_row = |markers: Vec<&Marker>| {
+            let mut bodies: Vec<usize> = Vec::new();
+            for body in markers.iter().filter_map(|marker| marker.body()) {
+                if !bodies.contains(&body) {
+                    bodies.push(body);
+                }
+            }
+            let end = |body: usize| End { body, first: first[body], entries: vec![0.0; first[body + 1] - first[body]] };
+            bodies.into_iter().map(end).collect()
+        };
+        let ends: Vec<Vec<End>> = connections.ends().map(of_row).collect();
+        let rows = connections.rows();
+        let coordinates = vec![0.0; ends.len() - rows];
+        Self { residuals: vec![0.0; rows], own_rates: vec![0.0; rows], ends, coordinates }
     }
 
-    /// Finds g, its own rate and G at a time, by the branch of another.
-    pub fn find<'a>(&mut self, joints: &[Joint], times: [f64; 2], place: impl Fn(usize) -> BodyPlace<'a>) {
+    /// Finds g, its own rate and G at a time, by the branch of another. Turns of joints are next to what is expected of them.
+    pub fn find<'a>(
+        &mut self,
+        connections: &Connections,
+        expected_turn: impl Fn(usize) -> f64,
+        times: [f64; 2],
+        place: impl Fn(usize) -> BodyPlace<'a>,
+    ) {
+        let Connections { joints, couplings, .. } = connections;
+        let places_of = |joint: &Joint| -> [MarkerPlace; 2] {
+            joint.markers.each_ref().map(|marker| marker.place(marker.body().map(&place).as_ref()))
+        };
         let mut row = 0;
         for joint in joints {
-            let places: [MarkerPlace; 2] =
-                joint.markers.each_ref().map(|marker| marker.place(marker.body().map(&place).as_ref()));
+            let places = places_of(joint);
             joint.wrenches(places.each_ref(), times, |wrench| {
                 (self.residuals[row], self.own_rates[row]) = (wrench.residual, wrench.own_rate);
-                let forces = [-wrench.force, wrench.force];
-                let on_bodies = (0..2).filter(|end| joint.markers[*end].body().is_some());
-                for (end, k) in self.ends[row].iter_mut().zip(on_bodies) {
-                    end.entries.fill(0.0);
-                    joint.markers[k].add_wrench(&places[k], [&forces[k], &wrench.moments[k]], &mut end.entries);
-                }
+                clear(&mut self.ends[row]);
+                add(&mut self.ends[row], joint, &places, &wrench, 1.0);
                 row += 1;
             });
         }
+        for coupling in couplings {
+            clear(&mut self.ends[row]);
+            self.residuals[row] = -coupling.sum.unwrap_or_default();
+            for term in &coupling.terms {
+                let joint = &joints[term.joint];
+                let places = places_of(joint);
+                let wrench = term.coordinate.wrench(places.each_ref(), expected_turn(term.joint));
+                self.residuals[row] += term.factor * wrench.residual;
+                add(&mut self.ends[row], joint, &places, &wrench, term.factor);
+            }
+            row += 1;
+        }
+        for (k, (number, coordinate, _)) in connections.joint_forces().enumerate() {
+            let joint = &joints[number];
+            let places = places_of(joint);
+            let wrench = coordinate.wrench(places.each_ref(), expected_turn(number));
+            self.coordinates[k] = wrench.residual;
+            clear(&mut self.ends[row + k]);
+            add(&mut self.ends[row + k], joint, &places, &wrench, 1.0);
+        }
+    }
+
+    /// The ends of the forces of joints.
+    pub fn force_ends(&self) -> &[Vec<End>] {
+        &self.ends[self.residuals.len()..]
     }
 
     /// out = G v + g_t (m)
@@ -69,20 +107,41 @@ impl Constraints {
     /// out += factor G v
     pub fn add_rates<T: Number>(&self, factor: f64, velocities: &[T], out: &mut [T]) {
         for (out, ends) in out.iter_mut().zip(&self.ends) {
-            for End { first, entries, .. } in ends {
-                let velocities = &velocities[*first..];
-                entries.iter().zip(velocities).for_each(|(entry, velocity)| *out += velocity.scale(factor * entry));
-            }
+            ends.iter().for_each(|end| end.add_rate(factor, velocities, out));
         }
     }
 
     /// forces += Gᵀ λ
     pub fn add_forces<T: Number>(&self, multipliers: &[T], forces: &mut [T]) {
         for (multiplier, ends) in multipliers.iter().zip(&self.ends) {
-            for End { first, entries, .. } in ends {
-                let forces = forces[*first..].iter_mut();
-                forces.zip(entries).for_each(|(force, entry)| *force += multiplier.scale(*entry));
-            }
+            ends.iter().for_each(|end| end.add_force(*multiplier, forces));
         }
+    }
+}
+
+impl End {
+    /// Adds the rate of its row in a motion, times a factor.
+    pub fn add_rate<T: Number>(&self, factor: f64, velocities: &[T], rate: &mut T) {
+        let velocities = &velocities[self.first..];
+        self.entries.iter().zip(velocities).for_each(|(entry, velocity)| *rate += velocity.scale(factor * entry));
+    }
+
+    /// Adds the force of its row to those of its body.
+    pub fn add_force<T: Number>(&self, force: T, forces: &mut [T]) {
+        let forces = forces[self.first..].iter_mut();
+        forces.zip(&self.entries).for_each(|(sum, entry)| *sum += force.scale(*entry));
+    }
+}
+
+fn clear(ends: &mut [End]) {
+    ends.iter_mut().for_each(|end| end.entries.fill(0.0));
+}
+
+/// Adds the wrenches of a row on the markers of a joint, times a factor.
+fn add(ends: &mut [End], joint: &Joint, places: &[MarkerPlace; 2], wrench: &RowWrench, factor: f64) {
+    for ((marker, place), wrench) in joint.markers.iter().zip(places).zip(wrench.on_both()) {
+        let Some(end) = ends.iter_mut().find(|end| Some(end.body) == marker.body()) else { continue };
+        let [force, moment] = wrench.map(|vector| vector * factor);
+        marker.add_wrench(place, [&force, &moment], &mut end.entries);
     }
 }

@@ -1,20 +1,21 @@
-//! Bodies and the joints between them.
+//! Bodies and what connects them.
 
 use std::sync::Arc;
 
 use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
+use crate::system::connections::Connections;
 use crate::system::element::ForceElement;
 use crate::system::groups::free_groups;
 use crate::system::joint::Joint;
+use crate::system::joint::coupling::Coupling;
 use crate::system::marker::Marker;
 
-/// Bodies and joints.
+/// Bodies and what connects them.
 #[derive(Debug, Clone)]
 pub struct System {
     pub(crate) bodies: Vec<ConservativeBody>,
-    pub(crate) joints: Vec<Joint>,
-    pub(crate) elements: Vec<Arc<dyn ForceElement>>,
+    pub(crate) connections: Connections,
     /// First coordinate of each body, and the number of coordinates: six and the modes of each.
     pub(crate) first: Vec<usize>,
     /// Groups of bodies that joints connect with each other and not with the ground.
@@ -38,19 +39,34 @@ impl System {
             }
             first.push(first[first.len() - 1] + 6 + body.flexible());
         }
-        joints.iter().flat_map(|joint| &joint.markers).try_for_each(|marker| check(marker, &bodies))?;
-        let elements = Vec::new();
         let free_groups = free_groups(bodies.len(), &joints);
-        Ok(Self { bodies, joints, elements, first, free_groups })
+        let connections = Connections { joints, ..Connections::default() };
+        connections.markers().try_for_each(|marker| check(marker, &bodies))?;
+        Ok(Self { bodies, connections, first, free_groups })
+    }
+
+    /// The same with couplings of its joints.
+    ///
+    /// # Errors
+    /// [`SetupError`] for a joint that is not there.
+    pub fn with_couplings(mut self, couplings: Vec<Coupling>) -> Result<Self, SetupError> {
+        let joints = self.connections.joints.len();
+        if let Some(term) = couplings.iter().flat_map(|coupling| &coupling.terms).find(|term| term.joint >= joints) {
+            let what = "the number of a joint in a coupling";
+            return Err(SetupError::Value { what, found: term.joint as f64, expected: "that of a joint, from 0" });
+        }
+        self.connections.couplings = couplings;
+        Ok(self)
     }
 
     /// The same with forces between markers.
     ///
     /// # Errors
     /// [`SetupError`] for a marker on a body that is not there or has other modes.
-    pub fn with_elements(self, elements: Vec<Arc<dyn ForceElement>>) -> Result<Self, SetupError> {
-        elements.iter().flat_map(|element| element.markers()).try_for_each(|marker| check(marker, &self.bodies))?;
-        Ok(Self { elements, ..self })
+    pub fn with_elements(mut self, elements: Vec<Arc<dyn ForceElement>>) -> Result<Self, SetupError> {
+        self.connections.elements = elements;
+        self.connections.markers().try_for_each(|marker| check(marker, &self.bodies))?;
+        Ok(self)
     }
 
     /// The bodies.
@@ -60,7 +76,12 @@ impl System {
 
     /// The joints.
     pub fn joints(&self) -> &[Joint] {
-        &self.joints
+        &self.connections.joints
+    }
+
+    /// The couplings of joints.
+    pub fn couplings(&self) -> &[Coupling] {
+        &self.connections.couplings
     }
 
     /// Number of coordinates of all bodies.
@@ -68,9 +89,9 @@ impl System {
         self.first[self.bodies.len()]
     }
 
-    /// Number of rows of all joints.
+    /// Number of rows of all joints and couplings.
     pub(crate) fn rows(&self) -> usize {
-        self.joints.iter().map(|joint| joint.rows.len()).sum()
+        self.connections.rows()
     }
 }
 

@@ -8,6 +8,7 @@
 //! ```
 
 use nalgebra::{Complex, Vector3};
+use serde::{Deserialize, Serialize};
 
 use crate::body::motion_state::MotionState;
 use crate::conservative::{get, part};
@@ -20,6 +21,8 @@ use crate::system::elimination::inverse::Inverse;
 use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
 use crate::system::elimination::matrices::{Matrices, oscillators};
 use crate::system::elimination::newton::{Frozen, Solution, sizes};
+use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
+use crate::system::joint::coupling::CoupledCoordinate;
 use crate::system::stage::{BodyStart, Stage, Start, about_global_origin, put, vector};
 
 /// Error of Newton's method over the tolerance: of positions relative to the bodies, and in the norm of the energy. Ten times as
@@ -58,6 +61,17 @@ impl From<RateError> for Failed {
     }
 }
 
+/// Works at a joint since the beginning.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct JointWork {
+    /// What its drive and its motors have put in.
+    pub drive: f64,
+    /// What its springs, stops and preload have given back; negative for what they hold.
+    pub spring: f64,
+    /// What friction and dampers have taken out.
+    pub loss: f64,
+}
+
 /// A system on its way.
 #[derive(Debug, Clone)]
 pub struct SystemMotion {
@@ -80,8 +94,10 @@ pub struct SystemMotion {
     room: Room,
     /// The largest energy so far.
     pub(super) largest_energy: f64,
-    /// Work of the drives of joints since the beginning.
-    pub(super) drive_work: f64,
+    /// Work of the drives of joints where their rates jumped.
+    pub(super) jump_work: f64,
+    /// Works of the drives and forces of joints since the beginning.
+    pub(super) joint_works: Vec<JointWork>,
     /// Work of the force elements since the beginning.
     pub(super) element_work: f64,
     pub(super) evaluations: u64,
@@ -118,15 +134,23 @@ impl SystemMotion {
         let time = states.first().map_or(0.0, |state| state.time);
         let stage = Stage::new(&system);
         let (coordinates, rows) = (system.coordinates(), system.rows());
-        let of_joints: Vec<usize> = system.joints.iter().map(|joint| joint.rows.len()).collect();
-        let pattern = Pattern::new(&of_joints, &stage.constraints, system.bodies.len());
+        let joints = system.connections.joints.len();
+        let groups: Vec<usize> = system.connections.groups().collect();
+        let pattern = Pattern::new(&groups, &stage.constraints, system.bodies.len());
         let flexible: Vec<usize> = system.bodies.iter().map(Equations::flexible).collect();
         let multipliers = std::array::from_fn(|_| vec![0.0; rows]);
         let zeros = || vec![0.0; coordinates];
-        Ok(Self {
+        let coordinates_of_joints = vec![JointCoordinates::default(); joints];
+        let mut motion = Self {
             scheme: Collocation::radau(),
             time,
-            start: Start { time, bodies: Vec::with_capacity(flexible.len()), q: zeros(), p: zeros() },
+            start: Start {
+                time,
+                bodies: Vec::with_capacity(flexible.len()),
+                q: zeros(),
+                p: zeros(),
+                joints: coordinates_of_joints,
+            },
             first: stage.clone(),
             stages: std::array::from_fn(|_| stage.clone()),
             velocity_multipliers: multipliers.clone(),
@@ -152,11 +176,39 @@ impl SystemMotion {
             bodies,
             system,
             largest_energy: 0.0,
-            drive_work: 0.0,
+            jump_work: 0.0,
+            joint_works: vec![JointWork::default(); joints],
             element_work: 0.0,
             evaluations: 0,
             reactions: vec![0.0; rows],
-        })
+        };
+        motion.find_joint_coordinates();
+        Ok(motion)
+    }
+
+    /// Finds the coordinates of the joints, and the sums of the couplings that have none, where the system is at first.
+    fn find_joint_coordinates(&mut self) {
+        self.begin();
+        let Self { first, system, start, .. } = self;
+        first.place(system, start);
+        for joint in 0..start.joints.len() {
+            start.joints[joint] = first.joint_coordinates(system, joint, 0.0);
+        }
+        for coupling in &mut system.connections.couplings {
+            let of_term = |term: &CoupledCoordinate| {
+                let JointCoordinates { turn, slide, .. } = start.joints[term.joint];
+                term.factor * if term.coordinate == Coordinate::Turn { turn } else { slide }
+            };
+            let sum = coupling.terms.iter().map(of_term).sum();
+            coupling.sum.get_or_insert(sum);
+        }
+        // With rates, if bodies that are as they should not be have any: steps tell of those that have none.
+        if self.evaluate_first(self.time).is_ok() {
+            for joint in 0..self.start.joints.len() {
+                self.start.joints[joint] = self.first.joint_coordinates(&self.system, joint, 0.0);
+            }
+        }
+        self.evaluations = 0;
     }
 
     /// The time that has been reached.
@@ -187,14 +239,24 @@ impl SystemMotion {
         Ok(body.energies(state.time, &e).map_or(0.0, |energies| energies.internal + energies.translation))
     }
 
-    /// Work of the drives of joints since the beginning.
-    pub fn drive_work(&self) -> f64 {
-        self.drive_work
+    /// The turn and the slide of a joint, with their rates. Turns are counted from the beginning on.
+    pub fn joint_coordinates(&self, joint: usize) -> JointCoordinates {
+        self.start.joints[joint]
     }
 
-    /// Work of the force elements since the beginning.
+    /// Works at a joint since the beginning.
+    pub fn joint_work(&self, joint: usize) -> JointWork {
+        self.joint_works[joint]
+    }
+
+    /// Work of the drives and motors of joints since the beginning.
+    pub fn drive_work(&self) -> f64 {
+        self.jump_work + self.joint_works.iter().map(|work| work.drive).sum::<f64>()
+    }
+
+    /// Work of the force elements, and of springs, dampers, stops and friction of joints, since the beginning.
     pub fn element_work(&self) -> f64 {
-        self.element_work
+        self.element_work + self.joint_works.iter().map(|work| work.spring - work.loss).sum::<f64>()
     }
 
     /// Linear momentum, and angular momentum about the global origin, of all bodies, global.
@@ -337,7 +399,7 @@ impl SystemMotion {
     /// [`RateError`] where the inertia of a body is singular.
     pub(super) fn pass_discontinuity(&mut self) -> Result<(), RateError> {
         self.last_length = 0.0;
-        if self.system.joints.iter().all(|joint| joint.drive.is_none()) {
+        if self.system.connections.joints.iter().all(|joint| joint.drive.is_none()) {
             return Ok(());
         }
         // The discontinuity itself is where it is but for rounding.
@@ -357,7 +419,7 @@ impl SystemMotion {
             let mut slow = *list.slow();
             slow[part::WORK] += after - before;
             list.set_slow(&slow);
-            self.drive_work += after - before;
+            self.jump_work += after - before;
         }
         Ok(())
     }
@@ -581,10 +643,19 @@ impl SystemMotion {
     /// Adds the integrals over a step: works, impulses, dissipation. What joints and elements do to a body counts as its loads do,
     /// so that its balances close.
     fn add_work(&mut self, h: f64) {
-        let Self { stages, multipliers, scheme, bodies, system, .. } = self;
+        let Self { stages, multipliers, scheme, bodies, system, joint_works, .. } = self;
         for ((stage, lambda), weight) in stages.iter_mut().zip(&*multipliers).zip(scheme.weights) {
-            let power: f64 = lambda.iter().zip(&stage.constraints.own_rates).map(|(lambda, rate)| -lambda * rate).sum();
-            self.drive_work += h * weight * power;
+            let mut of_rows = lambda.iter().zip(&stage.constraints.own_rates);
+            for (joint, work) in system.connections.joints.iter().zip(&mut *joint_works) {
+                let power: f64 = of_rows.by_ref().take(joint.rows.len()).map(|(lambda, rate)| -lambda * rate).sum();
+                work.drive += h * weight * power;
+            }
+            for ((joint, ..), power) in system.connections.joint_forces().zip(&stage.joint_powers) {
+                let work = &mut joint_works[joint];
+                work.drive += h * weight * power.motor;
+                work.spring += h * weight * power.spring;
+                work.loss -= h * weight * power.friction;
+            }
             self.element_work += h * weight * stage.element_power;
             stage.find_joint_forces(lambda);
             for (b, state) in bodies.iter_mut().enumerate() {
@@ -605,7 +676,7 @@ impl SystemMotion {
     fn end(&mut self, times: [f64; 2], h: f64) -> Result<[f64; 2], Failed> {
         let Self { stages: [.., last], system, start, matrices, pattern, room, scheme, .. } = self;
         last.place(system, start);
-        last.find_constraints(system, times);
+        last.find_constraints(system, start, times);
         if !matrices.factor_real(system, pattern, last, scheme.real / h) {
             return Err(Failed::Rates(RateError::Inertia));
         }
@@ -613,7 +684,7 @@ impl SystemMotion {
         let (mut left, real) = (f64::INFINITY, &mut room.real);
         for _ in 0..MAX_PROJECTIONS {
             last.place(system, start);
-            last.find_constraints(system, times);
+            last.find_constraints(system, start, times);
             let largest = last.constraints.residuals.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
             if largest >= 0.5 * left || largest == 0.0 {
                 left = largest.min(left);
@@ -667,6 +738,9 @@ impl SystemMotion {
                 p[k] = start.p[at] + last.y[at] + real.y[at];
             }
             state.time = times[0];
+        }
+        for joint in 0..start.joints.len() {
+            start.joints[joint] = last.joint_coordinates(system, joint, start.turn(joint, times[0]));
         }
         self.time = times[0];
         Ok([left, rates])

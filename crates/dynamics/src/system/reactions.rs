@@ -82,8 +82,8 @@ impl SystemMotion {
     /// point.
     pub fn reaction(&self, joint: usize) -> MarkerWrench {
         let Self { system, first, .. } = self;
-        let before: usize = system.joints[..joint].iter().map(|joint| joint.rows.len()).sum();
-        let joint = &system.joints[joint];
+        let before: usize = system.connections.joints[..joint].iter().map(|joint| joint.rows.len()).sum();
+        let joint = &system.connections.joints[joint];
         let places = joint
             .markers
             .each_ref()
@@ -114,7 +114,7 @@ impl SystemMotion {
             }
             scratch.place(system, start);
             let time = start.time + sign * short;
-            scratch.find_constraints(system, [time, start.time + short]);
+            scratch.find_constraints(system, start, [time, start.time + short]);
             scratch.constraints.rates(velocities, &mut scratch.constraint_rates);
             out.iter_mut().zip(&scratch.constraint_rates).for_each(|(sum, rate)| *sum += sign * rate / (2.0 * short));
         }

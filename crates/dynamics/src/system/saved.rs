@@ -8,8 +8,8 @@ use crate::observation::moment::Moment;
 use crate::simulation::checkpoint::{CheckpointError, counts, expect, finite, fixed_room};
 use crate::state::State;
 use crate::system::collocation::STAGES;
-use crate::system::joint::Joint;
-use crate::system::radau::SystemMotion;
+use crate::system::joint::coordinate::JointCoordinates;
+use crate::system::radau::{JointWork, SystemMotion};
 use crate::system::stage::vector;
 
 /// A motion in a checkpoint.
@@ -20,6 +20,7 @@ pub(super) struct SavedMotion {
     last: Vec<Vec<f64>>,
     last_length: f64,
     multipliers: Vec<Vec<f64>>,
+    joints: Vec<(JointCoordinates, JointWork)>,
     sums: [f64; 3],
     #[serde(with = "fixed_room")]
     evaluations: u64,
@@ -52,7 +53,8 @@ impl SystemMotion {
             last: self.last.concat(),
             last_length: self.last_length,
             multipliers: self.multipliers.to_vec(),
-            sums: [self.largest_energy, self.drive_work, self.element_work],
+            joints: self.start.joints.iter().copied().zip(self.joint_works.iter().copied()).collect(),
+            sums: [self.largest_energy, self.jump_work, self.element_work],
             evaluations: self.evaluations,
         }
     }
@@ -62,7 +64,7 @@ impl SystemMotion {
     /// # Errors
     /// [`CheckpointError`] for lists of other lengths, and numbers that are not finite.
     pub(super) fn take_up(&mut self, saved: SavedMotion) -> Result<(), CheckpointError> {
-        let SavedMotion { time, bodies, last, last_length, multipliers, sums, evaluations } = saved;
+        let SavedMotion { time, bodies, last, last_length, multipliers, joints, sums, evaluations } = saved;
         let lists = [bodies.len(), last.len(), multipliers.len()];
         expect("the number of bodies", lists == [self.bodies.len(), 2 * STAGES, STAGES])?;
         for ((body, state), own) in self.system.bodies.iter().zip(&bodies).zip(&self.bodies) {
@@ -71,6 +73,10 @@ impl SystemMotion {
         }
         expect("the last step", last.iter().all(|list| list.len() == self.system.coordinates()))?;
         expect("the multipliers", multipliers.iter().all(|list| list.len() == self.pattern.len()))?;
+        expect("the number of joints", joints.len() == self.joint_works.len())?;
+        for (coordinates, JointWork { drive, spring, loss }) in &joints {
+            finite("a joint", coordinates.list().iter().chain([drive, spring, loss]))?;
+        }
         finite("the motion", last.iter().chain(&multipliers).flatten().chain(&sums).chain([&time, &last_length]))?;
         counts(&[evaluations])?;
         (self.time, self.bodies, self.last_length, self.evaluations) = (time, bodies, last_length, evaluations);
@@ -79,16 +85,19 @@ impl SystemMotion {
         {
             own.copy_from_slice(saved);
         }
-        [self.largest_energy, self.drive_work, self.element_work] = sums;
+        for ((saved, coordinates), work) in joints.into_iter().zip(&mut self.start.joints).zip(&mut self.joint_works) {
+            (*coordinates, *work) = saved;
+        }
+        [self.largest_energy, self.jump_work, self.element_work] = sums;
         Ok(())
     }
 
-    /// The joint that is farthest from closed where the last step has ended, or where the bodies have been put together.
-    pub(super) fn worst_joint(&self) -> Option<&Joint> {
+    /// The name of the joint or coupling that is farthest from closed where the last step has ended, or where the bodies have been
+    /// put together.
+    pub(super) fn worst_joint(&self) -> Option<&str> {
         let [.., last] = &self.stages;
         let open = |row: usize| last.constraints.residuals[row].abs().max(last.constraint_rates[row].abs());
         let worst = (0..self.pattern.len()).max_by(|a, b| open(*a).total_cmp(&open(*b)))?;
-        let of_joints = self.system.joints.iter().flat_map(|joint| joint.rows.iter().map(move |_| joint));
-        of_joints.into_iter().nth(worst)
+        self.system.connections.names().nth(worst)
     }
 }

@@ -140,13 +140,12 @@ impl SystemSimulation {
         let assembled = assemble(&mut motion, &states, relaxed)?;
         let bodies = motion.system().bodies();
         let loads = || bodies.iter().flat_map(|body| body.loads());
-        let of_joints = || motion.system().joints().iter().filter_map(|joint| joint.drive.as_ref());
-        let histories: Vec<History> =
-            loads().filter_map(|load| load.history()).chain(of_joints().map(|drive| &drive.history)).cloned().collect();
+        let of_joints = || motion.system().joints().iter().flat_map(|joint| joint.histories());
+        let histories: Vec<History> = loads().filter_map(|load| load.history()).chain(of_joints()).cloned().collect();
         let formula_steps = FormulaSteps::new(&histories, end, step)?;
         let discontinuities: Vec<f64> = loads()
             .flat_map(|load| load.discontinuities())
-            .chain(of_joints().flat_map(|drive| drive.history.discontinuities()))
+            .chain(of_joints().flat_map(History::discontinuities))
             .chain(formula_steps.stops())
             .collect();
         let count = bodies.len();
@@ -395,7 +394,7 @@ fn assemble(motion: &mut SystemMotion, states: &[MotionState], relaxed: bool) ->
     let fastest = states.iter().map(|state| state.velocity_global.norm() + size * state.omega_body.norm());
     let is_open = |left: f64, scale: f64| left.is_nan() || left > CLOSED * scale;
     if is_open(left, size.max(1.0)) || is_open(rates, size.max(1.0) + fastest.fold(0.0, f64::max)) {
-        let joint = motion.worst_joint().map_or_else(Box::default, |joint| joint.name.as_str().into());
+        let joint = motion.worst_joint().map_or_else(Box::default, Into::into);
         return Err(SetupError::NotAssembled { joint, left, rate: rates });
     }
     let changed = |(body, state): (usize, &MotionState)| {

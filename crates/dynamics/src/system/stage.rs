@@ -10,6 +10,8 @@ use crate::error::RateError;
 use crate::system::constraints::Constraints;
 use crate::system::description::System;
 use crate::system::elimination::inverse::Inertia;
+use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
+use crate::system::joint::force::Forces;
 use crate::system::marker::{BodyPlace, MarkerPlace};
 use crate::system::motion::{MarkerMotion, MarkerWrench};
 
@@ -23,6 +25,15 @@ pub(crate) struct Start {
     /// q and p of all bodies, at the places of their coordinates.
     pub q: Vec<f64>,
     pub p: Vec<f64>,
+    /// Coordinates of the joints.
+    pub joints: Vec<JointCoordinates>,
+}
+
+impl Start {
+    /// What is expected of the turn of a joint at a time.
+    pub fn turn(&self, joint: usize, time: f64) -> f64 {
+        self.joints[joint].turn_after(time - self.time)
+    }
 }
 
 /// The start of one body.
@@ -58,8 +69,10 @@ pub(crate) struct Stage {
     q: Vec<f64>,
     forces: Vec<f64>,
     scratch: Vec<f64>,
-    /// Generalised forces of the elements, in the axes and about the origins of the bodies.
+    /// Generalised forces of the elements and of joints along their coordinates, in the axes and about the origins of the bodies.
     pub element_forces: Vec<f64>,
+    /// Powers of the forces of joints.
+    pub joint_powers: Vec<Forces>,
     /// Power of the force elements.
     pub element_power: f64,
     marker_places: Vec<MarkerPlace>,
@@ -72,12 +85,14 @@ impl Stage {
         let (coordinates, rows) = (system.coordinates(), system.rows());
         let zeros = || vec![0.0; coordinates];
         let flexible = system.bodies.iter().map(Equations::flexible);
-        let most_markers = system.elements.iter().map(|element| element.markers().len()).max().unwrap_or(0);
+        let constraints = Constraints::new(&system.connections, &system.first);
+        let most_markers = system.connections.elements.iter().map(|element| element.markers().len()).max().unwrap_or(0);
         Self {
             x: zeros(),
             y: zeros(),
             evaluations: system.bodies.iter().map(Equations::evaluation).collect(),
-            constraints: Constraints::new(&system.joints, &system.first),
+            joint_powers: vec![Forces::default(); constraints.coordinates.len()],
+            constraints,
             constraint_rates: vec![0.0; rows],
             velocities: zeros(),
             x_rates: zeros(),
@@ -110,9 +125,10 @@ impl Stage {
     }
 
     /// Finds g and G where the bodies have been placed, at a time by the branch of another.
-    pub fn find_constraints(&mut self, system: &System, times: [f64; 2]) {
+    pub fn find_constraints(&mut self, system: &System, start: &Start, times: [f64; 2]) {
         let Self { constraints, positions, attitudes, q, .. } = self;
-        constraints.find(&system.joints, times, |b| BodyPlace {
+        let expected_turn = |joint: usize| start.turn(joint, times[0]);
+        constraints.find(&system.connections, expected_turn, times, |b| BodyPlace {
             origin: positions[b],
             body_from_global: attitudes[b],
             q: &q[system.first[b] + 6..system.first[b + 1]],
@@ -159,8 +175,8 @@ impl Stage {
             inertia.locked_inverse = e.locked_inertia.try_inverse().ok_or(RateError::Inertia)?;
             body.copy_coupling(e, &mut inertia.coupling);
         }
+        self.find_constraints(system, start, times);
         self.add_elements(system, times);
-        self.find_constraints(system, times);
         self.constraints.rates(&self.velocities, &mut self.constraint_rates);
         Ok(())
     }
@@ -219,16 +235,46 @@ impl Stage {
         }
     }
 
-    /// Adds the forces of the elements to y'.
+    /// The coordinates of a joint, where the bodies have been placed and move with the velocities; the turn is next to what is
+    /// expected of it.
+    pub fn joint_coordinates(&self, system: &System, joint: usize, expected_turn: f64) -> JointCoordinates {
+        let markers = &system.connections.joints[joint].markers;
+        let places =
+            markers.each_ref().map(|marker| marker.place(marker.body().map(|b| self.body_place(system, b)).as_ref()));
+        let motions = [0, 1].map(|k: usize| {
+            let velocities = markers[k].body().map(|b| &self.velocities[system.first[b]..system.first[b + 1]]);
+            markers[k].motion(&places[k], velocities)
+        });
+        let [turn, slide] = [Coordinate::Turn, Coordinate::Slide]
+            .map(|coordinate| coordinate.wrench(places.each_ref(), expected_turn))
+            .map(|wrench| [wrench.residual, wrench.rate(motions.each_ref())]);
+        JointCoordinates { turn: turn[0], turn_rate: turn[1], slide: slide[0], slide_rate: slide[1] }
+    }
+
+    /// Adds the forces of joints along their coordinates to those of the elements.
+    fn add_joint_forces(&mut self, system: &System, times: [f64; 2]) {
+        let Self { constraints, element_forces, velocities, joint_powers, .. } = self;
+        let rows = constraints.force_ends().iter().zip(&constraints.coordinates).zip(joint_powers);
+        for ((_, _, law), ((ends, coordinate), powers)) in system.connections.joint_forces().zip(rows) {
+            let mut rate = 0.0;
+            ends.iter().for_each(|end| end.add_rate(1.0, velocities, &mut rate));
+            let forces = law.at([*coordinate, rate], times);
+            *powers = forces.times(rate);
+            ends.iter().for_each(|end| end.add_force(forces.sum(), element_forces));
+        }
+    }
+
+    /// Adds the forces of the elements and of joints along their coordinates to y'.
     fn add_elements(&mut self, system: &System, times: [f64; 2]) {
-        let Self { marker_places, marker_motions, wrenches, positions, attitudes, q, velocities, .. } = self;
-        let (forces, total) = (&mut self.element_forces, &mut self.forces);
         self.element_power = 0.0;
-        if system.elements.is_empty() {
+        if system.connections.elements.is_empty() && self.joint_powers.is_empty() {
             return;
         }
-        forces.fill(0.0);
-        for element in &system.elements {
+        self.element_forces.fill(0.0);
+        self.add_joint_forces(system, times);
+        let Self { marker_places, marker_motions, wrenches, positions, attitudes, q, velocities, .. } = self;
+        let (forces, total) = (&mut self.element_forces, &mut self.forces);
+        for element in &system.connections.elements {
             let markers = element.markers();
             let own = |b: usize| system.first[b]..system.first[b + 1];
             marker_places.clear();

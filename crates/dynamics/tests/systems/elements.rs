@@ -1,11 +1,9 @@
-//! Springs, dampers, bushings and stops between bodies.
+//! Springs, dampers and bushings between bodies.
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 use dynamics::{
-    Bushing, ConservativeBody, ForceElement, Joint, Marker, MotionState, Physics, PointSpring, Stops, System,
-    SystemMotion, TurnSpring,
+    Bushing, ConservativeBody, ForceElement, Joint, Marker, MotionState, Physics, PointSpring, System, SystemMotion,
 };
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -112,26 +110,4 @@ fn a_bushing_between_free_bodies_keeps_their_momenta() {
     assert!(drift.iter().all(|drift| *drift < 1e-13), "{drift:?}");
     assert!(motion.element_work().abs() > 0.1);
     assert!(imbalance(&motion, energy) < 1e-6, "{}", imbalance(&motion, energy));
-}
-
-/// Closed form: between stops a hinge turns evenly, and a stop without damping throws it back as fast as it came.
-#[test]
-fn a_stop_throws_a_hinge_back() {
-    let stops = Stops { angles: [-0.5, 0.5], stiffness: 4000.0, damping: 0.0 };
-    let spring = TurnSpring {
-        markers: [marker(None, 0.0), marker(Some(0), 0.0)],
-        stiffness: 0.0,
-        damping: 0.0,
-        free_angle: 0.0,
-        stops: Some(stops),
-    };
-    let hinge = Joint::revolute("hinge", [marker(None, 0.0), marker(Some(0), 0.0)]);
-    let mut motion = system(1, vec![hinge], spring, &[at(0.0, 2.0)]);
-    // Half a period of the spring of the stop at each side.
-    let touch = PI * f64::sqrt(0.4 / 4000.0);
-    motion.advance(0.25 + touch + 0.25, 1e-7, &mut 1e-3).unwrap();
-    let now = motion.state(0).unwrap();
-    let [w, _, _, z] = now.attitude.wxyz();
-    assert!((2.0 * z.atan2(w)).abs() < 1e-4 && (now.omega_body.z + 2.0).abs() < 1e-4, "{now:?}");
-    assert!(motion.element_work().abs() < 1e-5);
 }

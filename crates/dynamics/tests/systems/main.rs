@@ -1,6 +1,7 @@
 //! Systems of bodies and joints.
 
 mod andrews;
+mod coordinates;
 mod elements;
 mod flexible;
 mod mechanism;

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use dynamics::{
-    ConservativeBody, History, Joint, JointDrive, Marker, MotionState, Observation, Physics, PointForce, PointShapes,
-    Reached, Rows, SetupError, SharedLoad, StepControl, System, SystemSetup, SystemSimulation, Table, TurnSpring,
+    ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MotionState, Observation, Physics,
+    PointForce, PointShapes, Reached, Rows, SetupError, SharedLoad, StepControl, System, SystemSetup, SystemSimulation,
+    Table,
 };
 use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -24,9 +25,8 @@ fn pendulum(control: StepControl, drive: Option<JointDrive>) -> SystemSetup {
         Some(drive) => first.turned_by(drive),
         None => first,
     };
-    let second = Joint::revolute("second", [end(0, 0.5), end(1, -0.5)]);
-    let spring =
-        TurnSpring { markers: [end(0, 0.5), end(1, -0.5)], stiffness: 2.0, damping: 0.1, free_angle: 0.5, stops: None };
+    let spring = JointForce { stiffness: 2.0, damping: 0.1, free: 0.5, ..JointForce::default() };
+    let second = Joint::revolute("second", [end(0, 0.5), end(1, -0.5)]).with_force(Coordinate::Turn, spring);
     let system = System::new(vec![body.clone(), body], vec![first, second]).unwrap();
     let at = |x: f64| MotionState {
         time: 0.0,
@@ -38,7 +38,7 @@ fn pendulum(control: StepControl, drive: Option<JointDrive>) -> SystemSetup {
         modal_velocity: Vec::new(),
     };
     SystemSetup {
-        system: system.with_elements(vec![Arc::new(spring)]).unwrap(),
+        system,
         states: vec![at(0.5), at(1.5)],
         relaxed: false,
         control,

@@ -39,7 +39,7 @@ impl Pattern {
         let joint_of_row: Vec<usize> =
             rows.iter().enumerate().flat_map(|(joint, rows)| std::iter::repeat_n(joint, *rows)).collect();
         let mut rows_of_body = vec![Vec::new(); bodies];
-        for (row, ends) in constraints.ends.iter().enumerate() {
+        for (row, ends) in constraints.ends[..joint_of_row.len()].iter().enumerate() {
             ends.iter().enumerate().for_each(|(k, end)| rows_of_body[end.body].push((row, k)));
         }
         let mut meets = vec![std::collections::BTreeSet::new(); rows.len()];
@@ -309,6 +309,7 @@ mod tests {
     use nalgebra::{Matrix3, Vector3};
 
     use super::*;
+    use crate::system::connections::Connections;
     use crate::system::elimination::inverse::Inertia;
     use crate::system::joint::Joint;
     use crate::system::marker::{BodyPlace, Marker};
@@ -324,12 +325,18 @@ mod tests {
             joints.push(Joint::spherical("end", [end(bodies - 1, 0.5), Marker::on_ground(Vector3::x(), axes)]));
         }
         let first: Vec<usize> = (0..=bodies).map(|body| 8 * body).collect();
-        let mut constraints = Constraints::new(&joints, &first);
-        constraints.find(&joints, [0.0; 2], |body| BodyPlace {
-            origin: Vector3::new(body as f64, 0.3, -0.1 * body as f64),
-            body_from_global: rigid_kin::transformation_matrix(&Vector3::new(0.1, 0.2 * body as f64, 0.3)),
-            q: &[0.0; 2],
-        });
+        let connections = Connections { joints, ..Connections::default() };
+        let mut constraints = Constraints::new(&connections, &first);
+        constraints.find(
+            &connections,
+            |_| 0.0,
+            [0.0; 2],
+            |body| BodyPlace {
+                origin: Vector3::new(body as f64, 0.3, -0.1 * body as f64),
+                body_from_global: rigid_kin::transformation_matrix(&Vector3::new(0.1, 0.2 * body as f64, 0.3)),
+                q: &[0.0; 2],
+            },
+        );
         // The modes of each body move its markers, too.
         for (row, end) in constraints.ends.iter_mut().flatten().enumerate() {
             end.entries[6..].copy_from_slice(&[0.3 + 0.01 * row as f64, -0.2]);
@@ -338,7 +345,7 @@ mod tests {
         inertia.coupling = std::array::from_fn(|axis| vec![0.02 * axis as f64, 0.01]);
         let mut inverse = Inverse::new(2);
         assert!(inverse.find(3.0, &inertia, [[5.0, 0.1], [700.0, 0.0]].into_iter()));
-        let rows: Vec<usize> = joints.iter().map(|joint| joint.rows.len()).collect();
+        let rows: Vec<usize> = connections.groups().collect();
         (Pattern::new(&rows, &constraints, bodies), constraints, vec![inverse; bodies])
     }
 

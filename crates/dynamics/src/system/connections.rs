@@ -1,0 +1,59 @@
+//! What connects the bodies of a system.
+
+use std::sync::Arc;
+
+use crate::system::element::ForceElement;
+use crate::system::joint::Joint;
+use crate::system::joint::coordinate::Coordinate;
+use crate::system::joint::coupling::Coupling;
+use crate::system::joint::force::JointForce;
+use crate::system::marker::Marker;
+
+/// Joints, couplings of them, and forces between markers.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Connections {
+    pub joints: Vec<Joint>,
+    pub couplings: Vec<Coupling>,
+    pub elements: Vec<Arc<dyn ForceElement>>,
+}
+
+impl Connections {
+    /// The markers of all of them.
+    pub fn markers(&self) -> impl Iterator<Item = &Marker> {
+        let of_joints = self.joints.iter().flat_map(|joint| &joint.markers);
+        of_joints.chain(self.elements.iter().flat_map(|element| element.markers()))
+    }
+
+    /// Numbers of rows of the joints, then of the couplings.
+    pub fn groups(&self) -> impl Iterator<Item = usize> {
+        self.joints.iter().map(|joint| joint.rows.len()).chain(self.couplings.iter().map(|_| 1))
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.groups().sum()
+    }
+
+    /// The name of the joint or coupling of each row.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let of_joints = self.joints.iter().flat_map(|joint| joint.rows.iter().map(|_| joint.name.as_str()));
+        of_joints.chain(self.couplings.iter().map(|coupling| coupling.name.as_str()))
+    }
+
+    /// The forces of joints, with the numbers of the joints.
+    pub fn joint_forces(&self) -> impl Iterator<Item = (usize, Coordinate, &JointForce)> {
+        let numbered = self.joints.iter().enumerate();
+        numbered.flat_map(|(number, joint)| joint.forces().map(move |(coordinate, force)| (number, coordinate, force)))
+    }
+
+    /// The pairs of markers that each row has ends on: rows of joints, then of couplings, then of forces of joints.
+    pub fn ends(&self) -> impl Iterator<Item = Vec<&Marker>> {
+        let of_joints = self.joints.iter().flat_map(|joint| joint.rows.iter().map(|_| joint.markers.iter().collect()));
+        let of_couplings = self
+            .couplings
+            .iter()
+            .map(|coupling| coupling.terms.iter().flat_map(|term| &self.joints[term.joint].markers).collect());
+        let of_forces = self.joint_forces().map(|(joint, ..)| self.joints[joint].markers.iter().collect());
+        of_joints.chain(of_couplings).chain(of_forces)
+    }
+}

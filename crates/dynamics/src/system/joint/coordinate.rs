@@ -1,0 +1,66 @@
+//! The turn and the slide of a joint: Eqs. (J11) of `docs/method/systems.md`.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::system::joint::wrench::RowWrench;
+use crate::system::marker::MarkerPlace;
+
+/// A scalar that tells where the second marker of a joint is against the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coordinate {
+    /// The angle about the z axis of i, from its x axis to that of j, rad. Full turns are counted.
+    Turn,
+    /// The distance along the z axis of i.
+    Slide,
+}
+
+/// The coordinates of a joint and their rates.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct JointCoordinates {
+    /// Angle about the z axis of the first marker, rad, with full turns.
+    pub turn: f64,
+    /// Rate of the angle, rad per time.
+    pub turn_rate: f64,
+    /// Distance along the z axis of the first marker.
+    pub slide: f64,
+    /// Rate of the distance.
+    pub slide_rate: f64,
+}
+
+impl JointCoordinates {
+    /// They.
+    pub(crate) fn list(&self) -> [f64; 4] {
+        [self.turn, self.turn_rate, self.slide, self.slide_rate]
+    }
+
+    /// The angle at a time after, as far as the rate tells.
+    pub(crate) fn turn_after(&self, time: f64) -> f64 {
+        self.turn + time * self.turn_rate
+    }
+}
+
+impl Coordinate {
+    /// The coordinate, and the wrenches that one unit of its force puts on the markers. Of all angles that differ by full turns
+    /// it is the next to `expected_turn`.
+    pub(crate) fn wrench(self, places: [&MarkerPlace; 2], expected_turn: f64) -> RowWrench {
+        let [i, j] = places;
+        match self {
+            Self::Turn => {
+                let x = i.axes.tr_mul(&j.axes.column(0));
+                let angle = x.y.atan2(x.x);
+                // With x = ω × x, the rate of the angle is e·ω.
+                let square = x.x * x.x + x.y * x.y;
+                let tilt = if square > SHORT { x.z / square } else { 0.0 };
+                let e = i.axes * Vector3::new(-tilt * x.x, -tilt * x.y, 1.0);
+                RowWrench::turning(angle + TAU * ((expected_turn - angle) / TAU).round(), -e)
+            }
+            Self::Slide => RowWrench::along(places, 0, i.axes.column(2).into()),
+        }
+    }
+}
+
+/// The square of the x axis of j across the z axis of i below which there is no angle.
+const SHORT: f64 = 1e-20;

@@ -1,0 +1,108 @@
+//! Forces along the free coordinates of joints: springs, dampers, stops, friction, motors.
+//!
+//! Eq. (J12) of `docs/method/systems.md`.
+
+use crate::system::joint::drive::JointDrive;
+
+/// A force along the slide of a joint, or a moment about its turn; positive on the second marker along the coordinate.
+#[derive(Debug, Clone, Default)]
+pub struct JointForce {
+    /// Force per length, or moment per angle (rad).
+    pub stiffness: f64,
+    /// Force per velocity, or moment per angular velocity.
+    pub damping: f64,
+    /// Coordinate at which the spring has no force beside the preload.
+    pub free: f64,
+    /// Force or moment at all times.
+    pub preload: f64,
+    /// A further force over the coordinate, which stands for the time of the history: a table, or a formula in t.
+    pub characteristic: Option<JointDrive>,
+    /// Stops.
+    pub stops: Option<Stops>,
+    /// Dry friction.
+    pub friction: Option<Friction>,
+    /// A force or moment over time.
+    pub motor: Option<JointDrive>,
+}
+
+/// Ends of a coordinate: stiff springs on one side, which push and do not pull.
+#[derive(Debug, Clone, Copy)]
+pub struct Stops {
+    /// Lowest and highest coordinate.
+    pub limits: [f64; 2],
+    /// Force per length, or moment per angle, beyond them.
+    pub stiffness: f64,
+    /// Force per velocity, or moment per angular velocity, while they are touched.
+    pub damping: f64,
+}
+
+/// Dry friction, of one size in either direction but near rest: −force·tanh(rate/rate_scale).
+#[derive(Debug, Clone, Copy)]
+pub struct Friction {
+    /// Force or moment.
+    pub force: f64,
+    /// Rate below which it is smaller.
+    pub rate_scale: f64,
+}
+
+/// A force, or its power, by what becomes of its work.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Forces {
+    /// Of springs, stops and the preload: a function of the coordinate.
+    pub spring: f64,
+    /// Of dampers and friction.
+    pub friction: f64,
+    /// Of a motor.
+    pub motor: f64,
+}
+
+impl Forces {
+    /// All of them times a factor.
+    pub fn times(&self, factor: f64) -> Self {
+        Self { spring: self.spring * factor, friction: self.friction * factor, motor: self.motor * factor }
+    }
+
+    /// Their sum.
+    pub fn sum(&self) -> f64 {
+        self.spring + self.friction + self.motor
+    }
+}
+
+impl JointForce {
+    /// The force at a coordinate and its rate, at a time by the branch of another.
+    pub(crate) fn at(&self, [x, rate]: [f64; 2], times: [f64; 2]) -> Forces {
+        let of = |amplitude: &Option<JointDrive>, times| amplitude.as_ref().map_or(0.0, |drive| drive.at(times)[0]);
+        let mut forces = Forces {
+            spring: self.preload - self.stiffness * (x - self.free) + of(&self.characteristic, [x, x]),
+            friction: -self.damping * rate,
+            motor: of(&self.motor, times),
+        };
+        if let Some(Friction { force, rate_scale }) = self.friction {
+            forces.friction -= force * (rate / rate_scale).tanh();
+        }
+        if let Some(stops) = self.stops
+            && let Some(depth) = stops.depth(x)
+        {
+            let spring = -stops.stiffness * depth;
+            let damped = spring - stops.damping * rate;
+            let pushing = if depth > 0.0 { damped.min(0.0) } else { damped.max(0.0) };
+            forces.spring += spring;
+            forces.friction += pushing - spring;
+        }
+        forces
+    }
+}
+
+impl Stops {
+    /// How far a coordinate is beyond an end: positive above the highest, negative below the lowest.
+    fn depth(&self, x: f64) -> Option<f64> {
+        let [low, high] = self.limits;
+        if x > high {
+            Some(x - high)
+        } else if x < low {
+            Some(x - low)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! Coordinates of joints, the forces along them, and couplings.
+
+use std::f64::consts::PI;
+
+use dynamics::{
+    ConservativeBody, Coordinate, Coupling, Expression, Friction, History, Joint, JointDrive, JointForce, Marker,
+    MotionState, Physics, Stops, System, SystemMotion,
+};
+use modal::{ReducedBody, RigidMotion};
+use nalgebra::{Matrix3, Vector3};
+use rigid_kin::Attitude;
+
+/// Mass and moment of inertia about z of each body.
+const MASS: f64 = 2.0;
+const INERTIA: f64 = 0.4;
+
+fn bodies(count: usize) -> Vec<ConservativeBody> {
+    let inertia = Matrix3::from_diagonal(&Vector3::new(0.2, 0.3, INERTIA));
+    let reduced = ReducedBody::rigid(MASS, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
+    vec![ConservativeBody::new(&reduced, &[], Vec::new(), &Physics::default()).unwrap(); count]
+}
+
+/// A body at x with a velocity along z and an angular velocity about it.
+fn at(x: f64, velocity: f64, omega: f64) -> MotionState {
+    MotionState {
+        time: 0.0,
+        attitude: Attitude::identity(),
+        origin_global: Vector3::new(x, 0.0, 0.0),
+        velocity_global: Vector3::new(0.0, 0.0, velocity),
+        omega_body: Vector3::new(0.0, 0.0, omega),
+        modal_displacement: Vec::new(),
+        modal_velocity: Vec::new(),
+    }
+}
+
+fn ground(x: f64) -> Marker {
+    Marker::on_ground(Vector3::new(x, 0.0, 0.0), Matrix3::identity())
+}
+
+fn on(body: usize, x: f64) -> Marker {
+    Marker::on_rigid(body, Vector3::new(x, 0.0, 0.0), Matrix3::identity())
+}
+
+/// One body on a hinge or a slide to the ground.
+fn lone(
+    joint: fn(&str, [Marker; 2]) -> Joint,
+    along: Coordinate,
+    force: JointForce,
+    state: MotionState,
+) -> SystemMotion {
+    let joint = joint("joint", [ground(0.0), on(0, 0.0)]).with_force(along, force);
+    SystemMotion::new(System::new(bodies(1), vec![joint]).unwrap(), &[state]).unwrap()
+}
+
+fn constant(amplitude: f64) -> JointDrive {
+    JointDrive { amplitude, history: History::Constant }
+}
+
+/// Energy less all work.
+fn imbalance(motion: &SystemMotion, energy: f64) -> f64 {
+    (motion.energy().unwrap() - energy - motion.element_work() - motion.drive_work()).abs()
+}
+
+/// Closed form: a free rotor turns evenly, and its full turns are counted, whatever the step.
+#[test]
+fn full_turns_are_counted() {
+    let mut motion = lone(Joint::revolute, Coordinate::Turn, JointForce::default(), at(0.0, 0.0, -9.0));
+    assert!((motion.joint_coordinates(0).turn_rate + 9.0).abs() < 1e-14);
+    motion.advance(5.0, 1e-6, &mut 1e-2).unwrap();
+    let found = motion.joint_coordinates(0);
+    assert!((found.turn + 45.0).abs() < 1e-10 && (found.turn_rate + 9.0).abs() < 1e-11, "{found:?}");
+}
+
+/// Closed form: a torsion spring swings by more than half a turn to both sides, with √(k/J).
+#[test]
+fn a_torsion_spring_knows_full_turns() {
+    let force = JointForce { stiffness: 3.0, ..JointForce::default() };
+    let omega = f64::sqrt(3.0 / INERTIA);
+    let mut motion = lone(Joint::revolute, Coordinate::Turn, force, at(0.0, 0.0, 5.0 * omega));
+    for end in [0.3, 0.55, 1.2, 2.1] {
+        motion.advance(end, 1e-9, &mut 1e-3).unwrap();
+        let found = motion.joint_coordinates(0).turn;
+        assert!((found - 5.0 * (omega * end).sin()).abs() < 1e-7, "{end}: {found}");
+    }
+}
+
+/// Closed form: a mass slides on a damped spring about the length at which the preload holds the spring.
+#[test]
+fn a_slide_spring_with_a_preload_and_a_damper_swings_in_closed_form() {
+    let (k, c, preload) = (50.0, 1.5, 4.0);
+    let force = JointForce { stiffness: k, damping: c, preload, free: 0.3, ..JointForce::default() };
+    let mut motion = lone(Joint::prismatic, Coordinate::Slide, force, at(0.0, 0.0, 0.0));
+    let (end, mean) = (1.7, 0.3 + preload / k);
+    motion.advance(end, 1e-9, &mut 1e-3).unwrap();
+    let delta = 0.5 * c / MASS;
+    let omega = f64::sqrt(k / MASS - delta * delta);
+    let expected = mean * (1.0 - (-delta * end).exp() * ((omega * end).cos() + delta / omega * (omega * end).sin()));
+    let found = motion.joint_coordinates(0);
+    assert!((found.slide - expected).abs() < 1e-8, "{found:?} {expected}");
+    let work = motion.joint_work(0);
+    let spring = preload * found.slide - 0.5 * k * ((found.slide - 0.3).powi(2) - 0.09);
+    assert!((work.spring - spring).abs() < 1e-6 && work.loss > 0.1, "{work:?} {spring}");
+    assert!(imbalance(&motion, 0.0) < 1e-7);
+}
+
+/// Closed form: between stops a hinge and a slide move evenly, and stops without damping throw them back as fast as they came.
+#[test]
+fn stops_throw_back() {
+    for (joint, along, state, inertia) in [
+        (Joint::revolute as fn(&str, [Marker; 2]) -> Joint, Coordinate::Turn, at(0.0, 0.0, 2.0), INERTIA),
+        (Joint::prismatic, Coordinate::Slide, at(0.0, 2.0, 0.0), MASS),
+    ] {
+        let stops = Stops { limits: [-0.5, 0.5], stiffness: 1e4 * inertia, damping: 0.0 };
+        let mut motion = lone(joint, along, JointForce { stops: Some(stops), ..JointForce::default() }, state);
+        // Half a period of the spring of the stop.
+        let touch = PI * 1e-2;
+        motion.advance(0.25 + touch + 0.25, 1e-7, &mut 1e-3).unwrap();
+        let found = motion.joint_coordinates(0);
+        let [coordinate, rate] = match along {
+            Coordinate::Turn => [found.turn, found.turn_rate],
+            Coordinate::Slide => [found.slide, found.slide_rate],
+        };
+        assert!(coordinate.abs() < 1e-4 && (rate + 2.0).abs() < 1e-4, "{found:?}");
+        assert!(motion.element_work().abs() < 1e-3 * motion.energy().unwrap(), "{}", motion.element_work());
+    }
+}
+
+/// Closed form: dry friction takes v²/2a and all of the energy.
+#[test]
+fn friction_brings_to_rest() {
+    let (force, speed) = (6.0, 3.0);
+    let friction = Some(Friction { force, rate_scale: 1e-4 });
+    let start = at(0.0, speed, 0.0);
+    let mut motion = lone(Joint::prismatic, Coordinate::Slide, JointForce { friction, ..JointForce::default() }, start);
+    let energy = motion.energy().unwrap();
+    motion.advance(2.0, 1e-7, &mut 1e-3).unwrap();
+    let found = motion.joint_coordinates(0);
+    let expected = 0.5 * MASS * speed * speed / force;
+    assert!((found.slide - expected).abs() < 1e-4 && found.slide_rate.abs() < 1e-4, "{found:?} {expected}");
+    let loss = motion.joint_work(0).loss;
+    assert!((loss / energy - 1.0).abs() < 1e-5, "{loss} {energy}");
+}
+
+/// Closed form: a motor gives M/J and its work.
+#[test]
+fn a_motor_turns_a_rotor() {
+    let moment = 1.4;
+    let force = JointForce { motor: Some(constant(moment)), ..JointForce::default() };
+    let mut motion = lone(Joint::revolute, Coordinate::Turn, force, at(0.0, 0.0, 0.0));
+    motion.advance(2.0, 1e-7, &mut 1e-3).unwrap();
+    let found = motion.joint_coordinates(0);
+    assert!((found.turn - 2.0 * moment / INERTIA).abs() < 1e-9, "{found:?}");
+    assert!((motion.joint_work(0).drive - moment * found.turn).abs() < 1e-9);
+    assert!(imbalance(&motion, 0.0) < 1e-9);
+}
+
+/// Conserved: the energy of a mass on a spring whose force is a formula, −20 x³.
+#[test]
+fn a_formula_is_a_spring() {
+    let history = History::Expression(Expression::new("-t^3", Vec::new()).unwrap());
+    let characteristic = Some(JointDrive { amplitude: 20.0, history });
+    let force = JointForce { characteristic, ..JointForce::default() };
+    let mut motion = lone(Joint::prismatic, Coordinate::Slide, force, at(0.0, 1.5, 0.0));
+    motion.advance(1.9, 1e-8, &mut 1e-3).unwrap();
+    let found = motion.joint_coordinates(0);
+    let energy = 0.5 * MASS * found.slide_rate.powi(2) + 5.0 * found.slide.powi(4);
+    assert!((energy - 0.5 * MASS * 2.25).abs() < 1e-6 && found.slide.abs() > 0.1, "{found:?}");
+}
+
+/// Two bodies on joints to the ground, a metre apart.
+fn pair(joints: [fn(&str, [Marker; 2]) -> Joint; 2], coupling: Coupling) -> SystemMotion {
+    let motor = JointForce { motor: Some(constant(1.4)), ..JointForce::default() };
+    let joints = vec![
+        joints[0]("first", [ground(0.0), on(0, 0.0)]).with_force(Coordinate::Turn, motor),
+        joints[1]("second", [ground(1.0), on(1, 0.0)]),
+    ];
+    let system = System::new(bodies(2), joints).unwrap().with_couplings(vec![coupling]).unwrap();
+    SystemMotion::new(system, &[at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0)]).unwrap()
+}
+
+/// Closed form: of two geared wheels the second has J r² at the first; turns by many full turns.
+#[test]
+fn gears_turn_together() {
+    let ratio = -2.5;
+    let mut motion = pair([Joint::revolute, Joint::revolute], Coupling::gear("gear", [1, 0], ratio));
+    motion.advance(6.0, 1e-7, &mut 1e-3).unwrap();
+    let [first, second] = [0, 1].map(|joint| motion.joint_coordinates(joint).turn);
+    let expected = 0.5 * 36.0 * 1.4 / (INERTIA * (1.0 + ratio * ratio));
+    assert!((first / expected - 1.0).abs() < 1e-9 && expected > 8.0, "{first} {expected}");
+    assert!((second - ratio * first).abs() < 1e-11, "{second} {first}");
+    assert_eq!(motion.dependent_rows(), 0);
+}
+
+/// Closed form: the mass that a wheel moves by a rack is m r² at the wheel.
+#[test]
+fn a_rack_slides_with_its_wheel() {
+    let radius = 0.3;
+    let mut motion = pair([Joint::revolute, Joint::prismatic], Coupling::rack("rack", [0, 1], radius));
+    motion.advance(3.0, 1e-7, &mut 1e-3).unwrap();
+    let turn = motion.joint_coordinates(0).turn;
+    let expected = 0.5 * 9.0 * 1.4 / (INERTIA + MASS * radius * radius);
+    assert!((turn / expected - 1.0).abs() < 1e-9, "{turn} {expected}");
+    assert!((motion.joint_coordinates(1).slide - radius * turn).abs() < 1e-11);
+}
+
+/// Closed form: a nut that is thrown along its screw turns with it, and keeps its energy.
+#[test]
+fn a_screw_turns_as_it_slides() {
+    let lead = 0.2;
+    let joint = Joint::cylindrical("screw", [ground(0.0), on(0, 0.0)]);
+    let system = System::new(bodies(1), vec![joint]).unwrap();
+    let system = system.with_couplings(vec![Coupling::screw("thread", 0, lead)]).unwrap();
+    let spin = 2.0 * PI / lead * 1.5;
+    let mut motion = SystemMotion::new(system, &[at(0.0, 1.5, spin)]).unwrap();
+    motion.advance(1.0, 1e-7, &mut 1e-3).unwrap();
+    let found = motion.joint_coordinates(0);
+    assert!((found.slide - 1.5).abs() < 1e-10 && (found.turn - spin).abs() < 1e-9, "{found:?}");
+}
+
+/// Conserved: the momenta of a free gear of three bodies to rounding, its energy to the tolerance.
+#[test]
+fn a_free_gear_keeps_its_momenta() {
+    // The first carries the others.
+    let joints =
+        vec![Joint::revolute("first", [on(0, -1.0), on(1, 0.0)]), Joint::revolute("second", [on(0, 1.0), on(2, 0.0)])];
+    let system = System::new(bodies(3), joints).unwrap();
+    let system = system.with_couplings(vec![Coupling::gear("gear", [0, 1], -2.0)]).unwrap();
+    let tumbling = MotionState { omega_body: Vector3::new(0.5, -0.4, 1.0), ..at(0.0, 0.1, 0.0) };
+    let mut motion = SystemMotion::new(system, &[tumbling, at(-1.0, 0.0, 6.0), at(1.0, 0.0, 0.0)]).unwrap();
+    motion.assemble().unwrap();
+    let (momenta, energy) = (motion.momenta(), motion.energy().unwrap());
+    motion.advance(3.0, 1e-7, &mut 1e-3).unwrap();
+    let drift: Vec<f64> = motion.momenta().iter().zip(momenta).map(|(now, start)| (now - start).norm()).collect();
+    assert!(drift.iter().all(|drift| *drift < 1e-13), "{drift:?}");
+    assert!((motion.energy().unwrap() / energy - 1.0).abs() < 1e-6);
+    assert!(motion.joint_coordinates(0).turn.abs() > PI);
+}
+
+/// Closed form: what is not locked moves: a body that is held along x and about x only.
+#[test]
+fn a_joint_locks_what_it_is_told() {
+    let joint = Joint::locked("rail", [ground(0.0), on(0, 0.0)], [true, false, false], [true, false, false]);
+    let system = System::new(bodies(1), vec![joint]).unwrap();
+    let state = MotionState {
+        velocity_global: Vector3::new(3.0, 2.0, 1.0),
+        omega_body: Vector3::new(0.7, 0.0, 0.9),
+        ..at(0.0, 0.0, 0.0)
+    };
+    let mut motion = SystemMotion::new(system, &[state]).unwrap();
+    motion.assemble().unwrap();
+    motion.advance(1.0, 1e-8, &mut 1e-3).unwrap();
+    let now = motion.state(0).unwrap();
+    assert!((now.origin_global - Vector3::new(0.0, 2.0, 1.0)).norm() < 1e-12, "{now:?}");
+    assert!((now.omega_body - Vector3::new(0.0, 0.0, 0.9)).norm() < 1e-9, "{now:?}");
+}
