@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 use flexframe_fuzz::{COLUMNS, write_results};
 use libfuzzer_sys::fuzz_target;
 use results::{FileError, Results, Writer};
+use sealed::SealedError;
 
 /// Where a file of any bytes is, where an unfinished one, and the bytes of that.
 static FILES: LazyLock<(tempfile::TempDir, PathBuf, PathBuf, Vec<u8>)> = LazyLock::new(|| {
@@ -41,7 +42,10 @@ fuzz_target!(|bytes: &[u8]| {
     open(part);
     if let Err(error) = Writer::resume(part, &COLUMNS, false) {
         assert!(
-            matches!(error, FileError::NoSeal { .. } | FileError::OtherVersion { .. } | FileError::Damaged { .. }),
+            matches!(
+                error,
+                FileError::Sealed(SealedError::NoSeal { .. } | SealedError::OtherVersion { .. } | SealedError::Damaged { .. })
+            ),
             "{error}"
         );
     }

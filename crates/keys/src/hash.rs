@@ -77,6 +77,11 @@ impl<R: Read> HashedReader<R> {
         Self { reader, hasher: Box::default() }
     }
 
+    /// The hash of what has been read.
+    pub fn so_far(&self) -> Hash {
+        Hash(*self.hasher.finalize().as_bytes())
+    }
+
     /// Reads what is left. Returns the hash of all.
     ///
     /// # Errors
@@ -84,7 +89,7 @@ impl<R: Read> HashedReader<R> {
     pub fn finish(mut self) -> io::Result<Hash> {
         let mut block = vec![0; BLOCK];
         while self.read(&mut block)? > 0 {}
-        Ok(Hash(*self.hasher.finalize().as_bytes()))
+        Ok(self.so_far())
     }
 }
 

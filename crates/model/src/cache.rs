@@ -1,6 +1,6 @@
 //! The cache: a folder in which values of the finite-element side of a body are kept from run to run.
 //!
-//! Each is a file of its own ([`body_file`]), `PROGRAM/MESH/KEY.kept`, named by hashes of all that it follows from: the program
+//! Each is a file of its own ([`sealed`]), `PROGRAM/MESH/KEY.kept`, named by hashes of all that it follows from: the program
 //! and the machine, the bytes of the mesh file, and what the value is, with the material, the support and what else it is made
 //! of. A file is never changed: it appears whole, and is checked when it is read. So any number of programs may use the folder
 //! at once, and what has changed is not found.

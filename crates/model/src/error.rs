@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use advice::{AdviceError, Refusal};
-use body_file::BodyFileError;
 use dynamics::{LoadedError, SetupError};
 use fem_tet10::{AssemblyError, MeshError};
 use mesh_import::ImportError;
 use modal::ModalError;
 use nalgebra::Vector3;
 use scene::{Place, Scene, SceneError, one_of, shorten};
+use sealed::SealedError;
 
 /// A scene that cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -37,7 +37,7 @@ pub enum BuildError {
     },
     /// A body file cannot be read or written.
     #[error(transparent)]
-    BodyFile(#[from] BodyFileError),
+    BodyFile(#[from] SealedError),
     /// No advice can be given on it.
     #[error(transparent)]
     Advice(#[from] AdviceError),

@@ -1,8 +1,7 @@
 //! The state of a run beside its rows in an unfinished file.
 
-use std::borrow::Cow;
-
 use crc32fast::Hasher;
+use sealed::little_endian;
 
 /// Words of a checkpoint in the file beside those of the state: number, rows, sum of the rows, and check sum.
 pub(crate) const FRAME: usize = 4;
@@ -66,48 +65,10 @@ impl Sums {
         }
     }
 
-    /// Check sum of each column.
-    pub(crate) fn of_columns(&self) -> &[Hasher] {
-        &self.0
-    }
-
     /// Check sum of all columns.
     pub(crate) fn total(&self) -> u32 {
         let mut total = Hasher::new();
         self.0.iter().for_each(|hasher| total.update(&hasher.clone().finalize().to_le_bytes()));
         total.finalize()
-    }
-}
-
-/// Numbers as they are in a file; no copy where they are so in memory, too.
-pub(crate) fn little_endian<T: bytemuck::NoUninit + ToLittleEndian>(values: &[T]) -> Cow<'_, [u8]> {
-    if cfg!(target_endian = "little") {
-        Cow::Borrowed(bytemuck::cast_slice(values))
-    } else {
-        Cow::Owned(values.iter().flat_map(|value| value.bytes()).collect())
-    }
-}
-
-/// A number of four or eight bytes.
-pub(crate) trait ToLittleEndian {
-    /// The lowest byte first.
-    fn bytes(&self) -> impl IntoIterator<Item = u8>;
-}
-
-impl ToLittleEndian for f64 {
-    fn bytes(&self) -> impl IntoIterator<Item = u8> {
-        self.to_le_bytes()
-    }
-}
-
-impl ToLittleEndian for u64 {
-    fn bytes(&self) -> impl IntoIterator<Item = u8> {
-        self.to_le_bytes()
-    }
-}
-
-impl ToLittleEndian for u32 {
-    fn bytes(&self) -> impl IntoIterator<Item = u8> {
-        self.to_le_bytes()
     }
 }

@@ -1,35 +1,15 @@
 //! Errors of a results file.
 
-use std::fs::OpenOptions;
-use std::io::{self, Write};
+use sealed::SealedError;
 use std::path::{Path, PathBuf};
 
 /// An error of the HDF5 writer or reader.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// The HDF5 library refused an operation.
-    #[error("{path}: cannot {action}: {source}; check its folder and the room on its disk", path = .path.display())]
-    Hdf5 {
-        /// The results file.
-        path: PathBuf,
-        /// The operation, for instance "create dataset modal/displacement".
-        action: String,
-        /// The library's own message.
-        source: hdf5::Error,
-    },
-    /// The operating system refused an operation.
-    #[error("{path}: cannot {action}: {reason}; {help}", path = .path.display())]
-    System {
-        /// The results file.
-        path: PathBuf,
-        /// The operation.
-        action: String,
-        /// The system's own message.
-        reason: String,
-        /// Help for the user.
-        help: &'static str,
-    },
+    /// The file cannot be made, read or written, or is not what a writer wrote.
+    #[error(transparent)]
+    Sealed(#[from] SealedError),
     /// Another process has the file open for writing.
     #[error(
         "{path}: another run is writing this file, or another program has it open; wait for it, stop it, or choose another folder",
@@ -155,52 +135,6 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
     },
-    /// The name of the folder is not text in UTF-8, which HDF5 wants.
-    #[error(
-        "{path}: HDF5 makes files only in folders whose names are text in UTF-8; choose another folder, or go into this one \
-         and name the files from there",
-        path = .path.display()
-    )]
-    NameNotUtf8 {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// A file to be read that does not begin as results files do.
-    #[error(
-        "{path}: this is not a results file of this version of flexframe, or its beginning is damaged; check the name (a file \
-         that another program has written anew, such as h5repack, is not read)",
-        path = .path.display()
-    )]
-    NoSeal {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A file of another version of the format.
-    #[error(
-        "{path}: this is a results file of version {found}, and this program reads version {expected}, in which a file has a \
-         group for each body; run its scene again with --overwrite",
-        path = .path.display()
-    )]
-    OtherVersion {
-        /// The file.
-        path: PathBuf,
-        /// Its version.
-        found: String,
-        /// The version that is read.
-        expected: &'static str,
-    },
-    /// A results file that has been changed or damaged.
-    #[error(
-        "{path}: the file is damaged, or another program has changed it: {what}; take an unchanged copy, or run its scene \
-         again with --overwrite",
-        path = .path.display()
-    )]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// The content found, and the one expected.
-        what: String,
-    },
 }
 
 /// Refuses a list of the wrong length.
@@ -215,9 +149,8 @@ impl FileError {
     /// The file.
     pub fn path(&self) -> &Path {
         match self {
-            Self::Hdf5 { path, .. }
-            | Self::System { path, .. }
-            | Self::Busy { path, .. }
+            Self::Sealed(error) => error.path(),
+            Self::Busy { path, .. }
             | Self::Exists { path, .. }
             | Self::Unfinished { path, .. }
             | Self::NotResults { path, .. }
@@ -227,71 +160,8 @@ impl FileError {
             | Self::NulInText { path, .. }
             | Self::WrongLength { path, .. }
             | Self::NotFinite { path, .. }
-            | Self::NoSeal { path, .. }
-            | Self::OtherVersion { path, .. }
-            | Self::Damaged { path, .. }
             | Self::ConstantNotFinite { path, .. }
-            | Self::Link { path, .. }
-            | Self::NameNotUtf8 { path, .. } => path,
+            | Self::Link { path, .. } => path,
         }
-    }
-
-    /// Help, where the system has refused something.
-    pub fn help(&self) -> Option<&'static str> {
-        match self {
-            Self::System { help, .. } => Some(help),
-            _ => None,
-        }
-    }
-
-    /// Conversion for [`Result::map_err`]. Where the operating system has refused something, it says so in the library's
-    /// message.
-    pub(crate) fn hdf5(path: &Path, action: impl Into<String>) -> impl FnOnce(hdf5::Error) -> Self {
-        let (path, action) = (path.to_path_buf(), action.into());
-        move |source| {
-            let errno = source.stack().and_then(|stack| {
-                stack.iter().find_map(|frame| {
-                    let (_, rest) = frame.desc().split_once("errno = ")?;
-                    rest.split(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
-                })
-            });
-            match errno {
-                Some(errno) => Self::system(&path, action, &io::Error::from_raw_os_error(errno)),
-                None => Self::Hdf5 { path, action, source },
-            }
-        }
-    }
-
-    /// The HDF5 library may lose the system's reason on its way. Where it could not write the temporary file `file`, the
-    /// system says it again to who tries the same.
-    pub(crate) fn with_reason_from_system(self, file: &Path) -> Self {
-        let Self::Hdf5 { path, action, source } = self else { return self };
-        let again = OpenOptions::new().append(true).open(file).and_then(|mut file| {
-            file.write_all(&[0; 1 << 16])?;
-            file.sync_data()
-        });
-        match again {
-            Err(error) => Self::system(&path, action, &error),
-            Ok(()) => Self::Hdf5 { path, action, source },
-        }
-    }
-
-    /// With what helps against the error.
-    pub(crate) fn system(path: &Path, action: impl Into<String>, error: &io::Error) -> Self {
-        use io::ErrorKind::*;
-        let help = match error.kind() {
-            StorageFull | QuotaExceeded | FileTooLarge => {
-                "make room there; an unfinished run can then be taken up again with `flexframe resume`"
-            }
-            PermissionDenied | ReadOnlyFilesystem => "choose a folder that you may write to",
-            NotFound | NotADirectory => "check the name of the folder",
-            OutOfMemory => "end other programs, or take a machine with more memory",
-            WouldBlock => "another process has the file open; wait for it or stop it",
-            _ => "check the file and its disk",
-        };
-        let reason = error.to_string();
-        // The name of a temporary file says nothing.
-        let reason = reason.split(" at path ").next().unwrap_or_default().to_owned();
-        Self::System { path: path.to_path_buf(), action: action.into(), reason, help }
     }
 }

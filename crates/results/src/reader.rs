@@ -2,13 +2,11 @@
 
 use crate::checkpoint::{Checkpoint, Sums};
 use crate::column::SystemRow;
-use crate::container::description::Description;
-use crate::container::seal;
-use crate::container::store::Store;
+use crate::container::store::{Store, metadata_of};
 use crate::history::{History, histories};
 use crate::{BodyMetadata, Column, FileError, Metadata, Shapes};
+use sealed::{Format, SealedFile};
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::path::Path;
 
 /// A results file in memory; rows are output times, the same for all bodies.
@@ -68,12 +66,11 @@ impl Results {
     /// dataset has.
     ///
     /// # Errors
-    /// [`FileError::NoSeal`], [`FileError::OtherVersion`] and [`FileError::Damaged`] if it is not what a [`Writer`](crate::Writer) wrote, or those of
-    /// [`Writer::create`](crate::Writer::create) for its metadata; [`FileError::Busy`] if another process writes it;
-    /// [`FileError::System`] if it cannot be read.
+    /// [`FileError::Sealed`] if it is not what a [`Writer`](crate::Writer) wrote or cannot be read, or those of
+    /// [`Writer::create`](crate::Writer::create) for its metadata; [`FileError::Busy`] if another process writes it.
     pub fn open<R: SystemRow>(path: impl AsRef<Path>, columns: &'static [Column<R>]) -> Result<Self, FileError> {
         let path = path.as_ref();
-        Ok(Self::read_with_checkpoint(&Store::open(path, columns)?, path, columns)?.0)
+        Ok(Self::read_with_checkpoint(&Store::open(path, columns)?, columns)?.0)
     }
 
     /// The same, with the shapes of each body, if the file carries them.
@@ -86,36 +83,28 @@ impl Results {
     ) -> Result<(Self, Vec<Option<Shapes>>), FileError> {
         let path = path.as_ref();
         let store = Store::open(path, columns)?;
-        Ok((Self::read_with_checkpoint(&store, path, columns)?.0, store.read_shapes(path)?))
+        Ok((Self::read_with_checkpoint(&store, columns)?.0, store.read_shapes()?))
     }
 
     /// Metadata of a file, without a look at its rows.
     ///
     /// # Errors
-    /// [`FileError::NoSeal`], [`FileError::Damaged`] and [`FileError::System`], as [`Results::open`].
+    /// [`FileError::Sealed`], as [`Results::open`].
     pub fn metadata_of(path: impl AsRef<Path>) -> Result<Metadata, FileError> {
         let path = path.as_ref();
-        // To open a pipe is to wait for who writes into it.
-        if path.exists() && !path.is_file() {
-            return Err(FileError::NoSeal { path: path.to_path_buf() });
-        }
-        let file = File::open(path).map_err(|error| FileError::system(path, "open the file", &error))?;
-        let metadata = Description::from_json(path, &seal::description(&file, path)?)?.metadata;
-        metadata.check(path)?;
-        Ok(metadata)
+        metadata_of(&SealedFile::open(path, Format::RESULTS)?)
     }
 
     /// With the last checkpoint of an unfinished file whose rows are as they were then, and their sums.
     pub(crate) fn read_with_checkpoint<R: SystemRow>(
         store: &Store,
-        path: &Path,
         table: &'static [Column<R>],
     ) -> Result<(Self, Option<(Checkpoint, Sums)>), FileError> {
         let metadata = store.metadata().clone();
         let complete = store.is_complete();
-        let (rows, columns) = store.read(path)?;
+        let (rows, columns) = store.read()?;
         // Whole ones, the last first.
-        let places = store.read_checkpoints(path)?;
+        let places = store.read_checkpoints()?;
         let mut checkpoints: Vec<Checkpoint> =
             places.chunks(store.checkpoint_words().max(1)).filter_map(Checkpoint::read).collect();
         checkpoints.sort_unstable_by_key(|checkpoint| std::cmp::Reverse(checkpoint.serial));
@@ -131,7 +120,7 @@ impl Results {
         });
         if let (Some(known), None) = (known, &checkpoint) {
             let what = format!("its first {known} rows are not those that its checkpoint is for");
-            return Err(FileError::Damaged { path: path.to_path_buf(), what });
+            return Err(store.damaged(what));
         }
         let mut tables = BTreeMap::new();
         let mut columns = columns.into_iter();

@@ -4,6 +4,7 @@ pub(crate) mod stored;
 
 use crate::FileError;
 use crate::error::check_length;
+use sealed::{Format, SealedError};
 use std::path::Path;
 
 /// The surface of a body, and its shapes there: from these and the modal coordinates of a row follow its deformation and its
@@ -143,7 +144,7 @@ fn below(path: &Path, quantity: &'static str, places: &[u32], end: usize) -> Res
     match places.iter().find(|place| **place as usize >= end) {
         Some(place) => {
             let what = format!("{quantity} names the place {place} in a list of {end}");
-            Err(FileError::Damaged { path: path.to_path_buf(), what })
+            Err(SealedError::Damaged { path: path.to_path_buf(), format: Format::RESULTS, what }.into())
         }
         None => Ok(()),
     }
@@ -204,7 +205,13 @@ mod tests {
     fn its_bytes_are_those_of_its_numbers() {
         let shapes = shapes();
         let lists = shapes.stored();
-        let stored: usize = lists.iter().flat_map(|(_, _, lists)| lists.bytes()).map(|bytes| bytes.len()).sum();
+        let stored: usize = lists
+            .iter()
+            .map(|(_, _, lists)| {
+                lists.whole().map_or(0, size_of_val)
+                    + lists.numbers().iter().map(|list| size_of_val(*list)).sum::<usize>()
+            })
+            .sum();
         assert_eq!(shapes.bytes(), stored as u64);
     }
 }

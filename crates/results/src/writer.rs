@@ -4,8 +4,7 @@ use crate::block::Block;
 use crate::checkpoint::{self, Checkpoint, Sums};
 use crate::column::{SystemRow, Values};
 use crate::container::paths::ResultsPaths;
-use crate::container::room::Room;
-use crate::container::store::{ShapeSource, Store};
+use crate::container::store::{Room, ShapeSource, Store};
 use crate::error::check_length;
 use crate::history::{History, histories};
 use crate::reader::Results;
@@ -89,7 +88,7 @@ impl<R: SystemRow> Writer<R> {
     /// [`FileError::PlaceName`] for a name that is empty, contains "/" or NUL or occurs twice, [`FileError::WrongLength`] if there are not as many damping ratios as frequencies,
     /// [`FileError::ConstantNotFinite`], [`FileError::NulInText`]; [`FileError::Busy`] if another process writes it,
     /// [`FileError::Unfinished`], [`FileError::Exists`], [`FileError::NotResults`] and [`FileError::Link`] for what would be lost;
-    /// [`FileError::NameNotUtf8`], [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
+    /// [`FileError::Sealed`] if the file cannot be written.
     pub fn create(
         path: impl AsRef<Path>,
         metadata: &Metadata,
@@ -132,7 +131,7 @@ impl<R: SystemRow> Writer<R> {
     ///
     /// # Errors
     /// [`FileError::Busy`], [`FileError::Unfinished`], [`FileError::Exists`], [`FileError::NotResults`], [`FileError::Link`], and
-    /// [`FileError::NameNotUtf8`] or [`FileError::System`] if no file can be made in the folder.
+    /// [`FileError::Sealed`] if no file can be made in the folder.
     pub fn check(path: impl AsRef<Path>, overwrite: bool) -> Result<(), FileError> {
         let place = ResultsPaths::of(path.as_ref());
         place.check(overwrite)?;
@@ -145,7 +144,7 @@ impl<R: SystemRow> Writer<R> {
     /// # Errors
     /// [`FileError::Complete`] and [`FileError::NothingToResume`] if there is no unfinished file, [`FileError::Link`],
     /// [`FileError::Exists`] and [`FileError::NotResults`] for what would be lost,
-    /// [`FileError::Busy`] if its run goes on, [`FileError::NameNotUtf8`] or [`FileError::System`] if no file can be made
+    /// [`FileError::Busy`] if its run goes on, [`FileError::Sealed`] if no file can be made
     /// in the folder, and those of [`Results::open`].
     pub fn resume(
         path: impl AsRef<Path>,
@@ -159,7 +158,7 @@ impl<R: SystemRow> Writer<R> {
         if store.is_complete() {
             return Err(FileError::Complete { path: part.clone() });
         }
-        let (mut results, last) = Results::read_with_checkpoint(&store, part, columns)?;
+        let (mut results, last) = Results::read_with_checkpoint(&store, columns)?;
         let (rows, serial, frame, state, sums) = match last {
             Some((last, sums)) => (last.rows, last.serial, last.words(), Some(last.state), sums),
             None => (0, 0, vec![0; store.checkpoint_words()], None, Sums::new(store.widths().count())),
@@ -200,7 +199,7 @@ impl<R: SystemRow> Writer<R> {
     ///
     /// # Errors
     /// All leave the row out and everything before it in: [`FileError::WrongLength`], [`FileError::NotFinite`], and
-    /// [`FileError::System`] and [`FileError::Hdf5`] if the rows before it cannot be written. Those wait for another try.
+    /// [`FileError::Sealed`] if the rows before it cannot be written. Those wait for another try.
     pub fn push(&mut self, row: &R) -> Result<(), FileError> {
         if self.rows_buffered >= self.rows_per_write {
             self.write_waiting()?;
@@ -257,19 +256,18 @@ impl<R: SystemRow> Writer<R> {
     /// Hands all rows to the operating system, and then the state of the run after them.
     ///
     /// # Errors
-    /// [`FileError::WrongLength`] for a checkpoint of another length than expected; [`FileError::System`] and
-    /// [`FileError::Hdf5`] if the file cannot be written.
+    /// [`FileError::WrongLength`] for a checkpoint of another length than expected; [`FileError::Sealed`]
+    /// if the file cannot be written.
     pub fn flush(&mut self, checkpoint: &[u64]) -> Result<(), FileError> {
         let path = &self.place.part;
         let expected = self.checkpoint.len().saturating_sub(checkpoint::FRAME);
         check_length(path, "the checkpoint", expected, checkpoint.len())?;
         self.write_waiting()?;
-        let path = &self.place.part;
         let serial = self.serial.saturating_add(1); // a forged file may have any
         let (rows, sum_of_rows) = (self.rows_written, self.sums.total());
         let words = Checkpoint { serial, rows, sum_of_rows, state: checkpoint.to_vec() }.words();
         // In turns, so that one of the two is whole at any moment: after a failure it is this one's turn again.
-        self.store.write_checkpoint(path, (serial % 2) as usize, &words)?;
+        self.store.write_checkpoint((serial % 2) as usize, &words)?;
         (self.serial, self.checkpoint) = (serial, words);
         self.last_flush = Instant::now();
         Ok(())
@@ -283,15 +281,15 @@ impl<R: SystemRow> Writer<R> {
     /// Writes the results file, puts it into its place, and removes the unfinished one.
     ///
     /// # Errors
-    /// [`FileError::Exists`] where a file has come there meanwhile that may not be replaced; [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written; the unfinished file stays.
+    /// [`FileError::Exists`] where a file has come there meanwhile that may not be replaced; [`FileError::Sealed`] if the file cannot be written; the unfinished file stays.
     pub fn finish(mut self) -> Result<(), FileError> {
         self.write_waiting()?;
         let room = Room { rows: self.rows_written, checkpoint_words: None };
         let file = self.place.temporary()?;
         let path = &self.place.path;
-        let store = Store::create(&file, path, &self.metadata, ShapeSource::File(&self.store), self.columns, room)?;
-        store.copy_rows(path, &self.store, self.rows_written)?;
-        store.seal(path, Some(&self.sums))?;
+        let mut store = Store::create(&file, path, &self.metadata, ShapeSource::File(&self.store), self.columns, room)?;
+        store.copy_rows(&self.store, self.rows_written)?;
+        store.seal()?;
         drop(store);
         self.place.put_results(file, self.overwrite)?;
         self.place.remove_part()
@@ -307,7 +305,7 @@ impl<R: SystemRow> Writer<R> {
             self.grow(rows.end)?;
         }
         let columns = self.waiting.columns();
-        self.store.write(&self.place.part, rows.clone(), columns.clone())?;
+        self.store.write(rows.clone(), columns.clone())?;
         self.sums.add(columns);
         self.waiting.truncate(0);
         self.rows_buffered = 0;
@@ -317,12 +315,12 @@ impl<R: SystemRow> Writer<R> {
 
     /// Goes over to a file with room for `rows` rows or more, by another one that takes the name.
     fn grow(&mut self, rows: usize) -> Result<(), FileError> {
-        let part = &self.place.part;
         let rows = rows.max(2 * self.store.rows());
         let room = Room { rows, checkpoint_words: Some(self.checkpoint.len()) };
-        let (file, store) = make_room(&self.place, &self.metadata, ShapeSource::File(&self.store), self.columns, room)?;
-        store.copy_rows(part, &self.store, self.rows_written)?;
-        store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint)?;
+        let (file, mut store) =
+            make_room(&self.place, &self.metadata, ShapeSource::File(&self.store), self.columns, room)?;
+        store.copy_rows(&self.store, self.rows_written)?;
+        store.write_checkpoint((self.serial % 2) as usize, &self.checkpoint)?;
         self.place.exchange_part(file)?;
         self.store = store;
         Ok(())
@@ -376,7 +374,7 @@ fn make_room<R: SystemRow>(
 ) -> Result<(TemporaryFile, Store), FileError> {
     let file = place.temporary()?;
     let store = Store::create(&file, &place.part, metadata, shapes, columns, room)?;
-    store.seal(&place.part, None)?;
+    store.seal()?;
     Ok((file, store))
 }
 

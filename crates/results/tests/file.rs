@@ -5,6 +5,7 @@ mod rows;
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
 use results::*;
 use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, body, folder, metadata, shapes};
+use sealed::SealedError;
 use std::path::Path;
 
 fn write(path: &Path, rows: usize, metadata: &Metadata) -> Writer {
@@ -114,7 +115,7 @@ fn rows_that_could_not_be_written_wait_for_another_try() {
         let pushed = writer.push(&row);
         std::fs::rename(&away, &place).unwrap();
         if let Err(error) = pushed {
-            assert!(matches!(error, FileError::System { .. }), "{error}");
+            assert!(matches!(error, FileError::Sealed(SealedError::System { .. })), "{error}");
             refused += 1;
             writer.push(&row).unwrap();
         }
@@ -136,8 +137,8 @@ fn fields_that_do_not_fit_are_refused() {
     write_vtu(&path, &grid, &[(&field, &[0.0; 9])], false).unwrap();
     let out = VtkHdf::create(folder.path().join("field.vtkhdf"), &grid, None, &[field], false).unwrap();
     assert!(matches!(out.write(0, 0, 1, &[0.0; 9]), Err(FileError::WrongLength { expected: 2, found: 1, .. })));
-    assert!(matches!(out.write(0, 0, 0, &[0.0; 2]), Err(FileError::Hdf5 { .. })));
-    assert!(matches!(out.write(0, 1, 0, &[0.0; 9]), Err(FileError::Hdf5 { .. })));
+    assert!(matches!(out.write(0, 0, 0, &[0.0; 2]), Err(FileError::Sealed(SealedError::Hdf5 { .. }))));
+    assert!(matches!(out.write(0, 1, 0, &[0.0; 9]), Err(FileError::Sealed(SealedError::Hdf5 { .. }))));
     assert!(matches!(out.write(1, 0, 0, &[0.0; 9]), Err(FileError::WrongLength { expected: 1, found: 0, .. })));
     out.write(0, 0, 0, &[0.0; 9]).unwrap();
 }
@@ -204,7 +205,10 @@ fn errors_name_the_file_and_what_is_wrong_with_it() {
     assert!(error.contains("no such folder") && error.contains("open the file"), "{error}");
     std::fs::write(&path, "a diary").unwrap();
     let error = Results::open(&path, &COLUMNS).unwrap_err();
-    assert!(matches!(error, FileError::NoSeal { .. }) && error.to_string().contains("run.h5"), "{error}");
+    assert!(
+        matches!(error, FileError::Sealed(SealedError::NoSeal { .. })) && error.to_string().contains("run.h5"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -450,21 +454,21 @@ fn a_file_of_another_version_is_refused_with_its_version_and_the_help() {
     let (_folder, path) = folder();
     write(&path, 3, &metadata(1, &[])).finish().unwrap();
     let mut bytes = std::fs::read(&path).unwrap();
-    assert_eq!(bytes[..24], *b"flexframe results, v. 6\n");
+    assert_eq!(bytes[..24], *b"flexframe results, v. 7\n");
     for (digit, words) in [(b'4', "a results file of version 4"), (b'9', "a results file of version 9")] {
         bytes[22] = digit;
         std::fs::write(&path, &bytes).unwrap();
         let error = Results::open(&path, &COLUMNS).unwrap_err();
-        assert!(matches!(error, FileError::OtherVersion { .. }));
+        assert!(matches!(error, FileError::Sealed(SealedError::OtherVersion { .. })));
         let text = error.to_string();
         assert!(
-            text.contains(words) && text.contains("reads version 6") && text.contains("run its scene again"),
+            text.contains(words) && text.contains("reads version 7") && text.contains("run its scene again"),
             "{text}"
         );
     }
     bytes[22] = b'x';
     std::fs::write(&path, &bytes).unwrap();
-    assert!(matches!(Results::open(&path, &COLUMNS), Err(FileError::NoSeal { .. })));
+    assert!(matches!(Results::open(&path, &COLUMNS), Err(FileError::Sealed(SealedError::NoSeal { .. }))));
 }
 
 /// Types from which h5py builds numpy arrays and `str`: IEEE doubles, and strings of variable length in UTF-8.
@@ -651,7 +655,7 @@ fn names_that_are_not_utf8() {
     // HDF5 wants the folder's name as text; that is said before the work.
     std::fs::create_dir(name(b"f\xff")).unwrap();
     let outcome = Writer::check(name(b"f\xff").join("run.h5"), false);
-    assert!(matches!(outcome, Err(FileError::NameNotUtf8 { .. })), "{outcome:?}");
+    assert!(matches!(outcome, Err(FileError::Sealed(SealedError::NameNotUtf8 { .. }))), "{outcome:?}");
 }
 
 #[test]

@@ -6,6 +6,7 @@
 mod rows;
 mod sealed;
 
+use ::sealed::SealedError;
 use hdf5::dataset::Layout;
 use results::*;
 use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata, shapes};
@@ -106,12 +107,15 @@ fn numbers_are_taken_from_the_file_itself_and_written_there() {
         forge(&file);
         file.close().unwrap();
         let mut bytes = std::fs::read(&place).unwrap();
-        let numbers = sealed::left_out(&sealed::read(&bytes), bytes.len());
+        let places = sealed::places(&sealed::read(&bytes), bytes.len());
         // HDF5 may have used the room of the velocities for something else.
-        numbers.iter().for_each(|range| bytes[range.clone()].copy_from_slice(&part[range.clone()]));
+        places.iter().for_each(|place| bytes[place.bytes.clone()].copy_from_slice(&part[place.bytes.clone()]));
         std::fs::write(&place, &bytes).unwrap();
-        assert!(matches!(Results::open(&place, &COLUMNS), Err(FileError::Damaged { .. })), "{what}");
-        sealed::seal(&mut bytes, &numbers);
+        assert!(
+            matches!(Results::open(&place, &COLUMNS), Err(FileError::Sealed(SealedError::Damaged { .. }))),
+            "{what}"
+        );
+        sealed::seal(&mut bytes, &places);
         std::fs::write(&place, &bytes).unwrap();
         assert_rows(&Results::open(&place, &COLUMNS).unwrap(), ROWS);
         go_on(&place).unwrap();
@@ -139,62 +143,82 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
     let sound = sealed::read(&part);
     assert_rows(&described(&part, &place, &sound.to_string()).0.unwrap(), ROWS);
     let length = part.len() as u64;
-    let start = |i: usize| sound["starts"][i].as_u64().unwrap();
-    let set = |pointer: &str, value: Value| {
-        let mut forged = sound.clone();
-        *forged.pointer_mut(pointer).unwrap_or_else(|| panic!("{pointer}")) = value;
-        forged.to_string()
+    let start = |dataset: &str| sound["datasets"][dataset]["start"].as_u64().unwrap();
+    let set_in = |value: &Value, pointer: &str, new: Value| {
+        let mut forged = value.clone();
+        *forged.pointer_mut(pointer).unwrap_or_else(|| panic!("{pointer}")) = new;
+        forged
     };
+    let pointer = |dataset: &str, what: &str| format!("/datasets/{}/{what}", dataset.replace('/', "~1"));
+    let set = |dataset: &str, what: &str, value: Value| set_in(&sound, &pointer(dataset, what), value).to_string();
+    let sound_metadata = sealed::metadata(&sound);
+    let with_metadata = |text: String| set_in(&sound, "/texts/metadata", json!(text)).to_string();
+    let set_metadata = |pointer: &str, value| with_metadata(set_in(&sound_metadata, pointer, value).to_string());
+    let without = |path: &str| {
+        let mut forged = sound.clone();
+        forged["datasets"].as_object_mut().unwrap().remove(path).unwrap();
+        forged
+    };
+    let [velocity, position] = ["bodies/body/velocity", "bodies/body/position"];
+    let [nodes, shapes_at] = ["bodies/body/model/mesh/nodes", "bodies/body/model/shapes"];
     let vast = u64::MAX;
     for json in [
         // Two in one place, partly in one place, in the head, on the end, beyond it.
-        set("/starts/3", json!(start(2))),
-        set("/starts/3", json!(start(2) + 8)),
-        set("/starts/3", json!(start(22))),
-        set("/starts/0", json!(0)),
-        set("/starts/0", json!(60)),
-        set("/starts/22", json!(length - 8)),
-        set("/starts/22", json!(length)),
-        set("/starts/0", json!(vast)),
-        set("/starts/0", json!(vast - 4000)),
-        set("/starts/0", json!(-8)),
-        set("/starts/0", json!(8.5)),
-        set("/starts", json!([])),
-        set("/starts", Value::from([sound["starts"].as_array().unwrap().as_slice(), &[json!(0)]].concat())),
-        set("/arrays/0/start", json!(start(2))),
-        set("/arrays/3/start", json!(length - 8)),
-        set("/arrays/0/path", json!("model/elsewhere")),
-        set("/arrays/0/body", json!(1)),
-        set("/arrays/0/body", json!(vast)),
-        set("/metadata/bodies", json!([])),
-        set("/metadata/bodies/0/name", json!("../body")),
-        set("/arrays/3/shape", json!([vast, 3, 3])),
-        set("/arrays/3/shape", json!([vast, 0, 3])),
-        set("/arrays/3/shape", json!([1_u64 << 61, 1_u64 << 61, 3])),
-        set("/rows", json!(513)),
-        set("/rows", json!(vast)),
-        set("/rows", json!(vast / 8)),
-        set("/rows", json!(1_u64 << 61)),
-        set("/rows", Value::Null),
-        set("/checkpoint_words", json!(1 << 16)),
-        set("/checkpoint_words", json!(vast)),
-        set("/checkpoint_words", json!(vast / 16 + 1)),
-        set("/checkpoint_words", Value::Null),
-        set("/metadata", Value::Null),
-        set("/metadata/bodies/0/model/frequencies", json!(vec![1.0; 1000])),
-        set("/metadata/bodies/0/model/frequencies", json!([])),
-        set("/metadata/bodies/0/model/mass", json!("heavy")),
-        set("/metadata/bodies/0/point_names", json!([])),
-        set("/metadata/bodies/0/point_names", json!(["P1", "P2"])),
-        set("/metadata/bodies/0/point_names", json!(["P1", "P1"])),
-        set("/metadata/bodies/0/point_names", json!(["../P1"])),
-        set("/metadata/bodies/0/point_names", json!(["\0"])),
-        set("/metadata/scene_file", json!([255, 254])),
-        sound.to_string().replace("1.0e-4", "1e999").replace("0.0001", "1e999"),
+        set(velocity, "start", json!(start(position))),
+        set(velocity, "start", json!(start(position) + 8)),
+        set(velocity, "start", json!(start("checkpoint"))),
+        set("time", "start", json!(0)),
+        set("time", "start", json!(60)),
+        set("checkpoint", "start", json!(length - 8)),
+        set("checkpoint", "start", json!(length)),
+        set("time", "start", json!(vast)),
+        set("time", "start", json!(vast - 4000)),
+        set("time", "start", json!(-8)),
+        set("time", "start", json!(8.5)),
+        set_in(&sound, "/datasets", json!({})).to_string(),
+        set_in(&sound, "/datasets", json!([])).to_string(),
+        without(velocity).to_string(),
+        without("time").to_string(),
+        without("checkpoint").to_string(),
+        set(nodes, "start", json!(start(position))),
+        set(shapes_at, "start", json!(length - 8)),
+        set(shapes_at, "shape", json!([vast, 3, 3])),
+        set(shapes_at, "shape", json!([1_u64 << 61, 1_u64 << 61, 3])),
+        set("time", "shape", json!([513])),
+        set("time", "shape", json!([vast])),
+        set("time", "shape", json!([vast / 8])),
+        set("time", "shape", json!([1_u64 << 61])),
+        set("time", "shape", json!([])),
+        set("time", "shape", Value::Null),
+        set("time", "kind", json!("u64")),
+        set("time", "kind", json!("f32")),
+        set(velocity, "hash", json!("0".repeat(64))),
+        set("checkpoint", "shape", json!([2, 1 << 16])),
+        set("checkpoint", "shape", json!([2, vast])),
+        set("checkpoint", "shape", json!([3, 1])),
+        set("checkpoint", "shape", json!([])),
+        set("checkpoint", "kind", json!("f64")),
+        set("checkpoint", "hash", json!("0".repeat(64))),
+        set_in(&sound, "/texts", json!({})).to_string(),
+        with_metadata(String::new()),
+        with_metadata("null".into()),
+        set_metadata("/bodies", json!([])),
+        set_metadata("/bodies/0/name", json!("../body")),
+        set_metadata("/bodies/0/name", json!("another")),
+        set_metadata("/bodies/0/model/frequencies", json!(vec![1.0; 1000])),
+        set_metadata("/bodies/0/model/frequencies", json!([])),
+        set_metadata("/bodies/0/model/mass", json!("heavy")),
+        set_metadata("/bodies/0/point_names", json!([])),
+        set_metadata("/bodies/0/point_names", json!(["P1", "P2"])),
+        set_metadata("/bodies/0/point_names", json!(["P1", "P1"])),
+        set_metadata("/bodies/0/point_names", json!(["../P1"])),
+        set_metadata("/bodies/0/point_names", json!(["\0"])),
+        set_metadata("/scene_file", json!([255, 254])),
+        with_metadata(sound_metadata.to_string().replace("1.0e-4", "1e999").replace("0.0001", "1e999")),
         "".into(),
         "[".repeat(100_000),
-        "{\"starts\":[".to_owned() + &"0,".repeat(100_000) + "0]}",
-        "{\"metadata\":{\"input_files\":[".to_owned() + &"\"\",".repeat(100_000) + "\"\"]}}",
+        "{\"datasets\":{\"time\":{\"shape\":[".to_owned() + &"0,".repeat(100_000) + "0]}}}",
+        with_metadata("{\"input_files\":[".to_owned() + &"\"\",".repeat(100_000) + "\"\"]}"),
     ] {
         let shown = &json[..json.len().min(200)];
         let (outcome, memory) = described(&part, &place, &json);
@@ -209,37 +233,50 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         assert!(memory < 40 * json.len().max(part.len() / 10), "{memory} bytes for {}: {shown}", json.len());
         assert!(Writer::resume(&place, &COLUMNS, true).is_err(), "{shown}");
     }
-    // Arrays that are within the file, but no shapes.
-    let arrays = sound["arrays"].as_array().unwrap();
-    assert_eq!(arrays.len(), 9);
-    let shapes_of = |arrays: &[Value]| {
-        let mut forged = sound.clone();
-        forged["arrays"] = Value::from(arrays);
+    // Datasets that are within the file, but no shapes.
+    let shapes_of = |forged: Value| {
         drop(described(&part, &place, &forged.to_string()).0.unwrap());
         Results::open_with_shapes(&place, &COLUMNS).map(|(_, shapes)| shapes)
     };
-    assert_eq!(shapes_of(arrays).unwrap(), [Some(shapes(2))]);
-    for lacks in [0, 1, 2, 3, 5, 7, 8] {
-        let some: Vec<Value> = arrays.iter().enumerate().filter(|(i, _)| *i != lacks).map(|(_, a)| a.clone()).collect();
-        let error = shapes_of(&some).unwrap_err();
-        assert!(matches!(error, FileError::Damaged { .. }), "{lacks}: {error}");
+    assert_eq!(shapes_of(sound.clone()).unwrap(), [Some(shapes(2))]);
+    let datasets = sound["datasets"].as_object().unwrap().iter();
+    assert_eq!(datasets.filter(|(_, dataset)| dataset["hash"] != Value::Null).count(), 9);
+    let of_body = |name: &str| format!("bodies/body/model/{name}");
+    for lacks in [
+        "mesh/nodes",
+        "mesh/positions",
+        "mesh/surface_triangles",
+        "shapes",
+        "large_deflection/products",
+        "stress/shapes",
+        "stress/products",
+    ] {
+        let error = shapes_of(without(&of_body(lacks))).unwrap_err();
+        assert!(matches!(error, FileError::Sealed(SealedError::Damaged { .. })), "{lacks}: {error}");
     }
-    for (array, shape) in [(0, json!([2])), (2, json!([6])), (3, json!([1, 3, 3])), (5, json!([1, 2])), (6, json!([3]))]
-    {
-        let mut forged = arrays.clone();
-        forged[array]["shape"] = shape;
-        let error = shapes_of(&forged).unwrap_err();
-        assert!(matches!(error, FileError::Damaged { .. } | FileError::WrongLength { .. }), "{array}: {error}");
+    for (dataset, shape) in [
+        ("mesh/nodes", json!([2])),
+        ("mesh/surface_triangles", json!([6])),
+        ("shapes", json!([1, 3, 3])),
+        ("shapes", json!([vast, 0, 3])),
+        ("large_deflection/products", json!([1, 2])),
+        ("stress/nodes", json!([3])),
+    ] {
+        let error = shapes_of(set_in(&sound, &pointer(&of_body(dataset), "shape"), shape)).unwrap_err();
+        assert!(
+            matches!(error, FileError::Sealed(SealedError::Damaged { .. }) | FileError::WrongLength { .. }),
+            "{dataset}: {error}"
+        );
     }
     // Text that is no UTF-8.
     let at = sealed::description(&part).start + sound.to_string().find("platten").unwrap();
     for byte in [0x80, 0xff] {
         let mut bytes = part.clone();
         bytes[at] = byte;
-        let numbers = sealed::left_out(&sound, bytes.len());
-        sealed::seal(&mut bytes, &numbers);
+        let places = sealed::places(&sound, bytes.len());
+        sealed::seal(&mut bytes, &places);
         std::fs::write(&place, &bytes).unwrap();
-        assert!(matches!(Results::open(&place, &COLUMNS), Err(FileError::Damaged { .. })));
+        assert!(matches!(Results::open(&place, &COLUMNS), Err(FileError::Sealed(SealedError::Damaged { .. }))));
     }
 }
 
@@ -255,12 +292,12 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
     let (_folder, path) = folder();
     let [part, _] = files(&path);
     let place = unfinished(&path);
-    let sound = sealed::left_out(&sealed::read(&part), part.len());
+    let sound = sealed::places(&sealed::read(&part), part.len());
     let (mut read, mut refused, mut finished) = (0, 0, 0);
     let mut attempt = |mut bytes: Vec<u8>, to_the_end: bool| {
         let description = serde_json::from_slice(bytes.get(sealed::description(&bytes)).unwrap_or_default());
-        let numbers = description.map_or_else(|_| sound.clone(), |json| sealed::left_out(&json, bytes.len()));
-        sealed::seal(&mut bytes, &numbers);
+        let places = description.map_or_else(|_| sound.clone(), |json| sealed::places(&json, bytes.len()));
+        sealed::seal(&mut bytes, &places);
         std::fs::write(&place, &bytes).unwrap();
         let mut outcome = None;
         let memory = allocation_counter::measure(|| outcome = Some(Results::open(&place, &COLUMNS)));
@@ -282,7 +319,7 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
     };
     // Every byte of the head, of the description and of HDF5's own.
     for at in 0..part.len() {
-        if sound.iter().any(|range| range.contains(&at)) || (24..40).contains(&at) {
+        if sound.iter().any(|place| place.bytes.contains(&at)) || (24..32).contains(&at) || (40..72).contains(&at) {
             continue;
         }
         let mut bytes = part.clone();

@@ -5,6 +5,7 @@
 
 mod rows;
 
+use ::sealed::SealedError;
 use results::{Expected, FileError, Results, unfinished};
 use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata, shapes};
 use std::path::Path;
@@ -120,7 +121,7 @@ fn child_whose_checkpoints_fail() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
     let Resumed { mut writer, .. } = Writer::resume(Path::new(&path), &COLUMNS, true).unwrap();
     for state in [3, 4] {
-        assert!(matches!(writer.flush(&[state; STATE]), Err(FileError::System { .. })));
+        assert!(matches!(writer.flush(&[state; STATE]), Err(FileError::Sealed(SealedError::System { .. }))));
     }
 }
 

@@ -51,7 +51,7 @@ with h5py.File(sys.argv[1], "r") as file:
     lengths = [name for name in ("step", "tolerance") if name in file.attrs]
     assert len(lengths) == 1 and file.attrs[lengths[0]] > 0, lengths
     assert file.attrs["complete"] == 1
-    assert file.attrs["format_version"] == "6"
+    assert file.attrs["format_version"] == "7"
     if "body/shapes" in file:
         nodes, faces = file["body/mesh/nodes"].shape[0], file["body/mesh/surface_triangles"][:]
         coordinates = file["body/shapes"].shape[0]

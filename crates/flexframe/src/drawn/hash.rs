@@ -1,9 +1,9 @@
 //! The hash by which a body file is known to have the shapes of a run.
 
-use body_file::BodyFile;
 use faer::MatRef;
 use keys::{Digest, Hash};
 use model::Meshed;
+use sealed::SealedFile;
 
 /// The datasets of a body file that are hashed.
 const DATASETS: [&str; 2] = ["modes/shapes", "static_shapes/shapes"];
@@ -17,8 +17,8 @@ pub(super) fn of_model(meshed: &Meshed) -> String {
 }
 
 /// The same of a body file, from its head; `None` where it has no shapes.
-pub(super) fn of_file(file: &BodyFile) -> Option<String> {
-    let hash = |dataset: &str| file.described(dataset)?.2.parse::<Hash>().ok();
+pub(super) fn of_file(file: &SealedFile) -> Option<String> {
+    let hash = |dataset: &str| file.described(dataset)?.2?.parse::<Hash>().ok();
     Some(digest([hash(DATASETS[0])?, hash(DATASETS[1])?]))
 }
 

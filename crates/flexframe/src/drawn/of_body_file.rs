@@ -1,14 +1,14 @@
 //! The shapes in a body file: on the surface, or in the whole volume.
 
-use body_file::{BodyFile, BodyFileError};
 use results::{Shapes, StressShapes};
+use sealed::{SealedError, SealedFile};
 
 /// The shapes on the surface of the body in a body file, and of its whole volume the elements, too; the stress where the file
 /// has it.
 ///
 /// # Errors
-/// [`BodyFileError`].
-pub(super) fn read(file: &BodyFile, volume: bool) -> Result<(Shapes, Vec<[u32; 10]>), BodyFileError> {
+/// [`SealedError`].
+pub(super) fn read(file: &SealedFile, volume: bool) -> Result<(Shapes, Vec<[u32; 10]>), SealedError> {
     let all: Vec<[f64; 3]> = vectors(file, "mesh/positions")?;
     let on_mesh: Vec<[u32; 6]> = file.read::<u32>("mesh/surface_triangles")?.values.as_chunks().0.to_vec();
     let nodes: Vec<u32> = if volume { (0..all.len() as u32).collect() } else { distinct(on_mesh.as_flattened()) };
@@ -46,7 +46,7 @@ pub(super) fn read(file: &BodyFile, volume: bool) -> Result<(Shapes, Vec<[u32; 1
 }
 
 /// The stress at the nodes that are wanted.
-fn stress(file: &BodyFile, places: &Places) -> Result<Option<StressShapes>, BodyFileError> {
+fn stress(file: &SealedFile, places: &Places) -> Result<Option<StressShapes>, SealedError> {
     if !file.has("stress/nodes") {
         return Ok(None);
     }
@@ -102,10 +102,10 @@ fn distinct(numbers: &[u32]) -> Vec<u32> {
     numbers
 }
 
-fn vectors<const N: usize>(file: &BodyFile, dataset: &str) -> Result<Vec<[f64; N]>, BodyFileError> {
+fn vectors<const N: usize>(file: &SealedFile, dataset: &str) -> Result<Vec<[f64; N]>, SealedError> {
     Ok(file.read::<f64>(dataset)?.values.as_chunks().0.to_vec())
 }
 
-fn damaged(file: &BodyFile, what: &str) -> BodyFileError {
-    BodyFileError::Damaged { path: file.path().to_owned(), what: what.to_owned() }
+fn damaged(file: &SealedFile, what: &str) -> SealedError {
+    file.damaged(what)
 }

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use body_file::{BodyFile, BodyFileError};
 use results::{BodyMetadata, FileError, MeshProperties, Results, Shapes};
+use sealed::{Format, SealedError, SealedFile};
 
 use super::{hash, of_body_file};
 use crate::files::scene_file;
@@ -45,7 +45,7 @@ pub enum DrawnError {
     File(#[from] FileError),
     /// The body file cannot be read.
     #[error(transparent)]
-    BodyFile(#[from] BodyFileError),
+    BodyFile(#[from] SealedError),
     /// The results file does not have the shapes, and the body file is not there.
     #[error(
         "{}: {what}, and the body file with them is not there: looked for {}\n = put it there, or make it: flexframe reduce {scene} --stress -o {}",
@@ -121,7 +121,7 @@ impl DrawnBody {
         let Some(found) = places.iter().find(|place| place.exists()).cloned() else {
             return Err(DrawnError::NoBodyFile { results: file.to_owned(), what, places, scene: scene() });
         };
-        let body_file = BodyFile::open(&found)?;
+        let body_file = SealedFile::open(&found, Format::BODY)?;
         if hash::of_file(&body_file).as_ref() != Some(&mesh.shapes_hash) {
             return Err(DrawnError::OtherBody { results: file.to_owned(), body_file: found, scene: scene() });
         }

@@ -1,7 +1,6 @@
 //! The kind of every error, and what it knows: the one place where that is decided.
 
 use advice::AdviceError;
-use body_file::BodyFileError;
 use dynamics::{EigenError, LoadedError, SetupError};
 use fem_tet10::{AssemblyError, MeshError};
 use figures::FigureError;
@@ -11,6 +10,7 @@ use model::{BuildError, StartError};
 use report::ReportError;
 use results::FileError;
 use scene::SceneError;
+use sealed::SealedError;
 use slepc::SlepcError;
 
 use super::{Details, Failure, Kind};
@@ -74,18 +74,12 @@ impl Failure for FmuError {
             Self::Scene(error) => error.kind(),
             Self::Build(error) => error.kind(),
             Self::Start { source, .. } => source.kind(),
-            Self::Body(BodyFileError::System { .. } | BodyFileError::Hdf5 { .. })
-            | Self::Unreadable { .. }
-            | Self::Missing { .. }
-            | Self::Library { .. }
-            | Self::Write(_) => Kind::Io,
+            Self::Body(error) => error.kind(),
+            Self::Unreadable { .. } | Self::Missing { .. } | Self::Library { .. } | Self::Write(_) => Kind::Io,
             Self::Platform { .. } => Kind::Refused,
-            Self::Body(_)
-            | Self::NoBody
-            | Self::NoScene { .. }
-            | Self::Text(_)
-            | Self::Damaged { .. }
-            | Self::Version { .. } => Kind::Input,
+            Self::NoBody | Self::NoScene { .. } | Self::Text(_) | Self::Damaged { .. } | Self::Version { .. } => {
+                Kind::Input
+            }
         }
     }
 
@@ -94,7 +88,7 @@ impl Failure for FmuError {
             Self::Scene(error) => error.details(),
             Self::Build(error) => error.details(),
             Self::Start { scene, source } => Details { file: Details::of_file(scene).file, ..source.details() },
-            Self::Body(error) => Details::of_file(error.path()),
+            Self::Body(error) => error.details(),
             Self::Write(error) => error.details(),
             Self::Library { path, .. }
             | Self::NoScene { path }
@@ -215,8 +209,7 @@ impl Failure for BuildError {
             Self::Modal { source, .. } => source.kind(),
             Self::Advice(error) => error.kind(),
             Self::Load(error) => error.kind(),
-            Self::BodyFile(BodyFileError::System { .. } | BodyFileError::Hdf5 { .. }) => Kind::Io,
-            Self::BodyFile(_) => Kind::Input,
+            Self::BodyFile(error) => error.kind(),
             Self::Loaded { source, .. } => source.kind(),
             _ => Kind::Run,
         }
@@ -234,7 +227,7 @@ impl Failure for BuildError {
             }
             Self::Advice(error) => error.details(),
             Self::Load(error) => error.details(),
-            Self::BodyFile(error) => Details::of_file(error.path()),
+            Self::BodyFile(error) => error.details(),
             Self::Loaded { scene, .. } => Details::of_file(scene),
             _ => Details::default(),
         }
@@ -344,15 +337,31 @@ impl Failure for RunError {
 impl Failure for FileError {
     fn kind(&self) -> Kind {
         match self {
-            Self::Hdf5 { .. }
-            | Self::System { .. }
-            | Self::Busy { .. }
+            Self::Sealed(error) => error.kind(),
+            Self::Busy { .. }
             | Self::Exists { .. }
             | Self::Unfinished { .. }
             | Self::NotResults { .. }
             | Self::Link { .. }
             | Self::NothingToResume { .. } => Kind::Io,
             Self::NotFinite { .. } => Kind::Run,
+            // What is wrong with a file's content, or with the names in it.
+            _ => Kind::Input,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Sealed(error) => error.details(),
+            _ => Details::of_file(self.path()),
+        }
+    }
+}
+
+impl Failure for SealedError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Hdf5 { .. } | Self::System { .. } => Kind::Io,
             // What is wrong with a file's content, or with the names in it.
             _ => Kind::Input,
         }
@@ -428,15 +437,15 @@ impl Failure for DrawnError {
     fn kind(&self) -> Kind {
         match self {
             Self::File(error) => error.kind(),
-            Self::BodyFile(BodyFileError::System { .. }) => Kind::Io,
-            Self::BodyFile(_) | Self::NoBodyFile { .. } | Self::OtherBody { .. } => Kind::Input,
+            Self::BodyFile(error) => error.kind(),
+            Self::NoBodyFile { .. } | Self::OtherBody { .. } => Kind::Input,
         }
     }
 
     fn details(&self) -> Details {
         match self {
             Self::File(error) => error.details(),
-            Self::BodyFile(error) => Details::of_file(error.path()),
+            Self::BodyFile(error) => error.details(),
             Self::NoBodyFile { results, .. } => Details::of_file(results),
             Self::OtherBody { body_file, .. } => Details::of_file(body_file),
         }
@@ -655,12 +664,12 @@ impl Failure for SweepError {
         match self {
             Self::Unreadable { .. }
             | Self::Write(_)
-            | Self::Table(_)
             | Self::OtherTable { .. }
             | Self::OtherFiles { .. }
             | Self::OtherCsv { .. }
             | Self::Busy { .. }
             | Self::NoShard { .. } => Kind::Io,
+            Self::Table(error) => error.kind(),
             Self::Output(error) => error.kind(),
             Self::AllFailed { .. } => Kind::Run,
             Self::Invalid { .. } | Self::Form { .. } => Kind::Input,
@@ -688,7 +697,7 @@ impl Failure for SweepError {
             },
             Self::Scene { source, .. } => source.details(),
             Self::Build(error) => error.details(),
-            Self::Table(error) => Details::of_file(error.path()),
+            Self::Table(error) => error.details(),
             Self::Write(error) => Details::of_file(&error.path),
             Self::Output(error) => error.details(),
         }

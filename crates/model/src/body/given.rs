@@ -1,8 +1,8 @@
 //! The body of a scene that comes from a body file.
 
-use body_file::BodyFile;
 use fem_tet10::Materials;
 use scene::{FileBody, MeshedBody, Scene, SceneError};
+use sealed::{Format, SealedFile};
 
 use crate::body::origin::Origin;
 use crate::builder::Builder;
@@ -17,9 +17,9 @@ pub(crate) fn read_body_file(
     builder: &Builder,
     scene: &Scene,
     given: &FileBody,
-) -> Result<(BodyFile, MeshedBody), BuildError> {
+) -> Result<(SealedFile, MeshedBody), BuildError> {
     let refuse = |found: String, expected: &str| -> SceneError { scene.refuse(KEY, found, expected, HELP) };
-    let opened = BodyFile::open(&given.file).and_then(|file| Ok((Origin::read(&file)?, file)));
+    let opened = SealedFile::open(&given.file, Format::BODY).and_then(|file| Ok((Origin::read(&file)?, file)));
     let (origin, file) =
         opened.map_err(|error| refuse(error.to_string(), "a body file that flexframe reduce has made"))?;
     if origin.program_version != env!("CARGO_PKG_VERSION") {

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use body_file::{BodyFile, BodyFileError};
 use fem_tet10::{Material, Materials, PointMass};
 use scene::MeshedBody;
+use sealed::{SealedError, SealedFile};
 use serde::{Deserialize, Serialize};
 
 /// Name of this text in the file.
@@ -40,13 +40,10 @@ impl Origin {
     /// The origin of a file.
     ///
     /// # Errors
-    /// [`BodyFileError::Damaged`] where it has none.
-    pub fn read(file: &BodyFile) -> Result<Self, BodyFileError> {
-        let text = file.attribute(ORIGIN).and_then(|text| serde_json::from_str(text).ok());
-        text.ok_or_else(|| BodyFileError::Damaged {
-            path: file.path().to_owned(),
-            what: "it does not say what it was made of".to_owned(),
-        })
+    /// [`SealedError::Damaged`] where it has none.
+    pub fn read(file: &SealedFile) -> Result<Self, SealedError> {
+        let text = file.text(ORIGIN).and_then(|text| serde_json::from_str(text).ok());
+        text.ok_or_else(|| file.damaged("it does not say what it was made of"))
     }
 
     pub fn to_json(&self) -> String {

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use body_file::{BodyFile, BodyFileError, Declared, Kind, Number, Writer};
 use dynamics::Manifold;
 use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatRef};
@@ -11,6 +10,7 @@ use fem_tet10::Mesh;
 use keys::Hash;
 use modal::{Modes, SecondOrderShapes};
 use scene::{Body, Scene};
+use sealed::{Declared, Kind, Number, SealedError, SealedFile, Writer};
 use whole_file::TemporaryFolder;
 
 use crate::assembly::Assembled;
@@ -71,9 +71,7 @@ impl Builder {
             }
         }
         // The values come by way of a cache, from which nothing is removed in the meantime.
-        let failed =
-            |source| BodyFileError::System { path: path.to_owned(), action: "make a temporary folder", source };
-        let temporary = TemporaryFolder::new().map_err(failed)?;
+        let temporary = TemporaryFolder::new().map_err(SealedError::system(path, "make a temporary folder"))?;
         let folder = self.cache.folder().filter(|_| !self.cache.is_closed()).unwrap_or(temporary.path());
         let builder = Self { cache: self.cache.elsewhere(folder, u64::MAX), ..self.clone() };
         let scene = scene.clone();
@@ -137,7 +135,7 @@ impl Builder {
 fn without_store(cache: &Cache, scene: &Scene, folder: &Path) -> BuildError {
     if cache.is_closed() {
         let what = cache.notes().warnings.join("; ");
-        return BodyFileError::Damaged { path: folder.to_owned(), what }.into();
+        return SealedError::system(folder, "write the cache")(std::io::Error::other(what)).into();
     }
     let found =
         "a mesh file that names others which cannot be known before: what the body is made of cannot be told later";
@@ -152,8 +150,8 @@ fn write(
     arrays: &MeshArrays,
     unit: &str,
     named: &Named<'_>,
-    kept: &[(Hash, BodyFile)],
-) -> Result<(), BodyFileError> {
+    kept: &[(Hash, SealedFile)],
+) -> Result<(), SealedError> {
     let mut declared = arrays.declared(unit);
     let mut by_hash = BTreeMap::new();
     for (dataset, numbers) in &named.datasets {
@@ -162,12 +160,12 @@ fn write(
         }
         declared.push(dataset.clone());
     }
-    let mut copied: Vec<(&BodyFile, &str, Kind)> = Vec::new();
+    let mut copied: Vec<(&SealedFile, &str, Kind)> = Vec::new();
     for (key, file) in kept {
         let group = format!("{}/", group(key));
         for dataset in file.datasets().filter(|dataset| dataset.starts_with(&group)) {
             let Some((kind, shape, hash)) = file.described(dataset) else { continue };
-            let same_as = by_hash.get(hash).filter(|_| !shape.contains(&0)).cloned();
+            let same_as = hash.and_then(|hash| by_hash.get(hash)).filter(|_| !shape.contains(&0)).cloned();
             if same_as.is_none() {
                 copied.push((file, dataset, kind));
             }

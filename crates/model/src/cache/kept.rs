@@ -1,8 +1,8 @@
 //! Values that are kept in files, as arrays by name.
 
-use body_file::{Array, BodyFile, BodyFileError};
 use faer::{Mat, MatRef};
 use keys::Hash;
+use sealed::{Array, SealedError, SealedFile};
 
 /// A value that is kept in a file.
 pub(crate) trait Keep: Sized {
@@ -12,8 +12,8 @@ pub(crate) trait Keep: Sized {
     fn write(&self, to: &mut Arrays);
 
     /// # Errors
-    /// [`BodyFileError::Damaged`] where the arrays are not those of such a value.
-    fn read(from: &Kept<'_>, known: Self::Known<'_>) -> Result<Self, BodyFileError>;
+    /// [`SealedError::Damaged`] where the arrays are not those of such a value.
+    fn read(from: &Kept<'_>, known: Self::Known<'_>) -> Result<Self, SealedError>;
 }
 
 /// Arrays that are to be written, with their names and shapes.
@@ -55,13 +55,13 @@ pub(crate) fn group(key: &Hash) -> String {
 
 /// A value in a file.
 pub(crate) struct Kept<'a> {
-    pub file: &'a BodyFile,
+    pub file: &'a SealedFile,
     pub group: String,
 }
 
 impl Kept<'_> {
     /// As many numbers, or any where `None`; all are finite.
-    pub fn list(&self, name: &str, length: Option<usize>) -> Result<Vec<f64>, BodyFileError> {
+    pub fn list(&self, name: &str, length: Option<usize>) -> Result<Vec<f64>, SealedError> {
         let dataset = format!("{}/{name}", self.group);
         let values = self.file.read::<f64>(&dataset)?.values;
         if length.is_some_and(|length| length != values.len()) {
@@ -73,12 +73,12 @@ impl Kept<'_> {
         }
     }
 
-    pub fn array<const N: usize>(&self, name: &str) -> Result<[f64; N], BodyFileError> {
+    pub fn array<const N: usize>(&self, name: &str) -> Result<[f64; N], SealedError> {
         self.list(name, Some(N))?.try_into().map_err(|_| self.damaged(format!("its array {name} has another length")))
     }
 
     /// A matrix with as many rows and columns; any number of columns where `None`.
-    pub fn matrix(&self, name: &str, rows: usize, columns: Option<usize>) -> Result<Mat<f64>, BodyFileError> {
+    pub fn matrix(&self, name: &str, rows: usize, columns: Option<usize>) -> Result<Mat<f64>, SealedError> {
         let values = self.list(name, columns.map(|columns| rows * columns))?;
         let columns = columns.unwrap_or_else(|| values.len().checked_div(rows).unwrap_or_default());
         if values.len() != rows * columns {
@@ -88,13 +88,13 @@ impl Kept<'_> {
     }
 
     /// As many square matrices of one size.
-    pub fn matrices(&self, name: &str, count: usize, size: usize) -> Result<Vec<Mat<f64>>, BodyFileError> {
+    pub fn matrices(&self, name: &str, count: usize, size: usize) -> Result<Vec<Mat<f64>>, SealedError> {
         let all = self.matrix(name, size, Some(count * size))?;
         Ok((0..count).map(|k| all.subcols(k * size, size).to_owned()).collect())
     }
 
-    pub fn damaged(&self, what: String) -> BodyFileError {
-        BodyFileError::Damaged { path: self.file.path().to_owned(), what }
+    pub fn damaged(&self, what: String) -> SealedError {
+        self.file.damaged(what)
     }
 }
 
@@ -106,7 +106,7 @@ impl Keep for Mat<f64> {
         to.matrix("columns", self.as_ref());
     }
 
-    fn read(from: &Kept<'_>, [rows, columns]: [usize; 2]) -> Result<Self, BodyFileError> {
+    fn read(from: &Kept<'_>, [rows, columns]: [usize; 2]) -> Result<Self, SealedError> {
         from.matrix("columns", rows, Some(columns))
     }
 }
@@ -119,7 +119,7 @@ impl Keep for Vec<f64> {
         to.list("values", self);
     }
 
-    fn read(from: &Kept<'_>, length: usize) -> Result<Self, BodyFileError> {
+    fn read(from: &Kept<'_>, length: usize) -> Result<Self, SealedError> {
         from.list("values", Some(length))
     }
 }
@@ -132,7 +132,7 @@ impl Keep for Vec<Mat<f64>> {
         to.matrices("matrices", self);
     }
 
-    fn read(from: &Kept<'_>, [count, size]: [usize; 2]) -> Result<Self, BodyFileError> {
+    fn read(from: &Kept<'_>, [count, size]: [usize; 2]) -> Result<Self, SealedError> {
         from.matrices("matrices", count, size)
     }
 }

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use body_file::{Array, BodyFile, BodyFileError, Declared, Kind, Writer};
 use keys::{Hash, Key};
 use mesh_import::{Imported, MeshFile};
 use scene::{MeshedBody, Scene};
+use sealed::{Array, Declared, Format, Kind, SealedError, SealedFile, Writer};
 
 use crate::body::origin::{ElementKeys, Origin};
 use crate::cache::kept::{Arrays, Keep, Kept, group};
@@ -22,7 +22,7 @@ const MESH: &str = "mesh.kept";
 pub(crate) struct Store {
     cache: Cache,
     /// The body file that the scene names.
-    given: Option<BodyFile>,
+    given: Option<SealedFile>,
     /// The folder of the mesh in the cache.
     folder: Option<PathBuf>,
     /// The hash of what was read of the mesh, or of the matrices.
@@ -38,7 +38,7 @@ impl Store {
     pub fn open(
         cache: &Cache,
         body: &MeshedBody,
-        given: Option<BodyFile>,
+        given: Option<SealedFile>,
         file: Option<&MeshFile>,
     ) -> Result<Option<Self>, BuildError> {
         let cache = cache.clone();
@@ -75,7 +75,7 @@ impl Store {
     }
 
     /// The body file that the scene names.
-    pub fn given(&self) -> Option<&BodyFile> {
+    pub fn given(&self) -> Option<&SealedFile> {
         self.given.as_ref()
     }
 
@@ -107,7 +107,7 @@ impl Store {
     /// A value by its key, if it is kept.
     pub fn recall<T: Keep>(&self, key: &Hash, known: T::Known<'_>) -> Result<Option<T>, BuildError> {
         self.asked.lock().unwrap_or_else(PoisonError::into_inner).insert(*key);
-        let read = |file: &BodyFile| T::read(&Kept { file, group: group(key) }, known);
+        let read = |file: &SealedFile| T::read(&Kept { file, group: group(key) }, known);
         if let Some(file) = self.given.as_ref().filter(|file| has(file, key)) {
             let value = read(file)?;
             self.cache.note(|notes| notes.read += 1);
@@ -134,12 +134,12 @@ impl Store {
     }
 
     /// The files that have all that was asked for.
-    pub fn files(&self) -> Result<Vec<(Hash, BodyFile)>, BuildError> {
+    pub fn files(&self) -> Result<Vec<(Hash, SealedFile)>, BuildError> {
         let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let file = |key: Hash| {
             let given = self.given.as_ref().filter(|file| has(file, &key)).map(|file| file.path().to_owned());
             let place = given.or_else(|| self.place(&key)).unwrap_or_default();
-            Ok((key, BodyFile::open(place)?))
+            Ok((key, SealedFile::open(place, Format::BODY)?))
         };
         asked.into_iter().map(file).collect()
     }
@@ -149,14 +149,14 @@ impl Store {
     }
 
     /// Content of a file of the cache; none where there is no file, or a damaged one.
-    fn read<T>(&self, place: &Path, read: impl Fn(&BodyFile) -> Result<T, BodyFileError>) -> Option<T> {
-        match BodyFile::open(place).and_then(|file| read(&file)) {
+    fn read<T>(&self, place: &Path, read: impl Fn(&SealedFile) -> Result<T, SealedError>) -> Option<T> {
+        match SealedFile::open(place, Format::BODY).and_then(|file| read(&file)) {
             Ok(found) => {
                 touch(place);
                 self.cache.note(|notes| notes.read += 1);
                 Some(found)
             }
-            Err(BodyFileError::System { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
+            Err(SealedError::System { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
             Err(error) => {
                 self.cache.warn(format!("cache entry damaged; recomputing: {error}"));
                 None
@@ -169,7 +169,7 @@ impl Store {
         place: &Path,
         texts: BTreeMap<String, String>,
         datasets: &[Declared],
-        write: impl FnOnce(&mut Writer) -> Result<(), BodyFileError>,
+        write: impl FnOnce(&mut Writer) -> Result<(), SealedError>,
     ) {
         let written = Writer::plain(place, texts, datasets).and_then(|mut writer| {
             write(&mut writer)?;
@@ -183,7 +183,7 @@ impl Store {
 }
 
 /// True if a file has a value, or a part of it.
-fn has(file: &BodyFile, key: &Hash) -> bool {
+fn has(file: &SealedFile, key: &Hash) -> bool {
     let group = group(key);
     file.datasets().any(|dataset| dataset.strip_prefix(&group).is_some_and(|rest| rest.starts_with('/')))
 }

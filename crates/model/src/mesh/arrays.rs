@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use body_file::{Array, BodyFile, BodyFileError, Declared, Kind, Writer};
 use fem_tet10::{Mesh, MeshError, MeshParts, NodeGroup, SurfaceGroup};
 use mesh_import::{DeckMaterial, Imported};
+use sealed::{Array, Declared, Kind, SealedError, SealedFile, Writer};
 use serde::{Deserialize, Serialize};
 
 /// The text with the names of the groups.
@@ -139,7 +139,7 @@ impl MeshArrays {
         ]
     }
 
-    pub fn write(&self, writer: &mut Writer) -> Result<(), BodyFileError> {
+    pub fn write(&self, writer: &mut Writer) -> Result<(), SealedError> {
         writer.write("mesh/positions", &self.positions)?;
         writer.write("mesh/node_tags", &self.node_tags)?;
         writer.write("mesh/tetrahedra", &self.tetrahedra)?;
@@ -154,18 +154,17 @@ impl MeshArrays {
 }
 
 /// The mesh in a file, called `source` in messages, checked as that of a mesh file is, and what was left out of it.
-pub(crate) fn read(file: &BodyFile, source: String) -> Result<Imported, BodyFileError> {
-    let damaged = |what: String| BodyFileError::Damaged { path: file.path().to_owned(), what };
+pub(crate) fn read(file: &SealedFile, source: String) -> Result<Imported, SealedError> {
+    let damaged = |what: String| file.damaged(what);
     let groups: Groups = file
-        .attribute(GROUPS)
+        .text(GROUPS)
         .and_then(|text| serde_json::from_str(text).ok())
         .ok_or_else(|| damaged("the names of the groups of its mesh cannot be read".to_owned()))?;
     let unread = |what: &str| damaged(format!("the {what} of its mesh cannot be read"));
-    let notes =
-        file.attribute(NOTES).and_then(|text| serde_json::from_str(text).ok()).ok_or_else(|| unread("notes"))?;
-    let materials = file.attribute(MATERIALS).and_then(|text| serde_json::from_str(text).ok());
+    let notes = file.text(NOTES).and_then(|text| serde_json::from_str(text).ok()).ok_or_else(|| unread("notes"))?;
+    let materials = file.text(MATERIALS).and_then(|text| serde_json::from_str(text).ok());
     let materials = materials.ok_or_else(|| unread("materials"))?;
-    let numbers = |name: &str| Ok::<_, BodyFileError>(file.read::<u64>(name)?.values);
+    let numbers = |name: &str| Ok::<_, SealedError>(file.read::<u64>(name)?.values);
     let node_tags = numbers("mesh/node_tags")?;
     let triangle_tags = numbers("mesh/group_triangle_tags")?;
     let no_node = || damaged("its mesh names a node that it has not".to_owned());

@@ -1,9 +1,9 @@
 //! Modes, shapes and the reduced body as they are kept in files.
 
-use body_file::BodyFileError;
 use faer::Mat;
 use modal::{Constants, ModalError, Modes, ReducedBody, RigidModes, RigidMotion, SecondOrderShapes, SolveStats};
 use nalgebra::{Matrix3, Vector3};
+use sealed::SealedError;
 
 use crate::cache::kept::{Arrays, Keep, Kept};
 
@@ -47,9 +47,9 @@ impl Keep for Found {
         body.write(to);
     }
 
-    fn read(from: &Kept<'_>, (rows, flexible, motion, weights): Self::Known<'_>) -> Result<Self, BodyFileError> {
-        let vector = |name| Ok::<_, BodyFileError>(Vector3::from(from.array::<3>(name)?));
-        let matrix = |name| Ok::<_, BodyFileError>(Matrix3::from_column_slice(&from.array::<9>(name)?));
+    fn read(from: &Kept<'_>, (rows, flexible, motion, weights): Self::Known<'_>) -> Result<Self, SealedError> {
+        let vector = |name| Ok::<_, SealedError>(Vector3::from(from.array::<3>(name)?));
+        let matrix = |name| Ok::<_, SealedError>(Matrix3::from_column_slice(&from.array::<9>(name)?));
         let list = |name| from.list(name, Some(flexible));
         let [unknowns, factor_entries, block_solves, basis_size, available, matrix_bytes] =
             from.array::<6>("counts")?.map(|count| count as usize);
@@ -86,7 +86,7 @@ fn write_added(modes: &Modes, before: usize, to: &mut Arrays) {
 }
 
 /// The first `before` shapes of `modes`, and those that are kept.
-fn read_added(from: &Kept<'_>, modes: &Modes, before: usize) -> Result<Modes, BodyFileError> {
+fn read_added(from: &Kept<'_>, modes: &Modes, before: usize) -> Result<Modes, SealedError> {
     let rows = modes.shapes.nrows();
     let eigenvalues = from.list("eigenvalues", None)?;
     let added = from.matrix("shapes", rows, Some(eigenvalues.len()))?;
@@ -115,7 +115,7 @@ impl Keep for StaticResponses {
         to.list("remainders", &self.remainders);
     }
 
-    fn read(from: &Kept<'_>, [rows, columns, remainders]: [usize; 3]) -> Result<Self, BodyFileError> {
+    fn read(from: &Kept<'_>, [rows, columns, remainders]: [usize; 3]) -> Result<Self, SealedError> {
         let fields = from.matrix("responses", rows, Some(columns))?;
         Ok(Self { fields, remainders: from.list("remainders", Some(remainders))? })
     }
@@ -137,7 +137,7 @@ impl Keep for Basis {
         self.body.write(to);
     }
 
-    fn read(from: &Kept<'_>, natural: &Modes) -> Result<Self, BodyFileError> {
+    fn read(from: &Kept<'_>, natural: &Modes) -> Result<Self, SealedError> {
         let modes = read_added(from, natural, natural.natural())?;
         Ok(Self { body: ReducedBody::read(from, &modes)?, modes })
     }
@@ -164,7 +164,7 @@ impl Keep for SecondOrder {
         to.list("energies", &self.energies);
     }
 
-    fn read(from: &Kept<'_>, [rows, pairs, quadruples]: [usize; 3]) -> Result<Self, BodyFileError> {
+    fn read(from: &Kept<'_>, [rows, pairs, quadruples]: [usize; 3]) -> Result<Self, SealedError> {
         Ok(Self {
             forces: from.matrix("forces", rows, Some(pairs))?,
             responses: from.matrix("responses", rows, Some(pairs))?,
@@ -193,7 +193,7 @@ impl Keep for OwnSecondOrder {
         to.list("inertia", &self.inertia);
     }
 
-    fn read(from: &Kept<'_>, [rows, modes]: [usize; 2]) -> Result<Self, BodyFileError> {
+    fn read(from: &Kept<'_>, [rows, modes]: [usize; 2]) -> Result<Self, SealedError> {
         let second = SecondOrder::read(from, [rows, modes, modes])?;
         Ok(Self { second, along: from.list("along", Some(modes))?, inertia: from.list("inertia", Some(modes))? })
     }
@@ -222,7 +222,7 @@ impl Keep for Extended {
         self.body.write(to);
     }
 
-    fn read(from: &Kept<'_>, (modes, large): Self::Known<'_>) -> Result<Self, BodyFileError> {
+    fn read(from: &Kept<'_>, (modes, large): Self::Known<'_>) -> Result<Self, SealedError> {
         let (rows, dynamic) = (modes.shapes.nrows(), modes.shapes.ncols());
         let pairs = SecondOrderShapes::pairs(large.len()).len();
         let modes = read_added(from, modes, dynamic)?;
@@ -253,11 +253,11 @@ impl Keep for ReducedBody {
         to.list("rotation_first", &self.rotation_first.concat());
     }
 
-    fn read(from: &Kept<'_>, modes: &Modes) -> Result<Self, BodyFileError> {
+    fn read(from: &Kept<'_>, modes: &Modes) -> Result<Self, SealedError> {
         let rigid = &modes.rigid;
         let nf = modes.eigenvalues.len();
         let unfit = || from.damaged("its constants do not fit together".to_owned());
-        let lists = |name: &str, count: usize, each: usize| -> Result<Vec<Vec<f64>>, BodyFileError> {
+        let lists = |name: &str, count: usize, each: usize| -> Result<Vec<Vec<f64>>, SealedError> {
             let columns = from.matrix(name, each, Some(count))?;
             Ok(columns.col_iter().map(|column| column.iter().copied().collect()).collect())
         };

@@ -2,7 +2,7 @@
 
 use crate::FileError;
 use crate::container::lock::Locked;
-use crate::container::seal;
+use sealed::{Format, SealedError};
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io;
@@ -88,10 +88,10 @@ impl ResultsPaths {
     pub(crate) fn temporary(&self) -> Result<TemporaryFile, FileError> {
         // HDF5 is given names as text.
         if self.folder().to_str().is_none() {
-            return Err(FileError::NameNotUtf8 { path: self.folder().to_owned() });
+            return Err(SealedError::NameNotUtf8 { path: self.folder().to_owned() }.into());
         }
         let made = TemporaryFile::beside(&self.path, ".h5");
-        Ok(made.map_err(|error| FileError::system(&self.path, "create the file", &error))?.1)
+        Ok(made.map_err(SealedError::system(&self.path, "create the file"))?.1)
     }
 
     /// Makes a file the unfinished one; an older one is in the way unless it is to be replaced.
@@ -103,27 +103,27 @@ impl ResultsPaths {
         }
         file.put(&self.part, replace).map_err(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => FileError::Unfinished { path: self.part.clone() },
-            _ => FileError::system(&self.part, "create the file", &error),
+            _ => SealedError::system(&self.part, "create the file")(error).into(),
         })
     }
 
     /// Moves a file into the place of the unfinished one, which is the caller's own.
     pub(crate) fn exchange_part(&self, file: TemporaryFile) -> Result<(), FileError> {
-        file.put(&self.part, true).map_err(|error| FileError::system(&self.part, "create the file", &error))
+        Ok(file.put(&self.part, true).map_err(SealedError::system(&self.part, "create the file"))?)
     }
 
     /// Makes a file the results file, once it is safe on the disk; another one is in the way unless it is to be replaced.
     pub(crate) fn put_results(&self, file: TemporaryFile, replace: bool) -> Result<(), FileError> {
-        let failed = |error: &io::Error| FileError::system(&self.path, "write the file", error);
-        File::open(&file).and_then(|file| file.sync_all()).map_err(|error| failed(&error))?;
+        let failed = |error| FileError::from(SealedError::system(&self.path, "write the file")(error));
+        File::open(&file).and_then(|file| file.sync_all()).map_err(failed)?;
         file.put(&self.path, replace).map_err(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => FileError::Exists { path: self.path.clone() },
-            _ => failed(&error),
+            _ => failed(error),
         })
     }
 
     pub(crate) fn remove_part(&self) -> Result<(), FileError> {
-        std::fs::remove_file(&self.part).map_err(|error| FileError::system(&self.part, "remove the file", &error))
+        Ok(std::fs::remove_file(&self.part).map_err(SealedError::system(&self.part, "remove the file"))?)
     }
 }
 
@@ -149,5 +149,5 @@ pub(crate) fn is_busy(path: &Path) -> bool {
 
 /// True if something claims to be a file of ours. A pipe is not opened, which might never end.
 fn is_ours(path: &Path) -> bool {
-    path.is_file() && seal::is_claimed(path)
+    path.is_file() && Format::RESULTS.is_claimed(path)
 }

@@ -1,39 +1,45 @@
 //! The numbers of an open results file, written and read at their places without HDF5.
 
-use crate::checkpoint::{Sums, little_endian};
 use crate::column::SystemRow;
-use crate::container::description::{Description, Ranges};
 use crate::container::lock::Locked;
-use crate::container::room::Room;
-use crate::container::seal::Apart;
-use crate::container::{seal, structure};
-use crate::history::histories;
+use crate::container::structure;
+use crate::history::{History, histories};
 use crate::shapes::Shapes;
-use crate::shapes::stored::{Datasets, StoredArray};
-use crate::{Column, FileError, Metadata};
+use crate::shapes::stored::{DATASETS, Datasets};
+use crate::{BodyMetadata, Column, FileError, Metadata};
+use keys::Hash;
+use sealed::{Declared, Format, Kind, Made, SealedError, SealedFile, little_endian};
+use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::Path;
 
-/// Bytes that are read at a time.
-const BLOCK: usize = 1 << 14;
+/// Name of the text with the metadata.
+const METADATA: &str = "metadata";
+/// Dataset of the times.
+const TIME: &str = "time";
+/// Dataset of the two places for a checkpoint.
+const CHECKPOINT: &str = "checkpoint";
 
-/// Bytes of a number.
-const NUMBER: usize = size_of::<f64>();
+/// How much a file has room for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Room {
+    /// Rows.
+    pub rows: usize,
+    /// Words of a checkpoint; none in a finished file.
+    pub checkpoint_words: Option<usize>,
+}
 
 /// The open file, locked. All its room is there from the beginning, so that rows are written without a change to the
 /// structure of the file: it is a whole HDF5 file at any moment. The time of a row is NaN until the whole row is there.
 #[derive(Debug)]
 pub(crate) struct Store {
-    file: Locked,
-    description: Description,
-    /// Bytes of the times and the histories, and their values per row.
-    columns: Vec<(Range<u64>, usize)>,
-    /// Bytes of the two places for a checkpoint.
-    checkpoints: Range<u64>,
-    /// Bytes of the arrays.
-    arrays: Vec<Range<u64>>,
+    file: SealedFile,
+    metadata: Metadata,
+    room: Room,
+    /// Datasets of the times and the histories, and their values per row.
+    columns: Vec<(String, usize)>,
+    _lock: Locked,
 }
 
 /// Where the shapes of a new file come from.
@@ -54,123 +60,95 @@ impl Store {
         columns: &'static [Column<R>],
         room: Room,
     ) -> Result<Self, FileError> {
-        let count = 1 + histories(columns, metadata).count();
-        let starts = vec![u64::MAX; count + usize::from(room.checkpoint_words.is_some())];
-        let mut description = Description {
-            rows: room.rows,
-            checkpoint_words: room.checkpoint_words,
-            starts,
-            arrays: shapes.arrays(),
-            metadata: metadata.clone(),
-        };
-        // No other places take more digits.
-        let user_block = seal::room(description.to_json().len() as u64);
-        let [starts, of_arrays] =
-            structure::make(place, path, metadata, &description.arrays, columns, room, user_block)
-                .map_err(|error| error.with_reason_from_system(place))?;
-        description.starts = starts;
-        description.arrays.iter_mut().zip(of_arrays).for_each(|(array, start)| array.start = start);
-        let file = OpenOptions::new().read(true).write(true).open(place);
-        let file = file.map_err(|error| FileError::system(path, "open the file for writing", &error))?;
-        let file = locked(file, path, File::try_lock)?;
-        if room.checkpoint_words.is_some() {
-            reserve(&file).map_err(|error| FileError::system(path, "make room for the rows", &error))?;
+        let of_shapes = shapes.declared(metadata);
+        let mut datasets = structure::declared(columns, metadata, room.rows);
+        datasets.extend(of_shapes.iter().cloned());
+        datasets.extend(room.checkpoint_words.map(|words| Declared {
+            path: CHECKPOINT.to_owned(),
+            kind: Kind::U64,
+            shape: vec![2, words],
+            attributes: Vec::new(),
+            same_as: None,
+        }));
+        let json = serde_json::to_string(metadata).unwrap_or_default(); // no map whose keys are no text: it cannot fail
+        let texts = BTreeMap::from([(METADATA.to_owned(), json)]);
+        let is_complete = room.checkpoint_words.is_none();
+        let made = Made { place, path, format: Format::RESULTS, texts: &texts, datasets: &datasets };
+        let file = made.by_hdf5(|file| structure::write(path, file, metadata, is_complete))?;
+        let lock = locked(file.file(), path, File::try_lock)?;
+        let columns = of_metadata(columns, metadata);
+        let mut store = Self { file, metadata: metadata.clone(), room, columns, _lock: lock };
+        if !is_complete {
+            reserve(store.file.file()).map_err(SealedError::system(path, "make room for the rows"))?;
+            store.file.write_at(TIME, 0, &vec![f64::NAN; room.rows])?;
         }
-        let described = description.to_json().len();
-        let store = Self::new(file, path, columns, description, described)?;
-        store.put(shapes).map_err(|error| FileError::system(path, "write the shapes of the body", &error))?;
+        store.put(shapes, &of_shapes)?;
         Ok(store)
     }
 
     /// Opens a sealed file for reading.
     pub(crate) fn open<R: SystemRow>(path: &Path, columns: &'static [Column<R>]) -> Result<Self, FileError> {
-        Self::open_as(path, columns, "open the file", OpenOptions::new().read(true), File::try_lock_shared)
+        Self::open_as(path, columns, OpenOptions::new().read(true), File::try_lock_shared)
     }
 
     /// Opens a sealed file for writing.
     pub(crate) fn open_to_write<R: SystemRow>(path: &Path, columns: &'static [Column<R>]) -> Result<Self, FileError> {
-        let options = OpenOptions::new().read(true).write(true).clone();
-        Self::open_as(path, columns, "open the file for writing", &options, File::try_lock)
+        Self::open_as(path, columns, OpenOptions::new().read(true).write(true), File::try_lock)
     }
 
     fn open_as<R: SystemRow>(
         path: &Path,
         columns: &'static [Column<R>],
-        action: &str,
         options: &OpenOptions,
         try_lock: fn(&File) -> Result<(), TryLockError>,
     ) -> Result<Self, FileError> {
-        let failed = |error| FileError::system(path, action, &error);
+        let failed = |error| SealedError::system(path, "open the file")(error);
         // To open a pipe is to wait for who writes into it.
         if !std::fs::metadata(path).map_err(failed)?.is_file() {
-            return Err(FileError::NoSeal { path: path.to_path_buf() });
+            return Err(SealedError::NoSeal { path: path.to_path_buf(), format: Format::RESULTS }.into());
         }
         let file = options.open(path).map_err(failed)?;
-        let file = locked(file, path, try_lock)?;
-        let json = seal::description(&file, path)?;
-        let store = Self::new(file, path, columns, Description::from_json(path, &json)?, json.len())?;
-        seal::check(&store.file, path, &store.changing())?;
-        // Who makes a file on purpose can make its seal, too.
-        store.metadata().check(path)?;
-        Ok(store)
-    }
-
-    /// A description may be any: what it claims must be within the file after it, each in a place of its own.
-    fn new<R: SystemRow>(
-        file: Locked,
-        path: &Path,
-        columns: &'static [Column<R>],
-        description: Description,
-        described: usize,
-    ) -> Result<Self, FileError> {
-        let failed = |error| FileError::system(path, "read the file", &error);
-        let length = file.metadata().map_err(failed)?.len();
-        let metadata = &description.metadata;
-        let of_histories = histories(columns, metadata).map(|history| history.width(metadata));
-        let widths: Vec<usize> = std::iter::once(1).chain(of_histories).collect();
-        let ranges = description.ranges(widths.iter().copied(), seal::HEAD + described as u64..length);
-        let Some(Ranges { histories, checkpoints, arrays }) = ranges else {
-            let what = "its histories are not within it, each in a place of its own".into();
-            return Err(FileError::Damaged { path: path.to_path_buf(), what });
+        let lock = locked(&file, path, try_lock)?;
+        let file = SealedFile::of(file, path, Format::RESULTS)?;
+        let metadata = metadata_of(&file)?;
+        let shape = |dataset: &str| file.described(dataset).map_or(&[][..], |(_, shape, _)| shape);
+        let rows = shape(TIME).first().copied().unwrap_or_default();
+        let room =
+            Room { rows, checkpoint_words: file.has(CHECKPOINT).then(|| shape(CHECKPOINT).iter().skip(1).product()) };
+        // A description may be any: the histories must be those of the metadata, and sealed when the run has ended.
+        let is_complete = room.checkpoint_words.is_none();
+        let fits = |declared: &Declared| {
+            let found = file.described(&declared.path);
+            found.is_some_and(|(kind, shape, hash)| {
+                (kind, shape) == (declared.kind, &*declared.shape) && hash.is_some() == is_complete
+            })
         };
-        let columns = histories.into_iter().zip(widths).collect();
-        Ok(Self { file, description, columns, checkpoints, arrays })
-    }
-
-    /// The bytes that change when the file has been sealed, in order: those of the numbers of an unfinished file.
-    fn changing(&self) -> Vec<Apart<'_>> {
-        if self.is_complete() {
-            return Vec::new();
+        let fits_checkpoint = is_complete || matches!(file.described(CHECKPOINT), Some((Kind::U64, [2, _], None)));
+        if !(structure::declared(columns, &metadata, rows).iter().all(fits) && fits_checkpoint) {
+            return Err(file.damaged("its histories are not those of its metadata").into());
         }
-        let columns = self.columns.iter().map(|(range, _)| range);
-        in_order(columns.chain([&self.checkpoints]).map(|range| Apart { range: range.clone(), sum: None }))
+        let columns = of_metadata(columns, &metadata);
+        Ok(Self { file, metadata, room, columns, _lock: lock })
     }
 
-    /// Seals the file as it is now. Histories whose check sums are known are not read for it.
-    pub(crate) fn seal(&self, path: &Path, sums: Option<&Sums>) -> Result<(), FileError> {
-        let apart = match sums.filter(|_| self.is_complete()) {
-            Some(sums) => {
-                let columns = self.columns.iter().zip(sums.of_columns());
-                in_order(columns.map(|((range, _), sum)| Apart { range: range.clone(), sum: Some(sum) }))
-            }
-            None => self.changing(),
-        };
-        seal::put(&self.file, path, self.description.to_json().as_bytes(), &apart)
+    /// Seals the file as it is now.
+    pub(crate) fn seal(&self) -> Result<(), FileError> {
+        Ok(self.file.write_head()?)
     }
 
     /// Metadata of the file.
     pub(crate) fn metadata(&self) -> &Metadata {
-        &self.description.metadata
+        &self.metadata
     }
 
     /// True if the run came to its end.
     pub(crate) fn is_complete(&self) -> bool {
-        self.description.checkpoint_words.is_none()
+        self.room.checkpoint_words.is_none()
     }
 
     /// Rows that it has room for.
     pub(crate) fn rows(&self) -> usize {
-        self.description.rows
+        self.room.rows
     }
 
     /// Values per row of all histories.
@@ -180,204 +158,185 @@ impl Store {
 
     /// Words of each of the two places for a checkpoint.
     pub(crate) fn checkpoint_words(&self) -> usize {
-        self.description.checkpoint_words.unwrap_or(0)
+        self.room.checkpoint_words.unwrap_or(0)
+    }
+
+    /// The error of a content that is not what it should be.
+    pub(crate) fn damaged(&self, what: impl Into<String>) -> FileError {
+        self.file.damaged(what).into()
     }
 
     /// Writes rows of all histories, the time last: whoever finds it finds the rest of the row.
     pub(crate) fn write<'a>(
         &self,
-        path: &Path,
         rows: Range<usize>,
         values: impl Iterator<Item = &'a [f64]>,
     ) -> Result<(), FileError> {
         let mut histories = self.columns.iter().zip(values);
         let time = histories.next();
-        for ((bytes, width), values) in histories.chain(time) {
-            let start = bytes.start + (rows.start * width * NUMBER) as u64;
-            self.write_at(start, &little_endian(values))
-                .map_err(|error| FileError::system(path, format!("write rows {rows:?}"), &error))?;
+        for ((dataset, width), values) in histories.chain(time) {
+            self.file.write_at(dataset, rows.start * width, values)?;
         }
         Ok(())
     }
 
     /// The number of rows, and the numbers of all histories in these, or in more of them. Of an unfinished file, the rows
     /// before the first number that is not finite: no run writes one.
-    pub(crate) fn read(&self, path: &Path) -> Result<(usize, Vec<Vec<f64>>), FileError> {
+    pub(crate) fn read(&self) -> Result<(usize, Vec<Vec<f64>>), FileError> {
         let mut rows = self.rows();
-        let columns = self.columns.iter().map(|(bytes, width)| {
-            // The time comes first, so that the room for rows to come is not read.
-            let bytes = bytes.start..bytes.start + (rows * width * NUMBER) as u64;
-            let column = self.read_words(&bytes, f64::from_bits)?;
-            if !self.is_complete() {
-                let finite = column.iter().position(|value| !value.is_finite()).unwrap_or(usize::MAX);
-                rows = rows.min(finite / (*width).max(1));
+        let columns = self.columns.iter().map(|(dataset, width)| {
+            if self.is_complete() {
+                return Ok(self.file.read(dataset)?.values);
             }
+            // The time comes first, so that the room for rows to come is not read.
+            let column: Vec<f64> = self.file.read_first(dataset, rows * width)?;
+            let finite = column.iter().position(|value| !value.is_finite()).unwrap_or(usize::MAX);
+            rows = rows.min(finite / (*width).max(1));
             Ok(column)
         });
-        let columns = columns.collect::<io::Result<_>>();
-        let columns = columns.map_err(|error| FileError::system(path, "read the histories", &error))?;
+        let columns = columns.collect::<Result<_, FileError>>()?;
         Ok((rows, columns))
     }
 
     /// The two places for a checkpoint.
-    pub(crate) fn read_checkpoints(&self, path: &Path) -> Result<Vec<u64>, FileError> {
-        self.read_words(&self.checkpoints, |word| word)
-            .map_err(|error| FileError::system(path, "read the checkpoints", &error))
+    pub(crate) fn read_checkpoints(&self) -> Result<Vec<u64>, FileError> {
+        if self.is_complete() { Ok(Vec::new()) } else { Ok(self.file.read_first(CHECKPOINT, usize::MAX)?) }
     }
 
-    /// Copies the first `rows` rows of another store of the same run.
-    pub(crate) fn copy_rows(&self, path: &Path, other: &Self, rows: usize) -> Result<(), FileError> {
-        for ((to, width), (from, _)) in self.columns.iter().zip(&other.columns) {
-            self.copy(to.start, other, from.start, (rows * width * NUMBER) as u64)
-                .map_err(|error| FileError::system(path, "copy the rows", &error))?;
+    /// Copies the first `rows` rows of another store of the same run; a finished file has these rows and no others.
+    pub(crate) fn copy_rows(&mut self, other: &Self, rows: usize) -> Result<(), FileError> {
+        for (dataset, width) in &self.columns {
+            let hash = self.file.copy_from(&other.file, dataset, (rows * width * size_of::<f64>()) as u64)?;
+            if self.room.checkpoint_words.is_none() {
+                self.file.seal(dataset, &hash);
+            }
         }
         Ok(())
     }
 
     /// Writes one of the two places for a checkpoint.
-    pub(crate) fn write_checkpoint(&self, path: &Path, place: usize, words: &[u64]) -> Result<(), FileError> {
-        let start = self.checkpoints.start + (place * self.checkpoint_words() * NUMBER) as u64;
-        self.write_at(start, &little_endian(words))
-            .map_err(|error| FileError::system(path, "write the checkpoint", &error))
+    pub(crate) fn write_checkpoint(&self, place: usize, words: &[u64]) -> Result<(), FileError> {
+        Ok(self.file.write_at(CHECKPOINT, place * self.checkpoint_words(), words)?)
     }
 
     /// The shapes of each body, if the file has them.
-    pub(crate) fn read_shapes(&self, path: &Path) -> Result<Vec<Option<Shapes>>, FileError> {
-        (0..self.metadata().bodies.len()).map(|body| self.read_shapes_of(body, path)).collect()
-    }
-
-    fn read_shapes_of(&self, body: usize, path: &Path) -> Result<Option<Shapes>, FileError> {
-        if self.description.arrays.iter().all(|array| array.body != body) {
-            return Ok(None);
-        }
-        let read = Shapes::read(&OfBody { store: self, body });
-        let read = read.map_err(|error| FileError::system(path, "read the shapes of the body", &error))?;
-        let Some(shapes) = read else {
-            let what = "its shapes of a body are not whole".into();
-            return Err(FileError::Damaged { path: path.to_path_buf(), what });
+    pub(crate) fn read_shapes(&self) -> Result<Vec<Option<Shapes>>, FileError> {
+        let of_body = |body: &BodyMetadata| {
+            if DATASETS.iter().all(|dataset| !self.file.has(&body.path(dataset.path))) {
+                return Ok(None);
+            }
+            let read = Shapes::read(&OfBody { file: &self.file, body })?;
+            let shapes = read.ok_or_else(|| self.damaged("its shapes of a body are not whole"))?;
+            shapes.check(self.file.path())?;
+            Ok(Some(shapes))
         };
-        shapes.check(path)?;
-        Ok(Some(shapes))
+        self.metadata.bodies.iter().map(of_body).collect()
     }
 
     /// Writes the shapes to their places.
-    fn put(&self, shapes: ShapeSource<'_>) -> io::Result<()> {
+    fn put(&mut self, shapes: ShapeSource<'_>, datasets: &[Declared]) -> Result<(), FileError> {
         match shapes {
             ShapeSource::Given(bodies) => {
                 let lists = bodies.iter().flatten().flat_map(Shapes::stored);
-                for ((_, _, lists), range) in lists.zip(&self.arrays) {
-                    let mut start = range.start;
-                    for bytes in lists.bytes() {
-                        self.write_at(start, &bytes)?;
-                        start += bytes.len() as u64;
+                for ((_, _, lists), Declared { path, .. }) in lists.zip(datasets) {
+                    let mut hashed = Vec::new();
+                    let mut first = 0;
+                    for list in lists.numbers() {
+                        self.file.write_at(path, first, list)?;
+                        first += list.len();
+                        hashed.push(little_endian(list));
                     }
+                    if let Some(list) = lists.whole() {
+                        self.file.write_at(path, 0, list)?;
+                        hashed.push(little_endian(list));
+                    }
+                    self.file.seal(path, &Hash::of_lists(hashed));
                 }
-                Ok(())
             }
-            ShapeSource::File(other) => (self.arrays.iter().zip(&other.arrays))
-                .try_for_each(|(to, from)| self.copy(to.start, other, from.start, from.end - from.start)),
+            ShapeSource::File(other) => {
+                for Declared { path, kind, shape, .. } in datasets {
+                    let each = if *kind == Kind::U32 { size_of::<u32>() } else { size_of::<f64>() };
+                    let bytes = (shape.iter().product::<usize>() * each) as u64;
+                    let hash = self.file.copy_from(&other.file, path, bytes)?;
+                    self.file.seal(path, &hash);
+                }
+            }
         }
+        Ok(())
     }
+}
 
-    fn write_at(&self, start: u64, bytes: &[u8]) -> io::Result<()> {
-        let mut file = &*self.file;
-        file.seek(SeekFrom::Start(start))?;
-        file.write_all(bytes)
-    }
+/// Metadata of a results file, without a look at its rows.
+pub(crate) fn metadata_of(file: &SealedFile) -> Result<Metadata, FileError> {
+    let json = file.text(METADATA).unwrap_or_default();
+    let metadata: Metadata = serde_json::from_str(json).map_err(|error| {
+        // Without what stands there.
+        file.damaged(format!("its metadata cannot be read from byte {} on", error.column()))
+    })?;
+    // Who makes a file on purpose can make its seal, too.
+    metadata.check(file.path())?;
+    Ok(metadata)
+}
 
-    fn read_words<T>(&self, bytes: &Range<u64>, from_bits: impl Fn(u64) -> T) -> io::Result<Vec<T>> {
-        self.read_numbers(bytes, |word| from_bits(u64::from_le_bytes(word)))
-    }
-
-    /// Numbers of N bytes each.
-    fn read_numbers<const N: usize, T>(
-        &self,
-        bytes: &Range<u64>,
-        from_bytes: impl Fn([u8; N]) -> T,
-    ) -> io::Result<Vec<T>> {
-        let mut file = &*self.file;
-        let mut rest = (bytes.end - bytes.start) as usize;
-        let mut numbers = Vec::new();
-        numbers.try_reserve_exact(rest / N).map_err(|_| io::ErrorKind::OutOfMemory)?;
-        file.seek(SeekFrom::Start(bytes.start))?;
-        let mut block = [0; BLOCK];
-        while rest > 0 {
-            let part = &mut block[..rest.min(BLOCK)];
-            file.read_exact(part)?;
-            numbers.extend(part.as_chunks().0.iter().map(|bytes| from_bytes(*bytes)));
-            rest -= part.len();
-        }
-        Ok(numbers)
-    }
-
-    fn copy(&self, to: u64, other: &Self, from: u64, bytes: u64) -> io::Result<()> {
-        let (mut to_file, mut from_file) = (&*self.file, &*other.file);
-        from_file.seek(SeekFrom::Start(from))?;
-        to_file.seek(SeekFrom::Start(to))?;
-        match io::copy(&mut from_file.take(bytes), &mut to_file)? {
-            copied if copied == bytes => Ok(()),
-            _ => Err(io::ErrorKind::UnexpectedEof.into()),
-        }
-    }
+/// Datasets of the times and the histories, and their values per row.
+fn of_metadata<R: SystemRow>(columns: &'static [Column<R>], metadata: &Metadata) -> Vec<(String, usize)> {
+    let of_history = |history: History<R>| (history.path(metadata), history.width(metadata));
+    std::iter::once((TIME.to_owned(), 1)).chain(histories(columns, metadata).map(of_history)).collect()
 }
 
 impl ShapeSource<'_> {
-    /// The arrays that they are in a file, at no place yet: no place takes more digits.
-    fn arrays(&self) -> Vec<StoredArray> {
-        let array = |body, path: &str, shape| StoredArray { body, path: path.to_owned(), shape, start: u64::MAX };
+    /// The datasets that they are in a file.
+    fn declared(&self, metadata: &Metadata) -> Vec<Declared> {
         match self {
             Self::Given(bodies) => {
-                let of_body = |(body, shapes): (usize, &Option<Shapes>)| {
+                let of_body = |(body, shapes): (&BodyMetadata, &Option<Shapes>)| {
                     let stored = shapes.as_ref().map_or_else(Vec::new, Shapes::stored);
-                    stored.into_iter().map(|(path, shape, _)| array(body, path, shape)).collect::<Vec<_>>()
+                    let declared = |(path, shape, _): (&'static str, Vec<usize>, _)| {
+                        let dataset = DATASETS.iter().find(|dataset| dataset.path == path)?;
+                        Some(dataset.declared(body, &shape, &metadata.units))
+                    };
+                    stored.into_iter().filter_map(declared).collect::<Vec<_>>()
                 };
-                bodies.iter().enumerate().flat_map(of_body).collect()
+                metadata.bodies.iter().zip(*bodies).flat_map(of_body).collect()
             }
-            Self::File(store) => (store.description.arrays.iter())
-                .map(|found| array(found.body, &found.path, found.shape.clone()))
-                .collect(),
+            Self::File(store) => {
+                let of_body = |body| {
+                    DATASETS.iter().filter_map(move |dataset| {
+                        let (_, shape, _) = store.file.described(&BodyMetadata::path(body, dataset.path))?;
+                        Some(dataset.declared(body, shape, &metadata.units))
+                    })
+                };
+                metadata.bodies.iter().flat_map(of_body).collect()
+            }
         }
     }
 }
 
-/// The arrays of one body in a store.
+/// The datasets of one body in a file.
 struct OfBody<'a> {
-    store: &'a Store,
-    body: usize,
-}
-
-impl OfBody<'_> {
-    /// The array of a path, and its bytes.
-    fn array(&self, path: &str) -> Option<(&StoredArray, &Range<u64>)> {
-        let mut arrays = self.store.description.arrays.iter().zip(&self.store.arrays);
-        arrays.find(|(array, _)| array.body == self.body && array.path == path)
-    }
+    file: &'a SealedFile,
+    body: &'a BodyMetadata,
 }
 
 impl Datasets for OfBody<'_> {
     fn shape(&self, path: &str) -> Option<&[usize]> {
-        self.array(path).map(|(array, _)| &*array.shape)
+        self.file.described(&self.body.path(path)).map(|(_, shape, _)| shape)
     }
 
-    fn whole(&self, path: &str) -> io::Result<Vec<u32>> {
-        self.array(path).map_or_else(|| Ok(Vec::new()), |(_, bytes)| self.store.read_numbers(bytes, u32::from_le_bytes))
+    fn whole(&self, path: &str) -> Result<Vec<u32>, SealedError> {
+        Ok(self.file.read(&self.body.path(path))?.values)
     }
 
-    fn numbers(&self, path: &str) -> io::Result<Vec<Vec<f64>>> {
-        let Some((array, bytes)) = self.array(path) else { return Ok(Vec::new()) };
-        let lists = array.shape.first().copied().unwrap_or_default() as u64;
-        let each = (bytes.end - bytes.start).checked_div(lists).unwrap_or_default();
-        let list = |i: u64| {
-            let start = bytes.start + i * each;
-            self.store.read_words(&(start..start + each), f64::from_bits)
-        };
-        (0..lists).map(list).collect()
+    fn numbers(&self, path: &str) -> Result<Vec<Vec<f64>>, SealedError> {
+        let array = self.file.read::<f64>(&self.body.path(path))?;
+        let each = array.shape.iter().skip(1).product::<usize>().max(1);
+        Ok(array.values.chunks_exact(each).map(<[f64]>::to_vec).collect())
     }
 }
 
 /// Reserves the room that a file has on the disk, where the file system can: a disk without it is found out now.
 #[cfg(target_os = "linux")]
-fn reserve(file: &File) -> io::Result<()> {
+fn reserve(file: &File) -> std::io::Result<()> {
     use rustix::fs::{FallocateFlags, fallocate};
     use rustix::io::Errno;
 
@@ -388,17 +347,11 @@ fn reserve(file: &File) -> io::Result<()> {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn reserve(_: &File) -> io::Result<()> {
+fn reserve(_: &File) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Ranges that are not empty, in the order of the file.
-fn in_order<'s>(ranges: impl Iterator<Item = Apart<'s>>) -> Vec<Apart<'s>> {
-    let mut ranges: Vec<_> = ranges.filter(|apart| !apart.range.is_empty()).collect();
-    ranges.sort_unstable_by_key(|apart| apart.range.start);
-    ranges
-}
-
-fn locked(file: File, path: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Locked, FileError> {
+fn locked(file: &File, path: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Locked, FileError> {
+    let file = file.try_clone().map_err(SealedError::system(path, "lock the file"))?;
     Locked::new(file, try_lock).ok_or_else(|| FileError::Busy { path: path.to_path_buf() })
 }

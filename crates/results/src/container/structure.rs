@@ -1,78 +1,46 @@
 //! The HDF5 structure of a results file, laid out as its columns say.
 //!
-//! HDF5 only makes files here. It opens none that was there before, see [`mod@crate::container::seal`].
+//! HDF5 only makes files here. It opens none that was there before ([`sealed`]).
 
 use crate::column::SystemRow;
-use crate::container::room::Room;
-use crate::container::seal;
 use crate::history::{History, histories};
 use crate::metadata::{BODIES, JOINTS};
-use crate::shapes::stored::{ShapeDataset, StoredArray};
 use crate::{BodyMetadata, BodyProperties, Column, FileError, JointMetadata, MeshProperties, Metadata, Units};
 use hdf5::Group;
-use hdf5::dataset::Layout;
-use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::VarLenUnicode;
 use ndarray::{ArrayView2, ArrayViewD, aview0, aview1};
+use sealed::{Declared, Format, Kind, SealedError};
 use std::path::Path;
 
-/// Makes the file at `place` (called `path` in messages), which begins with a number of bytes that HDF5 leaves alone, and
-/// closes it. Gives the first byte of the times, of each history in order, and of the checkpoints, and that of each array; 0
-/// where there is nothing.
-pub(crate) fn make<R: SystemRow>(
-    place: &Path,
-    path: &Path,
-    metadata: &Metadata,
-    arrays: &[StoredArray],
-    columns: &'static [Column<R>],
-    room: Room,
-    user_block: u64,
-) -> Result<[Vec<u64>; 2], FileError> {
-    let mut builder = hdf5::File::with_options();
-    // Without times of creation, so that equal runs give equal files; the seal goes into the user block.
-    builder.with_fcpl(|plist| plist.obj_track_times(false).userblock(user_block));
-    // Numbers do not straddle the pages of the file, which may be written one by one. HDF5 would lock the file, and a process
-    // that is started meanwhile would keep the lock to its end.
-    builder.with_fapl(|plist| plist.alignment(1, 8).file_locking(false));
-    let file = builder.create(place).map_err(FileError::hdf5(path, "create the file"))?;
-    write_root_attributes(path, &file, metadata, room.checkpoint_words.is_none())?;
+/// The datasets of the times and the histories, with room for so many rows.
+pub(crate) fn declared<R: SystemRow>(columns: &'static [Column<R>], metadata: &Metadata, rows: usize) -> Vec<Declared> {
+    let times = Declared::new("time", Kind::F64, &[rows], [&metadata.units.time, "none", "time of each row"]);
+    let of_history = |history: History<R>| {
+        let Column { frame, description, .. } = history.column;
+        let shape: Vec<usize> = std::iter::once(rows).chain(history.row_shape(metadata)).collect();
+        let unit = history.column.unit(&metadata.units);
+        Declared::new(history.path(metadata), Kind::F64, &shape, [&unit, frame, description])
+    };
+    std::iter::once(times).chain(histories(columns, metadata).map(of_history)).collect()
+}
+
+/// Writes what other programs read besides: texts and constants.
+pub(crate) fn write(path: &Path, file: &hdf5::File, metadata: &Metadata, is_complete: bool) -> Result<(), FileError> {
+    write_root_attributes(path, file, metadata, is_complete)?;
     let inputs = metadata.input_files.iter().map(String::as_str);
-    write_texts(path, &file, "input_files", inputs, "files that the run read, where they were")?;
+    write_texts(path, file, "input_files", inputs, "files that the run read, where they were")?;
     let warnings = metadata.warnings.iter().map(String::as_str);
-    write_texts(path, &file, "warnings", warnings, "what should be known of the run; empty in an unfinished file")?;
+    write_texts(path, file, "warnings", warnings, "what should be known of the run; empty in an unfinished file")?;
     for body in &metadata.bodies {
-        write_body(path, &file, body, &metadata.units)?;
+        write_body(path, file, body, &metadata.units)?;
     }
-    metadata.joints.iter().try_for_each(|joint| write_joint(path, &file, joint))?;
-    let arrays = (arrays.iter())
-        .filter_map(|array| Some((array, metadata.bodies.get(array.body)?, array.dataset()?)))
-        .map(|(array, body, dataset)| create_array(path, &file, array, (body, dataset), &metadata.units))
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut datasets = vec![create_times(path, &file, metadata, room)?];
-    for history in histories(columns, metadata) {
-        datasets.push(create_history(path, &file, history, metadata, room)?);
-    }
-    if let Some(words) = room.checkpoint_words {
-        let checkpoint = file
-            .new_dataset::<u64>()
-            .layout(Layout::Contiguous)
-            .alloc_time(Some(AllocTime::Early))
-            .obj_track_times(false)
-            .shape((2, words))
-            .create("checkpoint")
-            .map_err(FileError::hdf5(path, "create dataset checkpoint"))?;
-        datasets.push(checkpoint);
+    for joint in &metadata.joints {
+        write_joint(path, file, joint)?;
     }
     if let Some(body) = metadata.only_body() {
-        write_short_paths(&file, body).map_err(FileError::hdf5(path, "write the short paths"))?;
+        write_short_paths(file, body).map_err(SealedError::hdf5(path, "write the short paths"))?;
     }
-    // An empty dataset has no place.
-    let starts = |datasets: &[hdf5::Dataset]| datasets.iter().map(|dataset| dataset.offset().unwrap_or(0)).collect();
-    let starts = [starts(&datasets), starts(&arrays)];
-    drop((datasets, arrays));
-    // HDF5 gives back what room it has left over when it closes the file: from then on its structure stays.
-    file.close().map_err(FileError::hdf5(path, "write the file"))?;
-    Ok(starts)
+    Ok(())
 }
 
 /// Links at the root to all that is of a single body, for scripts that know nothing of bodies. Its model is `body` there.
@@ -87,63 +55,9 @@ fn write_short_paths(file: &hdf5::File, body: &BodyMetadata) -> hdf5::Result<()>
 /// Group of what is known of a body without its motion.
 const MODEL: &str = "model";
 
-/// Room for the times. Where no row has been written, the time of an unfinished file is NaN, which says which rows there are.
-fn create_times(path: &Path, file: &hdf5::File, metadata: &Metadata, room: Room) -> Result<hdf5::Dataset, FileError> {
-    let is_unfinished = room.checkpoint_words.is_some();
-    let times = create_rows(file, &[room.rows], if is_unfinished { FillTime::Alloc } else { FillTime::Never }, "time");
-    let times = times.map_err(FileError::hdf5(path, "make room for time"))?;
-    describe(path, &times, &metadata.units.time, "none", "time of each row")?;
-    Ok(times)
-}
-
-/// Room for the rows of a history. It is left as the operating system makes a longer file, zeros that nobody has to write.
-fn create_history<R: SystemRow>(
-    path: &Path,
-    file: &hdf5::File,
-    history: History<R>,
-    metadata: &Metadata,
-    room: Room,
-) -> Result<hdf5::Dataset, FileError> {
-    let (name, column) = (history.path(metadata), history.column);
-    let shape: Vec<usize> = std::iter::once(room.rows).chain(history.row_shape(metadata)).collect();
-    let dataset = create_rows(file, &shape, FillTime::Never, &name);
-    let dataset = dataset.map_err(FileError::hdf5(path, format!("make room for {name}")))?;
-    describe(path, &dataset, &column.unit(&metadata.units), column.frame, column.description)?;
-    Ok(dataset)
-}
-
-fn create_rows(file: &hdf5::File, shape: &[usize], fill: FillTime, name: &str) -> hdf5::Result<hdf5::Dataset> {
-    let builder = file
-        .new_dataset::<f64>()
-        .layout(Layout::Contiguous)
-        .alloc_time(Some(AllocTime::Early))
-        .fill_time(fill)
-        .fill_value(f64::NAN)
-        .obj_track_times(false);
-    builder.shape(shape).create(name)
-}
-
-/// Room for one of the arrays of the shapes.
-fn create_array(
-    path: &Path,
-    file: &hdf5::File,
-    StoredArray { shape, .. }: &StoredArray,
-    (body, ShapeDataset { path: name, is_whole, unit, frame, description }): (&BodyMetadata, &ShapeDataset),
-    units: &Units,
-) -> Result<hdf5::Dataset, FileError> {
-    let name = &body.path(name);
-    let builder = if *is_whole { file.new_dataset::<u32>() } else { file.new_dataset::<f64>() };
-    let builder = builder.layout(Layout::Contiguous).alloc_time(Some(AllocTime::Early)).fill_time(FillTime::Never);
-    let dataset = builder.obj_track_times(false).shape(shape.as_slice()).create(name.as_str());
-    let dataset = dataset.map_err(FileError::hdf5(path, format!("make room for {name}")))?;
-    describe(path, &dataset, &units.in_labels(unit), frame, description)?;
-    Ok(dataset)
-}
-
 /// Everything of a body that does not change with time.
 fn write_body(path: &Path, file: &hdf5::File, body: &BodyMetadata, units: &Units) -> Result<(), FileError> {
-    let name = format!("{BODIES}/{}", body.name);
-    let group = file.create_group(&name).map_err(FileError::hdf5(path, format!("write {name}")))?;
+    let group = group_of(path, file, BODIES, &body.name)?;
     write_model(path, &group, &body.model, units)?;
     write_points(path, &group, body, units)?;
     if !body.support_names.is_empty() {
@@ -157,12 +71,18 @@ fn write_body(path: &Path, file: &hdf5::File, body: &BodyMetadata, units: &Units
 
 /// The kind of a joint and what it joins.
 fn write_joint(path: &Path, file: &hdf5::File, joint: &JointMetadata) -> Result<(), FileError> {
-    let name = format!("{JOINTS}/{}", joint.name);
-    let group = file.create_group(&name).map_err(FileError::hdf5(path, format!("write {name}")))?;
+    let group = group_of(path, file, JOINTS, &joint.name)?;
     write_text(path, &group, "kind", &joint.kind)?;
     let [first, second] = &joint.between;
     write_text(path, &group, "first", first)?;
     write_text(path, &group, "second", second)
+}
+
+/// The group of a body or a joint, which is there where it has histories.
+fn group_of(path: &Path, file: &hdf5::File, all: &str, name: &str) -> Result<Group, FileError> {
+    let name = format!("{all}/{name}");
+    let group = if file.link_exists(&name) { file.group(&name) } else { file.create_group(&name) };
+    Ok(group.map_err(SealedError::hdf5(path, format!("write {name}")))?)
 }
 
 /// The effects of the motion, a list for each of their texts.
@@ -189,7 +109,7 @@ fn write_points(path: &Path, group: &Group, body: &BodyMetadata, units: &Units) 
 fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, complete: bool) -> Result<(), FileError> {
     let texts = [
         ("title", &metadata.title),
-        ("format_version", &seal::VERSION.to_owned()),
+        ("format_version", &Format::RESULTS.version.to_string()),
         ("scene", &metadata.scene_text),
         ("scene_file", &metadata.scene_file),
         ("formulation", &metadata.formulation),
@@ -207,12 +127,11 @@ fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, co
         file.new_attr::<f64>()
             .create(name)
             .and_then(|attribute| attribute.write_scalar(&number))
-            .map_err(FileError::hdf5(path, format!("write the attribute {name}")))?;
+            .map_err(SealedError::hdf5(path, format!("write the attribute {name}")))?;
     }
-    file.new_attr::<i64>()
-        .create("complete")
-        .and_then(|attribute| attribute.write_scalar(&i64::from(complete)))
-        .map_err(FileError::hdf5(path, "write the attribute complete"))
+    let written = file.new_attr::<i64>().create("complete");
+    let written = written.and_then(|attribute| attribute.write_scalar(&i64::from(complete)));
+    Ok(written.map_err(SealedError::hdf5(path, "write the attribute complete"))?)
 }
 
 /// Mass properties and modes.
@@ -278,13 +197,13 @@ fn write_mesh(path: &Path, group: &Group, mesh: &MeshProperties, length: &str) -
     let MeshProperties { nodes, elements, size, body_file, shapes_hash } = mesh;
     let size = aview1(size).into_dyn();
     write_constant(path, group, "model/mesh/size", size, [length, "mesh", "extent of the whole mesh along its axes"])?;
-    let group = group.group(MODEL).map_err(FileError::hdf5(path, "write the model"))?;
+    let group = group.group(MODEL).map_err(SealedError::hdf5(path, "write the model"))?;
     for (name, count) in [("mesh_nodes", nodes), ("mesh_elements", elements)] {
         group
             .new_attr::<i64>()
             .create(name)
             .and_then(|attribute| attribute.write_scalar(&(*count as i64)))
-            .map_err(FileError::hdf5(path, format!("write the attribute {name}")))?;
+            .map_err(SealedError::hdf5(path, format!("write the attribute {name}")))?;
     }
     write_text(path, &group, "body_file", body_file)?;
     write_text(path, &group, "shapes_hash", shapes_hash)
@@ -303,7 +222,7 @@ fn write_constant(
         .with_data(values)
         .obj_track_times(false)
         .create(name)
-        .map_err(FileError::hdf5(path, format!("write {name}")))?;
+        .map_err(SealedError::hdf5(path, format!("write {name}")))?;
     describe(path, &dataset, unit, frame, description)
 }
 
@@ -324,7 +243,7 @@ fn write_texts<'a>(
         .with_data(&texts)
         .obj_track_times(false)
         .create(name)
-        .map_err(FileError::hdf5(path, format!("write {name}")))?;
+        .map_err(SealedError::hdf5(path, format!("write {name}")))?;
     describe(path, &dataset, "1", "none", description)
 }
 
@@ -338,9 +257,7 @@ fn describe(path: &Path, dataset: &hdf5::Dataset, unit: &str, frame: &str, descr
 fn write_text(path: &Path, owner: &hdf5::Location, name: &str, text: &str) -> Result<(), FileError> {
     let value: VarLenUnicode =
         text.parse().map_err(|_| FileError::NulInText { path: path.to_path_buf(), attribute: name.into() })?;
-    owner
-        .new_attr::<VarLenUnicode>()
-        .create(name)
-        .and_then(|attribute| attribute.write_scalar(&value))
-        .map_err(FileError::hdf5(path, format!("write the attribute {name}")))
+    let written = owner.new_attr::<VarLenUnicode>().create(name);
+    let written = written.and_then(|attribute| attribute.write_scalar(&value));
+    Ok(written.map_err(SealedError::hdf5(path, format!("write the attribute {name}")))?)
 }

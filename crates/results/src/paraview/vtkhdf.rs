@@ -11,6 +11,7 @@ use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::types::FixedAscii;
 use hdf5::{Group, H5Type};
 use ndarray::{ArrayView, ArrayView1, ArrayView2, Dimension, s};
+use sealed::SealedError;
 use std::path::{Path, PathBuf};
 use whole_file::TemporaryFile;
 
@@ -40,7 +41,7 @@ impl VtkHdf {
     /// Begins a file of one mesh with the fields at these times; without times, of a state that has none.
     ///
     /// # Errors
-    /// [`FileError::Exists`], [`FileError::System`] and [`FileError::Hdf5`].
+    /// [`FileError::Exists`] and [`FileError::Sealed`].
     pub fn create(
         path: impl AsRef<Path>,
         grid: &Grid,
@@ -85,16 +86,16 @@ impl VtkHdf {
         let mut builder = hdf5::File::with_options();
         // HDF5 would lock the file, and a process that is started meanwhile would keep the lock to its end.
         builder.with_fapl(|plist| plist.file_locking(false));
-        let file = builder.create(&place).map_err(FileError::hdf5(path, "create the file"))?;
+        let file = builder.create(&place).map_err(SealedError::hdf5(path, "create the file"))?;
         let blocks = ordered_group(&file, ROOT).and_then(|root| blocks(&root));
-        let blocks = blocks.map_err(FileError::hdf5(path, "write the mesh"))?;
+        let blocks = blocks.map_err(SealedError::hdf5(path, "write the mesh"))?;
         Ok(Self { file, place, path: path.to_owned(), blocks, overwrite })
     }
 
     /// Writes a field of a step of a mesh, point by point; all three are numbered from 0.
     ///
     /// # Errors
-    /// [`FileError::WrongLength`] for a mesh or a field that there is not; [`FileError::Hdf5`], also for a list of another length
+    /// [`FileError::WrongLength`] for a mesh or a field that there is not; [`FileError::Sealed`], also for a list of another length
     /// than points times components, and for a step that there is not.
     pub fn write(&self, block: usize, step: usize, field: usize, values: &[f64]) -> Result<(), FileError> {
         let (points, datasets) = self.blocks.get(block).map_or((0, &[][..]), |(points, sets)| (*points, sets));
@@ -108,16 +109,16 @@ impl VtkHdf {
                 .map_err(|error| hdf5::Error::Internal(error.to_string()))
                 .and_then(|values| dataset.write_slice(values, s![rows, ..])),
         };
-        written.map_err(FileError::hdf5(&self.path, format!("write step {step}")))
+        Ok(written.map_err(SealedError::hdf5(&self.path, format!("write step {step}")))?)
     }
 
     /// Moves the file into its place, once it is safe on the disk.
     ///
     /// # Errors
-    /// [`FileError::Exists`], [`FileError::System`] and [`FileError::Hdf5`].
+    /// [`FileError::Exists`] and [`FileError::Sealed`].
     pub fn finish(self) -> Result<(), FileError> {
         drop(self.blocks);
-        self.file.close().map_err(FileError::hdf5(&self.path, "write the file"))?;
+        self.file.close().map_err(SealedError::hdf5(&self.path, "write the file"))?;
         put(self.place, &self.path, self.overwrite)
     }
 }
@@ -128,12 +129,12 @@ pub(crate) fn temporary(path: &Path, overwrite: bool) -> Result<TemporaryFile, F
         return Err(FileError::Exists { path: path.to_owned() });
     }
     let made = TemporaryFile::beside(path, ".tmp");
-    Ok(made.map_err(|error| FileError::system(path, "create the file", &error))?.1)
+    Ok(made.map_err(SealedError::system(path, "create the file"))?.1)
 }
 
 /// Moves a file that is complete into its place.
 pub(crate) fn put(place: TemporaryFile, path: &Path, overwrite: bool) -> Result<(), FileError> {
-    let failed = |error| FileError::system(path, "write the file", &error);
+    let failed = |error| FileError::from(SealedError::system(path, "write the file")(error));
     std::fs::File::open(&place).and_then(|file| file.sync_all()).map_err(failed)?;
     place.put(path, overwrite).map_err(|error| match error.kind() {
         std::io::ErrorKind::AlreadyExists => FileError::Exists { path: path.to_owned() },

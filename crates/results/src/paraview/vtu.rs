@@ -6,6 +6,7 @@ use crate::FileError;
 use crate::error::check_length;
 use crate::paraview::fields::{Field, Grid};
 use crate::paraview::vtkhdf::{put, temporary};
+use sealed::SealedError;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -15,7 +16,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`FileError::WrongLength`] for a field of another length than points times components; [`FileError::Exists`] and
-/// [`FileError::System`].
+/// [`FileError::Sealed`].
 pub fn write_vtu(
     path: impl AsRef<Path>,
     grid: &Grid,
@@ -31,7 +32,7 @@ pub fn write_vtu(
         write_grid(&mut file, grid, fields)?;
         file.flush()
     });
-    written.map_err(|error| FileError::system(path, "write the file", &error))?;
+    written.map_err(SealedError::system(path, "write the file"))?;
     put(place, path, overwrite)
 }
 
@@ -51,7 +52,7 @@ pub struct PvdEntry {
 /// Writes the list of files.
 ///
 /// # Errors
-/// [`FileError::Exists`] and [`FileError::System`].
+/// [`FileError::Exists`] and [`FileError::Sealed`].
 pub fn write_pvd(path: impl AsRef<Path>, files: &[PvdEntry], overwrite: bool) -> Result<(), FileError> {
     let path = path.as_ref();
     let place = temporary(path, overwrite)?;
@@ -62,7 +63,7 @@ pub fn write_pvd(path: impl AsRef<Path>, files: &[PvdEntry], overwrite: bool) ->
         let _ = writeln!(text, "<DataSet timestep=\"{time:?}\" part=\"{part}\" name=\"{name}\" file=\"{file}\"/>");
     }
     text += "</Collection>\n</VTKFile>\n";
-    std::fs::write(&place, text).map_err(|error| FileError::system(path, "write the file", &error))?;
+    std::fs::write(&place, text).map_err(SealedError::system(path, "write the file"))?;
     put(place, path, overwrite)
 }
 

@@ -1,10 +1,8 @@
 //! The shapes of a body as the datasets of a file.
 
 use super::{Shapes, StressShapes};
-use crate::checkpoint::little_endian;
-use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
-use std::io;
+use crate::{BodyMetadata, Units};
+use sealed::{Declared, Kind, SealedError};
 
 /// A kind of dataset, of which a body has one or none.
 #[derive(Debug)]
@@ -77,32 +75,11 @@ const fn numbers(
     ShapeDataset { path, is_whole: false, unit, frame, description }
 }
 
-/// A dataset of shapes in a file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct StoredArray {
-    /// Number of its body.
-    pub body: usize,
-    /// Path of one of [`DATASETS`], in the group of the body.
-    pub path: String,
-    pub shape: Vec<usize>,
-    /// First byte in the file, 0 where it is empty.
-    pub start: u64,
-}
-
-impl StoredArray {
-    /// Its kind; `None` if there is none of this path.
-    pub(crate) fn dataset(&self) -> Option<&'static ShapeDataset> {
-        DATASETS.iter().find(|dataset| dataset.path == self.path)
-    }
-
-    /// Bytes of its numbers; `None` if they cannot be counted, and for lists without numbers.
-    pub(crate) fn bytes(&self) -> Option<u64> {
-        if self.shape.contains(&0) && self.shape.first() != Some(&0) {
-            return None;
-        }
-        let each = if self.dataset()?.is_whole { size_of::<u32>() } else { size_of::<f64>() };
-        self.shape.iter().try_fold(each, |bytes, length| bytes.checked_mul(*length)).map(|bytes| bytes as u64)
+impl ShapeDataset {
+    /// It, of a body, with a shape.
+    pub(crate) fn declared(&self, body: &BodyMetadata, shape: &[usize], units: &Units) -> Declared {
+        let kind = if self.is_whole { Kind::U32 } else { Kind::F64 };
+        Declared::new(body.path(self.path), kind, shape, [&units.in_labels(self.unit), self.frame, self.description])
     }
 }
 
@@ -114,13 +91,20 @@ pub(crate) enum Lists<'a> {
 }
 
 impl Lists<'_> {
-    /// The numbers as they are in a file.
-    pub(crate) fn bytes(&self) -> impl Iterator<Item = Cow<'_, [u8]>> {
-        let (whole, numbers) = match self {
-            Self::Whole(list) => (Some(little_endian(list)), &[][..]),
-            Self::Numbers(lists) => (None, &lists[..]),
-        };
-        whole.into_iter().chain(numbers.iter().map(|list| little_endian(list)))
+    /// The list of integers, if it is one.
+    pub(crate) fn whole(&self) -> Option<&[u32]> {
+        match self {
+            Self::Whole(list) => Some(list),
+            Self::Numbers(_) => None,
+        }
+    }
+
+    /// The lists of numbers.
+    pub(crate) fn numbers(&self) -> &[&[f64]] {
+        match self {
+            Self::Whole(_) => &[],
+            Self::Numbers(lists) => lists,
+        }
     }
 }
 
@@ -130,9 +114,9 @@ pub(crate) trait Datasets {
     /// The shape of a dataset; `None` if the body does not have it.
     fn shape(&self, path: &str) -> Option<&[usize]>;
     /// The lists of a dataset of integers, as one.
-    fn whole(&self, path: &str) -> io::Result<Vec<u32>>;
+    fn whole(&self, path: &str) -> Result<Vec<u32>, SealedError>;
     /// The lists of a dataset of numbers.
-    fn numbers(&self, path: &str) -> io::Result<Vec<Vec<f64>>>;
+    fn numbers(&self, path: &str) -> Result<Vec<Vec<f64>>, SealedError>;
 }
 
 impl Shapes {
@@ -163,7 +147,7 @@ impl Shapes {
     }
 
     /// The shapes in a file; `None` where one of the datasets lacks, or has a shape that none of its kind has.
-    pub(crate) fn read(file: &impl Datasets) -> io::Result<Option<Self>> {
+    pub(crate) fn read(file: &impl Datasets) -> Result<Option<Self>, SealedError> {
         let last = |path: &str, last: &[usize]| file.shape(path).is_some_and(|shape| shape.ends_with(last));
         let lists = |path: &str, rank: usize| file.shape(path).is_some_and(|shape| shape.len() == rank);
         let has_large = file.shape(PAIRS).is_some();

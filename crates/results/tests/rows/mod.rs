@@ -78,7 +78,7 @@ pub fn shapes(modes: usize) -> Shapes {
 pub type Writer = results::Writer<Row>;
 pub type Resumed = results::Resumed<Row>;
 
-/// The widths are known to `sealed`, too. The last but one is of a body with a hinge only.
+/// The last but one is of a body with a hinge only.
 pub static COLUMNS: [Column<Row>; 23] = [
     Column::of_system(["energy", "kinetic"], KIND, "of a test", Number(|row: &Row| row.time + 20.0)),
     of_body("", "attitude", Quaternion(|row| [row.time, 0.1, 0.2, 0.3])),

@@ -1,10 +1,11 @@
-//! The head of a results file, as `src/seal.rs` describes it, and seals that are made right again.
+//! The head of a results file, as `src/head.rs` of `sealed` describes it, and seals that are made right again.
 
+use keys::{Digest, Hash};
 use serde_json::Value;
 use std::ops::Range;
 
 /// Bytes before the description.
-const HEAD: usize = 48;
+const HEAD: usize = 72;
 
 fn word(bytes: &[u8], at: usize) -> usize {
     u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize
@@ -12,11 +13,16 @@ fn word(bytes: &[u8], at: usize) -> usize {
 
 /// Bytes of the description.
 pub fn description(bytes: &[u8]) -> Range<usize> {
-    HEAD..HEAD + word(bytes, 40)
+    HEAD..HEAD.saturating_add(word(bytes, 32))
 }
 
 pub fn read(bytes: &[u8]) -> Value {
     serde_json::from_slice(&bytes[description(bytes)]).unwrap()
+}
+
+/// The metadata in a description.
+pub fn metadata(description: &Value) -> Value {
+    serde_json::from_str(description["texts"]["metadata"].as_str().unwrap()).unwrap()
 }
 
 /// Replaces the description, and makes the seal right again.
@@ -27,41 +33,57 @@ pub fn describe(bytes: &mut Vec<u8>, json: &str) {
     }
     bytes.resize(bytes.len().max(HEAD + json.len()), 0);
     bytes[HEAD..HEAD + json.len()].copy_from_slice(json.as_bytes());
-    bytes[40..48].copy_from_slice(&(json.len() as u64).to_le_bytes());
-    let left_out = serde_json::from_str(json).map_or(Vec::new(), |description| left_out(&description, bytes.len()));
-    seal(bytes, &left_out);
+    bytes[32..40].copy_from_slice(&(json.len() as u64).to_le_bytes());
+    let places = serde_json::from_str(json).map_or(Vec::new(), |description| places(&description, bytes.len()));
+    seal(bytes, &places);
 }
 
-/// Bytes of the histories and checkpoints that a description claims, in their order in the file; none of a finished file.
-pub fn left_out(description: &Value, length: usize) -> Vec<Range<usize>> {
+/// A dataset that a description claims: its bytes, and the digits of its hash.
+#[derive(Debug, Clone)]
+pub struct Place {
+    pub bytes: Range<usize>,
+    pub hash: Option<String>,
+}
+
+/// The datasets in their order in the file.
+pub fn places(description: &Value, length: usize) -> Vec<Place> {
     let number = |value: &Value| value.as_u64().map_or(0, |number| number as usize);
-    let Some(words) = description["checkpoint_words"].as_u64() else { return Vec::new() };
-    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
-    let body = &description["metadata"]["bodies"][0];
-    let modes = list(&body["model"]["frequencies"]).len();
-    let points = list(&body["point_names"]).len();
-    // Time, then the body, and the energy of the system.
-    let widths = [1, 4, 3, 3, 3, 3, modes, modes, 1, 1, 1, 1, 1, 3, 3, 3, 3];
-    let widths = widths.into_iter().chain(std::iter::repeat_n(3 * points, 4)).chain([1]);
-    let sizes = widths.map(|width| number(&description["rows"]).saturating_mul(8 * width));
-    let sizes = sizes.chain([(words as usize).saturating_mul(16)]);
-    let mut ranges: Vec<_> = (list(&description["starts"]).iter().map(number).zip(sizes))
-        .map(|(start, size)| start..start.saturating_add(size))
-        .filter(|range| range.end <= length && !range.is_empty())
+    let datasets = description["datasets"].as_object().into_iter().flat_map(|datasets| datasets.values());
+    let mut places: Vec<_> = datasets
+        .map(|dataset| {
+            let shape = dataset["shape"].as_array().cloned().unwrap_or_default();
+            let each = if dataset["kind"] == "u32" { 4 } else { 8 };
+            let size = shape.iter().map(number).fold(each, usize::saturating_mul);
+            let start = number(&dataset["start"]);
+            Place { bytes: start..start.saturating_add(size), hash: dataset["hash"].as_str().map(str::to_owned) }
+        })
+        .filter(|place| place.bytes.end <= length && !place.bytes.is_empty())
         .collect();
-    ranges.sort_unstable_by_key(|range| range.start);
-    ranges
+    places.sort_unstable_by_key(|place| place.bytes.start);
+    places
 }
 
-/// Makes length and check sum right again.
-pub fn seal(bytes: &mut [u8], left_out: &[Range<usize>]) {
+/// Makes the length and all hashes right again.
+pub fn seal(bytes: &mut [u8], places: &[Place]) {
     let length = bytes.len();
-    bytes[32..40].copy_from_slice(&(length as u64).to_le_bytes());
-    let mut sum = crc32fast::Hasher::new();
-    let mut start = 32;
-    for range in left_out.iter().cloned().chain(std::iter::once(length..length)) {
-        sum.update(bytes.get(start..range.start).unwrap_or_default());
-        start = range.end;
+    bytes[24..32].copy_from_slice(&(length as u64).to_le_bytes());
+    let described = description(bytes);
+    let described = described.start..described.end.min(length);
+    for Place { bytes: place, hash } in places {
+        let Some(old) = hash.as_ref().filter(|hash| hash.len() == 64) else { continue };
+        let right = Hash::of(&bytes[place.clone()]).to_string();
+        let of_old = bytes[described.clone()].windows(64).position(|window| window == old.as_bytes());
+        if let Some(at) = of_old.map(|at| described.start + at) {
+            bytes[at..at + 64].copy_from_slice(right.as_bytes());
+        }
     }
-    bytes[24..32].copy_from_slice(&u64::from(sum.finalize()).to_le_bytes());
+    let mut digest = Digest::new().numbers(&bytes[..40]).numbers(&bytes[described.clone()]);
+    let mut start = described.end;
+    for place in places.iter().map(|place| place.bytes.clone()).chain(std::iter::once(length..length)) {
+        for block in bytes.get(start..place.start).unwrap_or_default().chunks(1 << 14) {
+            digest = digest.numbers(block);
+        }
+        start = start.max(place.end);
+    }
+    bytes[40..72].copy_from_slice(digest.finish().as_bytes());
 }

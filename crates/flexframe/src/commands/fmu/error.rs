@@ -3,9 +3,9 @@
 use std::io;
 use std::path::PathBuf;
 
-use body_file::BodyFileError;
 use model::{BuildError, StartError};
 use scene::SceneError;
+use sealed::SealedError;
 
 use crate::files::write_error::WriteError;
 
@@ -34,7 +34,7 @@ pub enum FmuError {
     },
     /// The body file that was named cannot be read.
     #[error(transparent)]
-    Body(#[from] BodyFileError),
+    Body(#[from] SealedError),
     /// A body file that does not say which scene it was made of.
     #[error("{}: no scene is in this file; make it again: flexframe reduce SCENE -o FILE", path.display())]
     NoScene {

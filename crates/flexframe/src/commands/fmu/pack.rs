@@ -4,9 +4,9 @@ use std::fmt;
 use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use body_file::BodyFile;
 use model::{BuildProgress, Builder};
 use scene::{Body, Flexible, Scene};
+use sealed::{Format, SealedFile};
 use serde::Serialize;
 use whole_file::{TemporaryFolder, write_whole};
 use zip::write::SimpleFileOptions;
@@ -81,8 +81,8 @@ impl FmuReport {
 /// # Errors
 /// [`FmuError`] for a file that is no body file of this version, and for a scene that breaks a rule.
 pub fn scene_of_body(file: &Path) -> Result<Scene, FmuError> {
-    let body = BodyFile::open(file)?;
-    let text = body.attribute("scene").ok_or_else(|| FmuError::NoScene { path: file.to_owned() })?;
+    let body = SealedFile::open(file, Format::BODY)?;
+    let text = body.text("scene").ok_or_else(|| FmuError::NoScene { path: file.to_owned() })?;
     let mut scene: toml::Table = toml::from_str(text).map_err(|error| FmuError::Text(error.to_string()))?;
     let name = std::path::absolute(file).unwrap_or_else(|_| file.to_owned()).display().to_string();
     scene.insert("body".to_owned(), toml::Table::from_iter([("file".to_owned(), toml::Value::from(name))]).into());

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use body_file::BodyFileError;
 use model::BuildError;
 use scene::SceneError;
+use sealed::SealedError;
 
 use crate::files::outputs::OutputError;
 use crate::files::write_error::WriteError;
@@ -120,7 +120,7 @@ pub enum SweepError {
     },
     /// The table cannot be written.
     #[error(transparent)]
-    Table(#[from] BodyFileError),
+    Table(#[from] SealedError),
     /// A folder cannot be made.
     #[error(transparent)]
     Write(#[from] WriteError),

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use body_file::{BodyFile, BodyFileError, Declared, Kind, Writer};
 use keys::Digest;
+use sealed::{Declared, Format, Kind, SealedError, SealedFile, Writer};
 use serde::de::DeserializeOwned;
 use toml::Value;
 
@@ -66,15 +66,15 @@ impl Table {
             return Ok(None);
         }
         let other = |what: &str| SweepError::OtherTable { path: path.to_owned(), what: what.to_owned() };
-        let file = BodyFile::open(path).map_err(|error| match error {
-            BodyFileError::System { .. } => error.into(),
-            BodyFileError::Damaged { what, .. } => other(&format!("it is damaged: {what}")),
+        let file = SealedFile::open(path, Format::BODY).map_err(|error| match error {
+            SealedError::System { .. } => error.into(),
+            SealedError::Damaged { what, .. } => other(&format!("it is damaged: {what}")),
             _ => other("it is no table of a sweep"),
         })?;
-        if file.attribute("identity").is_none() {
+        if file.text("identity").is_none() {
             return Err(other("it is no table of a sweep"));
         }
-        if file.attribute("identity") != Some(&identity(plan)) {
+        if file.text("identity") != Some(&identity(plan)) {
             return Err(other("it is of another sweep or scene, or of another version of flexframe"));
         }
         let status = file.read::<u32>("status").map_err(|_| other("it is damaged"))?.values;
@@ -96,7 +96,7 @@ impl Table {
             if status.get(i).is_some_and(|status| *status != OPEN) && identities.get(i) != Some(&plan.identities[i]) {
                 stale += 1;
             } else if status.get(i) == Some(&DONE) {
-                let of_row = |column: &Option<body_file::Array<f64>>| {
+                let of_row = |column: &Option<sealed::Array<f64>>| {
                     let column = column.as_ref()?;
                     let width = column.shape.get(1).copied()?;
                     column.values.get(i * width..(i + 1) * width).map(<[f64]>::to_vec)
@@ -108,7 +108,7 @@ impl Table {
                 *row = RowState::Failed(words.clone());
             }
         }
-        let csv = file.attribute("csv").map_or_else(String::new, str::to_owned);
+        let csv = file.text("csv").map_or_else(String::new, str::to_owned);
         Ok(Some(Self { rows, stale, csv }))
     }
 
@@ -220,8 +220,8 @@ impl Table {
 }
 
 /// Words of some rows, by their number.
-fn by_row<T: DeserializeOwned>(file: &BodyFile, attribute: &str) -> BTreeMap<usize, T> {
-    file.attribute(attribute).and_then(|text| serde_json::from_str(text).ok()).unwrap_or_default()
+fn by_row<T: DeserializeOwned>(file: &SealedFile, attribute: &str) -> BTreeMap<usize, T> {
+    file.text(attribute).and_then(|text| serde_json::from_str(text).ok()).unwrap_or_default()
 }
 
 /// Identity of the sweep that the table belongs to.

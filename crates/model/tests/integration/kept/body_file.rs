@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ::body_file::{BodyFile, Declared, Kind, Writer};
 use model::{Builder, Cache, Model};
 use scene::{Body, Scene};
+use sealed::{Declared, Format, Kind, SealedFile, Writer};
 
 use super::cache::{FORCE, built, built_with};
 use crate::CLAMPED;
@@ -119,7 +119,7 @@ fn what_is_bent_far_and_its_stress_follow_from_what_others_read() {
     let (_folder, direct, path) = reduced(LARGE, &format!("{CLAMPED}{FORCE}{STRESS}"), false);
     let model = Model::build(&direct, |_| ()).unwrap();
     let (meshed, stress) = (model.meshed.as_ref().unwrap(), model.stress.as_ref().unwrap());
-    let file = BodyFile::open(&path).unwrap();
+    let file = SealedFile::open(&path, Format::BODY).unwrap();
     let read = |name: &str| file.read::<f64>(name).unwrap();
     let pairs = file.read::<u32>("large_deflection/pairs").unwrap();
     assert_eq!((pairs.shape, &pairs.values[..]), (vec![3, 2], &[0, 0, 0, 1, 1, 1][..]));
@@ -178,7 +178,7 @@ fn what_others_read_is_what_the_model_has() {
     let (_folder, direct, path) = reduced(MODES, &format!("{SPIN}{FORCE}"), true);
     let model = Model::build(&direct, |_| ()).unwrap();
     let meshed = model.meshed.as_ref().unwrap();
-    let file = BodyFile::open(&path).unwrap();
+    let file = SealedFile::open(&path, Format::BODY).unwrap();
     let (natural, all, nodes) = (meshed.modes.natural(), model.body.flexible(), meshed.mesh.positions().len());
     assert!(natural < all);
     for (group, first, count) in [("modes", 0, natural), ("static_shapes", natural, all - natural)] {
@@ -211,7 +211,7 @@ fn what_others_read_is_what_the_model_has() {
     edges.dedup();
     assert_eq!(edges.len(), count);
     assert!(edges.iter().all(|[a, b]| edges.binary_search(&[*b, *a]).is_ok()));
-    let attribute = |name: &str| file.attribute(name).unwrap().to_owned();
+    let attribute = |name: &str| file.text(name).unwrap().to_owned();
     assert_eq!((attribute("title"), attribute("scene")), ("Bar".to_owned(), direct.source.clone()));
 }
 
@@ -246,8 +246,8 @@ fn a_body_file_of_another_scene_is_refused_with_what_differs() {
 
 /// The file again, without some datasets and with other texts.
 fn rewritten(path: &Path, keep: impl Fn(&str) -> bool, change: impl Fn(&str) -> String) {
-    let file = BodyFile::open(path).unwrap();
-    let texts = file.attributes().iter().map(|(name, text)| (name.clone(), change(text))).collect();
+    let file = SealedFile::open(path, Format::BODY).unwrap();
+    let texts = file.texts().iter().map(|(name, text)| (name.clone(), change(text))).collect();
     let described = |name: &str| {
         let (kind, shape, _) = file.described(name).unwrap();
         Declared { path: name.to_owned(), kind, shape: shape.to_vec(), attributes: Vec::new(), same_as: None }
@@ -293,7 +293,7 @@ fn a_body_file_of_another_version_or_with_a_part_missing_is_refused() {
         fs::write(&path, &whole).unwrap();
         scene(folder.path(), file, MODES, SPIN)
     };
-    let shapes = BodyFile::open(&path).unwrap().read::<f64>("modes/shapes").unwrap().values;
+    let shapes = SealedFile::open(&path, Format::BODY).unwrap().read::<f64>("modes/shapes").unwrap().values;
     let needle: Vec<u8> = shapes[..8].iter().flat_map(|x| x.to_ne_bytes()).collect();
     let at = whole.windows(needle.len()).position(|window| window == needle).unwrap();
     let mut damaged = whole.clone();

@@ -1,5 +1,7 @@
 //! Arrays of numbers, and the kinds of numbers that a file has.
 
+use std::borrow::Cow;
+
 use bytemuck::Pod;
 use serde::{Deserialize, Serialize};
 
@@ -38,22 +40,46 @@ impl Kind {
 pub trait Number: Pod {
     /// Its kind.
     const KIND: Kind;
+    /// With its bytes in the other order.
+    #[must_use]
+    fn swapped(self) -> Self;
 }
 
 impl Number for f64 {
     const KIND: Kind = Kind::F64;
+
+    fn swapped(self) -> Self {
+        Self::from_bits(self.to_bits().swap_bytes())
+    }
 }
 
 impl Number for u64 {
     const KIND: Kind = Kind::U64;
+
+    fn swapped(self) -> Self {
+        self.swap_bytes()
+    }
 }
 
 impl Number for u32 {
     const KIND: Kind = Kind::U32;
+
+    fn swapped(self) -> Self {
+        self.swap_bytes()
+    }
 }
 
 /// Bytes of an array; none where there are more than can be counted.
 pub(crate) fn bytes(kind: Kind, shape: &[usize]) -> Option<u64> {
     let count = shape.iter().try_fold(1usize, |count, length| count.checked_mul(*length))?;
     count.checked_mul(kind.bytes()).map(|bytes| bytes as u64)
+}
+
+/// Numbers as they are in a file, the lowest byte first; no copy where they are so in memory, too.
+pub fn little_endian<T: Number>(values: &[T]) -> Cow<'_, [u8]> {
+    if cfg!(target_endian = "little") {
+        return Cow::Borrowed(bytemuck::cast_slice(values));
+    }
+    let swapped: Vec<T> = values.iter().map(|value| value.swapped()).collect();
+    Cow::Owned(bytemuck::cast_slice(&swapped).to_vec())
 }

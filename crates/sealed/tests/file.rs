@@ -1,9 +1,12 @@
-//! Body files are read back as they were written, and refused where they are not.
+//! Sealed files are read back as they were written, and refused where they are not.
 
 use std::collections::BTreeMap;
+use std::fs::OpenOptions;
+use std::os::unix::fs::FileExt;
 use std::path::Path;
 
-use body_file::{Array, BodyFile, BodyFileError, Declared, Kind, Writer};
+use keys::Hash;
+use sealed::{Array, Declared, Format, Kind, Made, SealedError, SealedFile, Writer, little_endian};
 
 fn declared(path: &str, kind: Kind, shape: &[usize]) -> Declared {
     let attributes = vec![("unit", "mm".to_owned())];
@@ -58,14 +61,14 @@ fn what_is_written_is_read_back_by_us_and_by_hdf5() {
     let at = bytes.windows(8).position(|number| number == 12.5f64.to_ne_bytes()).unwrap();
     bytes[at] ^= 1;
     std::fs::write(&path, bytes).unwrap();
-    let changed = BodyFile::open(&path).unwrap().read::<f64>("modes/shapes").unwrap_err();
+    let changed = SealedFile::open(&path, Format::BODY).unwrap().read::<f64>("modes/shapes").unwrap_err();
     assert!(changed.to_string().contains("has been changed"), "{changed}");
 }
 
 /// Reads it back.
 fn check(path: &Path) {
-    let file = BodyFile::open(path).unwrap();
-    assert_eq!(file.attribute("scene"), Some("a = 1\nω"));
+    let file = SealedFile::open(path, Format::BODY).unwrap();
+    assert_eq!(file.text("scene"), Some("a = 1\nω"));
     let shapes: Array<f64> = file.read("modes/shapes").unwrap();
     assert_eq!(shapes.shape, [2, 2, 3]);
     assert!(shapes.values.iter().zip(SHAPES).all(|(a, b)| a.to_bits() == b.to_bits()));
@@ -84,22 +87,23 @@ fn what_is_not_as_it_was_written_is_refused() {
     let whole = std::fs::read(&path).unwrap();
     let open = |bytes: &[u8]| {
         std::fs::write(&path, bytes).unwrap();
-        BodyFile::open(&path)
+        SealedFile::open(&path, Format::BODY)
     };
     let message = |bytes: &[u8]| open(bytes).unwrap_err().to_string();
 
-    assert!(matches!(open(b"").unwrap_err(), BodyFileError::NotABody { .. }));
-    assert!(matches!(open(&whole[512..]).unwrap_err(), BodyFileError::NotABody { .. }));
+    assert!(matches!(open(b"").unwrap_err(), SealedError::NoSeal { .. }));
+    assert!(matches!(open(&whole[512..]).unwrap_err(), SealedError::NoSeal { .. }));
     let cut = message(&whole[..whole.len() - 8]);
     assert!(cut.contains(&format!("it has {} bytes where {} were written", whole.len() - 8, whole.len())), "{cut}");
 
+    assert!(whole.starts_with(b"flexframe body, v. 2   \n"));
     let mut version = whole.clone();
-    version[16] += 1;
-    assert!(message(&version).contains("of version 2, and this program reads version 1"), "{}", message(&version));
-    let mut order = whole.clone();
-    order[16..20].reverse();
-    order[20..24].reverse();
-    assert!(matches!(open(&order).unwrap_err(), BodyFileError::OtherMachine { .. }));
+    version[19] = b'3';
+    assert!(message(&version).contains("of version 3, and this program reads version 2"), "{}", message(&version));
+    open(&whole).unwrap();
+    assert!(Format::BODY.is_claimed(&path) && !Format::RESULTS.is_claimed(&path));
+    let other = SealedFile::open(&path, Format::RESULTS).unwrap_err();
+    assert!(matches!(other, SealedError::NoSeal { .. }), "{other}");
 
     let file = open(&whole).unwrap();
     let missing = file.read::<f64>("static_shapes/shapes").unwrap_err().to_string();
@@ -107,32 +111,63 @@ fn what_is_not_as_it_was_written_is_refused() {
     assert!(file.read::<u64>("mass").unwrap_err().to_string().contains("of another kind"));
 }
 
-/// Each single bit that changes is found, in the head or in the dataset that it is in; elsewhere it changes nothing that is
-/// read.
+/// Each byte that changes is found: in the head and in HDF5's own when the file is opened, in a dataset when that is read.
 #[test]
-fn every_changed_bit_is_found() {
+fn every_changed_byte_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("b.body.h5");
     write(&path);
     let whole = std::fs::read(&path).unwrap();
-    let needle: Vec<u8> = SHAPES.iter().flat_map(|x| x.to_ne_bytes()).collect();
-    let start = whole.windows(needle.len()).position(|window| window == needle).unwrap();
-    let described = u64::from_ne_bytes(whole[32..40].try_into().unwrap()) as usize;
-    let flipped = |at: usize, bit: u8| {
-        let mut bytes = whole.clone();
-        bytes[at] ^= 1 << bit;
-        std::fs::write(&path, bytes).unwrap();
-        BodyFile::open(&path)
+    let file = OpenOptions::new().write(true).open(&path).unwrap();
+    let mut in_datasets = 0;
+    for at in 0..whole.len() {
+        file.write_at(&[whole[at] ^ 1 << (at % 8)], at as u64).unwrap();
+        if let Ok(file) = SealedFile::open(&path, Format::BODY) {
+            let read = ["modes/shapes", "mass"].map(|dataset| file.read::<f64>(dataset).err());
+            let others = [file.read::<u32>("mesh/tetrahedra").err(), file.read::<u64>("tags").err()];
+            let errors: Vec<_> = read.into_iter().chain(others).flatten().map(|error| error.to_string()).collect();
+            assert!(errors.len() == 1 && errors[0].contains("has been changed"), "byte {at}: {errors:?}");
+            in_datasets += 1;
+        }
+        file.write_at(&whole[at..=at], at as u64).unwrap();
+    }
+    assert_eq!(in_datasets, 8 * 12 + 4 * 10 + 8 * 3 + 8);
+}
+
+/// A dataset without a hash is written in place; sealed, it is as it was.
+#[test]
+fn numbers_that_change_are_sealed_at_the_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, copy] = ["a.h5", "b.h5"].map(|name| folder.path().join(name));
+    let texts = BTreeMap::from([("what".to_owned(), "a run".to_owned())]);
+    let datasets = [declared("row", Kind::F64, &[3]), declared("fixed", Kind::F64, &[2])];
+    let make = |path: &Path| {
+        let made = Made { place: path, path, format: Format::RESULTS, texts: &texts, datasets: &datasets };
+        made.by_hdf5::<SealedError>(|_| Ok(())).unwrap()
     };
-    for at in (0..72 + described).step_by(5) {
-        assert!(flipped(at, (at % 8) as u8).is_err(), "byte {at}");
-    }
-    for at in start..start + needle.len() {
-        let file = flipped(at, (at % 8) as u8).unwrap();
-        let error = file.read::<f64>("modes/shapes").unwrap_err();
-        assert!(error.to_string().contains("dataset modes/shapes has been changed"), "{error}");
-        assert!(file.read::<f64>("mass").is_ok());
-    }
+    let mut file = make(&path);
+    file.write_at("fixed", 0, &[4.0, 5.0]).unwrap();
+    file.seal("fixed", &Hash::of(&little_endian(&[4.0, 5.0])));
+    file.write_head().unwrap();
+    file.write_at("row", 1, &[1.0, 2.0]).unwrap();
+    assert!(matches!(file.write_at("row", 2, &[0.0; 2]), Err(SealedError::Declared { .. })));
+    let read = SealedFile::open(&path, Format::RESULTS).unwrap();
+    assert_eq!(read.read::<f64>("row").unwrap().values, [0.0, 1.0, 2.0]);
+    assert_eq!(read.read_first::<f64>("row", 2).unwrap(), [0.0, 1.0]);
+    assert_eq!(read.read_first::<f64>("row", 9).unwrap(), [0.0, 1.0, 2.0]);
+
+    let mut sealed = make(&copy);
+    let hash = sealed.copy_from(&read, "row", 24).unwrap();
+    sealed.seal("row", &hash);
+    assert!(matches!(sealed.copy_from(&read, "row", 32), Err(SealedError::Declared { .. })));
+    // What has been damaged is not sealed again.
+    file.write_at("fixed", 0, &[4.5]).unwrap();
+    assert!(matches!(sealed.copy_from(&read, "fixed", 16), Err(SealedError::Damaged { .. })));
+    sealed.write_head().unwrap();
+    let whole = SealedFile::open(&copy, Format::RESULTS).unwrap();
+    assert_eq!(whole.read::<f64>("row").unwrap().values, [0.0, 1.0, 2.0]);
+    sealed.write_at("row", 0, &[1.0]).unwrap();
+    assert!(matches!(whole.read::<f64>("row"), Err(SealedError::Damaged { .. })));
 }
 
 #[test]
@@ -143,7 +178,7 @@ fn a_file_appears_when_it_is_whole() {
     assert!(writer.write("a", &[1.0]).is_err() && writer.write("a", &[1u64, 2]).is_err());
     assert!(writer.write("b", &[1.0]).is_err() && !path.exists());
     let error = writer.finish(false).unwrap_err();
-    assert!(matches!(error, BodyFileError::Declared { .. }), "{error}");
+    assert!(matches!(error, SealedError::Declared { .. }), "{error}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 
     let nowhere = folder.path().join("nowhere/b.body.h5");
