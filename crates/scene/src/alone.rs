@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use toml_edit::{DocumentMut, Item, Table};
 
-use crate::document::{BODIES, OF_A_BODY, OUTPUT_OF_A_BODY};
+use crate::document::{BODIES, OF_A_BODY, OUTPUT_OF_A_BODY, TIES};
+use crate::methods::RADAU;
 
 /// The text of a scene of several bodies, in parts.
 pub(crate) struct BodyTexts {
     whole: Arc<str>,
-    /// All but the bodies.
+    /// All but the bodies and what ties them together.
     shared: DocumentMut,
     bodies: Table,
 }
@@ -29,6 +30,12 @@ impl BodyTexts {
     pub fn new(text: &str) -> Self {
         let mut shared = text.parse::<DocumentMut>().unwrap_or_default();
         let bodies = shared.as_table_mut().remove(BODIES).and_then(|bodies| bodies.into_table().ok());
+        TIES.iter().for_each(|key| _ = shared.as_table_mut().remove(key));
+        if let Some(time) = shared.get_mut("time").and_then(Item::as_table_like_mut)
+            && time.get("scheme").and_then(Item::as_str) == Some(RADAU)
+        {
+            time.remove("scheme");
+        }
         Self { whole: text.into(), shared, bodies: bodies.unwrap_or_default() }
     }
 

@@ -6,7 +6,9 @@ mod effects;
 mod history;
 mod initial;
 mod load;
+mod marker;
 mod modes;
+pub(crate) mod tie;
 mod time;
 
 use std::cell::Cell;

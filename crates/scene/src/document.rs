@@ -14,6 +14,9 @@ pub(crate) const BODIES: &str = "bodies";
 /// Tables of a scene that belong to its body, beside `body` itself.
 pub(crate) const OF_A_BODY: [&str; 6] = ["modes", "effects", "frame", "initial", "constraints", "loads"];
 
+/// Tables of a scene that tie its bodies together.
+pub(crate) const TIES: [&str; 4] = ["ground", "joints", "springs", "bushings"];
+
 /// Keys of `output` that belong to a body.
 pub(crate) const OUTPUT_OF_A_BODY: [&str; 3] = ["points", "stress", "peak_stress"];
 
@@ -61,6 +64,34 @@ impl<'t> Document<'t> {
                 Err(NotToml { at: Box::new(at), message: error.message().to_owned() })
             }
         }
+    }
+
+    /// Takes out what ties bodies together, as a document of its own; `None` where nothing does.
+    pub fn take_ties(&mut self) -> Option<Self> {
+        let table = match self.root.get_mut() {
+            DeValue::Table(table) => table,
+            _ => return None,
+        };
+        let mut ties = DeTable::new();
+        for key in TIES {
+            if let Some((key, value)) = table.remove_entry(key) {
+                ties.insert(key, value);
+            }
+        }
+        if ties.is_empty() {
+            return None;
+        }
+        let root = Spanned::new(self.root.span(), DeValue::Table(ties));
+        Some(Self { path: self.path, text: self.text, root, body: None })
+    }
+
+    /// True if an end of a joint, a spring or a bushing of this document is on the body of this name.
+    pub fn ties(&self, body: &str) -> bool {
+        let lists = self.root().children().filter(|child| child.name() != "ground").collect::<Vec<_>>();
+        let between = lists.iter().flat_map(Node::children).flat_map(|tie| tie.children().collect::<Vec<_>>());
+        let ends = between.filter(|key| key.name() == "between").flat_map(|key| key.children().collect::<Vec<_>>());
+        let of = |end: Node<'_>| end.value.get_ref().as_str().and_then(|end| end.split('.').next().map(str::to_owned));
+        ends.filter_map(of).any(|name| name == body)
     }
 
     /// Names of the bodies of a scene of several, in the order of the text; `None` of a scene of one.

@@ -7,6 +7,7 @@ use crate::alone::{BodyText, BodyTexts};
 use crate::check::Check;
 use crate::document::{BODIES, Document, Node};
 use crate::error::SceneError;
+use crate::name::ONLY_BODY;
 use crate::ordinary_file::open_ordinary;
 use crate::place::Place;
 use crate::scene::Scene;
@@ -29,7 +30,8 @@ impl Scene {
 
     /// Checks the text of a scene file of one body. `path` is where the text comes from: it is named in
     /// messages, and the mesh and the tables of histories are relative to its folder. Of the
-    /// files that it names, the tables are read, up to 16 MiB in all; the mesh is not.
+    /// files that it names, the tables are read, up to 16 MiB in all; the mesh is not. Joints, springs and bushings
+    /// are those of a [`System`](crate::System), and not looked at.
     ///
     /// # Errors
     /// [`SceneError`] if the text is longer than 1 MiB, is not TOML, breaks a rule of the scene file, or has several bodies.
@@ -45,7 +47,8 @@ impl Scene {
         let path = path.as_ref();
         refuse_long(text.len(), path)?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let document = Document::parse(text, path)?;
+        let mut document = Document::parse(text, path)?;
+        let ties = document.take_ties();
         let bodies = document.bodies();
         let names: Vec<&str> = bodies.iter().flatten().map(Node::name).collect();
         let refuse = |found: String, expected: &str, help: String| {
@@ -53,13 +56,13 @@ impl Scene {
             Err(document.place(key).refuse(found, expected, help))
         };
         match name {
-            None if bodies.is_none() => Self::of_document(&document, None),
+            None if bodies.is_none() => Self::of_document(&document, None, ties.as_ref()),
             None => {
                 let help = format!("name one of them: {}", names.join(", "));
                 refuse(format!("a scene of {} bodies", names.len()), "one body", help)
             }
             Some(name) if names.contains(&name) => {
-                Self::of_document(&document.of_body(name), Some(BodyTexts::new(text).of(name)))
+                Self::of_document(&document.of_body(name), Some(BodyTexts::new(text).of(name)), ties.as_ref())
             }
             Some(name) if bodies.is_none() => refuse(
                 "a single body, which has no name".to_owned(),
@@ -73,23 +76,29 @@ impl Scene {
         }
     }
 
-    /// Checks the scene of a document, which may be that of a body of several.
-    pub(crate) fn of_document(document: &Document<'_>, body_text: Option<BodyText<'_>>) -> Result<Self, SceneError> {
-        let Sections { title, units, body, modes, effects, frame, initial, constraints, mut loads, time, output } =
+    /// Checks the scene of a document, which may be that of a body of several, with what ties the bodies of the file together.
+    pub(crate) fn of_document(
+        document: &Document<'_>,
+        body_text: Option<BodyText<'_>>,
+        ties: Option<&Document<'_>>,
+    ) -> Result<Self, SceneError> {
+        let Sections { title, units, mut body, modes, effects, frame, initial, constraints, mut loads, time, output } =
             crate::deserialize::from_document(document)?;
 
         let check = Check::new(document, time.end);
         check.label("title", &title)?;
         check.units(&units)?;
+        let markers = std::mem::take(&mut body.markers);
         let body = check.body(body)?;
+        let markers = check.markers(markers, &body)?;
         let modes = check.modes(modes, &body)?;
         check.frame(frame.as_ref())?;
         let constraint = check.constraints(constraints, &body)?;
         check.initial(&initial, &modes, constraint.as_ref())?;
         check.loads(&mut loads, &body, constraint.as_ref())?;
-        check.effects(&effects, &modes, &initial, constraint.as_ref(), &loads)?;
+        check.effects(&effects, &modes, &initial, constraint.as_ref(), &loads, !markers.is_empty())?;
         check.effects_of_elements(&effects, &modes, &body)?;
-        let time = check.time(&time)?;
+        let time = check.time(&time, ties.is_some())?;
         check.fixed_effects(&effects, time.method)?;
         let output = check.output(output, &time, &body)?;
 
@@ -103,6 +112,8 @@ impl Scene {
             frame,
             initial,
             constraint,
+            tied: ties.is_some_and(|ties| ties.ties(body_text.as_ref().map_or(ONLY_BODY, |text| text.name))),
+            markers,
             loads,
             time,
             output,

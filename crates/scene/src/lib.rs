@@ -21,8 +21,8 @@
 //! One file of this crate per idea:
 //! `document` is the TOML tree in which every value knows its key path and its place;
 //! `deserialize` lets serde fill structs from that tree;
-//! `section`, `scene`, `modes`, `effects`, `constraint`, `load` and `history` are those structs, and so the list of
-//! all keys;
+//! `section`, `tie_section`, `scene`, `modes`, `effects`, `constraint`, `load`, `history`, `marker` and `joint` are those
+//! structs, and so the list of all keys;
 //! `check` has the rules on their values;
 //! `assign` sets values in the text of a scene from outside of it.
 //! A new kind of load is a new variant in `load`, of constraint in `section` and `constraint`; its rules are in `check`.
@@ -43,9 +43,12 @@ mod example;
 mod file;
 mod files;
 mod history;
+mod joint;
 mod load;
+mod marker;
 mod methods;
 mod modes;
+mod name;
 mod ordinary_file;
 mod place;
 mod scene;
@@ -54,6 +57,7 @@ mod shape;
 mod shorten;
 mod suggest;
 mod system;
+mod tie_section;
 mod unit_vector;
 
 pub use assign::{AssignError, assign};
@@ -65,7 +69,11 @@ pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
 pub use file::{text_from, text_of};
 pub use history::{DrivenSpeed, Formula, History, TablePoints};
+pub use joint::{
+    AlongAndAbout, Bushing, Coordinate, End, Friction, Joint, JointDrive, JointKind, JointSpring, Spring, Stops,
+};
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
+pub use marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace};
 pub use matrix_import::MatrixFiles;
 pub use methods::{METHODS, method_named};
 pub use modes::{Damping, Flexible, Large, Modes, Rayleigh};

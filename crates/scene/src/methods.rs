@@ -4,7 +4,10 @@ use std::sync::LazyLock;
 
 use dynamics::Method;
 
-/// All schemes, each with its formulation.
+/// The scheme of bodies that joints, springs or bushings tie together.
+pub(crate) const RADAU: &str = "radau";
+
+/// All schemes of a body alone, each with its formulation.
 pub const METHODS: [Method; 4] = [frames_rk4::PAPER, frames_rk4::LIMIT, Method::RKMK4, Method::EXPONENTIAL];
 
 /// The scheme of this name; where no formulation is named, that of the conservative form comes first. `None` where
@@ -16,7 +19,11 @@ pub fn method_named(formulation: Option<&str>, scheme: &str) -> Option<Method> {
 
 /// The names of all schemes, each once.
 pub(crate) fn scheme_names() -> &'static [&'static str] {
-    static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| once_each(|method| method.scheme));
+    static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
+        let mut names = once_each(|method| method.scheme);
+        names.push(RADAU);
+        names
+    });
     &NAMES
 }
 

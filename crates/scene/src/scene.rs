@@ -16,6 +16,7 @@ use serde::Deserialize;
 use crate::constraint::Constraint;
 use crate::effects::{Choice, Effects};
 use crate::load::Load;
+use crate::marker::Marker;
 use crate::modes::Modes;
 
 /// A scene that obeys every rule which needs no mesh: all numbers are finite and in range.
@@ -39,6 +40,10 @@ pub struct Scene {
     pub initial: Initial,
     /// The constraint of the body; `None` is a free one.
     pub constraint: Option<Constraint>,
+    /// Places with axes, in the order of the file: the ends of joints.
+    pub markers: Vec<Marker>,
+    /// True if joints, springs or bushings of the scene file hold the body: then it does not move alone.
+    pub tied: bool,
     /// Any number of loads, in the order of the file.
     pub loads: Vec<Load>,
     /// How far and how to step.

@@ -14,6 +14,7 @@ use crate::load::Load;
 use crate::methods::{formulation_names, scheme_names};
 use crate::modes::Rayleigh;
 use crate::scene::{Frame, Initial, Units};
+use crate::tie_section::{InOrder, MarkerSection};
 
 /// The whole file.
 #[derive(Deserialize)]
@@ -50,6 +51,8 @@ pub(crate) struct BodySection {
     #[serde(default)]
     pub point_masses: Vec<PointMass>,
     pub rigid: Option<RigidSection>,
+    #[serde(default)]
+    pub markers: InOrder<MarkerSection>,
 }
 
 /// The files of a body of matrices as the scene names them.

@@ -3,7 +3,7 @@
 use crate::shorten::shorten;
 
 /// Names that other programs and textbooks have for ours.
-const SYNONYMS: [(&str, &str); 34] = [
+const SYNONYMS: [(&str, &str); 45] = [
     ("e", "young_modulus"),
     ("youngs", "young_modulus"),
     ("elastic_modulus", "young_modulus"),
@@ -18,6 +18,17 @@ const SYNONYMS: [(&str, &str); 34] = [
     ("revolute", "hinge"),
     ("prismatic", "slider"),
     ("roller", "support"),
+    ("hinge", "revolute"),
+    ("pin", "spherical"),
+    ("ball", "spherical"),
+    ("weld", "fixed"),
+    ("clamp", "fixed"),
+    ("slider", "prismatic"),
+    ("cardan", "universal"),
+    ("hooke", "universal"),
+    ("bodies", "between"),
+    ("torque", "motor"),
+    ("free", "free_length"),
     ("torque", "moment"),
     ("couple", "moment"),
     ("weight", "gravity"),

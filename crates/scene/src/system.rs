@@ -3,22 +3,37 @@
 use std::path::Path;
 
 use crate::alone::BodyTexts;
+use crate::check::Check;
+use crate::check::tie::Ties;
+use crate::deserialize::from_document;
 use crate::document::{BODIES, Document, Node, OF_A_BODY, OUTPUT_OF_A_BODY};
 use crate::error::SceneError;
 use crate::file::{refuse_long, text_of};
+use crate::joint::{Bushing, Joint, Spring};
+use crate::marker::GroundMarker;
+use crate::name::{GROUND, check_key};
+use crate::place::Place;
 use crate::scene::Scene;
 
 /// Bodies of a scene at the most.
 const MAX_BODIES: usize = 1000;
 
 /// Keys at the root of a scene of several bodies.
-const SHARED: [&str; 5] = ["title", "units", BODIES, "time", "output"];
+const SHARED: [&str; 9] = ["title", "units", BODIES, GROUND, "joints", "springs", "bushings", "time", "output"];
 
 /// A scene of one body or several, each as a scene of its own with the units, the times and the rows of all.
 #[derive(Clone, Debug, PartialEq)]
 pub struct System {
     /// One scene for each body, in the order of the file. A single `[body]` has no name.
     pub bodies: Vec<Scene>,
+    /// Places on the ground, in the order of the file.
+    pub ground: Vec<GroundMarker>,
+    /// Joints between the bodies, in the order of the file.
+    pub joints: Vec<Joint>,
+    /// Springs between markers, in the order of the file.
+    pub springs: Vec<Spring>,
+    /// Bushings between markers, in the order of the file.
+    pub bushings: Vec<Bushing>,
 }
 
 impl System {
@@ -40,32 +55,65 @@ impl System {
         let path = path.as_ref();
         refuse_long(text.len(), path)?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let document = Document::parse(text, path)?;
-        let Some(bodies) = document.bodies() else {
-            return Ok(Self { bodies: vec![Scene::of_document(&document, None)?] });
+        let mut document = Document::parse(text, path)?;
+        let ties = document.take_ties();
+        let bodies = bodies(&document, text, ties.as_ref())?;
+        let end = bodies.first().map_or(0.0, |scene| scene.time.end);
+        let Ties { ground, joints, springs, bushings } = match &ties {
+            Some(ties) => Check::new(ties, end).ties(from_document(ties)?, &bodies)?,
+            None => Ties::default(),
         };
-        document.root().children().try_for_each(|child| check_shared(&child))?;
-        if bodies.is_empty() {
-            let help = "give each body a table, e.g. `[bodies.left]` with `mesh` and `material`";
-            return Err(document.place(BODIES).refuse("no body", "one table for each body", help));
+        Ok(Self { bodies, ground, joints, springs, bushings })
+    }
+
+    /// True if joints, springs or bushings tie bodies together or to the ground.
+    pub fn has_ties(&self) -> bool {
+        self.bodies.iter().any(|scene| scene.tied)
+    }
+
+    /// The place in the scene file of the value with a key path such as `joints[2].between`, or of what is around it.
+    pub fn place(&self, key: &str) -> Place {
+        let (path, text) = self.bodies.first().map_or((Path::new(""), ""), |scene| (&scene.path, scene.file_text()));
+        match Document::parse(text, path) {
+            Ok(document) => document.place(key),
+            Err(_) => Place::new(path, text, 0..0, key.to_owned()),
         }
-        if bodies.len() > MAX_BODIES {
-            let found = format!("{} bodies", bodies.len());
-            let help = "make several scenes of them: nothing acts between the bodies";
-            return Err(document.place(BODIES).refuse(found, format!("at most {MAX_BODIES}"), help));
-        }
-        let texts = BodyTexts::new(text);
-        let scene = |body: &Node<'_>| {
-            check_name(body)?;
-            Scene::of_document(&document.of_body(body.name()), Some(texts.of(body.name())))
-        };
-        Ok(Self { bodies: bodies.iter().map(scene).collect::<Result<_, _>>()? })
     }
 
     /// True of a scene with named bodies.
     pub fn is_of_several(&self) -> bool {
         self.bodies.iter().any(|scene| scene.name.is_some())
     }
+}
+
+/// The scenes of the bodies of a document, without its `ties`.
+fn bodies(document: &Document<'_>, text: &str, ties: Option<&Document<'_>>) -> Result<Vec<Scene>, SceneError> {
+    let Some(bodies) = document.bodies() else {
+        return Ok(vec![Scene::of_document(document, None, ties)?]);
+    };
+    document.root().children().try_for_each(|child| check_shared(&child))?;
+    if bodies.is_empty() {
+        let help = "give each body a table, e.g. `[bodies.left]` with `mesh` and `material`";
+        return Err(document.place(BODIES).refuse("no body", "one table for each body", help));
+    }
+    if bodies.len() > MAX_BODIES {
+        let found = format!("{} bodies", bodies.len());
+        let help = "make several scenes of them";
+        return Err(document.place(BODIES).refuse(found, format!("at most {MAX_BODIES}"), help));
+    }
+    let texts = BodyTexts::new(text);
+    let scene = |body: &Node<'_>| {
+        check_key(
+            body,
+            "rename the body, e.g. `hub`: it names a group in the results file, and `hub.tip` a point of it",
+        )?;
+        if ties.is_some() && body.name() == GROUND {
+            let help = "rename the body: in `between`, this is the name of the ground";
+            return Err(body.place_of_key().refuse("the name \"ground\"", "another one", help));
+        }
+        Scene::of_document(&document.of_body(body.name()), Some(texts.of(body.name())), ties)
+    };
+    bodies.iter().map(scene).collect()
 }
 
 /// Refuses what belongs to a body beside the bodies.
@@ -96,17 +144,4 @@ fn check_shared(child: &Node<'_>) -> Result<(), SceneError> {
         return Ok(());
     }
     Err(SceneError::UnknownKey { at: child.place_of_key().into(), key: name.to_owned(), known: SHARED.to_vec() })
-}
-
-/// Refuses the name of a body that cannot be a part of a path.
-fn check_name(body: &Node<'_>) -> Result<(), SceneError> {
-    let name = body.name();
-    if !name.is_empty() && !name.contains(|c: char| c == '.' || c == '/' || c.is_control()) {
-        return Ok(());
-    }
-    Err(body.place_of_key().refuse(
-        format!("the name {name:?}"),
-        "a name that is not empty, without `.`, `/` and control characters",
-        "rename the body, e.g. `hub`: it names a group in the results file, and `hub.tip` a point of it",
-    ))
 }

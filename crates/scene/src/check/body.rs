@@ -22,8 +22,18 @@ const EXCESS: f64 = 1e-3;
 
 impl Check<'_> {
     pub fn body(&self, section: BodySection) -> Result<Body, SceneError> {
-        let BodySection { mesh, file, matrices, mesh_size, raise_order, material, materials, point_masses, rigid } =
-            section;
+        let BodySection {
+            mesh,
+            file,
+            matrices,
+            mesh_size,
+            raise_order,
+            material,
+            materials,
+            point_masses,
+            rigid,
+            markers: _,
+        } = section;
         if let Some(matrices) = matrices {
             return self.matrices(&matrices).map(Body::Matrices);
         }

@@ -9,11 +9,11 @@ use crate::scene::Body;
 use crate::section::ConstraintSection;
 
 /// The keys of a region, as the file gives them.
-struct RegionKeys {
-    at: Option<[f64; 3]>,
-    radius: Option<f64>,
-    r#box: Option<[[f64; 3]; 2]>,
-    group: Option<String>,
+pub(super) struct RegionKeys {
+    pub at: Option<[f64; 3]>,
+    pub radius: Option<f64>,
+    pub r#box: Option<[[f64; 3]; 2]>,
+    pub group: Option<String>,
 }
 
 impl Check<'_> {
@@ -173,7 +173,7 @@ impl Check<'_> {
         Ok(line)
     }
 
-    fn region(&self, key: &str, keys: RegionKeys, body: &Body) -> Result<Option<Region>, SceneError> {
+    pub(super) fn region(&self, key: &str, keys: RegionKeys, body: &Body) -> Result<Option<Region>, SceneError> {
         let help = "keep one way to say which nodes are meant";
         self.at_most_one(key, &["radius", "box", "group"], help)?;
         let (name, region) = match keys {

@@ -19,6 +19,7 @@ impl Check<'_> {
         initial: &Initial,
         constraint: Option<&Constraint>,
         loads: &[Load],
+        has_markers: bool,
     ) -> Result<(), SceneError> {
         let tolerance = effects.tolerance;
         self.require(
@@ -47,9 +48,8 @@ impl Check<'_> {
         let driven = matches!(constraint, Some(Constraint::Slider { motion: Some(_), .. }));
         let motion = "the `motion` of the constraint";
         let turns = initial.angular_velocity != [0.0; 3];
-        let found =
-            "nothing that stresses the body: no load, no `motion` of a constraint, no initial `angular_velocity`";
-        let nothing = !(turned || driven || turns) && loads.is_empty();
+        let found = "nothing that stresses the body: no load, no `motion` of a constraint, no marker, no initial `angular_velocity`";
+        let nothing = !(turned || driven || turns || has_markers) && loads.is_empty();
         self.not_on(effects, Effect::GeometricStiffening, nothing, found, "let something act on the body")?;
         self.not_off(effects, Effect::Rotation, turned, motion)?;
         self.not_off(effects, Effect::Translation, driven, motion)?;

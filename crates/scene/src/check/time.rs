@@ -5,7 +5,7 @@ use dynamics::{Method, Rows, StepControl};
 use super::Check;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::methods::{METHODS, method_named};
+use crate::methods::{METHODS, RADAU, method_named};
 use crate::scene::{Body, Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 use crate::shorten::shorten;
@@ -19,11 +19,15 @@ const MAX_DEFAULT_ROWS: f64 = 5000.0;
 const LEAST_PART: f64 = 1e-12;
 
 impl Check<'_> {
-    pub fn time(&self, section: &TimeSection) -> Result<Time, SceneError> {
+    /// `is_tied` of bodies in joints, springs or bushings.
+    pub fn time(&self, section: &TimeSection, is_tied: bool) -> Result<Time, SceneError> {
         let &TimeSection { end, step, tolerance, formulation, scheme } = section;
         let help = "the run starts at 0 and makes at least one step, e.g. `end = 0.5`";
         self.positive("time.end", end, help)?;
-        let method = self.method(formulation, scheme)?;
+        let method = match is_tied {
+            true => self.method_of_ties(formulation, scheme)?,
+            false => self.method(formulation, scheme)?,
+        };
         let expected = "exactly one of them";
         let help = "give `step`, the length of a step, e.g. `step = 1e-4`, or `tolerance`, \
                     a bound of the sum of the estimated relative errors of all steps, e.g. `tolerance = 1e-6`";
@@ -51,6 +55,22 @@ impl Check<'_> {
         Ok(Time { end, control, method })
     }
 
+    /// Bodies in joints move by `radau`, which needs no name; those that nothing ties move by the scheme that is the default.
+    fn method_of_ties(&self, formulation: Option<Formulation>, scheme: Option<Scheme>) -> Result<Method, SceneError> {
+        let refuse = |key: &str, found: &str, expected: &str| {
+            let found = format!("the {key} `{found}` with joints, springs or bushings");
+            let help = format!("remove `{key}`: bodies in joints move by `{RADAU}`, the others by `exponential`");
+            Err(self.document.place(&join("time", key)).refuse(found, expected, help))
+        };
+        match (formulation, scheme) {
+            (Some(Formulation(name)), _) if name != Method::EXPONENTIAL.formulation => {
+                refuse("formulation", name, "the conservative form: the paper's scheme has no joints")
+            }
+            (_, Some(Scheme(name))) if name != RADAU => refuse("scheme", name, &format!("`{RADAU}`, or none")),
+            _ => Ok(Method::EXPONENTIAL),
+        }
+    }
+
     fn method(&self, formulation: Option<Formulation>, scheme: Option<Scheme>) -> Result<Method, SceneError> {
         let of_formulation = formulation.map(|Formulation(name)| name);
         let Some(Scheme(name)) = scheme else {
@@ -60,6 +80,13 @@ impl Check<'_> {
                 Method::EXPONENTIAL
             });
         };
+        if name == RADAU {
+            return Err(self.document.place("time.scheme").refuse(
+                format!("the scheme `{RADAU}` without joints, springs and bushings"),
+                "a scheme of a body alone",
+                "remove `scheme`, or tie bodies together by [[joints]]",
+            ));
+        }
         method_named(of_formulation, name).ok_or_else(|| {
             let of_formulation = of_formulation.unwrap_or_default();
             let others = |fits: &dyn Fn(&Method) -> bool, of: fn(&Method) -> &'static str| {

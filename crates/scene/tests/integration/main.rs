@@ -9,3 +9,4 @@ mod refusals;
 mod robustness;
 mod systems;
 mod tables;
+mod ties;

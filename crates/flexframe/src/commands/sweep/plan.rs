@@ -157,7 +157,7 @@ impl Plan {
                 invalid(&format!("parameters.\"{key}\""), found, &expected)
             })?;
             rows.push(match System::parse(&text, &scene_path) {
-                Ok(System { bodies }) => Ok(bodies),
+                Ok(System { bodies, .. }) => Ok(bodies),
                 Err(refusal) => {
                     let words = refusal.to_string();
                     first_refusal.get_or_insert((row, refusal));

@@ -1,0 +1,87 @@
+//! The rules on markers of bodies and of the ground.
+
+use nalgebra::Vector3;
+
+use super::Check;
+use super::constraint::RegionKeys;
+use crate::document::join;
+use crate::error::SceneError;
+use crate::marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace};
+use crate::name::check_key;
+use crate::scene::Body;
+use crate::tie_section::{GroundMarkerSection, InOrder, MarkerSection};
+use crate::unit_vector::unit;
+
+/// Sine of the angle between z and x below which they have one direction.
+const PARALLEL: f64 = 1e-6;
+
+impl Check<'_> {
+    pub fn markers(&self, InOrder(sections): InOrder<MarkerSection>, body: &Body) -> Result<Vec<Marker>, SceneError> {
+        let help = "each marker adds static shapes to the body: keep those that joints need";
+        self.not_too_many("body.markers", sections.len(), help)?;
+        let marker = |(name, section)| self.marker(name, section, body);
+        sections.into_iter().map(marker).collect()
+    }
+
+    pub fn ground_markers(
+        &self,
+        InOrder(sections): InOrder<GroundMarkerSection>,
+    ) -> Result<Vec<GroundMarker>, SceneError> {
+        let marker = |(name, section): (String, GroundMarkerSection)| {
+            let GroundMarkerSection { at, z, x } = section;
+            let key = self.marker_key("ground.markers", &name)?;
+            Ok(GroundMarker { axes: self.axes(&key, z, x)?, name, at })
+        };
+        sections.into_iter().map(marker).collect()
+    }
+
+    fn marker(&self, name: String, section: MarkerSection, body: &Body) -> Result<Marker, SceneError> {
+        let MarkerSection { at, radius, r#box, group, z, x } = section;
+        let key = self.marker_key("body.markers", &name)?;
+        let help = "keep one way to say where the marker is";
+        self.at_most_one(&key, &["at", "box", "group"], help)?;
+        let place = match (self.region(&key, RegionKeys { at, radius, r#box, group }, body)?, at) {
+            (Some(region), _) => MarkerPlace::Region(region),
+            (None, Some(at)) => MarkerPlace::Point(at),
+            (None, None) => {
+                return Err(self.document.place(&key).refuse(
+                    "none of `at`, `box` and `group`",
+                    "the part of the body that carries the marker",
+                    "add `at` for a point, `at` and `radius` for the faces within a ball, \
+                     `box = [[x, y, z], [x, y, z]]` for those within a box, or `group` for a physical surface of the mesh",
+                ));
+            }
+        };
+        Ok(Marker { axes: self.axes(&key, z, x)?, name, place })
+    }
+
+    /// The key path of a marker, whose name it checks.
+    fn marker_key(&self, table: &str, name: &str) -> Result<String, SceneError> {
+        let key = join(table, name);
+        check_key(&self.document.nearest(&key), "rename the marker, e.g. `tip`: joints name it by `BODY.MARKER`")?;
+        Ok(key)
+    }
+
+    fn axes(&self, key: &str, z: Option<[f64; 3]>, x: Option<[f64; 3]>) -> Result<Option<MarkerAxes>, SceneError> {
+        let Some(mut z) = z else {
+            return match x {
+                Some(_) => Err(self.missing(key, "z")),
+                None => Ok(None),
+            };
+        };
+        let help = "give the direction of the axis; its length does not matter";
+        self.normalise(&join(key, "z"), &mut z, help)?;
+        let Some(mut x) = x else { return Ok(Some(MarkerAxes { z, x: None })) };
+        self.normalise(&join(key, "x"), &mut x, help)?;
+        let (along, given) = (Vector3::from(z), Vector3::from(x));
+        let across = given - along * along.dot(&given);
+        let right = unit(&across).filter(|_| across.norm() > PARALLEL);
+        self.require(
+            right.is_some(),
+            &join(key, "x"),
+            "a direction other than that of `z`",
+            "give an axis at right angles to `z`, or remove it",
+        )?;
+        Ok(Some(MarkerAxes { z, x: right.map(Into::into) }))
+    }
+}

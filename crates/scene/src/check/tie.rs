@@ -1,0 +1,346 @@
+//! The rules on what ties bodies together: joints, springs and bushings.
+
+use std::collections::BTreeSet;
+
+use dynamics::Effect;
+
+use super::Check;
+use crate::document::join;
+use crate::effects::Choice;
+use crate::error::SceneError;
+use crate::joint::{
+    AlongAndAbout, Bushing, Coordinate, End, Friction, Joint, JointDrive, JointKind, JointSpring, Spring, Stops,
+};
+use crate::marker::GroundMarker;
+use crate::name::{GROUND, ONLY_BODY, is_part_of_path};
+use crate::scene::Scene;
+use crate::suggest::{nearest, one_of};
+use crate::tie_section::{
+    BushingSection, DriveSection, JointSection, JointSpringSection, SpringSection, StopsSection, TieSections,
+};
+
+/// What ties the bodies of a scene together.
+#[derive(Default)]
+pub(crate) struct Ties {
+    pub ground: Vec<GroundMarker>,
+    pub joints: Vec<Joint>,
+    pub springs: Vec<Spring>,
+    pub bushings: Vec<Bushing>,
+}
+
+/// The bodies and the ground that ends are looked up in.
+struct Ends<'a> {
+    bodies: &'a [Scene],
+    ground: &'a [GroundMarker],
+}
+
+impl Check<'_> {
+    /// Joints, springs and bushings between these bodies.
+    pub fn ties(&self, sections: TieSections, bodies: &[Scene]) -> Result<Ties, SceneError> {
+        let TieSections { ground, joints, springs, bushings } = sections;
+        let ground = self.ground_markers(ground.markers)?;
+        for (key, entries) in [("joints", joints.len()), ("springs", springs.len()), ("bushings", bushings.len())] {
+            self.not_too_many(key, entries, "make several scenes of them")?;
+        }
+        let ends = Ends { bodies, ground: &ground };
+        let mut names = BTreeSet::new();
+        let joint = |(i, section)| self.joint(&format!("joints[{i}]"), i, section, &ends, &mut names);
+        let joints = joints.into_iter().enumerate().map(joint).collect::<Result<_, _>>()?;
+        let spring = |(i, section)| self.spring(&format!("springs[{i}]"), i, section, &ends, &mut names);
+        let springs = springs.into_iter().enumerate().map(spring).collect::<Result<_, _>>()?;
+        let bushing = |(i, section)| self.bushing(&format!("bushings[{i}]"), i, section, &ends, &mut names);
+        let bushings = bushings.into_iter().enumerate().map(bushing).collect::<Result<_, _>>()?;
+        bodies.iter().filter(|scene| scene.tied).try_for_each(can_be_tied)?;
+        Ok(Ties { ground, joints, springs, bushings })
+    }
+
+    fn joint(
+        &self,
+        key: &str,
+        number: usize,
+        section: JointSection,
+        ends: &Ends<'_>,
+        names: &mut BTreeSet<String>,
+    ) -> Result<Joint, SceneError> {
+        let JointSection { name, kind, between, mut axis, drive, spring, motor } = section;
+        let name = self.tie_name(key, name, "joint", number, names)?;
+        let between = self.between(key, &between, ends)?;
+        if let Some(axis) = &mut axis {
+            let help = "give the direction of the axis at the start, global; its length does not matter";
+            self.normalise(&join(key, "axis"), axis, help)?;
+        }
+        self.has_axis(key, kind, between.map(|end| ends.has_axes(end)), axis.is_some())?;
+        let drive = drive.map(|drive| self.drive(&join(key, "drive"), kind, drive)).transpose()?;
+        let motor = motor.map(|motor| self.drive(&join(key, "motor"), kind, motor)).transpose()?;
+        let spring = spring.map(|spring| self.joint_spring(&join(key, "spring"), kind, spring)).transpose()?;
+        if let (Some(drive), Some(motor)) = (&drive, &motor)
+            && drive.along == motor.along
+        {
+            let found = format!("a motor along the {} that `drive` gives", drive.along.name());
+            let help = "keep `drive` for a motion that is given, or `motor` for a force or moment";
+            return Err(self.document.place(&join(key, "motor")).refuse(found, "one of them", help));
+        }
+        Ok(Joint { name, kind, between, axis, drive, spring, motor })
+    }
+
+    fn spring(
+        &self,
+        key: &str,
+        number: usize,
+        section: SpringSection,
+        ends: &Ends<'_>,
+        names: &mut BTreeSet<String>,
+    ) -> Result<Spring, SceneError> {
+        let SpringSection { name, between, stiffness, damping, free_length } = section;
+        let name = self.tie_name(key, name, "spring", number, names)?;
+        let between = self.between(key, &between, ends)?;
+        if let Some(end) = between.iter().position(|end| *end == End::Ground { marker: None }) {
+            let help = "add a place, e.g. `[ground.markers.wall]` with `at`, and name it \"ground.wall\"";
+            let place = self.document.place(&format!("{key}.between[{end}]"));
+            return Err(place.refuse("the ground at the other end of the spring", "a place on the ground", help));
+        }
+        self.not_negative(&join(key, "stiffness"), stiffness)?;
+        self.not_negative(&join(key, "damping"), damping)?;
+        free_length.map_or(Ok(()), |length| self.not_negative(&join(key, "free_length"), length))?;
+        Ok(Spring { name, between, stiffness, damping, free_length })
+    }
+
+    fn bushing(
+        &self,
+        key: &str,
+        number: usize,
+        section: BushingSection,
+        ends: &Ends<'_>,
+        names: &mut BTreeSet<String>,
+    ) -> Result<Bushing, SceneError> {
+        let BushingSection { name, between, stiffness, damping } = section;
+        let name = self.tie_name(key, name, "bushing", number, names)?;
+        let between = self.between(key, &between, ends)?;
+        for (table, AlongAndAbout { translation, rotation }) in [("stiffness", stiffness), ("damping", damping)] {
+            for (list, values) in [("translation", translation), ("rotation", rotation)] {
+                for (axis, value) in values.into_iter().enumerate() {
+                    self.not_negative(&format!("{key}.{table}.{list}[{axis}]"), value)?;
+                }
+            }
+        }
+        Ok(Bushing { name, between, stiffness, damping })
+    }
+
+    /// The name of a tie, or one by its number.
+    fn tie_name(
+        &self,
+        key: &str,
+        name: Option<String>,
+        what: &str,
+        number: usize,
+        names: &mut BTreeSet<String>,
+    ) -> Result<String, SceneError> {
+        let place = || self.document.place(&join(key, "name"));
+        let name = match name {
+            Some(name) if is_part_of_path(&name) => name,
+            Some(name) => {
+                let expected = "a name that is not empty, without `.`, `/` and control characters";
+                let help = format!("rename the {what}: its name is that of a group in the results file");
+                return Err(place().refuse(format!("the name {name:?}"), expected, help));
+            }
+            None => format!("{what}{}", number + 1),
+        };
+        if names.insert(name.clone()) {
+            return Ok(name);
+        }
+        let help = format!("give the {what} a `name` of its own");
+        Err(place().refuse(format!("a second {name:?}"), "each name once among joints, springs and bushings", help))
+    }
+
+    /// The ends that `between` names.
+    fn between(&self, key: &str, names: &[String], ends: &Ends<'_>) -> Result<[End; 2], SceneError> {
+        let key = join(key, "between");
+        let help = "name two, e.g. `between = [\"arm.root\", \"ground\"]`";
+        let [first, second] = names else {
+            let found = format!("{} names", names.len());
+            return Err(self.document.place(&key).refuse(found, "the two ends", help));
+        };
+        let find = |i: usize, name: &str| {
+            ends.find(name).map_err(|NoEnd { found, expected, help }| {
+                self.document.place(&format!("{key}[{i}]")).refuse(found, expected, help)
+            })
+        };
+        let between = [find(0, first)?, find(1, second)?];
+        let refuse = |found: String, help: &str| {
+            Err(self.document.place(&key).refuse(found, "markers of two bodies, or of a body and the ground", help))
+        };
+        match between.map(|end| end.body()) {
+            _ if between[0] == between[1] => refuse(format!("{first:?} twice"), "name the other end"),
+            [None, None] => refuse("the ground at both ends".to_owned(), "name a marker of a body"),
+            [one, other] if one == other => refuse(
+                format!("two markers of one body, {first:?} and {second:?}"),
+                "nothing moves between them: name another body",
+            ),
+            _ => Ok(between),
+        }
+    }
+
+    /// Refuses a joint without the axis that it needs, and an axis that nothing takes.
+    fn has_axis(&self, key: &str, kind: JointKind, have_axes: [bool; 2], is_given: bool) -> Result<(), SceneError> {
+        if have_axes == [true; 2] && is_given {
+            let help = "remove it, or the `z` of a marker";
+            let place = self.document.place(&join(key, "axis"));
+            return Err(place.refuse("`axis` of a joint whose markers both have axes", "one of them", help));
+        }
+        if !kind.needs_axis() || is_given || have_axes.contains(&true) {
+            return Ok(());
+        }
+        Err(self.document.place(key).refuse(
+            format!("a {} joint without an axis", kind.name()),
+            "its axis",
+            "add `axis`, global at the start, e.g. `axis = [0, 0, 1]`, or `z` to one of its markers",
+        ))
+    }
+
+    fn drive(&self, key: &str, kind: JointKind, section: DriveSection) -> Result<JointDrive, SceneError> {
+        let DriveSection { along, amplitude, mut history } = section;
+        let along = self.along(key, kind, along)?;
+        self.history(&join(key, "history"), &mut history)?;
+        Ok(JointDrive { along, amplitude, history })
+    }
+
+    fn joint_spring(&self, key: &str, kind: JointKind, section: JointSpringSection) -> Result<JointSpring, SceneError> {
+        let JointSpringSection { along, stiffness, damping, free, preload, stops, friction } = section;
+        let along = self.along(key, kind, along)?;
+        self.not_negative(&join(key, "stiffness"), stiffness)?;
+        self.not_negative(&join(key, "damping"), damping)?;
+        if let Some(Friction { force, rate }) = friction {
+            let key = join(key, "friction");
+            self.not_negative(&join(&key, "force"), force)?;
+            let help =
+                "give the rate of the coordinate below which friction is smaller, e.g. a hundredth of the usual one";
+            self.positive(&join(&key, "rate"), rate, help)?;
+        }
+        let stops = stops.map(|stops| self.stops(&join(key, "stops"), stops)).transpose()?;
+        Ok(JointSpring { along, stiffness, damping, free, preload, stops, friction })
+    }
+
+    fn stops(&self, key: &str, section: StopsSection) -> Result<Stops, SceneError> {
+        let StopsSection { low, high, stiffness, damping } = section;
+        let help = "give the lowest coordinate, the highest, or both, e.g. `stops = { high = 1.57, stiffness = 1e4 }`";
+        self.require(low.is_some() || high.is_some(), key, "`low`, `high` or both", help)?;
+        let (low, high) = (low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY));
+        self.require(low < high, &join(key, "high"), "a number above `low`", help)?;
+        self.positive(&join(key, "stiffness"), stiffness, "give the moment or force beyond an end")?;
+        self.not_negative(&join(key, "damping"), damping)?;
+        Ok(Stops { low, high, stiffness, damping })
+    }
+
+    /// The coordinate that is meant, of those that the joint leaves free.
+    fn along(&self, key: &str, kind: JointKind, given: Option<Coordinate>) -> Result<Coordinate, SceneError> {
+        let free = kind.coordinates();
+        let of_kind = || format!("a {} joint", kind.name());
+        match (given, free) {
+            (None, [only]) => Ok(*only),
+            (Some(given), _) if free.contains(&given) => Ok(given),
+            (_, []) => Err(self.document.place(key).refuse(
+                format!("{}, which has no turn about an axis and no slide along it", of_kind()),
+                "a joint that turns about its axis or slides along it",
+                "remove the table, or use a joint of the kind revolute, prismatic, cylindrical or planar",
+            )),
+            (Some(given), _) => Err(self.document.place(&join(key, "along")).refuse(
+                format!("the {} of {}, which has none", given.name(), of_kind()),
+                format!("its {}", free[0].name()),
+                "change `along`, or the kind of the joint",
+            )),
+            (None, _) => Err(self.document.place(key).refuse(
+                format!("no `along` for {}, which turns and slides", of_kind()),
+                "`along = \"turn\"` or `along = \"slide\"`",
+                "say which of the two is meant",
+            )),
+        }
+    }
+
+    fn not_negative(&self, key: &str, value: f64) -> Result<(), SceneError> {
+        self.require(value >= 0.0, key, "a number of 0 or more", "a negative one would feed energy in")
+    }
+}
+
+/// A name that is that of no end.
+struct NoEnd {
+    found: String,
+    expected: String,
+    help: String,
+}
+
+impl Ends<'_> {
+    /// The end of this name: `BODY.MARKER`, `ground` or `ground.MARKER`.
+    fn find(&self, name: &str) -> Result<End, NoEnd> {
+        let (body, marker) = match name.split_once('.') {
+            Some((body, marker)) => (body, Some(marker)),
+            None => (name, None),
+        };
+        if body == GROUND {
+            let names = || self.ground.iter().map(|marker| marker.name.as_str());
+            let find =
+                |marker| number_of(marker, names(), &format!("marker {marker:?} of the ground"), "[ground.markers]");
+            return Ok(End::Ground { marker: marker.map(find).transpose()? });
+        }
+        let names = || self.bodies.iter().map(|scene| scene.name.as_deref().unwrap_or(ONLY_BODY));
+        let number = number_of(body, names().chain([GROUND]), &format!("body {body:?}"), "the scene")?;
+        let of_body = || self.bodies[number].markers.iter().map(|marker| marker.name.as_str());
+        let table = format!("the body {body:?}");
+        let Some(marker) = marker else {
+            let known: Vec<String> = of_body().map(|marker| format!("{body}.{marker}")).collect();
+            return Err(NoEnd {
+                found: format!("the body {body:?} without a marker"),
+                expected: if known.is_empty() { "a marker of it".to_owned() } else { one_of(&known) },
+                help: format!("name a marker of the body, e.g. `{body}.tip` of `[…{body}.markers.tip]`"),
+            });
+        };
+        let marker = number_of(marker, of_body(), &format!("marker {marker:?} of {table}"), &table)?;
+        Ok(End::Body { body: number, marker })
+    }
+
+    /// True if the marker at an end has axes of its own.
+    fn has_axes(&self, end: End) -> bool {
+        match end {
+            End::Body { body, marker } => self.bodies[body].markers[marker].axes.is_some(),
+            End::Ground { marker } => marker.is_some_and(|marker| self.ground[marker].axes.is_some()),
+        }
+    }
+}
+
+/// The number of a name among those that are known.
+fn number_of<'n>(name: &str, known: impl Iterator<Item = &'n str>, what: &str, table: &str) -> Result<usize, NoEnd> {
+    let known: Vec<&str> = known.collect();
+    if let Some(number) = known.iter().position(|known| *known == name) {
+        return Ok(number);
+    }
+    let help = match nearest(name, &known) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("name one that is there, or add it to {table}"),
+    };
+    let expected = if known.is_empty() {
+        format!("a marker, of which {table} has none")
+    } else {
+        one_of(&known.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>())
+    };
+    Err(NoEnd { found: format!("the {what}, which is not there"), expected, help })
+}
+
+/// Refuses a body in joints that is held, or has large modes, or effects that joints need off.
+fn can_be_tied(scene: &Scene) -> Result<(), SceneError> {
+    let in_joint = "of a body that joints, springs or bushings hold";
+    if scene.constraint.is_some() {
+        let help = "say it as a joint between a marker of the body and \"ground\"";
+        return Err(scene.refuse("constraints", format!("constraints {in_joint}"), "none", help));
+    }
+    if scene.modes.large.is_some() || scene.effects.choices[Effect::LargeDeflection] == Choice::On {
+        let key = if scene.modes.large.is_some() { "modes.large" } else { "effects.large_deflection" };
+        let help = "remove it: a body that bends far can be made of several in joints";
+        return Err(scene.refuse(key, format!("large modes {in_joint}"), "modes that are small", help));
+    }
+    for effect in [Effect::Translation, Effect::Rotation] {
+        if scene.effects.choices[effect] == Choice::Off {
+            let found = format!("`{} = false` {in_joint}", effect.name());
+            return Err(scene.refuse(&join("effects", effect.name()), found, "`true` or `\"auto\"`", "remove it"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,212 @@
+//! Joints, springs and bushings between the bodies of a scene.
+
+use serde::Deserialize;
+
+use crate::history::History;
+
+/// An end of a joint, a spring or a bushing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// A marker of a body.
+    Body {
+        /// Number of the body in the scene.
+        body: usize,
+        /// Number of the marker in [`Scene::markers`](crate::Scene::markers).
+        marker: usize,
+    },
+    /// The ground.
+    Ground {
+        /// Number of the marker in [`System::ground`](crate::System::ground); `None` is where the other end is at the start.
+        marker: Option<usize>,
+    },
+}
+
+impl End {
+    /// The number of its body; `None` on the ground.
+    pub fn body(&self) -> Option<usize> {
+        match *self {
+            Self::Body { body, .. } => Some(body),
+            Self::Ground { .. } => None,
+        }
+    }
+}
+
+/// Kinds of joints, by what they leave free of the motion of the second end against the first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum JointKind {
+    /// Nothing.
+    Fixed,
+    /// The turn about the z axis.
+    Revolute,
+    /// The slide along the z axis.
+    Prismatic,
+    /// The slide along the z axis, and the turn about it.
+    Cylindrical,
+    /// All turns.
+    Spherical,
+    /// Turns about the x axis of the first end and the y axis of the second, which stay at right angles.
+    Universal,
+    /// Slides at right angles to the z axis, and the turn about it.
+    Planar,
+}
+
+/// A coordinate that a joint leaves free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Coordinate {
+    /// The angle about the z axis of the first end, from its x axis to that of the second, rad.
+    Turn,
+    /// The distance along the z axis of the first end.
+    Slide,
+}
+
+impl JointKind {
+    /// The name in a scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Revolute => "revolute",
+            Self::Prismatic => "prismatic",
+            Self::Cylindrical => "cylindrical",
+            Self::Spherical => "spherical",
+            Self::Universal => "universal",
+            Self::Planar => "planar",
+        }
+    }
+
+    /// The free coordinates that a drive, a spring or a motor can act along.
+    pub fn coordinates(self) -> &'static [Coordinate] {
+        match self {
+            Self::Fixed | Self::Spherical | Self::Universal => &[],
+            Self::Revolute | Self::Planar => &[Coordinate::Turn],
+            Self::Prismatic => &[Coordinate::Slide],
+            Self::Cylindrical => &[Coordinate::Turn, Coordinate::Slide],
+        }
+    }
+
+    /// True if its z axis is to be named.
+    pub fn needs_axis(self) -> bool {
+        !matches!(self, Self::Fixed | Self::Spherical)
+    }
+}
+
+impl Coordinate {
+    /// The name in a scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Turn => "turn",
+            Self::Slide => "slide",
+        }
+    }
+}
+
+/// A joint: one `[[joints]]` entry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Its name, unlike that of any other joint, spring or bushing, without `.`, `/` and control characters.
+    pub name: String,
+    /// Key `kind`.
+    pub kind: JointKind,
+    /// Its two ends: different markers, not of one body.
+    pub between: [End; 2],
+    /// Unit vector, global at the start: the z axis of each end that has no axes of its own.
+    pub axis: Option<[f64; 3]>,
+    /// The motion along a free coordinate, where that is given.
+    pub drive: Option<JointDrive>,
+    /// Spring, damper, stops and friction along a free coordinate.
+    pub spring: Option<JointSpring>,
+    /// A force or moment along a free coordinate.
+    pub motor: Option<JointDrive>,
+}
+
+/// A coordinate of a joint (rad or length), or a moment or force along it, over time: the amplitude times the history.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointDrive {
+    /// The coordinate.
+    pub along: Coordinate,
+    /// Value where the history is 1.
+    pub amplitude: f64,
+    /// Factor over time.
+    pub history: History,
+}
+
+/// What acts along a free coordinate of a joint by its value and its rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointSpring {
+    /// The coordinate.
+    pub along: Coordinate,
+    /// Moment per rad, or force per length, ≥ 0.
+    pub stiffness: f64,
+    /// Moment per angular velocity, or force per velocity, ≥ 0.
+    pub damping: f64,
+    /// Coordinate at which the spring alone has no force.
+    pub free: f64,
+    /// Moment or force at all times, along the coordinate.
+    pub preload: f64,
+    /// Ends of the coordinate.
+    pub stops: Option<Stops>,
+    /// Dry friction.
+    pub friction: Option<Friction>,
+}
+
+/// Ends of a coordinate: stiff springs on one side, which push and do not pull.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stops {
+    /// Lowest coordinate; −∞ without one.
+    pub low: f64,
+    /// Highest coordinate, above the lowest; ∞ without one.
+    pub high: f64,
+    /// Moment per rad, or force per length, beyond them, > 0.
+    pub stiffness: f64,
+    /// Moment per angular velocity, or force per velocity, while they are touched, ≥ 0.
+    pub damping: f64,
+}
+
+/// Dry friction: −force · tanh(rate of the coordinate / rate).
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Friction {
+    /// Moment or force, ≥ 0.
+    pub force: f64,
+    /// Rate of the coordinate below which it is smaller, > 0.
+    pub rate: f64,
+}
+
+/// A spring and a damper along the line between two markers: one `[[springs]]` entry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// Its name, as [`Joint::name`].
+    pub name: String,
+    /// Its two ends, as [`Joint::between`], none on the ground without a marker.
+    pub between: [End; 2],
+    /// Force per length, ≥ 0.
+    pub stiffness: f64,
+    /// Force per velocity, ≥ 0.
+    pub damping: f64,
+    /// Length without force, ≥ 0; `None` is the length at the start.
+    pub free_length: Option<f64>,
+}
+
+/// Springs and dampers along and about the axes of the first of two markers: one `[[bushings]]` entry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bushing {
+    /// Its name, as [`Joint::name`].
+    pub name: String,
+    /// Its two ends, as [`Joint::between`].
+    pub between: [End; 2],
+    /// Force per displacement and moment per rad, each ≥ 0.
+    pub stiffness: AlongAndAbout,
+    /// Force per velocity and moment per angular velocity, each ≥ 0.
+    pub damping: AlongAndAbout,
+}
+
+/// Numbers for each axis of a marker.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct AlongAndAbout {
+    /// Along x, y and z.
+    pub translation: [f64; 3],
+    /// About x, y and z.
+    pub rotation: [f64; 3],
+}

@@ -1,0 +1,43 @@
+//! Places with axes that bodies and the ground carry: the ends of joints.
+
+use crate::constraint::Region;
+
+/// A place with axes on a body: `[bodies.NAME.markers.MARKER]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Marker {
+    /// Its name among the markers of its body: not empty, without `.`, `/` and control characters.
+    pub name: String,
+    /// The part of the body that carries it.
+    pub place: MarkerPlace,
+    /// Its axes, mesh axes; `None` leaves them to the joint.
+    pub axes: Option<MarkerAxes>,
+}
+
+/// The part of a body that carries a marker.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MarkerPlace {
+    /// Key `at` alone: a point of the body, length, mesh axes.
+    Point([f64; 3]),
+    /// The mean of the faces in a part of the mesh.
+    Region(Region),
+}
+
+/// Axes of a marker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarkerAxes {
+    /// Unit vector: the axis of a joint that turns or slides.
+    pub z: [f64; 3],
+    /// Unit vector at right angles to z; `None` leaves it to the joint.
+    pub x: Option<[f64; 3]>,
+}
+
+/// A place with axes on the ground: `[ground.markers.MARKER]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundMarker {
+    /// Its name, as [`Marker::name`].
+    pub name: String,
+    /// Its place, length, global.
+    pub at: [f64; 3],
+    /// Its axes, global; `None` leaves them to the joint.
+    pub axes: Option<MarkerAxes>,
+}

@@ -1,0 +1,186 @@
+//! Markers, joints, springs and bushings: what is read, and what is refused at which place.
+
+use scene::{Coordinate, End, JointKind, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError, System};
+
+const HEAD: &str = "title = 'three'\nunits = { length = 'm', mass = 'kg', time = 's' }\n";
+const RIGID: &str = "rigid = { mass = 2.0, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 2, 0], [0, 0, 2]] }\n";
+const MESHED: &str = "mesh = 'arm.msh'\nmaterial = { young_modulus = 2e11, poisson_ratio = 0.3, density = 7800.0 }\nmodes = { flexible = 4 }\n";
+const TIME: &str = "[time]\nend = 1.0\ntolerance = 1e-5\n";
+
+/// An arm on the ground, a hub at its tip, and a block that nothing holds.
+fn three() -> String {
+    format!(
+        "{HEAD}[bodies.arm]\n{MESHED}\
+         [bodies.arm.markers.tip]\ngroup = 'tip face'\nz = [0, 0, 5]\nx = [1, 0, 1]\n\
+         [bodies.arm.markers.root]\nat = [0, 0, 0]\nradius = 0.1\n\
+         [bodies.arm.markers.middle]\nat = [0.5, 0, 0]\n\
+         [bodies.hub]\n{RIGID}markers = {{ left = {{ at = [-0.2, 0, 0] }} }}\n\
+         [bodies.block]\n{RIGID}\
+         [ground.markers.wall]\nat = [0, 1, 0]\nz = [1, 0, 0]\n\
+         [[joints]]\nname = 'shoulder'\nkind = 'revolute'\nbetween = ['arm.root', 'ground']\naxis = [0, 3, 4]\n\
+         [joints.drive]\namplitude = 2.0\nhistory = {{ kind = 'ramp', duration = 0.5 }}\n\
+         [[joints]]\nkind = 'cylindrical'\nbetween = ['arm.tip', 'hub.left']\n\
+         [joints.spring]\nalong = 'slide'\nstiffness = 10.0\nfree = 0.1\npreload = -1.0\n\
+         stops = {{ high = 0.2, stiffness = 1e4, damping = 1.0 }}\nfriction = {{ force = 0.5, rate = 1e-3 }}\n\
+         [[springs]]\nbetween = ['arm.middle', 'ground.wall']\nstiffness = 100.0\n\
+         [[bushings]]\nname = 'rubber'\nbetween = ['ground', 'hub.left']\nstiffness = {{ translation = [1, 2, 3] }}\n{TIME}"
+    )
+}
+
+fn parse(text: &str) -> Result<System, SceneError> {
+    System::parse(text, "three.toml")
+}
+
+#[test]
+fn all_keys_are_read() {
+    let system = parse(&three()).unwrap();
+    let [arm, hub, block] = &system.bodies[..] else { panic!() };
+    assert_eq!([arm, hub, block].map(|scene| (scene.tied, scene.markers.len())), [(true, 3), (true, 1), (false, 0)]);
+    let [tip, root, middle] = &arm.markers[..] else { panic!() };
+    assert_eq!(tip.place, MarkerPlace::Region(Region::Group("tip face".into())));
+    let Some(MarkerAxes { z, x: Some(x) }) = tip.axes else { panic!() };
+    assert_eq!((z, x), ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]), "x is made to be at right angles to z");
+    assert_eq!(root.place, MarkerPlace::Region(Region::Ball { at: [0.0; 3], radius: 0.1 }));
+    let expected = Marker { name: "middle".into(), place: MarkerPlace::Point([0.5, 0.0, 0.0]), axes: None };
+    assert_eq!(*middle, expected);
+
+    let [shoulder, wrist] = &system.joints[..] else { panic!() };
+    assert_eq!(
+        (&*shoulder.name, shoulder.kind, shoulder.axis),
+        ("shoulder", JointKind::Revolute, Some([0.0, 0.6, 0.8]))
+    );
+    assert_eq!(shoulder.between, [End::Body { body: 0, marker: 1 }, End::Ground { marker: None }]);
+    let drive = shoulder.drive.as_ref().unwrap();
+    assert_eq!((drive.along, drive.amplitude), (Coordinate::Turn, 2.0));
+    assert_eq!((&*wrist.name, wrist.kind, wrist.axis), ("joint2", JointKind::Cylindrical, None));
+    assert_eq!(wrist.between, [End::Body { body: 0, marker: 0 }, End::Body { body: 1, marker: 0 }]);
+    let spring = wrist.spring.unwrap();
+    assert_eq!((spring.along, spring.stiffness, spring.damping), (Coordinate::Slide, 10.0, 0.0));
+    assert_eq!((spring.free, spring.preload), (0.1, -1.0));
+    let stops = spring.stops.unwrap();
+    assert_eq!((stops.low, stops.high, stops.stiffness, stops.damping), (f64::NEG_INFINITY, 0.2, 1e4, 1.0));
+    let friction = spring.friction.unwrap();
+    assert_eq!((friction.force, friction.rate), (0.5, 1e-3));
+
+    let spring = &system.springs[0];
+    assert_eq!((&*spring.name, spring.stiffness, spring.free_length), ("spring1", 100.0, None));
+    assert_eq!(spring.between, [End::Body { body: 0, marker: 2 }, End::Ground { marker: Some(0) }]);
+    let bushing = &system.bushings[0];
+    assert_eq!((&*bushing.name, bushing.stiffness.translation), ("rubber", [1.0, 2.0, 3.0]));
+    assert_eq!((bushing.stiffness.rotation, bushing.damping.translation), ([0.0; 3], [0.0; 3]));
+    assert_eq!((system.ground[0].at, system.ground[0].axes.unwrap().z), ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]));
+    let place = system.place("joints[1].spring.free");
+    assert_eq!((place.line, &*place.key), (38, "joints[1].spring.free"));
+}
+
+/// The scene of a body in joints is a scene without them.
+#[test]
+fn the_text_of_a_body_alone_has_its_markers_and_no_joints() {
+    let system = parse(&three().replace("[time]", "[time]\nscheme = 'radau'")).unwrap();
+    for scene in &system.bodies {
+        let alone = Scene::parse(&scene.source, "three.toml").unwrap();
+        assert!(!alone.tied);
+        assert_eq!((&alone.markers, &alone.time), (&scene.markers, &scene.time));
+        let named = Scene::parse_body(scene.file_text(), "three.toml", scene.name.as_deref()).unwrap();
+        assert_eq!(named, *scene);
+    }
+}
+
+#[test]
+fn one_body_can_be_tied_to_the_ground() {
+    let text = format!(
+        "{HEAD}[body]\n{RIGID}markers = {{ top = {{ at = [0, 0, 1] }} }}\n\
+         [[joints]]\nkind = 'spherical'\nbetween = ['body.top', 'ground']\n{TIME}scheme = 'radau'\n"
+    );
+    let system = parse(&text).unwrap();
+    assert!(system.bodies[0].tied && !system.is_of_several());
+    assert_eq!(system.joints[0].between[0], End::Body { body: 0, marker: 0 });
+    assert_eq!(Scene::parse(&text, "three.toml").unwrap(), system.bodies[0]);
+    let free = text.replace("[[joints]]\nkind = 'spherical'\nbetween = ['body.top', 'ground']\n", "");
+    let error = parse(&free).unwrap_err();
+    assert_eq!(error.place().unwrap().key, "time.scheme", "{error}");
+}
+
+#[test]
+fn refusals_name_the_place_and_the_way_out() {
+    let refused = [
+        // Ends.
+        ("'arm.root', 'ground'", "'arm.rot', 'ground'", "joints[0].between[0]", "did you mean `root`?"),
+        ("'arm.root', 'ground'", "'army.root', 'ground'", "joints[0].between[0]", "did you mean `arm`?"),
+        (
+            "'arm.root', 'ground'",
+            "'arm', 'ground'",
+            "joints[0].between[0]",
+            "\"arm.tip\", \"arm.root\", \"arm.middle\"",
+        ),
+        ("'arm.root', 'ground'", "'block.root', 'ground'", "joints[0].between[0]", "has none"),
+        ("'arm.root', 'ground'", "'arm.root', 'ground.wal'", "joints[0].between[1]", "did you mean `wall`?"),
+        ("'arm.root', 'ground'", "'arm.root', 'arm.root'", "joints[0].between", "\"arm.root\" twice"),
+        ("'arm.root', 'ground'", "'arm.root', 'arm.tip'", "joints[0].between", "two markers of one body"),
+        ("'arm.root', 'ground'", "'ground.wall', 'ground'", "joints[0].between", "the ground at both ends"),
+        ("'arm.root', 'ground'", "'arm.root'", "joints[0].between", "1 names"),
+        ("'ground.wall']\nstiffness", "'ground']\nstiffness", "springs[0].between[1]", "a place on the ground"),
+        // Axes.
+        ("axis = [0, 3, 4]", "axis = [0, 0, 0]", "joints[0].axis", "a vector that is not zero"),
+        ("axis = [0, 3, 4]\n", "", "joints[0]", "a revolute joint without an axis"),
+        ("z = [0, 0, 5]\n", "", "bodies.arm.markers.tip.z", "`z` is missing"),
+        ("x = [1, 0, 1]", "x = [0, 0, -2]", "bodies.arm.markers.tip.x", "other than that of `z`"),
+        ("z = [0, 0, 5]", "z = [0, 0, 0]", "bodies.arm.markers.tip.z", "a vector that is not zero"),
+        ("'arm.root', 'ground']", "'arm.tip', 'ground.wall']", "joints[0].axis", "whose markers both have axes"),
+        // Markers.
+        (
+            "group = 'tip face'",
+            "group = 'tip face'\nat = [0, 0, 0]",
+            "bodies.arm.markers.tip.group",
+            "both `at` and `group`",
+        ),
+        ("group = 'tip face'\n", "", "bodies.arm.markers.tip", "none of `at`, `box` and `group`"),
+        ("at = [-0.2, 0, 0]", "group = 'a'", "bodies.hub.markers.left.group", "has no mesh"),
+        ("markers.middle", "markers.'mid.dle'", "bodies.arm.markers.\"mid.dle\"", "without `.`"),
+        ("at = [0, 1, 0]\n", "", "ground.markers.wall.at", "`at` is missing"),
+        // Names.
+        ("name = 'shoulder'", "name = 'a.b'", "joints[0].name", "without `.`"),
+        ("name = 'shoulder'", "name = 'joint2'", "joints[1].name", "each name once"),
+        ("name = 'rubber'", "name = 'shoulder'", "bushings[0].name", "each name once"),
+        ("[bodies.block]", "[bodies.ground]", "bodies.ground", "the name of the ground"),
+        // Kinds and coordinates.
+        ("'revolute'", "'hinge'", "joints[0].kind", "did you mean `revolute`?"),
+        ("'revolute'", "'spherical'", "joints[0].drive", "no turn about an axis"),
+        ("along = 'slide'\n", "", "joints[1].spring", "which turns and slides"),
+        ("[joints.drive]\n", "[joints.drive]\nalong = 'slide'\n", "joints[0].drive.along", "its turn"),
+        ("[joints.drive]", "[joints.motor]\namplitude = 1.0\n[joints.drive]", "joints[0].motor", "that `drive` gives"),
+        ("[joints.drive]", "[joints.driv]", "joints[0].driv", "did you mean `drive`?"),
+        // Numbers.
+        ("stiffness = 10.0", "stiffness = -10.0", "joints[1].spring.stiffness", "0 or more"),
+        ("high = 0.2, stiffness", "low = 0.3, high = 0.2, stiffness", "joints[1].spring.stops.high", "above `low`"),
+        ("high = 0.2, stiffness", "stiffness", "joints[1].spring.stops", "`low`, `high` or both"),
+        ("rate = 1e-3", "rate = 0", "joints[1].spring.friction.rate", "greater than 0"),
+        ("translation = [1, 2, 3]", "translation = [1, 2, -3]", "bushings[0].stiffness.translation[2]", "0 or more"),
+        ("duration = 0.5", "duration = -0.5", "joints[0].drive.history.duration", "greater than 0"),
+        // Bodies.
+        (
+            "modes = { flexible = 4 }",
+            "modes = { flexible = 4 }\nconstraints = [{ kind = 'pin', at = [0, 0, 0] }]",
+            "bodies.arm.constraints",
+            "\"ground\"",
+        ),
+        ("flexible = 4", "flexible = 4, large = 1", "bodies.arm.modes.large", "large modes of a body that joints"),
+        (
+            "modes = { flexible = 4 }",
+            "modes = { flexible = 4 }\neffects = { rotation = false }",
+            "bodies.arm.effects.rotation",
+            "`rotation = false` of a body",
+        ),
+        // Schemes.
+        ("[time]", "[time]\nformulation = 'paper'", "time.formulation", "the paper's scheme has no joints"),
+        ("[time]", "[time]\nscheme = 'rkmk4'", "time.scheme", "`radau`"),
+    ];
+    for (from, to, key, words) in refused {
+        let text = three();
+        assert!(text.contains(from), "{from}");
+        let error = parse(&text.replacen(from, to, 1)).expect_err(to);
+        let place = error.place().unwrap();
+        assert_eq!(&*place.key, key, "{error}");
+        assert!(error.to_string().contains(words), "{words}: {error}");
+    }
+}
