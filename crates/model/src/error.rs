@@ -41,7 +41,15 @@ pub enum BuildError {
     /// No advice can be given on it.
     #[error(transparent)]
     Advice(#[from] AdviceError),
-    /// A load that the integrator refuses.
+    /// A body in joints that is known to be wrong.
+    #[error("{}: {source}", scene.display())]
+    Refused {
+        /// The scene file.
+        scene: PathBuf,
+        /// The reason.
+        source: Refusal,
+    },
+    /// A load or a joint that the integrator refuses.
     #[error(transparent)]
     Load(#[from] SetupError),
     /// The vibrations under steady loads are not known.
@@ -76,13 +84,21 @@ pub enum StartError {
     /// The model is known to be wrong.
     #[error(transparent)]
     Refused(#[from] Refusal),
+    /// Joints hold the body.
+    #[error("{}", at.show("found a body that joints, springs or bushings hold, expected one that moves alone", TIED_HELP))]
+    Tied {
+        /// Where they are.
+        at: Box<Place>,
+    },
 }
+
+const TIED_HELP: &str = "run the whole scene, or take what ties the body out of it";
 
 impl StartError {
     /// The message, which begins with the scene file.
     pub fn in_scene(&self, path: &Path) -> String {
         match self {
-            Self::Step { .. } => self.to_string(),
+            Self::Step { .. } | Self::Tied { .. } => self.to_string(),
             Self::Setup(_) | Self::Refused(_) => format!("{}: {self}", path.display()),
         }
     }

@@ -12,7 +12,8 @@
 //! | `structure` | the finite-element model: modes, static responses, stress |
 //! | `support`, `load`, `stress` | what holds the body, what acts on it, and the stress of that |
 //! | `reduction` | `survey` (what the scene may need), `decide` (what it gets), `reduce` (make it) |
-//! | `model` | the reduced body with its points and loads |
+//! | `model` | the reduced body with its points, markers and loads |
+//! | `tie` | markers, and the systems of the bodies that joints connect |
 
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
@@ -30,6 +31,7 @@ mod reduction;
 mod stress;
 mod structure;
 mod support;
+mod tie;
 mod variants;
 
 pub use assembly::Assembly;
@@ -43,4 +45,6 @@ pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes, BuildWork};
 pub use stress::shapes::{BodyStress, StressPeak};
 pub use support::reactions::SupportRows;
+pub use tie::body_marker::{BodyMarker, UnknownTurns};
+pub use tie::tied::{Tied, tie};
 pub use variants::Variants;

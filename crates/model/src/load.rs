@@ -3,4 +3,5 @@
 pub(crate) mod directed;
 pub(crate) mod history;
 pub(crate) mod mesh_load;
+pub(crate) mod rotation;
 pub(crate) mod turning;

@@ -23,6 +23,7 @@ use crate::model::initial::initial;
 use crate::progress::BuildTimes;
 use crate::stress::shapes::BodyStress;
 use crate::support::reactions::SupportRows;
+use crate::tie::body_marker::BodyMarker;
 
 /// Deflection over the length at which small vibrations are looked at.
 const SMALL: f64 = 1e-3;
@@ -58,6 +59,8 @@ pub struct Model {
     pub physics: Physics,
     /// The points whose motion is written out, by name.
     pub points: Vec<(String, PointShapes)>,
+    /// Places with axes, in the order of [`Scene::markers`].
+    pub markers: Vec<BodyMarker>,
     /// The paper's scheme with the scene's reference points.
     pub paper: Paper,
     /// Which effects the scene calls for, and why.
@@ -215,6 +218,9 @@ impl Model {
         control: StepControl,
         rows: Rows,
     ) -> Result<Simulation, StartError> {
+        if scene.tied {
+            return Err(StartError::Tied { at: scene.place("body").into() });
+        }
         if let Some(refusal) = self.refusal.filter(|_| scene.effects.refuse) {
             return Err(refusal.into());
         }

@@ -177,7 +177,13 @@ fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint, dofs: usize) 
 }
 
 /// The nodes of a region, which has at least `fewest`.
-fn region_nodes(scene: &Scene, mesh: &Mesh, region: &Region, key: &str, fewest: usize) -> Result<Vec<u32>, BuildError> {
+pub(crate) fn region_nodes(
+    scene: &Scene,
+    mesh: &Mesh,
+    region: &Region,
+    key: &str,
+    fewest: usize,
+) -> Result<Vec<u32>, BuildError> {
     let nodes = match region {
         Region::Ball { at, radius } => mesh.nodes_within(*at, *radius),
         Region::Box { low, high } => {

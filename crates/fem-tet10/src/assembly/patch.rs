@@ -36,10 +36,22 @@ impl Mesh {
     /// # Errors
     /// [`MeshError::NoGroup`] with the names of the surfaces there are.
     pub fn surface_patch(&self, group: &str) -> Result<Patch, MeshError> {
-        let (nodes, areas) = self.surface_weights(group)?;
+        Ok(self.patch_of_areas(self.surface_weights(group)?))
+    }
+
+    /// The faces on the surface of the body whose nodes are all where `holds` is true, as a patch, each with its area; `None`
+    /// where there is no such face.
+    pub fn outer_patch(&self, holds: impl Fn(&Vector3<f64>) -> bool) -> Option<Patch> {
+        let is_in = |node: &u32| holds(&self.positions()[*node as usize].into());
+        let faces = self.outer_faces().into_iter().filter(|nodes| nodes.iter().all(is_in));
+        let (nodes, areas) = self.weights_of_faces(faces);
+        (!nodes.is_empty()).then(|| self.patch_of_areas((nodes, areas)))
+    }
+
+    fn patch_of_areas(&self, (nodes, areas): (Vec<u32>, Vec<f64>)) -> Patch {
         let area: f64 = areas.iter().sum();
         let weights = areas.iter().map(|part| part / area).collect();
-        Ok(Patch::new(nodes, weights, self.positions()))
+        Patch::new(nodes, weights, self.positions())
     }
 }
 

@@ -33,7 +33,17 @@ impl Mesh {
     /// # Errors
     /// [`MeshError::NoGroup`] with the names of the surfaces there are.
     pub fn surface_weights(&self, group: &str) -> Result<(Vec<u32>, Vec<f64>), MeshError> {
-        Ok(self.integrate(self.surface(group)?, |x, slopes| tangent(x, slopes, 0).cross(&tangent(x, slopes, 1)).norm()))
+        Ok(self.areas(self.surface(group)?))
+    }
+
+    fn areas(&self, surface: &Surface) -> (Vec<u32>, Vec<f64>) {
+        self.integrate(surface, |x, slopes| tangent(x, slopes, 0).cross(&tangent(x, slopes, 1)).norm())
+    }
+
+    /// `∫ N_i dA` over some faces of the body, as [`surface_weights`](Self::surface_weights).
+    pub(crate) fn weights_of_faces(&self, faces: impl Iterator<Item = [u32; 6]>) -> (Vec<u32>, Vec<f64>) {
+        let faces = faces.map(|nodes| Face { tag: 0, nodes, inner: false }).collect();
+        self.areas(&Surface { name: String::new(), faces })
     }
 
     /// `−∫ N_i n dA` over a physical surface, the forces of a unit pressure: nodes, ascending, and forces (area, global

@@ -7,7 +7,7 @@ use dynamics::{
     SharedLoad,
 };
 use faer::Mat;
-use fem_tet10::{Location, MeanRotation, Mesh};
+use fem_tet10::{Location, Mesh};
 use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
@@ -16,6 +16,7 @@ use scene::{Choice, Force, Load, Moment, Scene, Traction};
 use crate::error::{BuildError, modal, refuse, refuse_mesh};
 use crate::load::directed::Directed;
 use crate::load::history::history;
+use crate::load::rotation::Rotation;
 use crate::load::turning::Turning;
 use crate::model::initial::first_attitude;
 
@@ -107,14 +108,6 @@ impl UnitWeight {
     }
 }
 
-/// A small rotation of the material at some place.
-enum Rotation {
-    /// The mean rotation of nodes, by their displacements.
-    Mean(MeanRotation),
-    /// The rotation of a node that has one.
-    OfNode(u32),
-}
-
 /// Change of a pressure on a surface as the surface moves in each mode.
 pub(crate) struct FollowerChange {
     /// Change of the resultant and of the moment about the origin of the body (nf).
@@ -151,7 +144,7 @@ pub(crate) fn on_mesh(
                 }
                 Load::Moment(load) => Action::Moment {
                     patch: match load.radius {
-                        None => rotation_at(scene, mesh, dofs, &key("at"), load.at)?,
+                        None => Rotation::at(scene, mesh, dofs, &key("at"), load.at)?,
                         radius => {
                             let mean = mesh.mean_rotation(load.at, radius);
                             Rotation::Mean(mean.map_err(|error| refuse(scene, &key("radius"), error))?)
@@ -177,7 +170,7 @@ pub(crate) fn on_mesh(
             let name = name(i, load);
             let turning = match load {
                 Load::Force(load) if load.frame == LoadFrame::Material => {
-                    Some(rotation_at(scene, mesh, dofs, &key("frame"), load.at)?)
+                    Some(Rotation::at(scene, mesh, dofs, &key("frame"), load.at)?)
                 }
                 _ => None,
             };
@@ -309,25 +302,6 @@ fn follows(load: &Load) -> bool {
     }
 }
 
-/// The rotation of the material at a point: of the node there where nodes have rotations, otherwise of the elements around it.
-fn rotation_at(scene: &Scene, mesh: &Mesh, dofs: usize, key: &str, at: [f64; 3]) -> Result<Rotation, BuildError> {
-    if mesh.has_elements() {
-        return Ok(Rotation::Mean(mesh.mean_rotation(at, None).map_err(|error| refuse(scene, key, error))?));
-    }
-    let Location { nodes, .. } = mesh.locate(at).map_err(|error| refuse(scene, key, error))?;
-    if dofs == 6 {
-        return Ok(Rotation::OfNode(nodes[0]));
-    }
-    Err(scene
-        .refuse(
-            key,
-            "the rotation at a node of a body of matrices, whose nodes only have translations",
-            "a rotation that the matrices know",
-            "give a moment a `radius` with three nodes or more in it; give a force `frame = \"body\"`",
-        )
-        .into())
-}
-
 impl MeshLoad {
     pub fn is_gravity(&self) -> bool {
         self.is_gravity
@@ -421,16 +395,7 @@ impl MeshLoad {
                     }
                 }
             }
-            Action::Moment { patch: Rotation::OfNode(node), .. } => {
-                for axis in 0..3 {
-                    forces[self.dofs * *node as usize + 3 + axis] += vector[axis];
-                }
-            }
-            Action::Moment { patch: Rotation::Mean(patch), .. } => {
-                for (node, turned) in patch.nodes.iter().zip(&patch.rotation_per_displacement) {
-                    add(*node, &turned.tr_mul(&vector));
-                }
-            }
+            Action::Moment { patch, .. } => patch.add_unit_nodal_forces(self.dofs, &vector, forces),
             Action::Field { nodes, forces, .. } => nodes.iter().zip(forces).for_each(|(node, f)| add(*node, f)),
         }
     }
@@ -497,7 +462,7 @@ impl MeshLoad {
                 Some(second_order) => point.with_second_order(second_order),
                 None => point,
             };
-            let turning = self.turning.as_ref().map(|patch| self.rotations(patch, body, modes));
+            let turning = self.turning.as_ref().map(|patch| patch.shapes(self.dofs, body, modes));
             let frame = if turning.is_some() { LoadFrame::Material } else { frame };
             Ok(Arc::new(PointForce { point, force, frame, turning, history: self.history.clone() }))
         };
@@ -508,7 +473,7 @@ impl MeshLoad {
             }
             Action::Weight { weight, force } => at(&weight.point(body, modes), force * self.size)?,
             Action::Moment { patch, moment } => {
-                let rotation = self.rotations(patch, body, modes);
+                let rotation = patch.shapes(self.dofs, body, modes);
                 let rotation = match second_order()? {
                     Some(second_order) => rotation.with_second_order(second_order),
                     None => rotation,
@@ -545,23 +510,6 @@ impl MeshLoad {
                 Arc::new(FieldLoad { field, history })
             }
         })
-    }
-
-    /// How the material is turned by the modes.
-    fn rotations(&self, rotation: &Rotation, body: &ReducedBody, modes: &Modes) -> RotationShapes {
-        let of_mode = |k: usize| -> Vector3<f64> {
-            match rotation {
-                Rotation::Mean(patch) => {
-                    let of = patch.nodes.iter().zip(&patch.rotation_per_displacement);
-                    of.map(|(node, a)| a * self.shape(modes, *node, k)).sum()
-                }
-                Rotation::OfNode(node) => {
-                    Vector3::from_fn(|axis, _| modes.shapes[(self.dofs * *node as usize + 3 + axis, k)])
-                }
-            }
-        };
-        let turned: Vec<Vector3<f64>> = (0..body.flexible()).map(of_mode).collect();
-        RotationShapes::new(body, Mat::from_fn(3, turned.len(), |axis, k| turned[k][axis]).as_ref())
     }
 
     /// Displacement of a node in a flexible mode.

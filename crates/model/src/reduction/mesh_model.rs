@@ -7,6 +7,7 @@ use scene::Scene;
 
 use crate::load::mesh_load::MeshLoad;
 use crate::structure::Structure;
+use crate::tie::mesh_marker::MeshMarker;
 
 /// The finite-element model of a scene: what modes, static responses and the reduced body are made from.
 pub(crate) struct MeshModel<'a, 's> {
@@ -18,5 +19,6 @@ pub(crate) struct MeshModel<'a, 's> {
     pub support: &'a Support,
     /// Loads that may act.
     pub loads: Vec<MeshLoad>,
+    pub markers: Vec<MeshMarker>,
     pub drive: Option<Drive>,
 }

@@ -28,6 +28,7 @@ use crate::stress::shapes::BodyStress;
 use crate::structure::Structure;
 use crate::structure::kept::Found;
 use crate::support::reactions::SupportRows;
+use crate::tie::mesh_marker::{self, MeshMarker};
 
 /// The model of a scene, from its mesh and the modes that it asks for.
 pub(crate) fn reduce(
@@ -42,7 +43,8 @@ pub(crate) fn reduce(
     let dofs = assembled.dofs();
     let Found { modes, body, weights, matrix_bytes, .. } = found;
     let loads = mesh_load::on_mesh(scene, mesh, dofs, &Arc::new(UnitWeight::new(weights, dofs)))?;
-    let model = MeshModel { scene, mesh, dofs, structure, support, loads, drive: drive.clone() };
+    let markers = mesh_marker::on_mesh(scene, mesh, dofs)?;
+    let model = MeshModel { scene, mesh, dofs, structure, support, loads, markers, drive: drive.clone() };
 
     if !scene.time.method.abilities.any_mass && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {
         let found = "a scheme of the paper's formulation, which knows no rotations of nodes, for a mass that is no scalar for each node";
@@ -53,7 +55,7 @@ pub(crate) fn reduce(
     let on_all_modes = timed(&mut times.reduction, || ModalModel::new(&model, body, &modes))?;
     let started = Instant::now();
     let survey = Survey::new(&model, modes, on_all_modes, progress)?;
-    let has_statics = survey.statics.any();
+    let has_statics = survey.statics.any() || survey.of_markers.is_some();
     let decision = Decision::new(scene, &survey);
     let Reduction { modes, modal: reduced, large, backbones, stress, advice } =
         Reduction::new(&model, survey, &decision)?;
@@ -66,6 +68,8 @@ pub(crate) fn reduce(
         Some(large) => points(scene, mesh, large.modes(), large.manifold.body())?,
         None => points(scene, mesh, &modes, &reduced.body)?,
     };
+    let on_body = |marker: &MeshMarker| marker.reduced(scene, mesh, dofs, &reduced.body, &modes);
+    let markers = model.markers.iter().map(on_body).collect::<Result<_, _>>()?;
     let reference_points = reference_points(scene, mesh, &reduced.body);
     let extended = large.as_ref().map(|large| (&large.manifold, large.modes()));
     let has_gravity = decision.effects[Effect::Gravity];
@@ -84,6 +88,7 @@ pub(crate) fn reduce(
     let mut model = Model {
         physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive, large_deflection },
         points,
+        markers,
         paper: Paper { reference_points },
         advice,
         refusal: None,

@@ -10,7 +10,8 @@ use crate::load::turning::{Turning, turning};
 
 /// True if anything may set the body spinning.
 pub(crate) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
-    let set_off = drive.is_some() || scene.initial.angular_velocity != [0.0; 3] || !scene.loads.is_empty();
+    let by_others = !scene.loads.is_empty() || !scene.markers.is_empty();
+    let set_off = drive.is_some() || scene.initial.angular_velocity != [0.0; 3] || by_others;
     turning(scene, motion, drive) != Turning::Not && set_off
 }
 
@@ -41,11 +42,18 @@ pub(crate) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
 pub(crate) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: usize) -> EffectMap<bool> {
     // The paper's formulation has the effects that it has; gravity is a load like others.
     let in_any_case = |effect: Effect| !scene.time.method.abilities.switches_effects && effect != Effect::Gravity;
+    // The forces of joints are not known.
+    let unknown = if scene.markers.is_empty() { Vec::new() } else { scene.on_under_unknown_forces() };
     let has_weight = !body.motion.is_free() && bears_weight(scene, body.mass);
     let mut effects = EffectMap::from_fn(|effect| match scene.effects.choices[effect] {
         Choice::On => true,
         Choice::Off => false,
-        Choice::Auto => in_any_case(effect) || advice.effects[effect].on || (effect == Effect::Gravity && has_weight),
+        Choice::Auto => {
+            in_any_case(effect)
+                || advice.effects[effect].on
+                || unknown.contains(&effect)
+                || (effect == Effect::Gravity && has_weight)
+        }
     });
     effects[Effect::Flexibility] = keep > 0;
     effects[Effect::GeometricStiffening] &=
@@ -78,7 +86,7 @@ pub(crate) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<us
         (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),
         (Choice::On, None) => first(DEFAULT_LARGE),
         (Choice::Auto, None) if scene.effects.choices[Effect::GeometricStiffening] == Choice::Off => Vec::new(),
-        (Choice::Auto, None) if is_driven(scene) => Vec::new(),
+        (Choice::Auto, None) if is_driven(scene) || !scene.markers.is_empty() => Vec::new(),
         (Choice::Auto, None) => advice.large_modes(keep).taken,
     }
 }

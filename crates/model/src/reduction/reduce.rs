@@ -33,16 +33,18 @@ pub(crate) struct Reduction {
 
 impl Reduction {
     pub fn new(model: &MeshModel<'_, '_>, survey: Survey, decision: &Decision) -> Result<Self, BuildError> {
-        let Survey { modes, modal, spin, statics, backbones, advice } = survey;
+        let Survey { modes, modal, spin, statics, of_markers, backbones, advice } = survey;
+        let of_markers = of_markers.filter(|_| decision.keep > 0);
         let Backbones { of_modes: mut backbones, derivatives } = backbones;
         let tolerance = model.scene.effects.tolerance;
         backbones.truncate(decision.keep);
         let stiffens = decision.effects[Effect::GeometricStiffening];
-        let has_all = decision.keep == modal.body.flexible() && !decision.has_static_shapes;
+        let has_all = decision.keep == modal.body.flexible() && !decision.has_static_shapes && of_markers.is_none();
         let (modes, modal, spin, deflection) = if has_all {
             (modes, modal, spin.filter(|_| stiffens), advice.deflection)
         } else {
-            let responses = statics.responses().filter(|_| decision.has_static_shapes).collect::<Vec<_>>();
+            let of_others = statics.responses().filter(|_| decision.has_static_shapes);
+            let responses = of_markers.iter().chain(of_others).collect::<Vec<_>>();
             let Basis { modes, body } = model.structure.basis(&modes.truncated(decision.keep), &responses)?;
             let modal = ModalModel::new(model, body, &modes)?;
             let deflection = advise(&modal.case(model), tolerance)?.deflection;

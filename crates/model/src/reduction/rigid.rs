@@ -16,6 +16,7 @@ use crate::model::{Model, Size};
 use crate::progress::BuildTimes;
 use crate::reduction::physics;
 use crate::support::support;
+use crate::tie::body_marker;
 
 pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildError> {
     let (Support { motion, .. }, drive) = support(scene, None)?;
@@ -63,6 +64,7 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         loads: loads.acting(effects[Effect::Gravity]),
         physics: Physics { effects, drive, ..Physics::default() },
         points,
+        markers: body_marker::on_rigid(scene, &body)?,
         paper: Paper { reference_points },
         advice,
         refusal: None,

@@ -2,6 +2,7 @@
 
 use advice::{Advice, Case, advise, screen};
 use dynamics::Effect;
+use faer::Mat;
 use modal::Modes;
 use scene::Choice;
 
@@ -12,7 +13,9 @@ use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
 use crate::reduction::physics;
 use crate::stress::spin::SpinStress;
+use crate::structure::StaticForces;
 use crate::structure::statics::{Asked, Statics};
+use crate::tie::mesh_marker::unit_forces;
 
 /// Properties of a body with all the modes that were searched for. Those that cannot matter are not computed.
 pub(crate) struct Survey {
@@ -22,6 +25,8 @@ pub(crate) struct Survey {
     /// The stress stiffness of the spin.
     pub spin: Option<SpinStress>,
     pub statics: Statics,
+    /// Static responses to unit forces and moments on the markers (3n×k).
+    pub of_markers: Option<Mat<f64>>,
     pub backbones: Backbones,
     /// On all of the modes.
     pub advice: Advice,
@@ -44,10 +49,12 @@ impl Survey {
             spin: stiffens || may_stretch(model, &modal)?,
             drive: may_stress && model.drive.is_some(),
         };
-        if asked.any() {
+        let has_markers = flexible > 0 && !model.markers.is_empty();
+        if asked.any() || has_markers {
             progress(BuildProgress::Statics);
         }
         let statics = Statics::new(model, &modes, &modal.body.origin, asked)?;
+        let of_markers = if has_markers { Some(to_markers(model, &modes, &modal)?) } else { None };
         let spin = if stiffens { statics.stress_stiffness(model, &modes, &Default::default())? } else { None };
         let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
 
@@ -63,8 +70,15 @@ impl Survey {
         } else {
             first
         };
-        Ok(Self { modes, modal, spin, statics, backbones, advice })
+        Ok(Self { modes, modal, spin, statics, of_markers, backbones, advice })
     }
+}
+
+/// The static responses to unit forces and moments on the markers.
+fn to_markers(model: &MeshModel<'_, '_>, modes: &Modes, modal: &ModalModel) -> Result<Mat<f64>, BuildError> {
+    let forces = unit_forces(&model.markers, model.dofs * model.mesh.positions().len(), model.dofs);
+    let forces = StaticForces { of_loads: forces.as_ref(), spin: false, drive: None, origin: modal.body.origin };
+    Ok(model.structure.static_responses(modes, &forces)?.fields)
 }
 
 /// True if the stress of the spin may matter, and is to be computed.

@@ -1,0 +1,8 @@
+//! What ties bodies together: places with axes on them, and the systems of those that joints connect.
+
+mod axes;
+pub(crate) mod body_marker;
+mod ends;
+mod islands;
+pub(crate) mod mesh_marker;
+pub(crate) mod tied;

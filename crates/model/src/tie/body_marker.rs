@@ -1,0 +1,70 @@
+//! Places with axes on a reduced body.
+
+use dynamics::{PointShapes, RotationShapes};
+use faer::Mat;
+use modal::{BodyPoint, ReducedBody};
+use nalgebra::{Matrix3, Vector3};
+use scene::{Marker, MarkerAxes, MarkerPlace, Scene};
+
+use crate::error::BuildError;
+
+/// A place with axes on a reduced body.
+#[derive(Debug, Clone)]
+pub struct BodyMarker {
+    /// Its name among the markers of its body.
+    pub name: String,
+    /// How the modes move it.
+    pub point: PointShapes,
+    /// How the modes turn it.
+    pub turning: RotationShapes,
+    /// Its axes as columns, body axes: those of the body where it names none.
+    pub axes: Matrix3<f64>,
+    /// Turns of the material there that the modes do not know.
+    pub unknown_turns: UnknownTurns,
+}
+
+/// Turns at a marker that its nodes do not tell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum UnknownTurns {
+    /// None: its nodes span a surface, or its body is rigid.
+    None,
+    /// Those about a line that its nodes are on: a unit vector, body axes.
+    About(Vector3<f64>),
+    /// All: it is one node that has no rotation.
+    All,
+}
+
+/// The axes of a marker as columns, mesh axes, with `x` at right angles to z where it names none; the axes of the body
+/// without any.
+pub(crate) fn axes(axes: Option<&MarkerAxes>) -> Matrix3<f64> {
+    let Some(MarkerAxes { z, x }) = axes else { return Matrix3::identity() };
+    let z = Vector3::from(*z);
+    let x = x.map_or_else(|| perpendicular(&z), Vector3::from);
+    Matrix3::from_columns(&[x, z.cross(&x), z])
+}
+
+/// A unit vector at right angles to another: the nearest to the coordinate axis that is the farthest from it.
+pub(crate) fn perpendicular(z: &Vector3<f64>) -> Vector3<f64> {
+    let axis = Vector3::ith(z.iamin(), 1.0);
+    (axis - z * z.dot(&axis)).normalize()
+}
+
+/// The markers of a rigid body without a mesh.
+pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<BodyMarker>, BuildError> {
+    let on_body = |marker: &Marker| {
+        let MarkerPlace::Point(at) = marker.place else {
+            let key = format!("body.markers.{}", marker.name);
+            let help = "give it a point, `at = [x, y, z]`";
+            return Err(scene.refuse(&key, "a part of a mesh", "none, since the body has no mesh", help).into());
+        };
+        let point = BodyPoint { position_body: Vector3::from(at) - body.origin, shapes: Mat::zeros(3, 0) };
+        Ok(BodyMarker {
+            name: marker.name.clone(),
+            point: PointShapes::new(body, &point),
+            turning: RotationShapes::new(body, Mat::zeros(3, 0).as_ref()),
+            axes: axes(marker.axes.as_ref()),
+            unknown_turns: UnknownTurns::None,
+        })
+    };
+    scene.markers.iter().map(on_body).collect()
+}

@@ -1,0 +1,250 @@
+//! The systems of a scene: bodies that joints, springs and bushings connect.
+
+use std::sync::Arc;
+
+use dynamics::{ConservativeBody, Coordinate, ForceElement, JointForce, Marker, MotionState, PointSpring};
+use nalgebra::Vector3;
+use scene::{AlongAndAbout, Bushing, End, Joint, JointDrive, JointKind, JointSpring, Spring, System};
+
+use crate::error::BuildError;
+use crate::load::history::history;
+use crate::model::Model;
+use crate::tie::axes::axes;
+use crate::tie::body_marker::UnknownTurns;
+use crate::tie::ends::{EndAtStart, both};
+use crate::tie::islands::islands;
+
+/// Sine or cosine of the angle between an axis and a line below which they are parallel or at right angles.
+const ALONG: f64 = 1e-6;
+
+/// Bodies that joints, springs and bushings connect with each other.
+#[derive(Debug, Clone)]
+pub struct Tied {
+    /// Their numbers in the scene, ascending: the bodies of [`Tied::system`], in its order.
+    pub bodies: Vec<usize>,
+    /// The numbers of their joints in the scene, in the order of the system.
+    pub joints: Vec<usize>,
+    /// Names of their springs and bushings, in the order of the system.
+    pub elements: Vec<String>,
+    /// The bodies, the joints and the elements.
+    pub system: dynamics::System,
+    /// The motion of each body at the start, as the scene places it: the joints may not fit yet.
+    pub states: Vec<MotionState>,
+}
+
+/// The systems of a scene, from a model of each of its bodies. Bodies that nothing ties are in none; the ground does not connect.
+///
+/// # Errors
+/// [`BuildError`] for a joint that would hold turns that its marker does not know, for histories, and for a body that is known
+/// to be wrong.
+pub fn tie(system: &System, models: &[Model]) -> Result<Vec<Tied>, BuildError> {
+    let System { joints, springs, bushings, .. } = system;
+    let of_joints = joints.iter().map(|joint| joint.between);
+    let of_elements = springs.iter().map(|spring| spring.between).chain(bushings.iter().map(|b| b.between));
+    let pairs: Vec<_> = of_joints.chain(of_elements).map(|between| between.map(|end| end.body())).collect();
+    islands(models.len(), &pairs).into_iter().map(|bodies| Island::new(system, models, bodies)?.tied()).collect()
+}
+
+/// Bodies that are connected, with what they are made of.
+struct Island<'a> {
+    scene: &'a System,
+    models: &'a [Model],
+    /// Numbers in the scene.
+    bodies: Vec<usize>,
+    states: Vec<MotionState>,
+}
+
+impl<'a> Island<'a> {
+    fn new(scene: &'a System, models: &'a [Model], bodies: Vec<usize>) -> Result<Self, BuildError> {
+        let state = |number: &usize| {
+            let (of_body, model) = (&scene.bodies[*number], &models[*number]);
+            if let Some(source) = model.refusal.filter(|_| of_body.effects.refuse) {
+                return Err(BuildError::Refused { scene: of_body.path.clone(), source });
+            }
+            let initial = model.initial(of_body);
+            Ok(MotionState {
+                time: 0.0,
+                attitude: initial.attitude,
+                origin_global: initial.origin.unwrap_or(model.body.origin),
+                velocity_global: initial.velocity,
+                omega_body: initial.omega,
+                modal_displacement: initial.modal_displacement,
+                modal_velocity: initial.modal_velocity,
+            })
+        };
+        let states = bodies.iter().map(state).collect::<Result<_, _>>()?;
+        Ok(Self { scene, models, bodies, states })
+    }
+
+    fn tied(self) -> Result<Tied, BuildError> {
+        let scene = self.scene;
+        let conservative = |number: &usize| {
+            let model = &self.models[*number];
+            ConservativeBody::new(&model.body, model.damping_ratios(), model.loads().to_vec(), &model.physics)
+        };
+        let bodies = self.bodies.iter().map(conservative).collect::<Result<_, _>>()?;
+        let of_joints = scene.joints.iter().enumerate().filter(|(_, joint)| self.has(joint.between));
+        let (numbers, joints): (Vec<_>, Vec<_>) = of_joints
+            .map(|(number, joint)| Ok((number, self.joint(&format!("joints[{number}]"), joint)?)))
+            .collect::<Result<Vec<_>, BuildError>>()?
+            .into_iter()
+            .unzip();
+        let mut names = Vec::new();
+        let mut elements: Vec<Arc<dyn ForceElement>> = Vec::new();
+        for spring in scene.springs.iter().filter(|spring| self.has(spring.between)) {
+            names.push(spring.name.clone());
+            elements.push(Arc::new(self.spring(spring)));
+        }
+        for (number, bushing) in scene.bushings.iter().enumerate().filter(|(_, b)| self.has(b.between)) {
+            names.push(bushing.name.clone());
+            elements.push(Arc::new(self.bushing(&format!("bushings[{number}]"), bushing)?));
+        }
+        let system = dynamics::System::new(bodies, joints)?.with_elements(elements)?;
+        Ok(Tied { bodies: self.bodies, joints: numbers, elements: names, system, states: self.states })
+    }
+
+    /// True if one of the ends is on a body of these.
+    fn has(&self, between: [End; 2]) -> bool {
+        between.iter().filter_map(End::body).any(|body| self.bodies.contains(&body))
+    }
+
+    fn ends(&self, between: [End; 2]) -> [EndAtStart<'a>; 2] {
+        both(between, &self.scene.ground, |body, marker| {
+            let number = self.bodies.iter().position(|of| *of == body).unwrap_or_default();
+            let axes = self.scene.bodies[body].markers[marker].axes.as_ref();
+            EndAtStart::on_body(number, &self.models[body].markers[marker], axes, &self.states[number])
+        })
+    }
+
+    fn markers(&self, between: [End; 2], axis: Option<[f64; 3]>) -> [Marker; 2] {
+        let ends = self.ends(between);
+        let [first, second] = axes(&ends, axis.map(Vector3::from));
+        [ends[0].marker(first), ends[1].marker(second)]
+    }
+
+    fn joint(&self, key: &str, joint: &Joint) -> Result<dynamics::Joint, BuildError> {
+        let Joint { name, kind, between, axis, drive, spring, motor } = joint;
+        let turns = [drive.as_ref().map(|drive| drive.along), spring.map(|spring| spring.along)];
+        let acts_on_turn = turns.contains(&Some(scene::Coordinate::Turn));
+        self.knows_turns(key, joint, acts_on_turn)?;
+        let markers = self.markers(*between, *axis);
+        let mut made = match kind {
+            JointKind::Fixed => dynamics::Joint::fixed(name, markers),
+            JointKind::Revolute => dynamics::Joint::revolute(name, markers),
+            JointKind::Prismatic => dynamics::Joint::prismatic(name, markers),
+            JointKind::Cylindrical => dynamics::Joint::cylindrical(name, markers),
+            JointKind::Spherical => dynamics::Joint::spherical(name, markers),
+            JointKind::Universal => dynamics::Joint::universal(name, markers),
+            JointKind::Planar => dynamics::Joint::planar(name, markers),
+        };
+        if let Some(drive) = drive {
+            let given = self.drive(&format!("{key}.drive"), drive)?;
+            made = match drive.along {
+                scene::Coordinate::Turn => made.turned_by(given),
+                scene::Coordinate::Slide => made.moved_by(given),
+            };
+        }
+        for along in kind.coordinates() {
+            let spring = spring.as_ref().filter(|spring| spring.along == *along);
+            let motor = motor.as_ref().filter(|motor| motor.along == *along);
+            if spring.is_none() && motor.is_none() {
+                continue;
+            }
+            let motor = motor.map(|motor| self.drive(&format!("{key}.motor"), motor)).transpose()?;
+            let force = JointForce { motor, ..spring.map(force).unwrap_or_default() };
+            let along = match along {
+                scene::Coordinate::Turn => Coordinate::Turn,
+                scene::Coordinate::Slide => Coordinate::Slide,
+            };
+            made = made.with_force(along, force);
+        }
+        Ok(made)
+    }
+
+    /// Refuses a joint that holds turns of a marker which its nodes do not tell.
+    fn knows_turns(&self, key: &str, joint: &Joint, acts_on_turn: bool) -> Result<(), BuildError> {
+        let ends = self.ends(joint.between);
+        let both = axes(&ends, joint.axis.map(Vector3::from));
+        for (i, (end, axes)) in ends.iter().zip(&both).enumerate() {
+            let holds = |line: Vector3<f64>| {
+                let z: Vector3<f64> = axes.column(2).into();
+                match joint.kind {
+                    JointKind::Spherical => false,
+                    JointKind::Fixed | JointKind::Prismatic => true,
+                    JointKind::Universal => z.dot(&line).abs() > ALONG,
+                    JointKind::Revolute | JointKind::Cylindrical | JointKind::Planar => {
+                        acts_on_turn || z.cross(&line).norm() > ALONG
+                    }
+                }
+            };
+            let (found, held) = match end.unknown_turns() {
+                UnknownTurns::None => continue,
+                UnknownTurns::About(line) => ("nodes on a line, which have no turn about it", holds(line)),
+                UnknownTurns::All => ("a node that has no turn", joint.kind != JointKind::Spherical),
+            };
+            if held {
+                return Err(self.refuse(&format!("{key}.between[{i}]"), found, joint.kind.name()));
+            }
+        }
+        Ok(())
+    }
+
+    fn refuse(&self, key: &str, found: &str, kind: &str) -> BuildError {
+        let found = format!("a marker of {found}, in a {kind} joint, which holds that turn");
+        let help =
+            "let the marker take faces (`group`, `box`, `at` with `radius`), or use a joint that leaves the turn free";
+        self.scene.place(key).refuse(found, "a marker whose turns are known", help).into()
+    }
+
+    fn drive(&self, key: &str, drive: &JointDrive) -> Result<dynamics::JointDrive, BuildError> {
+        let of_body = &self.scene.bodies[self.bodies[0]];
+        let history = history(of_body, &format!("{key}.history"), &drive.history)?;
+        Ok(dynamics::JointDrive { amplitude: drive.amplitude, history })
+    }
+
+    fn spring(&self, spring: &Spring) -> PointSpring {
+        let [first, second] = self.ends(spring.between);
+        PointSpring {
+            markers: self.markers(spring.between, None),
+            stiffness: spring.stiffness,
+            damping: spring.damping,
+            free_length: spring.free_length.unwrap_or_else(|| (second.position - first.position).norm()),
+        }
+    }
+
+    fn bushing(&self, key: &str, bushing: &Bushing) -> Result<dynamics::Bushing, BuildError> {
+        let turns = [bushing.stiffness, bushing.damping].iter().any(|of| of.rotation != [0.0; 3]);
+        let unknown = self.ends(bushing.between).iter().position(|end| end.unknown_turns() != UnknownTurns::None);
+        if let (true, Some(i)) = (turns, unknown) {
+            return Err(self.refuse(
+                &format!("{key}.between[{i}]"),
+                "nodes that do not tell all turns",
+                "bushing as a",
+            ));
+        }
+        let lists = |of: AlongAndAbout| [of.translation, of.rotation].map(Vector3::from);
+        Ok(dynamics::Bushing {
+            markers: self.markers(bushing.between, None),
+            stiffness: lists(bushing.stiffness),
+            damping: lists(bushing.damping),
+        })
+    }
+}
+
+/// The force of a spring along a coordinate.
+fn force(spring: &JointSpring) -> JointForce {
+    let JointSpring { along: _, stiffness, damping, free, preload, stops, friction } = *spring;
+    JointForce {
+        stiffness,
+        damping,
+        free,
+        preload,
+        stops: stops.map(|stops| dynamics::Stops {
+            limits: [stops.low, stops.high],
+            stiffness: stops.stiffness,
+            damping: stops.damping,
+        }),
+        friction: friction.map(|friction| dynamics::Friction { force: friction.force, rate_scale: friction.rate }),
+        ..JointForce::default()
+    }
+}
