@@ -13,6 +13,7 @@ mod step;
 mod strain;
 mod stress;
 mod supports;
+mod ties;
 mod tolerance;
 mod turned;
 

@@ -1,0 +1,186 @@
+//! Markers and the systems of a scene.
+
+use std::path::Path;
+
+use dynamics::{Observation, Reached, Rows, StepControl, SystemSetup, SystemSimulation};
+use faer::Mat;
+use model::{BodyMarker, Model, StartError, Tied, UnknownTurns, tie};
+use nalgebra::Vector3;
+use scene::System;
+
+use crate::{build, last, parse, point};
+
+const HEAD: &str = "title = 'ties'\nunits = { length = 'mm', mass = 'Mg', time = 's' }\n";
+const BAR: &str =
+    "mesh = '../data/bar.msh'\nmaterial = { young_modulus = 70e3, poisson_ratio = 0.3, density = 2.7e-9 }\n";
+const RIGID: &str =
+    "rigid = { mass = 1e-4, center_of_mass = [0, 0, 0], inertia = [[0.1, 0, 0], [0, 0.2, 0], [0, 0, 0.2]] }\n";
+const FALLS: &str = "loads = [{ kind = 'gravity', direction = [0, 0, -1], amplitude = 9810.0 }]\n";
+const TIME: &str = "[time]\nend = 0.02\ntolerance = 1e-6\n";
+
+fn system(text: &str) -> (System, Vec<Model>) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/integration/scene.toml");
+    let system = System::parse(text, path).unwrap_or_else(|error| panic!("{error}"));
+    let models = system.bodies.iter().map(build).collect();
+    (system, models)
+}
+
+/// The first rows of the shapes of a marker (6×nf): its displacement and its rotation in each mode.
+fn shapes(marker: &BodyMarker) -> Mat<f64> {
+    let (point, turning) = (&marker.point.columns()[6..], &marker.turning.columns()[6..]);
+    Mat::from_fn(6, point.len(), |i, k| if i < 3 { point[k][i] } else { turning[k][i - 3] })
+}
+
+/// What unit forces and moments on two markers do to them by deformation (12×12).
+fn compliance(model: &Model) -> Mat<f64> {
+    let [one, other] = [0, 1].map(|i| shapes(&model.markers[i]));
+    let all = Mat::from_fn(12, one.ncols(), |i, k| if i < 6 { one[(i, k)] } else { other[(i - 6, k)] });
+    let omega = &model.body.circular_frequencies;
+    let scaled = Mat::from_fn(12, one.ncols(), |i, k| all[(i, k)] / omega[k]);
+    &scaled * scaled.transpose()
+}
+
+/// Conserved: the static response to forces on the markers, whatever the number of modes.
+#[test]
+fn two_markers_add_twelve_shapes_that_hold_the_static_response() {
+    let with_modes = |modes: usize, effects: &str| {
+        build(&parse(&format!(
+            "{HEAD}[body]\n{BAR}[body.markers.root]\ngroup = 'root'\n[body.markers.tip]\nbox = [[200, -9, -9], [200, 9, 9]]\n\
+             [modes]\nflexible = {modes}\n{effects}{TIME}"
+        )))
+    };
+    let few = with_modes(2, "");
+    assert_eq!((few.static_shapes(), few.body.flexible()), (12, 14));
+    assert_eq!(few.markers.iter().map(|marker| &*marker.name).collect::<Vec<_>>(), ["root", "tip"]);
+    // The face of a box is that of the group, and its mean is its middle.
+    let tip = few.markers[1].point.position_body();
+    assert!((tip - Vector3::new(100.0, 0.0, 0.0)).norm() < 1e-9, "{tip}");
+    let (few, many) = (compliance(&few), compliance(&with_modes(9, "")));
+    for i in 0..12 {
+        for j in 0..12 {
+            let size = (many[(i, i)] * many[(j, j)]).sqrt();
+            assert!((few[(i, j)] - many[(i, j)]).abs() < 1e-6 * size, "{i} {j}: {} {}", few[(i, j)], many[(i, j)]);
+        }
+    }
+    assert_eq!(with_modes(0, "").body.flexible(), 0, "a body that does not deform has no shapes");
+}
+
+#[test]
+fn auto_keeps_all_modes_of_a_body_with_markers_and_has_the_effects_of_unknown_forces() {
+    let scene = parse(&format!(
+        "{HEAD}[body]\n{BAR}markers = {{ tip = {{ group = 'tip' }} }}\n{FALLS_AT_ROOT}\
+         [modes]\nflexible = 'auto'\nmost = 5\ndamping_ratio = 0.1\n{TIME}"
+    ));
+    let model = build(&scene);
+    assert_eq!(model.body.natural_modes, 5);
+    assert!(scene.on_under_unknown_forces().iter().all(|effect| model.physics.effects[*effect]));
+    assert!(model.damping_ratios().iter().all(|ratio| *ratio == 0.1));
+}
+
+const FALLS_AT_ROOT: &str = "[[loads]]\nkind = 'gravity'\ndirection = [0, 0, -1]\namplitude = 9810.0\n";
+
+/// An arm that lies along y, a hub at its tip, and a block that hangs from the ground by itself.
+fn two_islands() -> String {
+    format!(
+        "{HEAD}[bodies.arm]\n{BAR}{FALLS}modes = {{ flexible = 2 }}\n\
+         initial = {{ position = [0, 50, 0], attitude = [1, 0, 0, 1], angular_velocity = [0, 0, 2], velocity = [-200, 0, 0] }}\n\
+         [bodies.arm.markers.root]\ngroup = 'root'\n[bodies.arm.markers.tip]\ngroup = 'tip'\nz = [0, 1, 0]\n\
+         [bodies.block]\n{RIGID}markers = {{ top = {{ at = [0, 0, 10] }} }}\n\
+         [bodies.hub]\n{RIGID}initial = {{ position = [0, 250, 0], velocity = [-400, 0, 0], angular_velocity = [0, 3, 2] }}\nmarkers = {{ left = {{ at = [0, 0, 0] }} }}\n\
+         [bodies.stone]\n{RIGID}\
+         [ground.markers.ceiling]\nat = [0, 0, 100]\n\
+         [[joints]]\nkind = 'revolute'\nbetween = ['arm.tip', 'hub.left']\n\
+         [[joints]]\nname = 'hook'\nkind = 'spherical'\nbetween = ['ground', 'block.top']\n\
+         [[joints]]\nkind = 'revolute'\nbetween = ['arm.root', 'ground']\naxis = [0, 0, 1]\nspring = {{ stiffness = 5.0 }}\n\
+         [[springs]]\nbetween = ['block.top', 'ground.ceiling']\nstiffness = 1.0\n\
+         [[bushings]]\nbetween = ['hub.left', 'ground']\nstiffness = {{ rotation = [1, 1, 1] }}\n{TIME}"
+    )
+}
+
+fn start(tied: &Tied, control: StepControl, end: f64) -> SystemSimulation {
+    SystemSimulation::new(SystemSetup {
+        system: tied.system.clone(),
+        states: tied.states.clone(),
+        relaxed: false,
+        control,
+        end,
+        rows: Rows::Interval(end),
+        points: vec![Vec::new(); tied.bodies.len()],
+    })
+    .unwrap()
+}
+
+#[test]
+fn bodies_that_joints_connect_are_a_system_and_those_beside_them_another() {
+    let (system, models) = system(&two_islands());
+    let tied = tie(&system, &models).unwrap();
+    let numbers: Vec<_> =
+        tied.iter().map(|tied| (&tied.bodies[..], &tied.joints[..], tied.elements.concat())).collect();
+    assert_eq!(numbers, [(&[0, 2][..], &[0, 2][..], "bushing1".to_owned()), (&[1], &[1], "spring1".to_owned())]);
+    let names = |tied: &Tied| tied.system.joints().iter().map(|joint| joint.name.clone()).collect::<Vec<_>>();
+    assert_eq!((names(&tied[0]), names(&tied[1])), (vec!["joint1".into(), "joint3".into()], vec!["hook".into()]));
+    // The arm turns about its root, and the joints find the bodies where they belong, with axes that fit.
+    for tied in &tied {
+        for (body, change) in tied.bodies.iter().zip(start(tied, StepControl::Tolerance(1e-4), 1e-3).assembled()) {
+            assert!(change.moved < 1e-9 && change.turned < 1e-12, "{body}: {change:?}");
+            assert!(change.velocity < 1e-8 && change.angular_velocity < 1e-10, "{body}: {change:?}");
+        }
+    }
+    let error = models[0].start(&system.bodies[0]).unwrap_err();
+    assert!(matches!(error, StartError::Tied { .. }) && error.to_string().contains("run the whole scene"), "{error}");
+}
+
+/// Independent reference: the same bar held at the same node by the reduction, without any joint.
+#[test]
+fn a_ball_to_the_ground_moves_a_bar_as_a_pin_does() {
+    let body = |rest: &str| {
+        format!(
+            "{HEAD}[body]\n{BAR}{rest}{FALLS_AT_ROOT}[modes]\nflexible = 6\n[output]\npoints = {{ tip = [200, 0, 0] }}\ninterval = 0.02\n{TIME}"
+        )
+    };
+    let pinned = parse(&body("[[constraints]]\nkind = 'pin'\nat = [0, 0, 0]\n"));
+    let (model, end) = last(&pinned);
+    let expected = point(&model, &end, "tip").displacement;
+
+    let text = body(
+        "markers = { root = { at = [0, 0, 0] } }\n[[joints]]\nkind = 'spherical'\nbetween = ['body.root', 'ground']\n",
+    );
+    let (system, models) = system(&text);
+    let tied = tie(&system, &models).unwrap().remove(0);
+    let points = vec![models[0].points.iter().map(|(_, point)| point.clone()).collect()];
+    let mut simulation = SystemSimulation::new(SystemSetup {
+        system: tied.system,
+        states: tied.states,
+        relaxed: false,
+        control: StepControl::Tolerance(1e-6),
+        end: 0.02,
+        rows: Rows::Interval(0.02),
+        points,
+    })
+    .unwrap();
+    let mut row: Vec<Observation> = vec![simulation.room(0)];
+    while simulation.advance_watched(1000, |_, _| ()).unwrap() != Reached::End {}
+    simulation.observe(&mut row).unwrap();
+    let found = row[0].points[0].displacement;
+    println!("{found:?} {expected:?} {:e}", (found - expected).norm());
+    assert!((found - expected).norm() < 1e-3 * expected.norm());
+}
+
+#[test]
+fn joints_of_markers_that_do_not_tell_their_turns_and_regions_without_faces_are_refused() {
+    let nodes = |kind: &str, marker: &str, axis: &str| {
+        format!(
+            "{HEAD}[body]\n{BAR}markers = {{ root = {marker} }}\n[modes]\nflexible = 2\n\
+             [[joints]]\nkind = '{kind}'\nbetween = ['body.root', 'ground']\n{axis}\n{TIME}"
+        )
+    };
+    for marker in ["{ box = [[10, -1, -1], [11, 1, 1]] }", "{ group = 'bar' }", "{ group = 'rot' }"] {
+        let scene = parse(&nodes("fixed", marker, ""));
+        let error = Model::build(&scene, |_| ()).unwrap_err().to_string();
+        assert!(error.contains("body.markers.root"), "{error}");
+    }
+    // A point of a mesh has the turns of the elements around it.
+    let (system, models) = system(&nodes("fixed", "{ at = [0, 0, 0] }", ""));
+    assert_eq!(models[0].markers[0].unknown_turns, UnknownTurns::None);
+    assert_eq!(tie(&system, &models).unwrap().len(), 1);
+}
