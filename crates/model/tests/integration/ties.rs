@@ -86,7 +86,7 @@ fn two_islands() -> String {
          initial = {{ position = [0, 50, 0], attitude = [1, 0, 0, 1], angular_velocity = [0, 0, 2], velocity = [-200, 0, 0] }}\n\
          [bodies.arm.markers.root]\ngroup = 'root'\n[bodies.arm.markers.tip]\ngroup = 'tip'\nz = [0, 1, 0]\n\
          [bodies.block]\n{RIGID}markers = {{ top = {{ at = [0, 0, 10] }} }}\n\
-         [bodies.hub]\n{RIGID}initial = {{ position = [0, 250, 0], velocity = [-400, 0, 0], angular_velocity = [0, 3, 2] }}\nmarkers = {{ left = {{ at = [0, 0, 0] }} }}\n\
+         [bodies.hub]\n{RIGID}initial = {{ position = [0, 250, 0], velocity = [-400, 0, 0], angular_velocity = [3, 0, 2] }}\nmarkers = {{ left = {{ at = [0, 0, 0] }} }}\n\
          [bodies.stone]\n{RIGID}\
          [ground.markers.ceiling]\nat = [0, 0, 100]\n\
          [[joints]]\nkind = 'revolute'\nbetween = ['arm.tip', 'hub.left']\n\
