@@ -29,6 +29,16 @@ impl Connections {
         self.joints.iter().map(|joint| joint.rows.len()).chain(self.couplings.iter().map(|_| 1))
     }
 
+    /// Numbers of compliant rows of the forces of joints, then of the elements.
+    pub fn compliant_groups(&self) -> impl Iterator<Item = usize> {
+        self.joint_forces().map(|_| 1).chain(self.elements.iter().map(|element| element.directions()))
+    }
+
+    /// True if there are no compliant rows.
+    pub fn is_rigid(&self) -> bool {
+        self.compliant_groups().all(|rows| rows == 0)
+    }
+
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.groups().sum()
@@ -46,7 +56,7 @@ impl Connections {
         numbered.flat_map(|(number, joint)| joint.forces().map(move |(coordinate, force)| (number, coordinate, force)))
     }
 
-    /// The pairs of markers that each row has ends on: rows of joints, then of couplings, then of forces of joints.
+    /// The markers that each row has ends on: rows of joints, of couplings, of forces of joints, of elements.
     pub fn ends(&self) -> impl Iterator<Item = Vec<&Marker>> {
         let of_joints = self.joints.iter().flat_map(|joint| joint.rows.iter().map(|_| joint.markers.iter().collect()));
         let of_couplings = self
@@ -54,6 +64,10 @@ impl Connections {
             .iter()
             .map(|coupling| coupling.terms.iter().flat_map(|term| &self.joints[term.joint].markers).collect());
         let of_forces = self.joint_forces().map(|(joint, ..)| self.joints[joint].markers.iter().collect());
-        of_joints.chain(of_couplings).chain(of_forces)
+        let of_elements = self
+            .elements
+            .iter()
+            .flat_map(|element| (0..element.directions()).map(|_| element.markers().iter().collect()));
+        of_joints.chain(of_couplings).chain(of_forces).chain(of_elements)
     }
 }

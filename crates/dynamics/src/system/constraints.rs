@@ -4,6 +4,7 @@ use crate::system::connections::Connections;
 use crate::system::elimination::inverse::Number;
 use crate::system::joint::Joint;
 use crate::system::joint::wrench::RowWrench;
+use crate::system::marker::motion::MarkerWrench;
 use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
 
 /// One end of a row: the entries of G for the coordinates of one body.
@@ -23,11 +24,43 @@ pub(crate) struct Constraints {
     pub residuals: Vec<f64>,
     /// g_t: rates of the residuals by drives alone (m).
     pub own_rates: Vec<f64>,
-    /// The ends of each row that are on bodies: one for each body. After the rows of joints and couplings come the coordinates of
-    /// the forces of joints.
+    /// The ends of each row that are on bodies: one for each body. After the rows of joints and couplings come the compliant ones:
+    /// the coordinates of the forces of joints, then the directions of elements.
     pub ends: Vec<Vec<End>>,
     /// The coordinates of the forces of joints.
     pub coordinates: Vec<f64>,
+    /// How the forces along the compliant rows fall.
+    pub compliant: Vec<Compliant>,
+}
+
+/// A row along which a force falls by a stiffness times displacement and a damping times velocity.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Compliant {
+    pub stiffness: f64,
+    pub damping: f64,
+}
+
+impl Compliant {
+    /// True if there is neither.
+    pub fn is_slack(self) -> bool {
+        self.stiffness == 0.0 && self.damping == 0.0
+    }
+
+    /// The larger of two stiffnesses and of two dampings.
+    pub fn or(self, other: Self) -> Self {
+        Self { stiffness: self.stiffness.max(other.stiffness), damping: self.damping.max(other.damping) }
+    }
+
+    /// True if it is not within half and twice another.
+    pub fn is_far_from(self, other: Self, kappa: f64) -> bool {
+        let [now, then] = [self, other].map(|row| row.resistance(kappa));
+        now > 2.0 * then || 2.0 * now < then
+    }
+
+    /// k/κ + c
+    pub fn resistance<T: Number>(self, kappa: T) -> T {
+        kappa.recip().scale(self.stiffness) + T::from_real(self.damping)
+    }
 }
 
 impl Constraints {
@@ -45,8 +78,13 @@ impl Constraints {
         };
         let ends: Vec<Vec<End>> = connections.ends().map(of_row).collect();
         let rows = connections.rows();
-        let coordinates = vec![0.0; ends.len() - rows];
-        Self { residuals: vec![0.0; rows], own_rates: vec![0.0; rows], ends, coordinates }
+        Self {
+            residuals: vec![0.0; rows],
+            own_rates: vec![0.0; rows],
+            coordinates: vec![0.0; connections.joint_forces().count()],
+            compliant: vec![Compliant::default(); ends.len() - rows],
+            ends,
+        }
     }
 
     /// Finds g, its own rate and G at a time, by the branch of another. Turns of joints are next to what is expected of them.
@@ -93,9 +131,25 @@ impl Constraints {
         }
     }
 
-    /// The ends of the forces of joints.
-    pub fn force_ends(&self) -> &[Vec<End>] {
+    /// The ends of the compliant rows.
+    pub fn compliant_ends(&self) -> &[Vec<End>] {
         &self.ends[self.residuals.len()..]
+    }
+
+    /// Sets a compliant row from its number among them: the wrenches of one unit of its force on markers where they are.
+    pub fn set_compliant<'a>(
+        &mut self,
+        number: usize,
+        row: Compliant,
+        wrenches: impl Iterator<Item = (&'a Marker, &'a MarkerPlace, &'a MarkerWrench)>,
+    ) {
+        self.compliant[number] = row;
+        let ends = &mut self.ends[self.residuals.len() + number];
+        clear(ends);
+        for (marker, place, MarkerWrench { force_global, moment_global }) in wrenches {
+            let Some(end) = ends.iter_mut().find(|end| Some(end.body) == marker.body()) else { continue };
+            marker.add_wrench(place, [force_global, moment_global], &mut end.entries);
+        }
     }
 
     /// out = G v + g_t (m)

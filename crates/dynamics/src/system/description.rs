@@ -1,12 +1,14 @@
 //! Bodies and what connects them.
 
+mod groups;
+
 use std::sync::Arc;
 
 use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
 use crate::system::connections::Connections;
+use crate::system::description::groups::free_groups;
 use crate::system::element::ForceElement;
-use crate::system::groups::free_groups;
 use crate::system::joint::Joint;
 use crate::system::joint::coupling::Coupling;
 use crate::system::marker::Marker;

@@ -5,7 +5,10 @@ pub(crate) mod springs;
 use std::fmt;
 
 use crate::system::marker::Marker;
-use crate::system::motion::{MarkerMotion, MarkerWrench};
+use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
+
+/// Takes a direction of an element: its number, its stiffness and damping, and the wrenches of one unit of force along it.
+pub type SetDirection<'a> = dyn FnMut(usize, [f64; 2], &[MarkerWrench]) + 'a;
 
 /// A law that puts forces on some markers by their motion.
 ///
@@ -18,4 +21,14 @@ pub trait ForceElement: fmt::Debug + Send + Sync {
     /// Finds the wrench on each of its markers at a time; laws with branches are taken as they are at the time `times[1]`.
     /// `wrenches` are zero before.
     fn apply(&self, times: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]);
+
+    /// Number of directions in which it may be stiff. Steps with a stiff law that has none are as short as its period asks.
+    fn directions(&self) -> usize {
+        0
+    }
+
+    /// Calls `set` for each direction, by its number: with its stiffness and damping, neither negative, and with the wrenches of
+    /// one unit of force along it. Where the markers move along it, by a path that is the work of those wrenches, the wrenches
+    /// fall by (stiffness × path + damping × rate of the path) times them. It need not be exact: it is for Newton's method.
+    fn linearize(&self, _times: [f64; 2], _motions: &[MarkerMotion], _set: &mut SetDirection<'_>) {}
 }

@@ -4,3 +4,4 @@ pub(crate) mod inverse;
 pub(crate) mod joint_matrix;
 pub(crate) mod matrices;
 pub(crate) mod newton;
+pub(crate) mod patterns;

@@ -2,11 +2,13 @@
 //!
 //! Eqs. (J1)–(J3) of `docs/method/systems.md`.
 
+pub(crate) mod motion;
+
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{cross_matrix, transformation_matrix};
 
 use crate::body::shapes::{PointShapes, RotationShapes};
-use crate::system::motion::MarkerMotion;
+use crate::system::marker::motion::MarkerMotion;
 
 /// A place with axes on a body, or on the ground.
 ///

@@ -7,35 +7,29 @@
 //! x' = v + M⁻¹Gᵀμ,     y' = forces + Gᵀλ,     g = 0,     G v = 0        at each stage
 //! ```
 
+mod end;
+mod newton;
+mod stepping;
+
 use nalgebra::{Complex, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::body::motion_state::MotionState;
 use crate::conservative::{get, part};
 use crate::equations::Equations;
-use crate::error::{RateError, SetupError, StepError};
-use crate::state::{State, attitude_at};
+use crate::error::{RateError, SetupError};
+use crate::state::State;
 use crate::system::collocation::{Collocation, STAGES};
 use crate::system::description::System;
-use crate::system::elimination::inverse::Inverse;
-use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
-use crate::system::elimination::matrices::{Matrices, oscillators};
-use crate::system::elimination::newton::{Frozen, Solution, sizes};
+use crate::system::elimination::matrices::Matrices;
+use crate::system::elimination::newton::Solution;
+use crate::system::elimination::patterns::Patterns;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::coupling::CoupledCoordinate;
-use crate::system::stage::{BodyStart, Stage, Start, about_global_origin, put, vector};
+use crate::system::stage::{BodyStart, Stage, Start};
 
-/// Error of Newton's method over the tolerance: of positions relative to the bodies, and in the norm of the energy. Ten times as
-/// much costs a fifth less work, but the multipliers of stiff bodies, and the work of drives, are then off by per cents.
-const EXACTNESS: f64 = 1e-3;
-/// A change of positions that is rounding.
-const ROUNDING: f64 = 1e-13;
-/// Passes of Newton's method before a step is given up.
-const MAX_PASSES: usize = 20;
 /// The step whose Newton matrix is the metric in which a system is assembled, as a part of the shortest period.
 const ASSEMBLY: f64 = 1.0;
-/// Passes of the projection of positions.
-const MAX_PROJECTIONS: usize = 20;
 
 /// The cost of a step and its estimated error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,7 +71,7 @@ pub struct JointWork {
 pub struct SystemMotion {
     pub(super) system: System,
     scheme: Collocation,
-    pub(super) pattern: Pattern,
+    pub(super) patterns: Patterns,
     pub(super) time: f64,
     /// The list of each body, as in a [`State`] of it.
     pub(super) bodies: Vec<State>,
@@ -135,8 +129,7 @@ impl SystemMotion {
         let stage = Stage::new(&system);
         let (coordinates, rows) = (system.coordinates(), system.rows());
         let joints = system.connections.joints.len();
-        let groups: Vec<usize> = system.connections.groups().collect();
-        let pattern = Pattern::new(&groups, &stage.constraints, system.bodies.len());
+        let patterns = Patterns::new(&system, &stage.constraints);
         let flexible: Vec<usize> = system.bodies.iter().map(Equations::flexible).collect();
         let multipliers = std::array::from_fn(|_| vec![0.0; rows]);
         let zeros = || vec![0.0; coordinates];
@@ -157,22 +150,14 @@ impl SystemMotion {
             multipliers,
             last: std::array::from_fn(|_| [zeros(), zeros()]),
             last_length: 0.0,
-            matrices: Matrices {
-                is_left_out: vec![false; rows],
-                mass: flexible.iter().map(|nf| Inverse::new(*nf)).collect(),
-                real: flexible.iter().map(|nf| Inverse::new(*nf)).collect(),
-                complex: flexible.iter().map(|nf| Inverse::new(*nf)).collect(),
-                of_mass: JointMatrix::new(&pattern, coordinates),
-                of_real: JointMatrix::new(&pattern, coordinates),
-                of_complex: JointMatrix::new(&pattern, coordinates),
-            },
+            matrices: Matrices::new(&flexible, &patterns),
             room: Room {
-                real: Solution::new(coordinates, rows),
-                complex: Solution::new(coordinates, rows),
+                real: Solution::new(coordinates, &patterns),
+                complex: Solution::new(coordinates, &patterns),
                 y_rates: std::array::from_fn(|_| zeros()),
                 change: [zeros(), zeros()],
             },
-            pattern,
+            patterns,
             bodies,
             system,
             largest_energy: 0.0,
@@ -294,7 +279,7 @@ impl SystemMotion {
 
     /// Number of rows that others imply, where the system is.
     pub fn dependent_rows(&self) -> usize {
-        self.matrices.is_left_out.iter().filter(|is_left_out| **is_left_out).count()
+        self.matrices.is_left_out[..self.system.rows()].iter().filter(|is_left_out| **is_left_out).count()
     }
 
     /// Moves the bodies, and changes their velocities, so that the joints hold. Returns the largest residual and the largest
@@ -342,88 +327,6 @@ impl SystemMotion {
         Ok(Tried { error, passes })
     }
 
-    /// Goes to `end` with steps whose estimated error is at most `tolerance`; `h` is the first try, and the next one after.
-    /// Returns the number of steps. Where a load or a drive jumps, end a call there.
-    ///
-    /// # Errors
-    /// [`StepError`] where no step is short enough.
-    pub fn advance(&mut self, end: f64, tolerance: f64, h: &mut f64) -> Result<u64, StepError> {
-        let mut steps = 0;
-        while self.time < end {
-            steps += u64::from(self.try_towards(end, tolerance, h)?.is_some());
-        }
-        Ok(steps)
-    }
-
-    /// Tries one step towards `end` with an estimated error of at most `tolerance`, about as long as `h`, which becomes the
-    /// length of the next try. Returns the length of the step where it was taken.
-    ///
-    /// # Errors
-    /// [`StepError`] where no step is short enough.
-    pub(super) fn try_towards(&mut self, end: f64, tolerance: f64, h: &mut f64) -> Result<Option<f64>, StepError> {
-        let left = end - self.time;
-        let parts = (left / *h).ceil().max(1.0);
-        let length = if *h * 1.01 >= left { left } else { left / parts };
-        let to = if length == left { end } else { self.time + length };
-        let mut taken = None;
-        match self.try_step(length, to, EXACTNESS * tolerance, tolerance) {
-            Ok(Tried { error, passes }) => {
-                let mut factor = (0.9 * (tolerance / error.max(1e-300)).powf(0.25)).clamp(0.2, 4.0);
-                if error <= tolerance {
-                    taken = Some(length);
-                    if passes > 7 {
-                        factor = factor.min(0.7);
-                    } else if passes > 5 {
-                        factor = factor.min(1.0);
-                    }
-                    // A last step that was cut short says little of the next.
-                    *h = if factor >= 1.0 { h.max(length * factor) } else { length * factor };
-                } else {
-                    *h = length * factor.min(0.9);
-                }
-            }
-            Err(Failed::Newton) => *h = 0.4 * length,
-            Err(Failed::Rates(error)) if length < 1e-12 * end => return Err(error.in_step(self.time, length)),
-            Err(Failed::Rates(_)) => *h = 0.25 * length,
-        }
-        if *h < 1e-13 * end {
-            return Err(StepError::Tolerance { time: self.time, step: *h, tolerance });
-        }
-        Ok(taken)
-    }
-
-    /// Takes the motion past a jump of a load or a drive at its time: where the rate of a drive jumps, so do the velocities. The
-    /// energy that this takes is work of the drives.
-    ///
-    /// # Errors
-    /// [`RateError`] where the inertia of a body is singular.
-    pub(super) fn pass_discontinuity(&mut self) -> Result<(), RateError> {
-        self.last_length = 0.0;
-        if self.system.connections.joints.iter().all(|joint| joint.drive.is_none()) {
-            return Ok(());
-        }
-        // The discontinuity itself is where it is but for rounding.
-        let branch_time = self.time + 1e-12 * self.time.abs();
-        let energies = |motion: &Self| {
-            (0..motion.bodies.len()).map(|body| motion.energy_of(body)).collect::<Result<Vec<f64>, _>>()
-        };
-        let before = energies(self)?;
-        match self.assemble_by(branch_time) {
-            Ok(_) => {}
-            Err(Failed::Rates(error)) => return Err(error),
-            Err(Failed::Newton) => return Err(RateError::Inertia),
-        }
-        let after = energies(self)?;
-        for (body, (before, after)) in before.into_iter().zip(after).enumerate() {
-            let mut list = self.system.bodies[body].list_mut(&mut self.bodies[body]);
-            let mut slow = *list.slow();
-            slow[part::WORK] += after - before;
-            list.set_slow(&slow);
-            self.jump_work += after - before;
-        }
-        Ok(())
-    }
-
     /// Takes the state as the start of a step.
     pub(super) fn begin(&mut self) {
         self.start.time = self.time;
@@ -454,295 +357,5 @@ impl SystemMotion {
         first.find_x_rates(system, &self.velocity_multipliers[0])?;
         self.evaluations += 1;
         Ok(())
-    }
-
-    /// First values of the stages: the polynomials of the last step, continued.
-    fn predict(&mut self, h: f64) {
-        for (i, stage) in self.stages.iter_mut().enumerate() {
-            let c = self.scheme.times[i];
-            if self.last_length > 0.0 {
-                let factors = self.scheme.continued(1.0 + c * h / self.last_length);
-                for (which, list) in [&mut stage.x, &mut stage.y].into_iter().enumerate() {
-                    for (k, value) in list.iter_mut().enumerate() {
-                        *value = factors.iter().zip(&self.last).map(|(factor, last)| factor * last[which][k]).sum();
-                    }
-                }
-            } else {
-                stage.x.iter_mut().zip(&self.first.x_rates).for_each(|(x, rate)| *x = c * h * rate);
-                stage.y.iter_mut().zip(&self.first.y_rates).for_each(|(y, rate)| *y = c * h * rate);
-            }
-        }
-        self.largest_energy = self.largest_energy.max(self.first.energy(&self.system, h));
-        let [others @ .., last] = &mut self.multipliers;
-        others.iter_mut().for_each(|lambda| lambda.copy_from_slice(last));
-        self.velocity_multipliers.iter_mut().for_each(|mu| mu.fill(0.0));
-    }
-
-    /// Factors of the Newton matrix with the geometry of a stage.
-    fn factor(&mut self, of: usize, h: f64) -> bool {
-        let Self { matrices, system, stages, scheme, pattern, .. } = self;
-        if !matrices.factor_real(system, pattern, &stages[of], scheme.real / h) {
-            return false;
-        }
-        let Matrices { is_left_out, complex, of_complex, .. } = matrices;
-        let stage = &stages[of];
-        for ((body, inertia), inverse) in system.bodies.iter().zip(&stage.inertia).zip(&mut *complex) {
-            if !inverse.find(scheme.complex / h, inertia, oscillators(body)) {
-                return false;
-            }
-        }
-        of_complex.assemble(pattern, &stage.constraints, complex);
-        of_complex.factor(pattern, is_left_out, false);
-        true
-    }
-
-    /// Newton's method for the stages. Returns the number of passes.
-    fn newton(&mut self, h: f64, exactness: f64) -> Result<usize, Failed> {
-        let mut last = f64::INFINITY;
-        for pass in 1..=MAX_PASSES {
-            self.evaluate_stages(h)?;
-            if pass == 1 && !self.factor(1, h) {
-                return Err(Failed::Newton);
-            }
-            let change = self.improve(h);
-            if !change.is_finite() {
-                return Err(Failed::Newton);
-            }
-            let rate = if pass == 1 { 0.5 } else { change / last };
-            if rate > 2.0 || (rate > 0.9 && pass > 3 && change > ROUNDING) {
-                return Err(Failed::Newton);
-            }
-            last = change;
-            // The error that is left, by the rate of convergence.
-            let left = change * rate / (1.0 - rate.min(0.9));
-            if left <= exactness || change <= ROUNDING {
-                return Ok(pass);
-            }
-        }
-        Err(Failed::Newton)
-    }
-
-    fn evaluate_stages(&mut self, h: f64) -> Result<(), RateError> {
-        let Self { stages, scheme, system, start, multipliers, velocity_multipliers, room, .. } = self;
-        for (i, stage) in stages.iter_mut().enumerate() {
-            let time = start.time + scheme.times[i] * h;
-            stage.evaluate(system, start, [time, start.time + 0.5 * h])?;
-            stage.find_x_rates(system, &velocity_multipliers[i])?;
-            stage.find_y_rates(system, &multipliers[i], &mut room.y_rates[i]);
-        }
-        self.evaluations += STAGES as u64;
-        Ok(())
-    }
-
-    /// One pass. Returns the size of the change of positions.
-    fn improve(&mut self, h: f64) -> f64 {
-        let Self {
-            stages,
-            scheme,
-            system,
-            room,
-            matrices,
-            pattern,
-            multipliers,
-            velocity_multipliers,
-            largest_energy,
-            ..
-        } = self;
-        let Room { real, complex, y_rates, change: residuals } = room;
-        // Residuals in the axes of the bodies at each stage, transformed.
-        real.clear();
-        complex.clear();
-        for i in 0..STAGES {
-            let [x, y] = residuals;
-            for k in 0..system.coordinates() {
-                let sum = |of: fn(&Stage) -> &Vec<f64>| -> f64 {
-                    (0..STAGES).map(|j| scheme.inverse[(i, j)] * of(&stages[j])[k]).sum::<f64>() / h
-                };
-                x[k] = stages[i].x_rates[k] - sum(|stage| &stage.x);
-                y[k] = y_rates[i][k] - sum(|stage| &stage.y);
-            }
-            stages[i].to_body_axes(system, x, y);
-            for k in 0..x.len() {
-                for (residual, of_real, of_complex) in
-                    [(x[k], &mut real.x[k], &mut complex.x[k]), (y[k], &mut real.y[k], &mut complex.y[k])]
-                {
-                    *of_real += scheme.to_real[i] * residual;
-                    *of_complex += scheme.to_complex[i] * residual;
-                }
-            }
-        }
-        for row in 0..pattern.len() {
-            let (mut of_real, mut of_complex) = ([0.0; 2], [Complex::new(0.0, 0.0); 2]);
-            for (i, stage) in stages.iter().enumerate() {
-                let residuals = [-stage.constraints.residuals[row], -stage.constraint_rates[row]];
-                for (which, residual) in residuals.into_iter().enumerate() {
-                    of_real[which] += scheme.to_real[i] * residual;
-                    of_complex[which] += scheme.to_complex[i] * residual;
-                }
-            }
-            [real.lambda[row], real.mu[row]] = of_real;
-            [complex.lambda[row], complex.mu[row]] = of_complex;
-        }
-        let frozen = Frozen { system, stage: &stages[1], pattern, of_mass: &matrices.of_mass };
-        frozen.solve(real, scheme.real / h, &matrices.real, &matrices.of_real);
-        frozen.solve(complex, scheme.complex / h, &matrices.complex, &matrices.of_complex);
-        let mut largest = 0.0_f64;
-        for i in 0..STAGES {
-            let change = |real: f64, complex: Complex<f64>| {
-                scheme.from_real[i] * real + 2.0 * (scheme.from_complex[i] * complex).re
-            };
-            let [dx, dy] = residuals;
-            for k in 0..dx.len() {
-                (dx[k], dy[k]) = (change(real.x[k], complex.x[k]), change(real.y[k], complex.y[k]));
-            }
-            let [position, energy] = sizes(system, dx, h);
-            largest = largest.max(position).max((energy / *largest_energy).sqrt());
-            stages[i].add_in_body_axes(system, dx, dy);
-            for row in 0..multipliers[i].len() {
-                multipliers[i][row] += change(real.lambda[row], complex.lambda[row]);
-                velocity_multipliers[i][row] += change(real.mu[row], complex.mu[row]);
-            }
-        }
-        largest
-    }
-
-    /// The estimated error of a step whose stages are known.
-    fn error(&mut self, h: f64) -> f64 {
-        let Self { stages, scheme, system, room, matrices, pattern, first, .. } = self;
-        let real = &mut room.real;
-        for k in 0..system.coordinates() {
-            let mut difference = [first.x_rates[k], first.y_rates[k]];
-            for i in 0..STAGES {
-                let rate = (0..STAGES).map(|j| scheme.inverse[(i, j)] * stages[j].x[k]).sum::<f64>() / h;
-                difference[0] -= scheme.at_start[i] * rate;
-                difference[1] -= scheme.at_start[i] * stages[i].y_rates[k];
-            }
-            [real.x[k], real.y[k]] = difference;
-        }
-        stages[1].to_body_axes(system, &mut real.x, &mut real.y);
-        real.lambda.fill(0.0);
-        real.mu.fill(0.0);
-        let frozen = Frozen { system, stage: &stages[1], pattern, of_mass: &matrices.of_mass };
-        frozen.solve(real, scheme.real / h, &matrices.real, &matrices.of_real);
-        sizes(system, &real.x, h)[0]
-    }
-
-    /// Gives what flies freely the momenta that the loads have given it.
-    fn sum_momenta(&mut self, h: f64) {
-        let Self { stages, system, multipliers, scheme, room, .. } = self;
-        for (i, stage) in stages.iter_mut().enumerate() {
-            stage.find_y_rates(system, &multipliers[i], &mut room.y_rates[i]);
-        }
-        let [.., last] = stages;
-        let rates = &room.y_rates;
-        last.correct_momenta(system, |k| {
-            h * rates.iter().zip(scheme.weights).map(|(rates, weight)| weight * rates[k]).sum::<f64>()
-        });
-    }
-
-    /// Adds the integrals over a step: works, impulses, dissipation. What joints and elements do to a body counts as its loads do,
-    /// so that its balances close.
-    fn add_work(&mut self, h: f64) {
-        let Self { stages, multipliers, scheme, bodies, system, joint_works, .. } = self;
-        for ((stage, lambda), weight) in stages.iter_mut().zip(&*multipliers).zip(scheme.weights) {
-            let mut of_rows = lambda.iter().zip(&stage.constraints.own_rates);
-            for (joint, work) in system.connections.joints.iter().zip(&mut *joint_works) {
-                let power: f64 = of_rows.by_ref().take(joint.rows.len()).map(|(lambda, rate)| -lambda * rate).sum();
-                work.drive += h * weight * power;
-            }
-            for ((joint, ..), power) in system.connections.joint_forces().zip(&stage.joint_powers) {
-                let work = &mut joint_works[joint];
-                work.drive += h * weight * power.motor;
-                work.spring += h * weight * power.spring;
-                work.loss -= h * weight * power.friction;
-            }
-            self.element_work += h * weight * stage.element_power;
-            stage.find_joint_forces(lambda);
-            for (b, state) in bodies.iter_mut().enumerate() {
-                let mut list = system.bodies[b].list_mut(state);
-                let mut slow = *list.slow();
-                let mut rates = *stage.evaluations[b].rates.slow();
-                stage.add_joint_exchange(system, b, &mut rates);
-                for k in part::WORK..slow.len() {
-                    slow[k] += h * weight * rates[k];
-                }
-                list.set_slow(&slow);
-            }
-        }
-    }
-
-    /// Projects the end of a step, and takes it for the state. Returns the largest residual and rate that are left.
-    /// The second time says which branches of the drives hold.
-    fn end(&mut self, times: [f64; 2], h: f64) -> Result<[f64; 2], Failed> {
-        let Self { stages: [.., last], system, start, matrices, pattern, room, scheme, .. } = self;
-        last.place(system, start);
-        last.find_constraints(system, start, times);
-        if !matrices.factor_real(system, pattern, last, scheme.real / h) {
-            return Err(Failed::Rates(RateError::Inertia));
-        }
-        // Positions.
-        let (mut left, real) = (f64::INFINITY, &mut room.real);
-        for _ in 0..MAX_PROJECTIONS {
-            last.place(system, start);
-            last.find_constraints(system, start, times);
-            let largest = last.constraints.residuals.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
-            if largest >= 0.5 * left || largest == 0.0 {
-                left = largest.min(left);
-                break;
-            }
-            left = largest;
-            real.lambda.iter_mut().zip(&last.constraints.residuals).for_each(|(lambda, g)| *lambda = -g);
-            matrices.of_real.solve(pattern, &mut real.lambda);
-            real.x.fill(0.0);
-            last.constraints.add_forces(&real.lambda, &mut real.x);
-            for (b, inverse) in matrices.real.iter().enumerate() {
-                let (first, end) = (system.first[b], system.first[b + 1]);
-                inverse.apply(&mut real.x[first..end]);
-            }
-            real.y.fill(0.0);
-            last.add_in_body_axes(system, &mut real.x, &mut real.y);
-        }
-        // Velocities.
-        last.evaluate(system, start, times)?;
-        self.evaluations += 1;
-        real.y.fill(0.0);
-        let rates = last.project_velocities(system, &mut real.y, |rates| matrices.of_mass.solve(pattern, rates));
-        for (b, state) in self.bodies.iter_mut().enumerate() {
-            let body = &system.bodies[b];
-            let (first, end_of_body) = (system.first[b], system.first[b + 1]);
-            let [impulse, angular_impulse] =
-                [0, 3].map(|part| last.attitudes[b].tr_mul(&vector(&real.y, first + part)));
-            about_global_origin(&mut real.y[first..end_of_body], &last.positions[b], &last.attitudes[b]);
-            let turned = attitude_at(&state.values, 0).advanced_by(&vector(&last.x, first + 3));
-            let momentum = start.bodies[b].momentum + vector(&last.y, first) + vector(&real.y, first);
-            let angular_momentum =
-                start.bodies[b].angular_momentum + vector(&last.y, first + 3) + vector(&real.y, first + 3);
-            let position = last.positions[b];
-            let pi = turned.to_body(&(angular_momentum - position.cross(&momentum)));
-            let mut list = body.list_mut(state);
-            list.set_attitude(turned);
-            let mut slow = *list.slow();
-            put(&mut slow, part::THETA, &Vector3::zeros());
-            put(&mut slow, part::POSITION, &position);
-            put(&mut slow, part::MOMENTUM, &momentum);
-            put(&mut slow, part::PI, &pi);
-            let impulse = impulse + get(&slow, part::IMPULSE);
-            put(&mut slow, part::IMPULSE, &impulse);
-            let angular_impulse = angular_impulse + get(&slow, part::ANGULAR_IMPULSE);
-            put(&mut slow, part::ANGULAR_IMPULSE, &angular_impulse);
-            list.set_slow(&slow);
-            let [q, p] = list.modes_mut();
-            for k in 0..q.len() {
-                let at = first + 6 + k;
-                q[k] = start.q[at] + last.x[at];
-                p[k] = start.p[at] + last.y[at] + real.y[at];
-            }
-            state.time = times[0];
-        }
-        for joint in 0..start.joints.len() {
-            start.joints[joint] = last.joint_coordinates(system, joint, start.turn(joint, times[0]));
-        }
-        self.time = times[0];
-        Ok([left, rates])
     }
 }

@@ -13,7 +13,7 @@ use crate::conservative::{get, part};
 use crate::equations::Equations;
 use crate::error::RateError;
 use crate::observation::Observation;
-use crate::system::motion::MarkerWrench;
+use crate::system::marker::motion::MarkerWrench;
 use crate::system::radau::SystemMotion;
 use crate::system::stage::{put, vector};
 
@@ -33,9 +33,8 @@ impl SystemMotion {
         let mut change = std::mem::take(&mut self.reactions);
         self.find_row_accelerations(&velocities, &mut change);
         self.first.velocities = velocities;
-        let Self { first, system, matrices, pattern, .. } = self;
-        // A κ of one: only the factor with the masses is used.
-        if !matrices.factor_real(system, pattern, first, 1.0) {
+        let Self { first, system, matrices, patterns, .. } = self;
+        if !matrices.factor_mass(system, patterns, first) {
             return Err(RateError::Inertia);
         }
         for (b, body) in system.bodies.iter().enumerate() {
@@ -56,7 +55,7 @@ impl SystemMotion {
         }
         first.constraints.add_rates(1.0, &first.x_rates, &mut change);
         change.iter_mut().for_each(|sum| *sum = -*sum);
-        matrices.of_mass.solve(pattern, &mut change);
+        matrices.of_mass.solve(&patterns.rows, &mut change);
         let forces = &mut first.x_rates;
         forces.fill(0.0);
         first.constraints.add_forces(&change, forces);
@@ -104,7 +103,7 @@ impl SystemMotion {
         let fastest = omegas.map(|omega| omega.norm()).fold(0.0, f64::max);
         let short = SHORT / fastest.max(1.0);
         out.clear();
-        out.resize(self.pattern.len(), 0.0);
+        out.resize(self.system.rows(), 0.0);
         let Self { stages: [scratch, ..], first, system, start, .. } = self;
         for sign in [1.0, -1.0] {
             scratch.x.iter_mut().zip(velocities).for_each(|(x, v)| *x = sign * short * v);

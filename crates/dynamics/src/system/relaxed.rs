@@ -40,9 +40,9 @@ impl SystemMotion {
         for (b, first) in self.system.first[..self.system.bodies.len()].iter().enumerate() {
             velocities[first + 6..self.system.first[b + 1]].fill(0.0);
         }
-        let mut change = vec![0.0; self.pattern.len()];
+        let mut change = vec![0.0; self.system.rows()];
         self.find_row_accelerations(&velocities, &mut change);
-        let Self { first, system, pattern, matrices, .. } = self;
+        let Self { first, system, patterns, matrices, .. } = self;
         let mut acceleration = vec![0.0; system.coordinates()];
         let mut inverses: Vec<Inverse<f64>> = Vec::new();
         for (b, inertia) in first.inertia.iter().enumerate() {
@@ -75,10 +75,10 @@ impl SystemMotion {
         }
         first.constraints.add_rates(1.0, &acceleration, &mut change);
         change.iter_mut().for_each(|sum| *sum = -*sum);
-        let mut of_rigid = JointMatrix::new(pattern, system.coordinates());
-        of_rigid.assemble(pattern, &first.constraints, &inverses);
-        of_rigid.factor(pattern, &mut matrices.is_left_out, true);
-        of_rigid.solve(pattern, &mut change);
+        let mut of_rigid = JointMatrix::new(&patterns.rows, system.coordinates());
+        of_rigid.assemble(&patterns.rows, &first.constraints, &inverses);
+        of_rigid.factor(&patterns.rows, &mut matrices.is_left_out, true);
+        of_rigid.solve(&patterns.rows, &mut change);
         Ok(change)
     }
 

@@ -72,7 +72,7 @@ impl SystemMotion {
             body.layout().check(state)?;
         }
         expect("the last step", last.iter().all(|list| list.len() == self.system.coordinates()))?;
-        expect("the multipliers", multipliers.iter().all(|list| list.len() == self.pattern.len()))?;
+        expect("the multipliers", multipliers.iter().all(|list| list.len() == self.system.rows()))?;
         expect("the number of joints", joints.len() == self.joint_works.len())?;
         for (coordinates, JointWork { drive, spring, loss }) in &joints {
             finite("a joint", coordinates.list().iter().chain([drive, spring, loss]))?;
@@ -97,7 +97,7 @@ impl SystemMotion {
     pub(super) fn worst_joint(&self) -> Option<&str> {
         let [.., last] = &self.stages;
         let open = |row: usize| last.constraints.residuals[row].abs().max(last.constraint_rates[row].abs());
-        let worst = (0..self.pattern.len()).max_by(|a, b| open(*a).total_cmp(&open(*b)))?;
+        let worst = (0..self.system.rows()).max_by(|a, b| open(*a).total_cmp(&open(*b)))?;
         self.system.connections.names().nth(worst)
     }
 }

@@ -18,7 +18,7 @@ use crate::simulation::checkpoint::{fixed_room, from_words, to_words};
 use crate::simulation::plan::{EqualSteps, Plan, Progress, Rows, Segment, StepControl};
 use crate::simulation::{Reached, Stats};
 use crate::system::description::System;
-use crate::system::motion::MarkerWrench;
+use crate::system::marker::motion::MarkerWrench;
 use crate::system::radau::{Failed, SystemMotion, Tried};
 use crate::system::saved::SavedMotion;
 

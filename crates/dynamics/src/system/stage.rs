@@ -7,13 +7,13 @@ use crate::conservative::Evaluation;
 use crate::conservative::{Slow, get, part, set};
 use crate::equations::Equations;
 use crate::error::RateError;
-use crate::system::constraints::Constraints;
+use crate::system::constraints::{Compliant, Constraints};
 use crate::system::description::System;
 use crate::system::elimination::inverse::Inertia;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::force::Forces;
-use crate::system::marker::{BodyPlace, MarkerPlace};
-use crate::system::motion::{MarkerMotion, MarkerWrench};
+use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
+use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
 
 /// The start of a step: the numbers that its increments are counted from.
 #[derive(Debug, Clone)]
@@ -254,7 +254,7 @@ impl Stage {
     /// Adds the forces of joints along their coordinates to those of the elements.
     fn add_joint_forces(&mut self, system: &System, times: [f64; 2]) {
         let Self { constraints, element_forces, velocities, joint_powers, .. } = self;
-        let rows = constraints.force_ends().iter().zip(&constraints.coordinates).zip(joint_powers);
+        let rows = constraints.compliant_ends().iter().zip(&constraints.coordinates).zip(joint_powers);
         for ((_, _, law), ((ends, coordinate), powers)) in system.connections.joint_forces().zip(rows) {
             let mut rate = 0.0;
             ends.iter().for_each(|end| end.add_rate(1.0, velocities, &mut rate));
@@ -272,27 +272,10 @@ impl Stage {
         }
         self.element_forces.fill(0.0);
         self.add_joint_forces(system, times);
-        let Self { marker_places, marker_motions, wrenches, positions, attitudes, q, velocities, .. } = self;
-        let (forces, total) = (&mut self.element_forces, &mut self.forces);
         for element in &system.connections.elements {
+            self.find_marker_motions(system, element.markers());
+            let Self { marker_places, marker_motions, wrenches, element_forces: forces, .. } = self;
             let markers = element.markers();
-            let own = |b: usize| system.first[b]..system.first[b + 1];
-            marker_places.clear();
-            marker_places.extend(markers.iter().map(|marker| {
-                let place = marker.body().map(|b| BodyPlace {
-                    origin: positions[b],
-                    body_from_global: attitudes[b],
-                    q: &q[own(b)][6..],
-                });
-                marker.place(place.as_ref())
-            }));
-            marker_motions.clear();
-            marker_motions.extend(
-                markers
-                    .iter()
-                    .zip(&*marker_places)
-                    .map(|(marker, place)| marker.motion(place, marker.body().map(|b| &velocities[own(b)]))),
-            );
             wrenches.clear();
             wrenches.resize(markers.len(), MarkerWrench::default());
             element.apply(times, marker_motions, wrenches);
@@ -301,16 +284,65 @@ impl Stage {
                 self.element_power +=
                     force_global.dot(&motion.velocity_global) + moment_global.dot(&motion.omega_global);
                 if let Some(b) = markers[k].body() {
-                    markers[k].add_wrench(&marker_places[k], [force_global, moment_global], &mut forces[own(b)]);
+                    markers[k].add_wrench(
+                        &marker_places[k],
+                        [force_global, moment_global],
+                        &mut forces[system.first[b]..system.first[b + 1]],
+                    );
                 }
             }
         }
+        let Self { element_forces: forces, forces: total, positions, attitudes, .. } = self;
         total.copy_from_slice(forces);
         for (b, (position, attitude)) in positions.iter().zip(&*attitudes).enumerate() {
             let first = system.first[b];
             about_global_origin(&mut total[first..first + 6], position, attitude);
         }
         self.y_rates.iter_mut().zip(&*total).for_each(|(rate, force)| *rate += force);
+    }
+
+    /// Finds the places and motions of markers.
+    fn find_marker_motions(&mut self, system: &System, markers: &[Marker]) {
+        let Self { marker_places, marker_motions, positions, attitudes, q, velocities, .. } = self;
+        marker_places.clear();
+        marker_motions.clear();
+        for marker in markers {
+            let own = |b: usize| system.first[b]..system.first[b + 1];
+            let place = marker.body().map(|b| BodyPlace {
+                origin: positions[b],
+                body_from_global: attitudes[b],
+                q: &q[own(b)][6..],
+            });
+            let place = marker.place(place.as_ref());
+            marker_motions.push(marker.motion(&place, marker.body().map(|b| &velocities[own(b)])));
+            marker_places.push(place);
+        }
+    }
+
+    /// Finds what Newton's method is to know of the forces of joints and of elements, where the stage has been evaluated.
+    pub fn linearize(&mut self, system: &System, times: [f64; 2]) {
+        let mut number = 0;
+        for (_, _, force) in system.connections.joint_forces() {
+            let mut rate = 0.0;
+            let constraints = &mut self.constraints;
+            constraints.compliant_ends()[number].iter().for_each(|end| end.add_rate(1.0, &self.velocities, &mut rate));
+            let [stiffness, damping] = force.stiffness_and_damping([constraints.coordinates[number], rate]);
+            constraints.compliant[number] = Compliant { stiffness, damping };
+            number += 1;
+        }
+        for element in system.connections.elements.iter().filter(|element| element.directions() > 0) {
+            let markers = element.markers();
+            self.find_marker_motions(system, markers);
+            let Self { marker_places, marker_motions, constraints, .. } = self;
+            element.linearize(times, marker_motions, &mut |direction, [stiffness, damping], wrenches| {
+                if direction < element.directions() {
+                    let on_markers = markers.iter().zip(&*marker_places).zip(wrenches);
+                    let on_markers = on_markers.map(|((marker, place), wrench)| (marker, place, wrench));
+                    constraints.set_compliant(number + direction, Compliant { stiffness, damping }, on_markers);
+                }
+            });
+            number += element.directions();
+        }
     }
 
     /// Finds x' of the velocities and M⁻¹Gᵀ of `multipliers`.

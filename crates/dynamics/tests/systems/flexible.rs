@@ -51,12 +51,16 @@ impl Jointed {
         PointShapes::new(&self.body, &point)
     }
 
-    fn marker(&self, number: usize, patch: usize) -> Marker {
-        let (point, turning) = &self.patches[patch];
-        Marker::on_flexible(number, point, turning, Matrix3::identity())
+    pub fn marker(&self, number: usize, patch: usize) -> Marker {
+        self.turned_marker(number, patch, Matrix3::identity())
     }
 
-    fn conservative(&self) -> ConservativeBody {
+    pub fn turned_marker(&self, number: usize, patch: usize, axes: Matrix3<f64>) -> Marker {
+        let (point, turning) = &self.patches[patch];
+        Marker::on_flexible(number, point, turning, axes)
+    }
+
+    pub fn conservative(&self) -> ConservativeBody {
         self.loaded(Vec::new())
     }
 
@@ -65,7 +69,7 @@ impl Jointed {
         ConservativeBody::new(&self.body, &undamped, loads, &Physics::default()).unwrap()
     }
 
-    fn at_rest(&self, origin: Vector3<f64>, attitude: Attitude) -> MotionState {
+    pub fn at_rest(&self, origin: Vector3<f64>, attitude: Attitude) -> MotionState {
         let flexible = self.body.circular_frequencies.len();
         MotionState {
             time: 0.0,

@@ -7,3 +7,4 @@ mod flexible;
 mod mechanism;
 mod rigid;
 mod run;
+mod stiff;

@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 use rigid_kin::rotation_vector;
 
-use crate::system::element::ForceElement;
+use crate::system::element::{ForceElement, SetDirection};
 use crate::system::marker::Marker;
-use crate::system::motion::{MarkerMotion, MarkerWrench};
+use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
 
 /// A spring and a damper along the line between two markers.
 #[derive(Debug, Clone)]
@@ -36,6 +36,18 @@ impl ForceElement for PointSpring {
         let rate = along.dot(&(j.velocity_global - i.velocity_global));
         let force = along * (self.stiffness * (length - self.free_length) + self.damping * rate);
         (on_i.force_global, on_j.force_global) = (force, -force);
+    }
+
+    fn directions(&self) -> usize {
+        1
+    }
+
+    fn linearize(&self, _: [f64; 2], motions: &[MarkerMotion], set: &mut SetDirection<'_>) {
+        let [i, j] = motions else { return };
+        let line = j.position_global - i.position_global;
+        let Some(along) = line.try_normalize(0.0) else { return };
+        let [on_i, on_j] = [-along, along].map(|force_global| MarkerWrench { force_global, ..MarkerWrench::default() });
+        set(0, [self.stiffness, self.damping], &[on_i, on_j]);
     }
 }
 
@@ -71,5 +83,24 @@ impl ForceElement for Bushing {
         on_j.moment_global = -moment;
         on_i.force_global = force;
         on_i.moment_global = moment + line.cross(&force);
+    }
+
+    fn directions(&self) -> usize {
+        6
+    }
+
+    fn linearize(&self, _: [f64; 2], motions: &[MarkerMotion], set: &mut SetDirection<'_>) {
+        let [i, j] = motions else { return };
+        let line = j.position_global - i.position_global;
+        let zero = Vector3::zeros();
+        for (k, axis) in i.axes_global.column_iter().enumerate() {
+            let along: Vector3<f64> = axis.into();
+            let of = |which: usize| [self.stiffness[which][k], self.damping[which][k]];
+            let [on_i, on_j] = [(-along, -line.cross(&along)), (along, zero)]
+                .map(|(force_global, moment_global)| MarkerWrench { force_global, moment_global });
+            set(k, of(0), &[on_i, on_j]);
+            let [on_i, on_j] = [-along, along].map(|moment_global| MarkerWrench { force_global: zero, moment_global });
+            set(3 + k, of(1), &[on_i, on_j]);
+        }
     }
 }

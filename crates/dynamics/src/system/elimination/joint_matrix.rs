@@ -6,7 +6,7 @@
 
 use nalgebra::Complex;
 
-use crate::system::constraints::Constraints;
+use crate::system::constraints::{Constraints, End};
 use crate::system::elimination::inverse::{Inverse, Number};
 
 /// A pivot below this part of its diagonal entry belongs to a row that others imply.
@@ -32,14 +32,14 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern of joints with these numbers of rows, whose rows have the ends of `constraints`.
-    pub fn new(rows: &[usize], constraints: &Constraints, bodies: usize) -> Self {
+    /// The pattern of joints with these numbers of rows, whose rows have these ends.
+    pub fn new(rows: &[usize], ends: &[Vec<End>], bodies: usize) -> Self {
         let mut first = vec![0];
         rows.iter().for_each(|rows| first.push(first[first.len() - 1] + rows));
         let joint_of_row: Vec<usize> =
             rows.iter().enumerate().flat_map(|(joint, rows)| std::iter::repeat_n(joint, *rows)).collect();
         let mut rows_of_body = vec![Vec::new(); bodies];
-        for (row, ends) in constraints.ends[..joint_of_row.len()].iter().enumerate() {
+        for (row, ends) in ends[..joint_of_row.len()].iter().enumerate() {
             ends.iter().enumerate().for_each(|(k, end)| rows_of_body[end.body].push((row, k)));
         }
         let mut meets = vec![std::collections::BTreeSet::new(); rows.len()];
@@ -159,6 +159,13 @@ impl<T: Number> JointMatrix<T> {
                     }
                 }
             }
+        }
+    }
+
+    /// Adds a compliance to the diagonal entry of a row.
+    pub fn add_compliance(&mut self, pattern: &Pattern, row: usize, compliance: T) {
+        if let Some(entry) = pattern.entry(row, row) {
+            self.entries[entry] += compliance;
         }
     }
 
@@ -346,7 +353,7 @@ mod tests {
         let mut inverse = Inverse::new(2);
         assert!(inverse.find(3.0, &inertia, [[5.0, 0.1], [700.0, 0.0]].into_iter()));
         let rows: Vec<usize> = connections.groups().collect();
-        (Pattern::new(&rows, &constraints, bodies), constraints, vec![inverse; bodies])
+        (Pattern::new(&rows, &constraints.ends, bodies), constraints, vec![inverse; bodies])
     }
 
     /// Conserved: A A⁻¹ x = x.

@@ -3,39 +3,123 @@
 use nalgebra::Complex;
 
 use crate::conservative::ConservativeBody;
+use crate::system::constraints::{Compliant, End};
 use crate::system::description::System;
-use crate::system::elimination::inverse::Inverse;
-use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
+use crate::system::elimination::inverse::{Inverse, Number};
+use crate::system::elimination::joint_matrix::JointMatrix;
+use crate::system::elimination::patterns::Patterns;
 use crate::system::stage::Stage;
 
 /// Factors of a step.
 #[derive(Debug, Clone)]
 pub(in crate::system) struct Matrices {
+    /// The compliant rows of the Newton matrix.
+    pub compliant: Vec<Compliant>,
+    /// Of each row: true if others imply it, or a compliant one has no stiffness.
     pub is_left_out: Vec<bool>,
-    pub mass: Vec<Inverse<f64>>,
-    pub real: Vec<Inverse<f64>>,
-    pub complex: Vec<Inverse<Complex<f64>>>,
+    mass: Vec<Inverse<f64>>,
     pub of_mass: JointMatrix<f64>,
-    pub of_real: JointMatrix<f64>,
-    pub of_complex: JointMatrix<Complex<f64>>,
+    pub real: NewtonMatrix<f64>,
+    pub complex: NewtonMatrix<Complex<f64>>,
+}
+
+/// The Newton matrix of one κ.
+#[derive(Debug, Clone)]
+pub(in crate::system) struct NewtonMatrix<T> {
+    pub kappa: T,
+    /// Z⁻¹ of each body.
+    pub bodies: Vec<Inverse<T>>,
+    /// The factor over the rows, with the compliant ones.
+    pub rows: JointMatrix<T>,
 }
 
 impl Matrices {
-    /// Factors of G M⁻¹ Gᵀ, and of the Newton matrix of a real κ, where a stage is. False where an inertia is singular.
-    pub fn factor_real(&mut self, system: &System, pattern: &Pattern, stage: &Stage, kappa: f64) -> bool {
-        let Self { is_left_out, mass, real, of_mass, of_real, .. } = self;
-        for (b, body) in system.bodies.iter().enumerate() {
-            let inertia = &stage.inertia[b];
-            let is_regular = mass[b].find(1.0, inertia, oscillators(body).map(|_| [0.0; 2]))
-                && real[b].find(kappa, inertia, oscillators(body));
-            if !is_regular {
+    /// Room for bodies with these numbers of modes.
+    pub fn new(flexible: &[usize], patterns: &Patterns) -> Self {
+        let coordinates = flexible.iter().map(|nf| 6 + nf).sum();
+        Self {
+            compliant: vec![Compliant::default(); patterns.newton.len() - patterns.rows.len()],
+            is_left_out: vec![false; patterns.newton.len()],
+            mass: flexible.iter().map(|nf| Inverse::new(*nf)).collect(),
+            of_mass: JointMatrix::new(&patterns.rows, coordinates),
+            real: NewtonMatrix::new(flexible, patterns),
+            complex: NewtonMatrix::new(flexible, patterns),
+        }
+    }
+
+    /// The factor of G M⁻¹ Gᵀ where a stage is. False where an inertia is singular.
+    pub fn factor_mass(&mut self, system: &System, patterns: &Patterns, stage: &Stage) -> bool {
+        let Self { is_left_out, mass, of_mass, .. } = self;
+        for ((body, inertia), mass) in system.bodies.iter().zip(&stage.inertia).zip(&mut *mass) {
+            if !mass.find(1.0, inertia, oscillators(body).map(|_| [0.0; 2])) {
                 return false;
             }
         }
-        of_mass.assemble(pattern, &stage.constraints, mass);
-        of_mass.factor(pattern, is_left_out, true);
-        of_real.assemble(pattern, &stage.constraints, real);
-        of_real.factor(pattern, is_left_out, false);
+        of_mass.assemble(&patterns.rows, &stage.constraints, mass);
+        of_mass.factor(&patterns.rows, is_left_out, true);
+        true
+    }
+
+    /// Factors of G M⁻¹ Gᵀ, and of the Newton matrix of a real κ, where a stage is. False where an inertia is singular.
+    pub fn factor_real(&mut self, system: &System, patterns: &Patterns, stage: &Stage, kappa: f64) -> bool {
+        if !self.factor_mass(system, patterns, stage) {
+            return false;
+        }
+        let compliant = self.is_left_out[system.rows()..].iter_mut().zip(&self.compliant);
+        compliant.for_each(|(is_left_out, row)| *is_left_out = row.is_slack());
+        let Self { compliant, is_left_out, real, .. } = self;
+        real.factor(kappa, system, patterns, stage, compliant, is_left_out)
+    }
+
+    /// Energy that a small motion of the bodies, in their axes, puts into the compliant rows.
+    pub fn strain_energy(&self, stage: &Stage, x: &[f64]) -> f64 {
+        let kappa = self.real.kappa;
+        let rows = self.compliant.iter().zip(stage.constraints.compliant_ends());
+        let of_row = |(row, ends): (&Compliant, &Vec<End>)| {
+            let mut path = 0.0;
+            ends.iter().for_each(|end| end.add_rate(1.0, x, &mut path));
+            0.5 * kappa * row.resistance(kappa) * path * path
+        };
+        rows.filter(|(row, _)| !row.is_slack()).map(of_row).sum()
+    }
+
+    /// Factor of the Newton matrix of a complex κ where a stage is, after that of a real one.
+    pub fn factor_complex(&mut self, system: &System, patterns: &Patterns, stage: &Stage, kappa: Complex<f64>) -> bool {
+        let Self { compliant, is_left_out, complex, .. } = self;
+        complex.factor(kappa, system, patterns, stage, compliant, is_left_out)
+    }
+}
+
+impl<T: Number> NewtonMatrix<T> {
+    fn new(flexible: &[usize], patterns: &Patterns) -> Self {
+        let coordinates = flexible.iter().map(|nf| 6 + nf).sum();
+        Self {
+            kappa: T::from_real(1.0),
+            bodies: flexible.iter().map(|nf| Inverse::new(*nf)).collect(),
+            rows: JointMatrix::new(&patterns.newton, coordinates),
+        }
+    }
+
+    fn factor(
+        &mut self,
+        kappa: T,
+        system: &System,
+        patterns: &Patterns,
+        stage: &Stage,
+        compliant: &[Compliant],
+        is_left_out: &mut [bool],
+    ) -> bool {
+        self.kappa = kappa;
+        for ((body, inertia), inverse) in system.bodies.iter().zip(&stage.inertia).zip(&mut self.bodies) {
+            if !inverse.find(kappa, inertia, oscillators(body)) {
+                return false;
+            }
+        }
+        let pattern = &patterns.newton;
+        self.rows.assemble(pattern, &stage.constraints, &self.bodies);
+        let compliant = (system.rows()..).zip(compliant).filter(|(_, row)| !row.is_slack());
+        compliant.for_each(|(row, of)| self.rows.add_compliance(pattern, row, of.resistance(kappa).recip()));
+        self.rows.factor(pattern, is_left_out, false);
         true
     }
 }

@@ -1,8 +1,10 @@
 //! One pass of Newton's method: Eqs. (J8) of `docs/method/systems.md`.
 
 use crate::system::description::System;
-use crate::system::elimination::inverse::{Inverse, Number};
-use crate::system::elimination::joint_matrix::{JointMatrix, Pattern, Times};
+use crate::system::elimination::inverse::Number;
+use crate::system::elimination::joint_matrix::Times;
+use crate::system::elimination::matrices::{Matrices, NewtonMatrix};
+use crate::system::elimination::patterns::Patterns;
 use crate::system::stage::{Stage, vector};
 
 /// Right-hand sides, which become changes.
@@ -18,22 +20,23 @@ pub(in crate::system) struct Solution<T> {
 }
 
 impl<T: Number> Solution<T> {
-    pub fn new(coordinates: usize, rows: usize) -> Self {
+    pub fn new(coordinates: usize, patterns: &Patterns) -> Self {
         let zeros = |n| vec![T::from_real(0.0); n];
         Self {
             x: zeros(coordinates),
             y: zeros(coordinates),
-            lambda: zeros(rows),
-            mu: zeros(rows),
+            lambda: zeros(patterns.newton.len()),
+            mu: zeros(patterns.rows.len()),
             velocity: zeros(coordinates),
             of_mu: zeros(coordinates),
         }
     }
 
-    /// Makes the right-hand sides of positions and momenta zero.
+    /// Makes all right-hand sides zero.
     pub fn clear(&mut self) {
-        self.x.fill(T::from_real(0.0));
-        self.y.fill(T::from_real(0.0));
+        for list in [&mut self.x, &mut self.y, &mut self.lambda, &mut self.mu] {
+            list.fill(T::from_real(0.0));
+        }
     }
 }
 
@@ -42,27 +45,24 @@ impl<T: Number> Solution<T> {
 pub(in crate::system) struct Frozen<'a> {
     pub system: &'a System,
     pub stage: &'a Stage,
-    pub pattern: &'a Pattern,
-    pub of_mass: &'a JointMatrix<f64>,
+    pub patterns: &'a Patterns,
+    pub matrices: &'a Matrices,
 }
 
 impl Frozen<'_> {
-    /// The Newton system of one κ, Eqs. (J8): right-hand sides become changes.
-    pub fn solve<T: Number + Times<T>>(
-        self,
-        solution: &mut Solution<T>,
-        kappa: T,
-        inverses: &[Inverse<T>],
-        of_z: &JointMatrix<T>,
-    ) {
-        let Self { system, stage: Stage { constraints, inertia, .. }, pattern, of_mass } = self;
+    /// The Newton system of one κ, Eqs. (J8) and (J14): right-hand sides become changes. Those of compliant rows are zero, and become
+    /// changes of their forces.
+    pub fn solve<T: Number + Times<T>>(self, solution: &mut Solution<T>, matrix: &NewtonMatrix<T>) {
+        let Self { system, stage: Stage { constraints, inertia, .. }, patterns, matrices } = self;
+        let NewtonMatrix { kappa, bodies: inverses, rows: of_z } = matrix;
+        let (kappa, rows) = (*kappa, patterns.rows.len());
         let Solution { x, y, lambda, mu, velocity, of_mu } = solution;
         let bodies = || (0..system.bodies.len()).map(|b| (b, system.first[b]..system.first[b + 1]));
         // t = κ Rg − G RX, and A μ = t − Rv
         lambda.iter_mut().for_each(|lambda| *lambda *= kappa);
         constraints.add_rates(-1.0, x, lambda);
         mu.iter_mut().zip(&*lambda).for_each(|(mu, t)| *mu = *t - *mu);
-        of_mass.solve(pattern, mu);
+        matrices.of_mass.solve(&patterns.rows, mu);
         // b = RY − Λ RX/κ + D (M⁻¹Gᵀμ)
         of_mu.fill(T::from_real(0.0));
         constraints.add_forces(mu, of_mu);
@@ -76,11 +76,18 @@ impl Frozen<'_> {
                 y[at] += forces;
             }
         }
+        // −(k/κ W RX − c W M⁻¹Gᵀμ) / (k/κ + c) of compliant rows
+        let compliant = matrices.compliant.iter().zip(&constraints.ends[rows..]);
+        for (t, (row, ends)) in lambda[rows..].iter_mut().zip(compliant).filter(|(_, (row, _))| !row.is_slack()) {
+            let mut rate = T::from_real(0.0);
+            ends.iter().for_each(|end| end.add_rate(1.0, velocity, &mut rate));
+            *t = ((*t / kappa).scale(row.stiffness) + rate.scale(row.damping)) / row.resistance(kappa);
+        }
         // (G Z⁻¹ Gᵀ) λ' = t − G Z⁻¹ b
         velocity.copy_from_slice(y);
         bodies().for_each(|(b, own)| inverses[b].apply(&mut velocity[own]));
         constraints.add_rates(-1.0, velocity, lambda);
-        of_z.solve(pattern, lambda);
+        of_z.solve(&patterns.newton, lambda);
         // dV = Z⁻¹ (b + Gᵀλ'), dX = (RX + dV)/κ, dY = M dV − Gᵀμ
         constraints.add_forces(lambda, y);
         for (b, own) in bodies() {

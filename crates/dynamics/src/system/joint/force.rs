@@ -93,6 +93,26 @@ impl JointForce {
     }
 }
 
+impl JointForce {
+    /// How much the force falls by the coordinate and by its rate; nothing where it rises.
+    pub(crate) fn stiffness_and_damping(&self, [x, rate]: [f64; 2]) -> [f64; 2] {
+        let slope = self.characteristic.as_ref().map_or(0.0, |of| of.at([x, x])[1]);
+        let (mut stiffness, mut damping) = (self.stiffness - slope, self.damping);
+        if let Some(Friction { force, rate_scale }) = self.friction {
+            // The secant: with the tangent, which has nothing to slow down what slides fast, Newton's method does not find rest.
+            let x = rate / rate_scale;
+            damping += force / rate_scale * if x.abs() < 1e-8 { 1.0 } else { x.tanh() / x };
+        }
+        if let Some(stops) = self.stops
+            && stops.depth(x).is_some()
+        {
+            stiffness += stops.stiffness;
+            damping += stops.damping;
+        }
+        [stiffness, damping].map(|slope| slope.max(0.0))
+    }
+}
+
 impl Stops {
     /// How far a coordinate is beyond an end: positive above the highest, negative below the lowest.
     fn depth(&self, x: f64) -> Option<f64> {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::system::marker::MarkerPlace;
-use crate::system::motion::MarkerMotion;
+use crate::system::marker::motion::MarkerMotion;
 
 /// A scalar of two markers where they are: its value, and the forces and moments (global) that do its work. Their sum has no
 /// force and no moment, also where the value of a row is not zero.

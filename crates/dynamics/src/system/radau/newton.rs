@@ -1,0 +1,201 @@
+//! Newton's method for the stages of a step, and the error of the step.
+
+use nalgebra::Complex;
+
+use crate::error::RateError;
+use crate::system::collocation::STAGES;
+use crate::system::constraints::Compliant;
+use crate::system::elimination::newton::{Frozen, sizes};
+use crate::system::radau::{Failed, Room, SystemMotion};
+use crate::system::stage::Stage;
+
+/// A change of positions that is rounding.
+const ROUNDING: f64 = 1e-13;
+/// The rate of convergence that is counted on at most where forces are stiff.
+const STIFF_RATE: f64 = 0.1;
+/// Passes of Newton's method before a step is given up.
+const MAX_PASSES: usize = 20;
+
+impl SystemMotion {
+    /// First values of the stages: the polynomials of the last step, continued.
+    pub(super) fn predict(&mut self, h: f64) {
+        for (i, stage) in self.stages.iter_mut().enumerate() {
+            let c = self.scheme.times[i];
+            if self.last_length > 0.0 {
+                let factors = self.scheme.continued(1.0 + c * h / self.last_length);
+                for (which, list) in [&mut stage.x, &mut stage.y].into_iter().enumerate() {
+                    for (k, value) in list.iter_mut().enumerate() {
+                        *value = factors.iter().zip(&self.last).map(|(factor, last)| factor * last[which][k]).sum();
+                    }
+                }
+            } else {
+                stage.x.iter_mut().zip(&self.first.x_rates).for_each(|(x, rate)| *x = c * h * rate);
+                stage.y.iter_mut().zip(&self.first.y_rates).for_each(|(y, rate)| *y = c * h * rate);
+            }
+        }
+        self.largest_energy = self.largest_energy.max(self.first.energy(&self.system, h));
+        let [others @ .., last] = &mut self.multipliers;
+        others.iter_mut().for_each(|lambda| lambda.copy_from_slice(last));
+        self.velocity_multipliers.iter_mut().for_each(|mu| mu.fill(0.0));
+    }
+
+    /// Factors of the Newton matrix with the geometry of the second stage, where there are none yet or a compliant row has changed
+    /// much. Returns whether they are new.
+    fn factor(&mut self, h: f64, is_first: bool) -> Result<bool, Failed> {
+        let Self { matrices, system, stages, scheme, patterns, start, .. } = self;
+        let kappa = scheme.real / h;
+        if !system.connections.is_rigid() {
+            for (stage, c) in stages.iter_mut().zip(scheme.times) {
+                stage.linearize(system, [start.time + c * h, start.time + 0.5 * h]);
+            }
+        }
+        let mut is_new = is_first;
+        for (row, frozen) in matrices.compliant.iter_mut().enumerate() {
+            let largest = stages.iter().map(|stage| stage.constraints.compliant[row]).reduce(Compliant::or);
+            let largest = largest.unwrap_or_default();
+            if is_first || largest.is_far_from(*frozen, kappa) {
+                (*frozen, is_new) = (largest, true);
+            }
+        }
+        let is_regular = !is_new
+            || matrices.factor_real(system, patterns, &stages[1], kappa)
+                && matrices.factor_complex(system, patterns, &stages[1], scheme.complex / h);
+        if is_regular { Ok(is_new) } else { Err(Failed::Newton) }
+    }
+
+    /// Newton's method for the stages. Returns the number of passes.
+    pub(super) fn newton(&mut self, h: f64, exactness: f64) -> Result<usize, Failed> {
+        // With compliant rows the first changes fall faster than the later ones, which turn the axes of stiff forces.
+        let slowest = if self.system.connections.is_rigid() { 0.0 } else { STIFF_RATE };
+        let (mut last, mut since) = (f64::INFINITY, 0);
+        for pass in 1..=MAX_PASSES {
+            self.evaluate_stages(h)?;
+            since = if self.factor(h, pass == 1)? { 1 } else { since + 1 };
+            let [position, change] = self.improve(h);
+            if !change.is_finite() {
+                return Err(Failed::Newton);
+            }
+            let rate = if since == 1 { 0.5 } else { change / last };
+            if position <= ROUNDING && rate > 0.3 {
+                return Ok(pass);
+            }
+            if rate > 2.0 || (rate > 0.9 && since > 3 && change > ROUNDING) {
+                return Err(Failed::Newton);
+            }
+            last = change;
+            // The error that is left, by the rate of convergence.
+            let left = change * rate.max(slowest) / (1.0 - rate.min(0.9));
+            if left <= exactness || change <= ROUNDING {
+                return Ok(pass);
+            }
+        }
+        Err(Failed::Newton)
+    }
+
+    fn evaluate_stages(&mut self, h: f64) -> Result<(), RateError> {
+        let Self { stages, scheme, system, start, multipliers, velocity_multipliers, room, .. } = self;
+        for (i, stage) in stages.iter_mut().enumerate() {
+            let time = start.time + scheme.times[i] * h;
+            stage.evaluate(system, start, [time, start.time + 0.5 * h])?;
+            stage.find_x_rates(system, &velocity_multipliers[i])?;
+            stage.find_y_rates(system, &multipliers[i], &mut room.y_rates[i]);
+        }
+        self.evaluations += STAGES as u64;
+        Ok(())
+    }
+
+    /// One pass. Returns the size of the change of positions, and that with its energy.
+    fn improve(&mut self, h: f64) -> [f64; 2] {
+        let Self {
+            stages,
+            scheme,
+            system,
+            room,
+            matrices,
+            patterns,
+            multipliers,
+            velocity_multipliers,
+            largest_energy,
+            ..
+        } = self;
+        let Room { real, complex, y_rates, change: residuals } = room;
+        // Residuals in the axes of the bodies at each stage, transformed.
+        real.clear();
+        complex.clear();
+        for i in 0..STAGES {
+            let [x, y] = residuals;
+            for k in 0..system.coordinates() {
+                let sum = |of: fn(&Stage) -> &Vec<f64>| -> f64 {
+                    (0..STAGES).map(|j| scheme.inverse[(i, j)] * of(&stages[j])[k]).sum::<f64>() / h
+                };
+                x[k] = stages[i].x_rates[k] - sum(|stage| &stage.x);
+                y[k] = y_rates[i][k] - sum(|stage| &stage.y);
+            }
+            stages[i].to_body_axes(system, x, y);
+            for k in 0..x.len() {
+                for (residual, of_real, of_complex) in
+                    [(x[k], &mut real.x[k], &mut complex.x[k]), (y[k], &mut real.y[k], &mut complex.y[k])]
+                {
+                    *of_real += scheme.to_real[i] * residual;
+                    *of_complex += scheme.to_complex[i] * residual;
+                }
+            }
+        }
+        for row in 0..patterns.rows.len() {
+            let (mut of_real, mut of_complex) = ([0.0; 2], [Complex::new(0.0, 0.0); 2]);
+            for (i, stage) in stages.iter().enumerate() {
+                let residuals = [-stage.constraints.residuals[row], -stage.constraint_rates[row]];
+                for (which, residual) in residuals.into_iter().enumerate() {
+                    of_real[which] += scheme.to_real[i] * residual;
+                    of_complex[which] += scheme.to_complex[i] * residual;
+                }
+            }
+            [real.lambda[row], real.mu[row]] = of_real;
+            [complex.lambda[row], complex.mu[row]] = of_complex;
+        }
+        let frozen = Frozen { system, stage: &stages[1], patterns, matrices };
+        frozen.solve(real, &matrices.real);
+        frozen.solve(complex, &matrices.complex);
+        let [mut moved, mut largest] = [0.0_f64; 2];
+        for i in 0..STAGES {
+            let change = |real: f64, complex: Complex<f64>| {
+                scheme.from_real[i] * real + 2.0 * (scheme.from_complex[i] * complex).re
+            };
+            let [dx, dy] = residuals;
+            for k in 0..dx.len() {
+                (dx[k], dy[k]) = (change(real.x[k], complex.x[k]), change(real.y[k], complex.y[k]));
+            }
+            let [position, mut energy] = sizes(system, dx, h);
+            energy += matrices.strain_energy(&stages[1], dx);
+            moved = moved.max(position);
+            largest = largest.max(position).max((energy / *largest_energy).sqrt());
+            stages[i].add_in_body_axes(system, dx, dy);
+            for row in 0..multipliers[i].len() {
+                multipliers[i][row] += change(real.lambda[row], complex.lambda[row]);
+                velocity_multipliers[i][row] += change(real.mu[row], complex.mu[row]);
+            }
+        }
+        [moved, largest]
+    }
+
+    /// The estimated error of a step whose stages are known.
+    pub(super) fn error(&mut self, h: f64) -> f64 {
+        let Self { stages, scheme, system, room, matrices, patterns, first, .. } = self;
+        let real = &mut room.real;
+        for k in 0..system.coordinates() {
+            let mut difference = [first.x_rates[k], first.y_rates[k]];
+            for i in 0..STAGES {
+                let rate = (0..STAGES).map(|j| scheme.inverse[(i, j)] * stages[j].x[k]).sum::<f64>() / h;
+                difference[0] -= scheme.at_start[i] * rate;
+                difference[1] -= scheme.at_start[i] * stages[i].y_rates[k];
+            }
+            [real.x[k], real.y[k]] = difference;
+        }
+        stages[1].to_body_axes(system, &mut real.x, &mut real.y);
+        real.lambda.fill(0.0);
+        real.mu.fill(0.0);
+        let frozen = Frozen { system, stage: &stages[1], patterns, matrices };
+        frozen.solve(real, &matrices.real);
+        sizes(system, &real.x, h)[0]
+    }
+}
