@@ -97,6 +97,19 @@ impl SecondOrder {
         sum
     }
 
+    /// Adds the modal force `(∂u₂/∂q)ᵀ vector`.
+    pub(crate) fn add_force(&self, vector: &Vector3<f64>, q: &[f64], modal_force: &mut [f64]) {
+        for Term { direction, blocked, .. } in self.terms.iter() {
+            let along = direction.dot(vector);
+            if along != 0.0 {
+                blocked.each_block(q, |first, k_q| {
+                    let first = first.min(q.len());
+                    modal_force[first..q.len()].iter_mut().zip(k_q).for_each(|(force, k_q)| *force -= along * k_q);
+                });
+            }
+        }
+    }
+
     /// Adds the modal force `(∂u₂/∂q)ᵀ vector`. Returns u₂ and the power of that force.
     pub(crate) fn push(
         &self,

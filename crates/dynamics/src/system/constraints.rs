@@ -105,7 +105,7 @@ impl Constraints {
             joint.wrenches(places.each_ref(), times, |wrench| {
                 (self.residuals[row], self.own_rates[row]) = (wrench.residual, wrench.own_rate);
                 clear(&mut self.ends[row]);
-                add(&mut self.ends[row], joint, &places, &wrench, 1.0);
+                add(&mut self.ends[row], joint, &places, &place, &wrench, 1.0);
                 row += 1;
             });
         }
@@ -117,7 +117,7 @@ impl Constraints {
                 let places = places_of(joint);
                 let wrench = term.coordinate.wrench(places.each_ref(), expected_turn(term.joint));
                 self.residuals[row] += term.factor * wrench.residual;
-                add(&mut self.ends[row], joint, &places, &wrench, term.factor);
+                add(&mut self.ends[row], joint, &places, &place, &wrench, term.factor);
             }
             row += 1;
         }
@@ -127,7 +127,7 @@ impl Constraints {
             let wrench = coordinate.wrench(places.each_ref(), expected_turn(number));
             self.coordinates[k] = wrench.residual;
             clear(&mut self.ends[row + k]);
-            add(&mut self.ends[row + k], joint, &places, &wrench, 1.0);
+            add(&mut self.ends[row + k], joint, &places, &place, &wrench, 1.0);
         }
     }
 
@@ -137,18 +137,20 @@ impl Constraints {
     }
 
     /// Sets a compliant row from its number among them: the wrenches of one unit of its force on markers where they are.
-    pub fn set_compliant<'a>(
+    pub fn set_compliant<'a, 'q>(
         &mut self,
         number: usize,
         row: Compliant,
         wrenches: impl Iterator<Item = (&'a Marker, &'a MarkerPlace, &'a MarkerWrench)>,
+        modal_displacements: impl Fn(usize) -> &'q [f64],
     ) {
         self.compliant[number] = row;
         let ends = &mut self.ends[self.residuals.len() + number];
         clear(ends);
         for (marker, place, MarkerWrench { force_global, moment_global }) in wrenches {
             let Some(end) = ends.iter_mut().find(|end| Some(end.body) == marker.body()) else { continue };
-            marker.add_wrench(place, [force_global, moment_global], &mut end.entries);
+            let q = modal_displacements(end.body);
+            marker.add_wrench(place, q, [force_global, moment_global], &mut end.entries);
         }
     }
 
@@ -192,10 +194,17 @@ fn clear(ends: &mut [End]) {
 }
 
 /// Adds the wrenches of a row on the markers of a joint, times a factor.
-fn add(ends: &mut [End], joint: &Joint, places: &[MarkerPlace; 2], wrench: &RowWrench, factor: f64) {
+fn add<'a>(
+    ends: &mut [End],
+    joint: &Joint,
+    places: &[MarkerPlace; 2],
+    body: impl Fn(usize) -> BodyPlace<'a>,
+    wrench: &RowWrench,
+    factor: f64,
+) {
     for ((marker, place), wrench) in joint.markers.iter().zip(places).zip(wrench.on_both()) {
         let Some(end) = ends.iter_mut().find(|end| Some(end.body) == marker.body()) else { continue };
         let [force, moment] = wrench.map(|vector| vector * factor);
-        marker.add_wrench(place, [&force, &moment], &mut end.entries);
+        marker.add_wrench(place, body(end.body).q, [&force, &moment], &mut end.entries);
     }
 }

@@ -108,5 +108,8 @@ fn check(marker: &Marker, bodies: &[ConservativeBody]) -> Result<(), SetupError>
     if found != 0 && found != expected {
         return Err(SetupError::Length { what: "the shapes of a marker", expected, found });
     }
+    if let Some(found) = marker.least_of_second_order().filter(|found| *found < expected) {
+        return Err(SetupError::Length { what: "the second order of a marker", expected, found });
+    }
     Ok(())
 }

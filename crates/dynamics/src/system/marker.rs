@@ -1,18 +1,20 @@
 //! Places with axes that bodies carry: the ends of joints.
 //!
-//! Eqs. (J1)–(J3) of `docs/method/systems.md`.
+//! Eqs. (J1)–(J3) and (J15) of `docs/method/systems.md`.
 
 pub(crate) mod motion;
 
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{cross_matrix, transformation_matrix};
 
+use crate::body::second_order::SecondOrder;
 use crate::body::shapes::{PointShapes, RotationShapes};
 use crate::system::marker::motion::MarkerMotion;
 
 /// A place with axes on a body, or on the ground.
 ///
-/// On a flexible body it is the mean of a patch, or a node: the modes move it by Ψ q and turn it by the rotation vector Θ q.
+/// On a flexible body it is the mean of a patch, or a node: the modes move it by Ψ q and turn it by the rotation vector Θ q, both to
+/// second order where the shapes know it: then the forces of joints and elements stiffen the body.
 #[derive(Debug, Clone)]
 pub struct Marker {
     body: Option<usize>,
@@ -22,6 +24,8 @@ pub struct Marker {
     displacement: Vec<Vector3<f64>>,
     /// Columns of Θ (nf).
     rotation: Vec<Vector3<f64>>,
+    /// Displacement and rotation of second order.
+    second_order: [Option<SecondOrder>; 2],
     /// The axes as columns, body axes; of the ground, global.
     axes: Matrix3<f64>,
 }
@@ -34,6 +38,7 @@ impl Marker {
             position: position_global,
             displacement: Vec::new(),
             rotation: Vec::new(),
+            second_order: [None, None],
             axes: axes_global,
         }
     }
@@ -48,6 +53,7 @@ impl Marker {
         Self {
             displacement: point.columns()[6..].to_vec(),
             rotation: turning.columns()[6..].to_vec(),
+            second_order: [point.second_order(), turning.second_order()].map(Option::<&SecondOrder>::cloned),
             ..Self::on_rigid(body, point.position_body(), axes_body)
         }
     }
@@ -60,6 +66,11 @@ impl Marker {
     /// Number of modes that move it.
     pub(crate) fn flexible(&self) -> usize {
         self.displacement.len()
+    }
+
+    /// The least number of modes that a displacement of second order knows.
+    pub(crate) fn least_of_second_order(&self) -> Option<usize> {
+        self.second_order.iter().flatten().map(SecondOrder::modes).min()
     }
 
     /// The marker where its body is.
@@ -78,6 +89,9 @@ impl Marker {
             arm += psi * *q;
             theta += turn * *q;
         }
+        for (sum, second_order) in [&mut arm, &mut theta].into_iter().zip(&self.second_order) {
+            *sum += second_order.as_ref().map_or_else(Vector3::zeros, |of| of.displacement(q));
+        }
         let global_from_body = body_from_global.transpose();
         MarkerPlace {
             position: origin + global_from_body * arm,
@@ -88,15 +102,18 @@ impl Marker {
         }
     }
 
-    /// The motion of the marker, by its place and the velocities (V and ω in body axes, q̇) of its body.
-    pub(crate) fn motion(&self, place: &MarkerPlace, velocities: Option<&[f64]>) -> MarkerMotion {
+    /// The motion of the marker, by its place and the modal displacements and velocities (V and ω in body axes, q̇) of its body.
+    pub(crate) fn motion(&self, place: &MarkerPlace, [q, velocities]: [&[f64]; 2]) -> MarkerMotion {
         let (mut velocity, mut omega) = (Vector3::zeros(), Vector3::zeros());
-        if let Some(v) = velocities {
+        if let v @ [_, _, _, _, _, _, ..] = velocities {
             let [of_origin, spin] = [0, 3].map(|first| Vector3::new(v[first], v[first + 1], v[first + 2]));
             (velocity, omega) = (of_origin + spin.cross(&place.arm), Vector3::zeros());
             for ((psi, turn), rate) in self.displacement.iter().zip(&self.rotation).zip(&v[6..]) {
                 velocity += psi * *rate;
                 omega += turn * *rate;
+            }
+            for (sum, second_order) in [&mut velocity, &mut omega].into_iter().zip(&self.second_order) {
+                *sum += second_order.as_ref().map_or_else(Vector3::zeros, |of| of.velocity(q, &v[6..]));
             }
             omega = spin + place.tangent * omega;
         }
@@ -108,9 +125,15 @@ impl Marker {
         }
     }
 
-    /// Adds a force and a moment (global, at the marker) to generalised forces of its body: force, moment about the origin, both
-    /// in body axes, modal forces.
-    pub(crate) fn add_wrench(&self, place: &MarkerPlace, [force, moment]: [&Vector3<f64>; 2], generalised: &mut [f64]) {
+    /// Adds a force and a moment (global, at the marker) to generalised forces of its body, which has these modal displacements: force,
+    /// moment about the origin, both in body axes, modal forces.
+    pub(crate) fn add_wrench(
+        &self,
+        place: &MarkerPlace,
+        q: &[f64],
+        [force, moment]: [&Vector3<f64>; 2],
+        generalised: &mut [f64],
+    ) {
         let [force_body, moment_body] = [force, moment].map(|vector| place.body_from_global * vector);
         let about_origin = place.arm.cross(&force_body) + moment_body;
         for i in 0..3 {
@@ -121,6 +144,11 @@ impl Marker {
         let shapes = self.displacement.iter().zip(&self.rotation);
         for (generalised, (psi, turn)) in generalised[6..].iter_mut().zip(shapes) {
             *generalised += psi.dot(&force_body) + turn.dot(&turning);
+        }
+        for (vector, second_order) in [&force_body, &turning].into_iter().zip(&self.second_order) {
+            if let Some(second_order) = second_order {
+                second_order.add_force(vector, q, &mut generalised[6..]);
+            }
         }
     }
 }
@@ -164,6 +192,15 @@ fn tangent(theta: &Vector3<f64>) -> Matrix3<f64> {
 mod tests {
     use super::*;
 
+    /// Along each axis another symmetric matrix.
+    fn second_order(size: f64) -> SecondOrder {
+        let of = |axis: usize| {
+            let entry = |i: usize, j: usize| size * (1.0 + axis as f64 + (i * j) as f64 - 0.5 * (i + j) as f64);
+            (Vector3::ith(axis, 1.0), faer::Mat::from_fn(3, 3, entry))
+        };
+        SecondOrder::new((0..3).map(of).collect()).unwrap()
+    }
+
     /// Independent reference: central differences of the place: the virtual work of a force and a moment is that of
     /// their generalised forces.
     #[test]
@@ -176,6 +213,7 @@ mod tests {
             position: Vector3::new(0.4, -0.3, 0.2),
             displacement: shapes(0.7),
             rotation: vec![Vector3::x(), Vector3::new(0.3, 1.0, -0.2), Vector3::new(-0.5, 0.1, 0.8)],
+            second_order: [0.3, -0.4].map(|size| Some(second_order(size))),
             axes: Matrix3::identity(),
         };
         let at = |delta: f64, direction: usize| {
@@ -193,7 +231,7 @@ mod tests {
         };
         let [force, moment] = [Vector3::new(1.0, -2.0, 0.5), Vector3::new(0.3, 0.7, -1.1)];
         let mut generalised = [0.0; 9];
-        marker.add_wrench(&at(0.0, 0), [&force, &moment], &mut generalised);
+        marker.add_wrench(&at(0.0, 0), &[0.3, -0.2, 0.4], [&force, &moment], &mut generalised);
         let delta = 1e-5;
         for (direction, found) in generalised.into_iter().enumerate() {
             let [back, ahead] = [at(-delta, direction), at(delta, direction)];

@@ -242,8 +242,10 @@ impl Stage {
         let places =
             markers.each_ref().map(|marker| marker.place(marker.body().map(|b| self.body_place(system, b)).as_ref()));
         let motions = [0, 1].map(|k: usize| {
-            let velocities = markers[k].body().map(|b| &self.velocities[system.first[b]..system.first[b + 1]]);
-            markers[k].motion(&places[k], velocities)
+            let of_body = markers[k].body().map_or([&[][..]; 2], |b| {
+                [self.body_place(system, b).q, &self.velocities[system.first[b]..system.first[b + 1]]]
+            });
+            markers[k].motion(&places[k], of_body)
         });
         let [turn, slide] = [Coordinate::Turn, Coordinate::Slide]
             .map(|coordinate| coordinate.wrench(places.each_ref(), expected_turn))
@@ -274,7 +276,7 @@ impl Stage {
         self.add_joint_forces(system, times);
         for element in &system.connections.elements {
             self.find_marker_motions(system, element.markers());
-            let Self { marker_places, marker_motions, wrenches, element_forces: forces, .. } = self;
+            let Self { marker_places, marker_motions, wrenches, element_forces: forces, q, .. } = self;
             let markers = element.markers();
             wrenches.clear();
             wrenches.resize(markers.len(), MarkerWrench::default());
@@ -286,6 +288,7 @@ impl Stage {
                 if let Some(b) = markers[k].body() {
                     markers[k].add_wrench(
                         &marker_places[k],
+                        &q[system.first[b] + 6..system.first[b + 1]],
                         [force_global, moment_global],
                         &mut forces[system.first[b]..system.first[b + 1]],
                     );
@@ -314,7 +317,8 @@ impl Stage {
                 q: &q[own(b)][6..],
             });
             let place = marker.place(place.as_ref());
-            marker_motions.push(marker.motion(&place, marker.body().map(|b| &velocities[own(b)])));
+            let of_body = marker.body().map_or([&[][..]; 2], |b| [&q[own(b)][6..], &velocities[own(b)]]);
+            marker_motions.push(marker.motion(&place, of_body));
             marker_places.push(place);
         }
     }
@@ -333,12 +337,18 @@ impl Stage {
         for element in system.connections.elements.iter().filter(|element| element.directions() > 0) {
             let markers = element.markers();
             self.find_marker_motions(system, markers);
-            let Self { marker_places, marker_motions, constraints, .. } = self;
+            let Self { marker_places, marker_motions, constraints, q, .. } = self;
+            let modal_displacements = |b: usize| &q[system.first[b] + 6..system.first[b + 1]];
             element.linearize(times, marker_motions, &mut |direction, [stiffness, damping], wrenches| {
                 if direction < element.directions() {
                     let on_markers = markers.iter().zip(&*marker_places).zip(wrenches);
                     let on_markers = on_markers.map(|((marker, place), wrench)| (marker, place, wrench));
-                    constraints.set_compliant(number + direction, Compliant { stiffness, damping }, on_markers);
+                    constraints.set_compliant(
+                        number + direction,
+                        Compliant { stiffness, damping },
+                        on_markers,
+                        modal_displacements,
+                    );
                 }
             });
             number += element.directions();

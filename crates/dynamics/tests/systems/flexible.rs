@@ -4,9 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use dynamics::{
     ConservativeBody, History, Initial, Joint, JointDrive, Marker, MotionState, Observation, Physics, PointForce,
-    PointShapes, RotationShapes, Rows, SharedLoad, Simulation, StepControl, System, SystemMotion, Table,
+    PointShapes, RotationShapes, Rows, SecondOrder, SharedLoad, Simulation, StepControl, System, SystemMotion, Table,
 };
-use fem_tet10::{Material, Materials, Mesh, Patch, assemble, read_msh};
+use fem_tet10::{GeometricTerms, Material, Materials, Mesh, Patch, assemble, read_msh, reduced_geometric_stiffness};
 use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, StaticAccuracy, Support};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
@@ -15,6 +15,8 @@ use rigid_kin::Attitude;
 pub struct Jointed {
     pub body: ReducedBody,
     pub patches: Vec<(PointShapes, RotationShapes)>,
+    /// Displacement and rotation of second order of each patch.
+    pub second_orders: Vec<[SecondOrder; 2]>,
     mesh: Mesh,
     modes: Modes,
 }
@@ -27,12 +29,22 @@ impl Jointed {
         let solver = Solver::new(k, m, x, &Support::free()).unwrap();
         let mut modes = solver.modes(natural, |_| ()).unwrap();
         let patches: Vec<Patch> = patches.iter().map(|group| mesh.surface_patch(group).unwrap()).collect();
+        let mut responses = Vec::new();
         for patch in &patches {
             let forces = patch.forces(x.len());
-            let responses = solver.static_response_from(&modes, forces.as_ref(), StaticAccuracy::Full).unwrap();
-            modes = solver.with_static_shapes(modes, responses.as_ref()).unwrap();
+            responses.push(solver.static_response_from(&modes, forces.as_ref(), StaticAccuracy::Full).unwrap());
+            modes = solver.with_static_shapes(modes, responses[responses.len() - 1].as_ref()).unwrap();
         }
         let body = ReducedBody::new(&modes, m, x).unwrap();
+        let second_orders = responses.iter().map(|responses| {
+            let (shapes, terms) = (modes.shapes.as_ref(), GeometricTerms::InitialStress);
+            let materials = Materials::Uniform(material);
+            let found = reduced_geometric_stiffness(&mesh, &materials, responses.as_ref(), shapes, terms).unwrap();
+            let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+            [0, 3]
+                .map(|first| SecondOrder::new(axes.into_iter().zip(found[first..].iter().cloned()).collect()).unwrap())
+        });
+        let second_orders = second_orders.collect();
         let patches = patches
             .iter()
             .map(|patch| {
@@ -41,7 +53,7 @@ impl Jointed {
                 (PointShapes::new(&body, &point), turning)
             })
             .collect();
-        Self { body, patches, mesh, modes }
+        Self { body, patches, second_orders, mesh, modes }
     }
 
     /// A point of the body, at a place of its mesh.
@@ -60,13 +72,25 @@ impl Jointed {
         Marker::on_flexible(number, point, turning, axes)
     }
 
+    /// The marker of a patch whose forces stiffen the body.
+    pub fn stiffening_marker(&self, number: usize, patch: usize) -> Marker {
+        let ((point, turning), [of_point, of_turning]) = (&self.patches[patch], &self.second_orders[patch]);
+        let point = point.clone().with_second_order(of_point.clone());
+        let turning = turning.clone().with_second_order(of_turning.clone());
+        Marker::on_flexible(number, &point, &turning, Matrix3::identity())
+    }
+
     pub fn conservative(&self) -> ConservativeBody {
         self.loaded(Vec::new())
     }
 
     fn loaded(&self, loads: Vec<SharedLoad>) -> ConservativeBody {
-        let undamped = vec![0.0; self.body.circular_frequencies.len()];
-        ConservativeBody::new(&self.body, &undamped, loads, &Physics::default()).unwrap()
+        self.damped(0.0, loads)
+    }
+
+    pub fn damped(&self, ratio: f64, loads: Vec<SharedLoad>) -> ConservativeBody {
+        let ratios = vec![ratio; self.body.circular_frequencies.len()];
+        ConservativeBody::new(&self.body, &ratios, loads, &Physics::default()).unwrap()
     }
 
     pub fn at_rest(&self, origin: Vector3<f64>, attitude: Attitude) -> MotionState {

@@ -8,3 +8,4 @@ mod mechanism;
 mod rigid;
 mod run;
 mod stiff;
+mod stiffening;
