@@ -1,5 +1,6 @@
 //! Arguments, and what is printed.
 
+use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -10,7 +11,7 @@ use flexframe::animation::{AnimationSettings, MAX_FRAMES, animate, animate_resul
 use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
-use flexframe::failure::{Details, Failure, FailureReport, Kind};
+use flexframe::failure::{Details, FailureReport, Kind};
 use flexframe::figures::{self, View};
 use flexframe::fmu::{self, FmuSettings};
 use flexframe::given_file::GivenFile;
@@ -23,7 +24,7 @@ use model::{BuildError, Builder, Cache};
 use scene::{Flexible, Scene, SceneError};
 use slepc::files_of_folder;
 
-use crate::cli_error::CliError;
+use crate::cli_error::{self, CliError};
 use crate::progress::Bar;
 use crate::scene_input::SceneInput;
 use crate::signals::Signals;
@@ -353,7 +354,7 @@ pub fn main() -> ExitCode {
     // A wrong command line has to be reported before it is parsed to its end.
     let json = std::env::args_os().skip(1).take_while(|argument| argument != "--").any(|argument| argument == "--json");
     let done = match Cli::try_parse() {
-        Ok(cli) => execute(cli, json).map_err(|failure| FailureReport::of(failure.as_ref())),
+        Ok(cli) => execute(cli, json).map_err(|error| cli_error::report(&*error)),
         Err(error) if error.use_stderr() && !json => {
             // Where it cannot be written, the exit code still tells.
             let _ = error.print();
@@ -365,7 +366,7 @@ pub fn main() -> ExitCode {
             Err(FailureReport::new(Kind::Usage, message, Details::default()))
         }
         // The help or the version was asked for.
-        Err(asked) => output::written(asked.print()).map_err(|failure| FailureReport::of(&failure)),
+        Err(asked) => output::written(asked.print()).map_err(|error| error.report()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -380,7 +381,7 @@ fn settings(signals: &Signals, overwrite: bool, builder: &Builder) -> RunSetting
     RunSettings { overwrite, large: false, rows_alone: false, stop: signals.stop(), builder: builder.clone() }
 }
 
-fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Failure>> {
+fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Error>> {
     let cache = if cli.no_cache { Cache::none() } else { Cache::of_user() };
     let builder = Builder { cache: cache.clone(), solver: None, trust_geometry: cli.trust_geometry };
     let done = command(cli, json, builder);
@@ -390,18 +391,18 @@ fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Failure>> {
     done
 }
 
-fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<dyn Failure>> {
+fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<dyn Error>> {
     let tell_doubts = |scene: &Scene| {
         if !json_errors {
             output::doubts(plausible::doubts_of_scene(scene));
         }
     };
-    let read = |input: SceneInput| -> Result<Scene, Box<dyn Failure>> {
+    let read = |input: SceneInput| -> Result<Scene, Box<dyn Error>> {
         let scene = input.read()?;
         tell_doubts(&scene);
         Ok(scene)
     };
-    let read_bodies = |input: SceneInput| -> Result<Vec<Scene>, Box<dyn Failure>> {
+    let read_bodies = |input: SceneInput| -> Result<Vec<Scene>, Box<dyn Error>> {
         let scenes = input.read_bodies()?;
         scenes.iter().for_each(tell_doubts);
         Ok(scenes)
@@ -669,7 +670,7 @@ fn write_only(
     to: &WriteOnly,
     overwrite: bool,
     mut bar: Bar,
-) -> Result<(), Box<dyn Failure>> {
+) -> Result<(), Box<dyn Error>> {
     Written::FOLDER.check(&to.folder).map_err(OutputError::from)?;
     outputs_of_scene(scene, builder, overwrite).claim(&files_of_folder(&to.folder))?;
     let files = modes::write_problem(scene, builder, &to.folder, to.ranks, |p| bar.build(p))?;
@@ -769,7 +770,7 @@ fn speeds(text: &str) -> Result<Speeds, String> {
 }
 
 /// The refusal of a number of modes, at the option where that has replaced what the scene says.
-fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Failure> {
+fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Error> {
     match (error, flexible) {
         (CampbellError::Build(BuildError::Scene(SceneError::Invalid { at, found, expected, help })), Some(_))
             if at.key == "modes.flexible" =>

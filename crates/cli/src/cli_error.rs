@@ -1,8 +1,9 @@
 //! Errors of the program itself, outside of the library.
 
+use std::error::Error;
 use std::io;
 
-use flexframe::failure::{Details, Failure, Kind};
+use flexframe::failure::{Details, FailureReport, Kind};
 
 /// An error of the command line, the terminal or the threads.
 #[derive(Debug, thiserror::Error)]
@@ -36,32 +37,29 @@ pub enum CliError {
     Json(#[from] serde_json::Error),
 }
 
-impl Failure for CliError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Option { .. } | Self::ThreadsVariable { .. } => Kind::Usage,
-            Self::Threads { .. } | Self::Signals(_) | Self::Output(_) => Kind::Io,
-            Self::Json(_) => Kind::Run,
-        }
-    }
+/// The failure of any error that ends a command.
+pub fn report(error: &(dyn Error + 'static)) -> FailureReport {
+    error.downcast_ref::<CliError>().map_or_else(|| FailureReport::of(error), CliError::report)
+}
 
-    fn details(&self) -> Details {
-        match self {
-            Self::Option { option, found, expected, help } => Details {
-                key: Some((*option).to_owned()),
-                found: Some(found.clone()),
-                expected: Some(expected.clone()),
-                help: Some(help.clone()),
-                ..Details::default()
-            },
-            Self::ThreadsVariable { found, most } => Details {
-                key: Some("RAYON_NUM_THREADS".to_owned()),
-                found: Some(found.clone()),
-                expected: Some(format!("a number from 1 to {most}")),
-                ..Details::default()
-            },
-            Self::Output(_) => Details::of_file("standard output"),
-            Self::Threads { .. } | Self::Signals(_) | Self::Json(_) => Details::default(),
-        }
+impl CliError {
+    /// As a failure.
+    pub fn report(&self) -> FailureReport {
+        let (kind, details) = match self {
+            Self::Option { option, found, expected, help } => {
+                let key = Some((*option).to_owned());
+                let (found, expected) = (Some(found.clone()), Some(expected.clone()));
+                (Kind::Usage, Details { key, found, expected, help: Some(help.clone()), ..Details::default() })
+            }
+            Self::ThreadsVariable { found, most } => {
+                let key = Some("RAYON_NUM_THREADS".to_owned());
+                let (found, expected) = (Some(found.clone()), Some(format!("a number from 1 to {most}")));
+                (Kind::Usage, Details { key, found, expected, ..Details::default() })
+            }
+            Self::Output(_) => (Kind::Io, Details::of_file("standard output")),
+            Self::Threads { .. } | Self::Signals(_) => (Kind::Io, Details::default()),
+            Self::Json(_) => (Kind::Run, Details::default()),
+        };
+        FailureReport::new(kind, self.to_string(), details)
     }
 }

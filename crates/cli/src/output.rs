@@ -1,10 +1,11 @@
 //! Standard output and standard error, either of which may be full or closed.
 
+use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use flexframe::failure::{Failure, FailureReport};
+use flexframe::failure::FailureReport;
 use flexframe::run::Estimate;
 use model::CacheNotes;
 use serde::Serialize;
@@ -12,7 +13,7 @@ use serde::Serialize;
 use crate::cli_error::CliError;
 
 /// Prints a summary.
-pub fn print<R: Serialize + Display>(report: &R, json: bool) -> Result<(), Box<dyn Failure>> {
+pub fn print<R: Serialize + Display>(report: &R, json: bool) -> Result<(), Box<dyn Error>> {
     let text = if json { serde_json::to_string_pretty(report).map_err(CliError::from)? } else { report.to_string() };
     Ok(line(&text)?)
 }
@@ -58,12 +59,12 @@ pub fn show_estimate(estimate: &Estimate) {
 }
 
 /// Prints the names of files.
-pub fn list(files: &[PathBuf]) -> Result<(), Box<dyn Failure>> {
+pub fn list(files: &[PathBuf]) -> Result<(), Box<dyn Error>> {
     files.iter().try_for_each(|file| Ok(line(&format!("  wrote    {}", file.display()))?))
 }
 
 /// Prints what should be known of files.
-pub fn warn(warning: Option<&str>) -> Result<(), Box<dyn Failure>> {
+pub fn warn(warning: Option<&str>) -> Result<(), Box<dyn Error>> {
     Ok(warning.map_or(Ok(()), |warning| line(&format!("  warning  {warning}")))?)
 }
 

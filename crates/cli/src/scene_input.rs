@@ -1,9 +1,9 @@
 //! The scene of a command: a file or standard input, with values set on the command line.
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use flexframe::failure::Failure;
 use flexframe::fmu::scene_of_body;
 use flexframe::given_file::GivenFile;
 use scene::{AssignError, Scene, System, assign, text_from, text_of};
@@ -33,7 +33,7 @@ pub struct SceneInput {
 
 impl SceneInput {
     /// As [`Self::read_bodies`], of a body file, too: then it is the scene that it was made of.
-    pub fn read_bodies_or_body(self) -> Result<Vec<Scene>, Box<dyn Failure>> {
+    pub fn read_bodies_or_body(self) -> Result<Vec<Scene>, Box<dyn Error>> {
         if !self.scene.extension().is_some_and(|extension| extension == "h5" || extension == "hdf5") {
             return self.read_bodies();
         }
@@ -58,14 +58,14 @@ impl SceneInput {
     }
 
     /// Reads the scene of one body, sets the values, and checks it.
-    pub fn read(self) -> Result<Scene, Box<dyn Failure>> {
+    pub fn read(self) -> Result<Scene, Box<dyn Error>> {
         let body = self.body.clone();
         let (text, path) = self.text()?;
         Ok(Scene::parse_body(&text, path, body.as_deref())?)
     }
 
     /// Reads the scenes of all bodies, or of the one that was named.
-    pub fn read_bodies(self) -> Result<Vec<Scene>, Box<dyn Failure>> {
+    pub fn read_bodies(self) -> Result<Vec<Scene>, Box<dyn Error>> {
         if self.body.is_some() {
             return Ok(vec![self.read()?]);
         }
@@ -74,7 +74,7 @@ impl SceneInput {
     }
 
     /// The text with the values set, and where it comes from.
-    fn text(self) -> Result<(String, PathBuf), Box<dyn Failure>> {
+    fn text(self) -> Result<(String, PathBuf), Box<dyn Error>> {
         let (text, path) = if self.scene == Path::new(STANDARD_INPUT) {
             let path = PathBuf::from(NAME);
             (text_from(std::io::stdin().lock(), &path)?, path)

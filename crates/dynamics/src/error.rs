@@ -7,167 +7,75 @@ use std::sync::Arc;
 /// A motion that cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum SetupError {
     /// A list with one number for each flexible mode has another length.
     #[error("{what} has {found} entries; expected one for each of the {expected} flexible modes")]
-    Length {
-        /// Which list.
-        what: &'static str,
-        /// Number of flexible modes.
-        expected: usize,
-        /// Its length.
-        found: usize,
-    },
+    Length { what: &'static str, expected: usize, found: usize },
     /// A number that is NaN or infinite, or outside its range.
     #[error("{what} is {found}; expected {expected}")]
-    Value {
-        /// Which number.
-        what: &'static str,
-        /// Its value.
-        found: f64,
-        /// Its range.
-        expected: &'static str,
-    },
+    Value { what: &'static str, found: f64, expected: &'static str },
     /// A list that is too short or not as long as its partner.
     #[error("{what} has {found} entries; expected {expected}")]
-    Entries {
-        /// Which list.
-        what: &'static str,
-        /// Its length.
-        found: usize,
-        /// The length it should have.
-        expected: String,
-    },
-    /// Times that do not rise.
+    Entries { what: &'static str, found: usize, expected: String },
+    /// Times that do not rise. `row`: from 1.
     #[error(
         "{what}: the time {found} in row {row} is not later than {previous} in the row before; the times of a table rise from row to row (a jump is two tables, each multiplied by a step)"
     )]
-    NotRising {
-        /// Which list.
-        what: &'static str,
-        /// The row, from 1.
-        row: usize,
-        /// Its time.
-        found: f64,
-        /// The time of the row before.
-        previous: f64,
-    },
-    /// A text that is not an expression in t.
+    NotRising { what: &'static str, row: usize, found: f64, previous: f64 },
+    /// A text that is not an expression in t. `position`: in characters, from 1.
     #[error("the expression \"{text}\" at character {position}: {problem}; {help}")]
-    Expression {
-        /// The expression.
-        text: Box<str>,
-        /// Where, in characters from 1.
-        position: usize,
-        /// The fault.
-        problem: Box<str>,
-        /// Help: text to write there.
-        help: Box<str>,
-    },
+    Expression { text: Box<str>, position: usize, problem: Box<str>, help: Box<str> },
     /// An expression that is too long.
     #[error(
         "an expression of {found} bytes is longer than {most}; write it shorter, as a product of several, or as a table"
     )]
-    LongExpression {
-        /// Its bytes.
-        found: usize,
-        /// The most there may be.
-        most: usize,
-    },
+    LongExpression { found: usize, most: usize },
     /// A history that is not a number at some time.
     #[error(
         "the history of a load is {found} at time {time}; an expression must be finite through the whole run: write it so that it is, or multiply it by what is zero there in a form without a division by zero"
     )]
-    HistoryNotFinite {
-        /// The time.
-        time: f64,
-        /// The factor.
-        found: f64,
-    },
-    /// A formula that changes within the shortest steps that are tried.
+    HistoryNotFinite { time: f64, found: f64 },
+    /// A formula that changes within the shortest steps that are tried. `step`: that of the run; under step control,
+    /// the length of the stretches in which formulas are looked at.
     #[error(
         "the expression \"{text}\" changes too fast: even steps of {shortest:.3e}, a thousandth of {step:e}, do not see it as it is; write it as a sine or a sweep, name the times between which it changes so fast as discontinuities, or take a smaller step"
     )]
-    FormulaTooFast {
-        /// The expression.
-        text: String,
-        /// The step of the run; under step control, the length of the stretches in which formulas are looked at.
-        step: f64,
-        /// The shortest that was tried.
-        shortest: f64,
-    },
-    /// A step at which RK4 amplifies a mode.
+    FormulaTooFast { text: String, step: f64, shortest: f64 },
+    /// A step at which RK4 amplifies a mode. `mode`: from 1.
     #[error(
         "a step of {step:e} is beyond the stability limit {limit:.4e} that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4; take a smaller step or fewer modes"
     )]
-    StepBeyondLimit {
-        /// The step.
-        step: f64,
-        /// Largest stable step.
-        limit: f64,
-        /// Number of the mode, from 1.
-        mode: usize,
-        /// Its natural frequency.
-        frequency: f64,
-    },
-    /// A step that the spin is too fast for.
+    StepBeyondLimit { step: f64, limit: f64, mode: usize, frequency: f64 },
+    /// A step that the spin is too fast for. `spin`: the largest known before the run, |ω| at the beginning or the
+    /// driven speed, rad/time.
     #[error(
         "a step of {step:e} is too long for a spin of {spin:.6} rad per time, which this scheme follows up to a step of {limit:.3e}; take a smaller step"
     )]
-    StepBeyondSpin {
-        /// The step.
-        step: f64,
-        /// Longest step.
-        limit: f64,
-        /// Largest spin known before the run: |ω| at the beginning or the driven speed, rad/time.
-        spin: f64,
-    },
+    StepBeyondSpin { step: f64, limit: f64, spin: f64 },
     /// A tolerance for a method that does not estimate its error.
     #[error(
         "scheme {scheme} of formulation {formulation} has no error estimate for a tolerance; give a step, or take the scheme exponential or rkmk4 of the conservative formulation"
     )]
-    NoErrorEstimate {
-        /// Its formulation.
-        formulation: &'static str,
-        /// Its scheme.
-        scheme: &'static str,
-    },
+    NoErrorEstimate { formulation: &'static str, scheme: &'static str },
     /// A drive of a body whose modes are not those of the driven part held still.
     #[error(
         "a drive moves a body whose modes are those of a clamped one; what holds this one leaves it {motion}: hold it altogether, or remove the drive"
     )]
-    DriveOfFreeBody {
-        /// Its rigid motions.
-        motion: Box<modal::RigidMotion>,
-    },
+    DriveOfFreeBody { motion: Box<modal::RigidMotion> },
     /// Rigid motions that there are no equations for.
     #[error(
         "what holds the body leaves it {motion}; a run needs a body that is free, turns about a point (3 rotations) or an axis (1 rotation), slides along a line (1 translation), or is held altogether: let [[constraints]] hold more directions, or fewer (`flexframe modes` finds its modes as it is)"
     )]
-    MotionLeft {
-        /// Its rigid motions.
-        motion: Box<modal::RigidMotion>,
-    },
+    MotionLeft { motion: Box<modal::RigidMotion> },
     /// Physics that the formulation does not have.
     #[error("the formulation {formulation} has no {what}; take the conservative one")]
-    NotInFormulation {
-        /// The formulation.
-        formulation: &'static str,
-        /// The physics.
-        what: &'static str,
-    },
+    NotInFormulation { formulation: &'static str, what: &'static str },
     /// Joints that cannot be closed.
     #[error(
         "the joints cannot be closed at the beginning: \"{joint}\" stays open by {left:.3e} and its rate by {rate:.3e}; put its bodies so that its markers meet, give velocities that the joints allow, or remove a joint that contradicts the others"
     )]
-    NotAssembled {
-        /// Name of the joint that is farthest from closed.
-        joint: Box<str>,
-        /// Largest residual of a position or an angle.
-        left: f64,
-        /// Largest residual of a velocity.
-        rate: f64,
-    },
+    NotAssembled { joint: Box<str>, left: f64, rate: f64 },
     /// An error of a method or a load from outside.
     #[error(transparent)]
     Custom(#[from] CustomError),
@@ -217,111 +125,53 @@ impl PartialEq for CustomError {
 /// A step that failed. The state before it is kept.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum StepError {
     /// The body turns by more than a full turn within a step.
     #[error("at time {time}: the body turns by {angle:.3} rad within a step of {step:.3e}; take a step of at most {:.1e}", step / angle)]
-    TurnTooLarge {
-        /// Start of the step.
-        time: f64,
-        /// Its length.
-        step: f64,
-        /// Angle of the turn.
-        angle: f64,
-    },
-    /// An energy that nothing accounts for.
+    TurnTooLarge { time: f64, step: f64, angle: f64 },
+    /// An energy that nothing accounts for. `energy`: without that of the motion of the origin; `step`: the longest so
+    /// far.
     #[error(
         "at time {time}: the energy is {energy:.6e}, where the start, the loads and the damping account for {accounted:.6e}; a step of {step:.3e} is too long for this motion or its scheme: take a smaller step, or the scheme exponential of the conservative formulation"
     )]
-    Energy {
-        /// Time of the state.
-        time: f64,
-        /// Its energy, without that of the motion of the origin.
-        energy: f64,
-        /// Expected value.
-        accounted: f64,
-        /// Longest step so far.
-        step: f64,
-    },
-    /// An attitude that may be any.
+    Energy { time: f64, energy: f64, accounted: f64, step: f64 },
+    /// An attitude that may be any. `angle`: sum of the turns, rad; `step`: the longest so far.
     #[error(
         "at time {time}: the attitude is lost: angular momentum that neither the start nor the loads account for has turned the body by {angle:.3} rad; a step of {step:.3e} is too long for this motion or its scheme: take a smaller step, or the scheme exponential of the conservative formulation"
     )]
-    Attitude {
-        /// Time of the state.
-        time: f64,
-        /// Sum of the turns, rad.
-        angle: f64,
-        /// Longest step so far.
-        step: f64,
-    },
+    Attitude { time: f64, angle: f64, step: f64 },
     /// No step is short enough for the tolerance.
     #[error(
         "at time {time}: even a step of {step:.3e} does not keep the error below the tolerance {tolerance:e}; allow a larger tolerance"
     )]
-    Tolerance {
-        /// Start of the step.
-        time: f64,
-        /// The shortest step tried.
-        step: f64,
-        /// The tolerance.
-        tolerance: f64,
-    },
+    Tolerance { time: f64, step: f64, tolerance: f64 },
     /// Newton's method does not converge in a fixed step.
     #[error(
         "at time {time}: the equations of a step of {step:.3e} could not be solved; take a smaller step, or `tolerance` instead of `step`; where the joints lock or a mechanism passes a singular position, no step may do"
     )]
-    Newton {
-        /// Start of the step.
-        time: f64,
-        /// Its length.
-        step: f64,
-    },
+    Newton { time: f64, step: f64 },
     /// Step control of a scheme that does not estimate its error.
     #[error("at time {time}: this scheme does not estimate its error; give it a step instead of a tolerance")]
-    NoErrorEstimate {
-        /// Start of the step.
-        time: f64,
-    },
+    NoErrorEstimate { time: f64 },
     /// A time that is not inside the last step.
     #[error(
         "time {time} is not inside the last step, from {from} to {to}; ask for the steps to be kept before they are taken"
     )]
-    OutsideLastStep {
-        /// The time asked for.
-        time: f64,
-        /// Start of the last step.
-        from: f64,
-        /// Its end.
-        to: f64,
-    },
+    OutsideLastStep { time: f64, from: f64, to: f64 },
     /// An event's function that gives no finite number.
     #[error(
         "at time {time}: the function of an event gives {found}; let it give a finite number at every time, which passes through zero at the event"
     )]
-    EventFunction {
-        /// Time of the motion that it was asked about.
-        time: f64,
-        /// Value that it gives.
-        found: f64,
-    },
+    EventFunction { time: f64, found: f64 },
     /// An error of equations, a scheme or an observer from outside.
     #[error("at time {time}: {error}")]
-    Custom {
-        /// Start of the step.
-        time: f64,
-        /// The error.
-        error: CustomError,
-    },
+    Custom { time: f64, error: CustomError },
     /// A NaN or an overflow.
     #[error(
         "at time {time}: {what} is no longer a finite number; the motion has blown up: take a smaller step, and check loads and initial velocities"
     )]
-    NotFinite {
-        /// Start of the step.
-        time: f64,
-        /// Which quantity.
-        what: &'static str,
-    },
+    NotFinite { time: f64, what: &'static str },
 }
 
 /// Rates that cannot be evaluated, before it is known in which step.

@@ -37,7 +37,7 @@ pub use assembly::patch::Patch;
 pub use assembly::point_mass::PointMass;
 pub use element::quadrature;
 pub use element::shape::{shape_functions, shape_gradients};
-pub use error::{AssemblyError, FilePosition, MeshError};
+pub use error::{AssemblyError, AssemblyFault, FilePosition, MeshError, MeshFault};
 /// The crate whose types are in the interface.
 pub use faer;
 pub use material::{Material, Materials};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::error::AssemblyError;
+use crate::error::{AssemblyError, AssemblyFault};
 use crate::mesh::checked::Mesh;
 
 /// An isotropic, linearly elastic material.
@@ -25,11 +25,8 @@ impl Material {
     }
 
     fn check(&self, group: &str) -> Result<(), AssemblyError> {
-        let outside = |quantity, found, expected| AssemblyError::MaterialConstant {
-            group: group.to_owned(),
-            quantity,
-            found,
-            expected,
+        let outside = |quantity, found, expected| {
+            AssemblyFault::MaterialConstant { group: group.to_owned(), quantity, found, expected }.into()
         };
         // Written so that NaN fails each test.
         if !(self.young_modulus > 0.0 && self.young_modulus.is_finite()) {
@@ -71,11 +68,11 @@ impl Materials {
                 for (name, material) in by_name {
                     material.check(name)?;
                     if !mesh.groups().contains(name) {
-                        return Err(AssemblyError::MissingGroup {
-                            source_name: mesh.source().to_owned(),
+                        return Err(AssemblyFault::MissingGroup {
                             group: name.clone(),
                             present: mesh.groups().to_vec(),
-                        });
+                        }
+                        .of(mesh.source()));
                     }
                 }
                 let of_group: Vec<Option<Material>> =
@@ -85,18 +82,20 @@ impl Materials {
                         let groups = mesh.element_groups(e);
                         let name = |group: &usize| mesh.groups()[*group].clone();
                         let mut given = groups.iter().filter_map(|g| Some((g, of_group[*g]?)));
-                        let (first, material) = given.next().ok_or_else(|| AssemblyError::NoMaterial {
-                            source_name: mesh.source().to_owned(),
-                            element: mesh.element_tags()[e],
-                            groups: groups.iter().map(name).collect(),
+                        let (first, material) = given.next().ok_or_else(|| {
+                            AssemblyFault::NoMaterial {
+                                element: mesh.element_tags()[e],
+                                groups: groups.iter().map(name).collect(),
+                            }
+                            .of(mesh.source())
                         })?;
                         match given.find(|(_, other)| *other != material) {
                             None => Ok(material),
-                            Some((second, _)) => Err(AssemblyError::TwoMaterials {
-                                source_name: mesh.source().to_owned(),
+                            Some((second, _)) => Err(AssemblyFault::TwoMaterials {
                                 element: mesh.element_tags()[e],
                                 groups: [name(first), name(second)],
-                            }),
+                            }
+                            .of(mesh.source())),
                         }
                     })
                     .collect()

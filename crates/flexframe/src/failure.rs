@@ -2,11 +2,12 @@
 
 mod kinds;
 
-use std::error::Error;
 use std::fmt;
 use std::path::Path;
 
 use serde::Serialize;
+
+pub use kinds::known;
 
 /// Failures of commands, in the classes that a script tells apart. Each has an exit code of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -84,22 +85,17 @@ impl Details {
     pub fn of_file(file: impl AsRef<Path>) -> Self {
         Self { file: Some(file.as_ref().display().to_string()), ..Self::default() }
     }
-}
 
-/// An error that ends a command.
-pub trait Failure: Error {
-    /// Its class.
-    fn kind(&self) -> Kind;
-
-    /// Details of the fault.
-    fn details(&self) -> Details {
-        Details::default()
-    }
-}
-
-impl<E: Failure + 'static> From<E> for Box<dyn Failure> {
-    fn from(error: E) -> Self {
-        Box::new(error)
+    /// Its own, and what others know besides.
+    fn or(self, others: Self) -> Self {
+        Self {
+            file: self.file.or(others.file),
+            line: self.line.or(others.line),
+            key: self.key.or(others.key),
+            found: self.found.or(others.found),
+            expected: self.expected.or(others.expected),
+            help: self.help.or(others.help),
+        }
     }
 }
 
@@ -117,11 +113,6 @@ impl FailureReport {
     /// A failure of a kind, with a message.
     pub fn new(kind: Kind, message: impl Into<String>, details: Details) -> Self {
         Self { kind, exit_code: kind.exit_code(), message: message.into(), details }
-    }
-
-    /// The failure of an error.
-    pub fn of(failure: &dyn Failure) -> Self {
-        Self::new(failure.kind(), failure.to_string(), failure.details())
     }
 
     /// The exit code of the program.

@@ -6,6 +6,7 @@ use std::time::Duration;
 /// A program that did not come to its end.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum ProgramError {
     /// It cannot be started.
     #[error("it cannot be started: {0}")]
@@ -24,10 +25,5 @@ pub enum ProgramError {
     Time(Duration),
     /// It wrote too much, and was ended.
     #[error("it was ended with {found} bytes in its temporary folder, where it may have {most}")]
-    Bytes {
-        /// Bytes in its folder.
-        found: u64,
-        /// The limit.
-        most: u64,
-    },
+    Bytes { found: u64, most: u64 },
 }

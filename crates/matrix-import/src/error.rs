@@ -32,23 +32,11 @@ impl Which {
 /// Matrices that cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum MatrixError {
-    /// A file is not what it should be.
+    /// A file is not what it should be. `line`: from 1, where one line is at fault.
     #[error("{}: found {found}, expected {expected}\n = {help}", place(path, *line))]
-    Refused {
-        /// Which file.
-        which: Which,
-        /// Its path.
-        path: PathBuf,
-        /// Line in it, from 1, where one line is at fault.
-        line: Option<usize>,
-        /// The value found.
-        found: String,
-        /// The value expected.
-        expected: String,
-        /// Help for the user.
-        help: String,
-    },
+    Refused { which: Which, path: PathBuf, line: Option<usize>, found: String, expected: String, help: String },
     /// There is not enough memory.
     #[error(transparent)]
     Memory(#[from] OutOfMemory),

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use fem_tet10::MeshError;
+use fem_tet10::MeshFault;
 use foreign_program::open_ordinary;
 
 use crate::error::ImportError;
@@ -59,7 +59,7 @@ pub(crate) fn contents(path: &Path) -> Result<Vec<u8>, ImportError> {
     let (mut bytes, mut rest) = opened(path)?;
     let size = rest.metadata().map_err(io)?.len();
     memory::check("the mesh file", usize::try_from(size).unwrap_or(usize::MAX))
-        .map_err(|source| MeshError::Memory { source_name: path.display().to_string(), source })?;
+        .map_err(|error| MeshFault::from(error).of(path.display().to_string()))?;
     rest.read_to_end(&mut bytes).map_err(io)?;
     Ok(bytes)
 }

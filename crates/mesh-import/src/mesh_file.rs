@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use fem_tet10::{Mesh, MeshError, msh_bytes, parse_msh};
+use fem_tet10::{Mesh, MeshError, MeshFault, msh_bytes, parse_msh};
 use keys::{Hash, Key};
 use whole_file::TemporaryFolder;
 
@@ -130,8 +130,12 @@ impl MeshFile {
             Held::InPlace => None,
         };
         match parse_msh(bytes.unwrap_or_default(), &path.display().to_string()) {
-            Err(MeshError::Version { .. }) if is_surface(path) => Err(refused(SURFACE, SURFACE_CURE)),
-            Err(MeshError::Version { .. }) if ending(path) != "msh" => Err(refused(UNKNOWN, UNKNOWN_CURE)),
+            Err(MeshError { fault: MeshFault::Version { .. }, .. }) if is_surface(path) => {
+                Err(refused(SURFACE, SURFACE_CURE))
+            }
+            Err(MeshError { fault: MeshFault::Version { .. }, .. }) if ending(path) != "msh" => {
+                Err(refused(UNKNOWN, UNKNOWN_CURE))
+            }
             read => Ok(read?),
         }
     }
@@ -178,6 +182,6 @@ const BADLY_CURVED: f64 = 0.1;
 fn is_badly_curved(mesh: &Result<Mesh, ImportError>) -> bool {
     match mesh {
         Ok(mesh) => mesh.least_scaled_jacobian() < BADLY_CURVED,
-        Err(error) => matches!(error, ImportError::Mesh(MeshError::Jacobian { .. })),
+        Err(error) => matches!(error, ImportError::Mesh(MeshError { fault: MeshFault::Jacobian { .. }, .. })),
     }
 }

@@ -8,355 +8,164 @@ pub type EngineError = Box<dyn Error + Send + Sync>;
 /// Faults of the matrices, or of a request.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum ModalError {
     /// Matrices and positions of different sizes.
     #[error(
         "{what} has {found} rows or columns; expected {expected}, three for each of the nodes (or six, with rotations)"
     )]
-    Size {
-        /// Which matrix: "stiffness", "mass", "forces", "static responses", …
-        what: &'static str,
-        /// Degrees of freedom of all nodes.
-        expected: usize,
-        /// Rows or columns of the matrix.
-        found: usize,
-    },
+    Size { what: &'static str, expected: usize, found: usize },
     /// An entry or a position that is NaN or infinite.
     #[error("{what}: {value} in {place} {index} (counted from 0); every number must be finite")]
-    NotFinite {
-        /// "stiffness", "mass", "positions", …
-        what: &'static str,
-        /// The thing that is counted: "column", "node", "axis" or "entry".
-        place: &'static str,
-        /// Its number.
-        index: usize,
-        /// The number.
-        value: f64,
-    },
-    /// A matrix that is not its own transpose.
+    NotFinite { what: &'static str, place: &'static str, index: usize, value: f64 },
+    /// A matrix that is not its own transpose. `mirrored`: the entry at (column, row), zero where none is stored.
     #[error(
         "the {what} matrix is not symmetric: entry ({row}, {column}) is {value:.3e}, its mirror image {mirrored:.3e}; store both triangles"
     )]
-    NotSymmetric {
-        /// "stiffness", "mass", or the pattern that they make together.
-        what: &'static str,
-        /// Row.
-        row: usize,
-        /// Column.
-        column: usize,
-        /// The entry.
-        value: f64,
-        /// The entry at (column, row); zero where none is stored.
-        mirrored: f64,
-    },
+    NotSymmetric { what: &'static str, row: usize, column: usize, value: f64, mirrored: f64 },
     /// The mass matrix does not act alike on the three axes.
     #[error(
         "the mass matrix couples degrees of freedom {row} and {column} ({value:.3e}) unlike those of the other axes; expected a mass for each pair of nodes times the 3x3 identity, as solid elements have it"
     )]
-    AnisotropicMass {
-        /// Row.
-        row: usize,
-        /// Column.
-        column: usize,
-        /// The entry.
-        value: f64,
-    },
-    /// The mass matrix is that of no rigid body.
+    AnisotropicMass { row: usize, column: usize, value: f64 },
+    /// The mass matrix is that of no rigid body. `relative`: to m, or to m times the size of the body; `limit`: the
+    /// most that rounding explains.
     #[error(
         "the mass matrix does not give a translation of the whole body the mass of a rigid one: {what} is off by {relative:.3e} (expected below {limit:.0e}); a body that moves needs the same mass m along every axis, m times the 3x3 identity, and the momentum m ω×c of a rotation. Is mass of a surrounding fluid in the matrix, or is mass missing along an axis? Put it on all three axes, or clamp the body"
     )]
-    NoRigidBodyMass {
-        /// "the mass along the axes" or "the momentum of a rotation".
-        what: &'static str,
-        /// Relative to m, or to m times the size of the body.
-        relative: f64,
-        /// Largest value that rounding explains.
-        limit: f64,
-    },
-    /// A motion would have a negative kinetic energy.
+    NoRigidBodyMass { what: &'static str, relative: f64, limit: f64 },
+    /// A motion would have a negative kinetic energy. `place`: node and degree of freedom whose diagonal entry shows
+    /// it, `None` where only the whole matrix does.
     #[error(
         "the mass matrix is not positive semi-definite{}: some motion would have a negative kinetic energy; is a sign or an element wrong?",
         place.map(|[node, dof]| format!(", as degree of freedom {dof} of node {node} (both counted from 0) shows: its diagonal entry is not positive though others of its row are there")).unwrap_or_default()
     )]
-    IndefiniteMass {
-        /// Node and degree of freedom whose diagonal entry shows it; `None` where only the whole matrix does.
-        place: Option<[usize; 2]>,
-    },
-    /// K lets some motion set energy free.
+    IndefiniteMass { place: Option<[usize; 2]> },
+    /// K lets some motion set energy free. `eigenvalue`: (rad/time)².
     #[error(
         "the stiffness matrix is not positive semi-definite: its lowest eigenvalue against the mass is {eigenvalue:.3e} (shift {shift:.3e}); a material constant or an element is wrong: check Young's moduli and Poisson's ratios, or the matrices"
     )]
-    NegativeStiffness {
-        /// Lowest eigenvalue, (rad/time)².
-        eigenvalue: f64,
-        /// The shift s.
-        shift: f64,
-    },
+    NegativeStiffness { eigenvalue: f64, shift: f64 },
     /// A degree of freedom that nothing resists.
     #[error(
         "degree of freedom {dof} of node {node} (both counted from 0) has neither stiffness nor mass; hold it, or give it some"
     )]
-    Loose {
-        /// Index of the node.
-        node: usize,
-        /// Degree of freedom of the node.
-        dof: usize,
-    },
-    /// The body has no mass, or none to resist a rotation.
+    Loose { node: usize, dof: usize },
+    /// The body has no mass, or none to resist a rotation. `inertia`: its diagonal about the origin.
     #[error(
         "the body has mass {mass:.3e} and moments of inertia {inertia:?} about its origin, which no rigid body can have: the mass and all three moments must be positive (of a hinge, that about its axis), and large enough to divide by: are they in the units of the mesh?"
     )]
-    NoInertia {
-        /// Total mass.
-        mass: f64,
-        /// Diagonal of the inertia about the origin.
-        inertia: [f64; 3],
-    },
+    NoInertia { mass: f64, inertia: [f64; 3] },
     /// A direction that is not a unit vector.
     #[error("the direction {direction:?} of the support is not a unit vector; divide it by its length")]
-    NotUnit {
-        /// The direction.
-        direction: [f64; 3],
-    },
+    NotUnit { direction: [f64; 3] },
     /// Lists or matrices whose sizes do not fit together.
     #[error("the size of {what} is {found}; expected {expected}")]
-    Length {
-        /// Which.
-        what: &'static str,
-        /// Its size.
-        found: usize,
-        /// The size that fits.
-        expected: usize,
-    },
+    Length { what: &'static str, found: usize, expected: usize },
     /// A number that has to be positive.
     #[error("{what} is {value}; expected a positive number")]
-    NotPositive {
-        /// Which.
-        what: &'static str,
-        /// Its value.
-        value: f64,
-    },
+    NotPositive { what: &'static str, value: f64 },
     /// A list of coupled nodes that does not rise.
     #[error("the nodes that node {node} (counted from 0) is coupled to are not in rising order")]
-    Unsorted {
-        /// Index of the node.
-        node: usize,
-    },
+    Unsorted { node: usize },
     /// A node that is not there.
     #[error("node {node} (counted from 0) is not there; the mesh has {count} nodes")]
-    NoNode {
-        /// Index of the node.
-        node: u32,
-        /// Nodes of the mesh.
-        count: usize,
-    },
+    NoNode { node: u32, count: usize },
     /// A node at the end of an edge that is in the middle of another one.
     #[error(
         "node {node} (counted from 0) has node {end} at an end of its edge, which is no corner: a corner has itself twice"
     )]
-    NoCorner {
-        /// Index of the node.
-        node: usize,
-        /// Index of the end.
-        end: u32,
-    },
+    NoCorner { node: usize, end: u32 },
     /// Numbers of large modes that do not rise, or of modes that there are not.
     #[error("the large modes are {found:?}; expected rising numbers below {count}, the number of shapes")]
-    LargeModes {
-        /// The numbers, counted from 0.
-        found: Vec<usize>,
-        /// Modes and static shapes that there are.
-        count: usize,
-    },
+    LargeModes { found: Vec<usize>, count: usize },
     /// Weights of a point that do not sum to one.
     #[error("the weights of a point sum to {sum}; expected 1, as of shape functions")]
-    Weights {
-        /// Their sum.
-        sum: f64,
-    },
+    Weights { sum: f64 },
     /// A held node that is not there.
     #[error("the support holds node {node} (counted from 0); the mesh has {count} nodes")]
-    HeldNode {
-        /// Index of the node.
-        node: u32,
-        /// Nodes of the mesh.
-        count: usize,
-    },
+    HeldNode { node: u32, count: usize },
     /// A held degree of freedom that a node has not got.
     #[error(
         "the support holds degree of freedom {dof} of node {node} (both counted from 0); a node has {count}: translations along x, y and z{}",
         if *count == 6 { ", then rotations about them" } else { "" }
     )]
-    HeldFreedom {
-        /// Index of the node.
-        node: u32,
-        /// Degree of freedom.
-        dof: usize,
-        /// Degrees of freedom of a node.
-        count: usize,
-    },
+    HeldFreedom { node: u32, dof: usize, count: usize },
     /// Held nodes that leave more rigid motions than the support has.
     #[error(
         "the {held} held node(s) leave the body {left} rigid motions, the support only {expected}: hold more nodes (three that are not in line for a clamp or slider, two for a hinge, one for a pin), the only node of a pin at its point, two of a hinge on its axis"
     )]
-    Underheld {
-        /// Held nodes.
-        held: usize,
-        /// Rigid motions that they leave.
-        left: usize,
-        /// Rigid motions of the support.
-        expected: usize,
-    },
-    /// A rigid motion that K resists.
+    Underheld { held: usize, left: usize, expected: usize },
+    /// A rigid motion that K resists. `relative`: ‖K r‖ against ‖D r‖, D the diagonal of K; `limit`: the most that
+    /// rounding explains.
     #[error(
         "the body is not free: rigid {motion} meets a stiffness of {relative:.3e} of K's diagonal (expected below {limit:.3e}); remove the supports from K"
     )]
-    NotFree {
-        /// "translation along x", …
-        motion: &'static str,
-        /// ‖K r‖ against ‖D r‖, D the diagonal of K.
-        relative: f64,
-        /// Largest value that rounding explains.
-        limit: f64,
-    },
+    NotFree { motion: &'static str, relative: f64, limit: f64 },
     /// More modes asked for than there are.
     #[error(
         "{requested} flexible modes asked for; the mesh has only {available} (three for each node that is free and has mass, less the rigid ones)"
     )]
-    TooManyModes {
-        /// Asked for.
-        requested: usize,
-        /// There are.
-        available: usize,
-    },
-    /// Modes without energy beside the rigid ones.
+    TooManyModes { requested: usize, available: usize },
+    /// Modes without energy beside the rigid ones. `shift`: the scale of the others; `node`: the one that moves most.
     #[error(
         "the body is a mechanism: besides the {rigid} rigid mode(s) {count} mode(s) have no stiffness (the first has {eigenvalue:.3e} of the shift {shift:.3e}); the node with index {node} at {position:?} moves most. Are parts joined at a single node or edge only? Join them by faces. Is the body too thin for its length, so that rounding hides its bending stiffness? Take elements that are less flat, or a thicker body"
     )]
-    Mechanism {
-        /// Rigid modes that the support leaves.
-        rigid: usize,
-        /// How many.
-        count: usize,
-        /// Eigenvalue of the first.
-        eigenvalue: f64,
-        /// The scale of the others.
-        shift: f64,
-        /// Node index that moves most.
-        node: usize,
-        /// Its position.
-        position: [f64; 3],
-    },
-    /// A lowest mode whose stiffness is not above the rounding in K.
+    Mechanism { rigid: usize, count: usize, eigenvalue: f64, shift: f64, node: usize, position: [f64; 3] },
+    /// A lowest mode whose stiffness is not above the rounding in K. `eigenvalue`: (rad/time)²; `rounding`: ε
+    /// |φ|ᵀ|K||φ| of the mode.
     #[error(
         "rounding hides the stiffness of the body: the rounding of the entries of K may come to {rounding:.3e} where its lowest flexible mode has the eigenvalue {eigenvalue:.3e} (it may be up to {limit:.3e}). Is the body too thin for its length? Take elements that are less flat, or a thicker body"
     )]
-    HiddenByRounding {
-        /// Lowest eigenvalue, (rad/time)².
-        eigenvalue: f64,
-        /// ε |φ|ᵀ|K||φ| of its mode.
-        rounding: f64,
-        /// Largest rounding with which the mode is taken for one.
-        limit: f64,
-    },
-    /// A lowest mode whose mass is not known well for rounding in M.
+    HiddenByRounding { eigenvalue: f64, rounding: f64, limit: f64 },
+    /// A lowest mode whose mass is not known well for rounding in M. `rounding`: ε |φ|ᵀ|M||φ| of the mode, whose mass
+    /// is 1.
     #[error(
         "rounding hides the mass of the body's motion: the rounding of the entries of M may come to {rounding:.1e} of the mass of its lowest flexible mode (it may be up to {limit:.1e}). Is a point mass or a density many powers of ten larger than the rest? Make it smaller, or hold the body there by a support"
     )]
-    MassHiddenByRounding {
-        /// ε |φ|ᵀ|M||φ| of the mode, whose mass is 1.
-        rounding: f64,
-        /// Largest rounding with which its frequency is taken for one.
-        limit: f64,
-    },
+    MassHiddenByRounding { rounding: f64, limit: f64 },
     /// K + sM is not positive definite.
     #[error(
         "the stiffness matrix is not positive semi-definite (pivot {pivot} of K + {shift:.3e} M): a material constant or an element is wrong: check Young's moduli and Poisson's ratios, or the matrices"
     )]
-    Indefinite {
-        /// Position of the pivot in the elimination.
-        pivot: usize,
-        /// The shift s.
-        shift: f64,
-    },
+    Indefinite { pivot: usize, shift: f64 },
     /// METIS failed.
     #[error(
         "the unknowns cannot be ordered for the factorization (METIS status {status}); use a coarser mesh, and please report this"
     )]
-    Ordering {
-        /// METIS's own code.
-        status: i32,
-    },
+    Ordering { status: i32 },
     /// Not enough memory.
-    #[error(transparent)]
+    #[error("{0}")]
     Memory(#[from] memory::OutOfMemory),
     /// A factorisation or its ordering that the libraries refuse, as where an index would be too large.
     #[error("the factorisation of {size} unknowns failed: {reason}; use a coarser mesh")]
-    Factorization {
-        /// Unknowns.
-        size: usize,
-        /// The reason that is given.
-        reason: String,
-    },
-    /// The search did not end.
+    Factorization { size: usize, reason: String },
+    /// The search did not end. `residual`: the worst of the modes asked for.
     #[error(
         "only {converged} of {requested} modes converged within {steps} block steps (residual {residual:.3e}, wanted {tolerance:.1e}): do masses or stiffnesses within the body differ by many powers of ten?"
     )]
-    NotConverged {
-        /// Modes that converged.
-        converged: usize,
-        /// Modes asked for.
-        requested: usize,
-        /// Block steps taken.
-        steps: usize,
-        /// Worst residual of the modes asked for.
-        residual: f64,
-        /// Residual asked for.
-        tolerance: f64,
-    },
-    /// A static response that is not one.
+    NotConverged { converged: usize, requested: usize, steps: usize, residual: f64, tolerance: f64 },
+    /// A static response that is not one. `residual`: in the norm of (K + sM)⁻¹, relative to that of the force.
     #[error(
         "the static response to force {column} has a residual of {residual:.3e} after {iterations} iterations (wanted {tolerance:e}): is a part of the body all but loose?"
     )]
-    StaticNotConverged {
-        /// Column of the forces.
-        column: usize,
-        /// Iterations done.
-        iterations: usize,
-        /// Residual in the norm of (K + sM)⁻¹, relative to that of the force.
-        residual: f64,
-        /// Residual asked for.
-        tolerance: f64,
-    },
+    StaticNotConverged { column: usize, iterations: usize, residual: f64, tolerance: f64 },
     /// An engine failed.
-    #[error(transparent)]
-    Engine(EngineError),
+    #[error("{0}")]
+    Engine(#[source] EngineError),
     /// The answers of an engine do not fit the request.
     #[error(
         "the answers of the engine are not those of this body: found {found}, expected {expected}; have it compute them again"
     )]
-    WrongAnswers {
-        /// Their description.
-        found: String,
-        /// The description of right ones.
-        expected: String,
-    },
+    WrongAnswers { found: String, expected: String },
     /// A projected mass or stiffness matrix without a Cholesky factor.
     #[error(
         "the {matrix} matrix on {size} vectors is not positive definite in rounded numbers: the vectors depend on each other, or masses or stiffnesses of the body are many powers of ten apart"
     )]
-    NotPositiveDefinite {
-        /// Mass or stiffness.
-        matrix: &'static str,
-        /// Number of vectors.
-        size: usize,
-    },
+    NotPositiveDefinite { matrix: &'static str, size: usize },
     /// A dense eigenvalue problem failed.
     #[error(
         "a dense eigenvalue problem of size {size} did not converge: are masses or stiffnesses of the body many powers of ten too small or too large in the units of the scene?"
     )]
-    DenseEigen {
-        /// Its size.
-        size: usize,
-    },
+    DenseEigen { size: usize },
 }

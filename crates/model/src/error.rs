@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use advice::{AdviceError, Refusal};
 use dynamics::{LoadedError, SetupError};
-use fem_tet10::{AssemblyError, MeshError};
+use fem_tet10::{AssemblyError, AssemblyFault, MeshError, MeshFault};
 use mesh_import::ImportError;
 use modal::ModalError;
 use nalgebra::Vector3;
@@ -14,82 +14,57 @@ use sealed::SealedError;
 /// A scene that cannot be built.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum BuildError {
     /// Something in the scene does not fit the mesh.
-    #[error(transparent)]
+    #[error("{0}")]
     Scene(#[from] SceneError),
     /// The mesh cannot be used.
-    #[error(transparent)]
+    #[error("{0}")]
     Mesh(#[from] MeshError),
     /// The mesh cannot be imported.
-    #[error(transparent)]
+    #[error("{0}")]
     Import(#[from] Box<ImportError>),
     /// The matrices cannot be assembled.
-    #[error(transparent)]
+    #[error("{0}")]
     Assembly(#[from] AssemblyError),
     /// The modes cannot be found.
     #[error("{}: {source}", scene.display())]
-    Modal {
-        /// The scene file.
-        scene: PathBuf,
-        /// The reason.
-        source: ModalError,
-    },
+    Modal { scene: PathBuf, source: ModalError },
     /// A body file cannot be read or written.
-    #[error(transparent)]
+    #[error("{0}")]
     BodyFile(#[from] SealedError),
     /// No advice can be given on it.
-    #[error(transparent)]
+    #[error("{0}")]
     Advice(#[from] AdviceError),
     /// A body in joints that is known to be wrong.
     #[error("{}: {source}", scene.display())]
-    Refused {
-        /// The scene file.
-        scene: PathBuf,
-        /// The reason.
-        source: Refusal,
-    },
+    Refused { scene: PathBuf, source: Refusal },
     /// A load or a joint that the integrator refuses.
-    #[error(transparent)]
+    #[error("{0}")]
     Load(#[from] SetupError),
     /// The vibrations under steady loads are not known.
     #[error("{}: {source}", scene.display())]
-    Loaded {
-        /// The scene file.
-        scene: PathBuf,
-        /// The reason.
-        source: Box<LoadedError>,
-    },
+    Loaded { scene: PathBuf, source: Box<LoadedError> },
 }
 
 /// A motion that cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum StartError {
     /// The integrator refuses it.
-    #[error(transparent)]
+    #[error("{0}")]
     Setup(#[from] SetupError),
     /// The step that the scene names is beyond the limit of the method.
     #[error("{}", at.show(&format!("found {found}, expected {expected}"), help))]
-    Step {
-        /// Where it is named.
-        at: Box<Place>,
-        /// The step, and why it is refused.
-        found: String,
-        /// The limit.
-        expected: String,
-        /// The help.
-        help: &'static str,
-    },
+    Step { at: Box<Place>, found: String, expected: String, help: &'static str },
     /// The model is known to be wrong.
-    #[error(transparent)]
+    #[error("{0}")]
     Refused(#[from] Refusal),
     /// Joints hold the body.
     #[error("{}", at.show("found a body that joints, springs or bushings hold, expected one that moves alone", TIED_HELP))]
-    Tied {
-        /// Where they are.
-        at: Box<Place>,
-    },
+    Tied { at: Box<Place> },
 }
 
 const TIED_HELP: &str = "run the whole scene, or take what ties the body out of it";
@@ -128,39 +103,40 @@ impl StartError {
 /// An assembly error at its place in the scene file.
 pub(crate) fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
     let message = error.to_string();
-    match error {
-        AssemblyError::OffBody { source_name, node, position, distance, .. } => {
+    let mesh = error.mesh.unwrap_or_default();
+    match error.fault {
+        AssemblyFault::OffBody { node, position, distance, .. } => {
             // A coordinate that is zero but for rounding is shown as zero.
             let size = Vector3::from(position).norm();
             let shown = position.map(|c| if c.abs() < 1e-9 * size { 0.0 } else { c });
             if !scene.body.has_elements() {
                 return scene.refuse(
                     key,
-                    format!("a point without a node: the nearest one of {source_name} is {distance:.6} away"),
+                    format!("a point without a node: the nearest one of {mesh} is {distance:.6} away"),
                     "a node: the elements between the nodes of a body of matrices are not known",
                     format!("use its node {node} at {shown:?}"),
                 );
             }
             scene.refuse(
                 key,
-                format!("a point that is not on the body: the nearest node of {source_name} is {distance:.6} away"),
+                format!("a point that is not on the body: the nearest node of {mesh} is {distance:.6} away"),
                 "a point of the body",
                 format!("use a point of the body; its node {node} is at {shown:?}"),
             )
         }
-        AssemblyError::Spread { radius, count, distance, .. } => scene.refuse(
+        AssemblyFault::Spread { radius, count, distance, .. } => scene.refuse(
             key,
             format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),
             "nodes all around the point that can carry the mass",
             "use a larger spread, or leave it out for a point of the body",
         ),
-        AssemblyError::Patch { radius, count, distance, .. } => scene.refuse(
+        AssemblyFault::Patch { radius, count, distance, .. } => scene.refuse(
             key,
             format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),
             "three nodes or more, not on a line, that can take the moment",
             "use a larger radius, or leave it out for a point of the body",
         ),
-        AssemblyError::MissingGroup { group, present, .. } => scene.refuse(
+        AssemblyFault::MissingGroup { group, present, .. } => scene.refuse(
             key,
             format!("the physical volume \"{}\", which the mesh has not", shorten(&group)),
             one_of(&present),
@@ -172,7 +148,7 @@ pub(crate) fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneErr
 
 /// A mesh error, such as a group that is not there, at its place in the scene file.
 pub(crate) fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
-    if let MeshError::NoGroup { kind, group, present, .. } = error {
+    if let MeshFault::NoGroup { kind, group, present } = &error.fault {
         let (what, help) = if scene.body.has_elements() {
             ("mesh", "use one of these, or name it in the geometry and mesh again")
         } else {

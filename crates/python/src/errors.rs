@@ -1,8 +1,9 @@
 //! Errors as exceptions: of the class of their kind, with the message of the program.
 
+use std::error::Error;
 use std::ffi::CString;
 
-use flexframe::failure::{Details, Failure, Kind};
+use flexframe::failure::{self, Details, Kind};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,8 +12,9 @@ use pyo3::types::PyDict;
 const MODULE: &str = "flexframe.errors";
 
 /// The exception of an error.
-pub(crate) fn exception(py: Python<'_>, failure: &dyn Failure) -> PyErr {
-    exception_of(py, failure.kind(), &failure.to_string(), &failure.details())
+pub(crate) fn exception(py: Python<'_>, error: &(dyn Error + 'static)) -> PyErr {
+    let (kind, details) = failure::known(error);
+    exception_of(py, kind, &error.to_string(), &details)
 }
 
 /// The exception of a kind.

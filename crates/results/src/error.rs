@@ -6,116 +6,62 @@ use std::path::{Path, PathBuf};
 /// An error of the HDF5 writer or reader.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum FileError {
     /// The file cannot be made, read or written, or is not what a writer wrote.
-    #[error(transparent)]
+    #[error("{0}")]
     Sealed(#[from] SealedError),
     /// Another process has the file open for writing.
     #[error(
         "{path}: another run is writing this file, or another program has it open; wait for it, stop it, or choose another folder",
         path = .path.display()
     )]
-    Busy {
-        /// The unfinished file.
-        path: PathBuf,
-    },
+    Busy { path: PathBuf },
     /// A run of the same name was cut off.
     #[error(
         "{path}: this is an unfinished run; go on with it (`flexframe resume {path}`), or throw it away with --overwrite",
         path = .path.display()
     )]
-    Unfinished {
-        /// The unfinished file.
-        path: PathBuf,
-    },
+    Unfinished { path: PathBuf },
     /// Something else is where the results would go.
     #[error(
         "{path}: the file there is not a results file of flexframe; choose another folder, move it away, or replace it with --overwrite (a folder never)",
         path = .path.display()
     )]
-    NotResults {
-        /// Where the results would go.
-        path: PathBuf,
-    },
+    NotResults { path: PathBuf },
     /// The run to be resumed has come to its end.
     #[error("{path}: this run is complete; there is nothing to resume", path = .path.display())]
-    Complete {
-        /// The results file.
-        path: PathBuf,
-    },
+    Complete { path: PathBuf },
     /// There is no unfinished run.
     #[error(
         "{path}: there is no unfinished run ({part} does not exist); check the name, or begin with `flexframe run`",
         path = .path.display(),
         part = .part.display()
     )]
-    NothingToResume {
-        /// The results file.
-        path: PathBuf,
-        /// The unfinished file that is not there.
-        part: PathBuf,
-    },
-    /// The name of a body, an output point or a support that cannot be part of a path, or occurs twice.
+    NothingToResume { path: PathBuf, part: PathBuf },
+    /// The name of a body, an output point or a support that cannot be part of a path, or occurs twice. `kind`: "body",
+    /// "output point" or "support".
     #[error(
         "{path}: the {kind} \"{name}\" cannot be stored: {reason}; give it another name",
         path = .path.display()
     )]
-    PlaceName {
-        /// The results file.
-        path: PathBuf,
-        /// "body", "output point" or "support".
-        kind: &'static str,
-        /// The name as given.
-        name: String,
-        /// Reason of the refusal.
-        reason: &'static str,
-    },
+    PlaceName { path: PathBuf, kind: &'static str, name: String, reason: &'static str },
     /// A text holds a NUL character, at which HDF5 strings end.
     #[error("{path}: the text of `{attribute}` holds a NUL character; remove it", path = .path.display())]
-    NulInText {
-        /// The results file.
-        path: PathBuf,
-        /// The attribute that was to hold the text.
-        attribute: String,
-    },
+    NulInText { path: PathBuf, attribute: String },
     /// A row or the metadata have a list of the wrong length.
     #[error("{path}: {quantity} has {found} values where {expected} are expected", path = .path.display())]
-    WrongLength {
-        /// The results file.
-        path: PathBuf,
-        /// Name of the quantity.
-        quantity: String,
-        /// The length that the metadata ask for.
-        expected: usize,
-        /// The length given.
-        found: usize,
-    },
-    /// A NaN or an infinity in a row; the row is not stored, those before it are.
+    WrongLength { path: PathBuf, quantity: String, expected: usize, found: usize },
+    /// A NaN or an infinity in a row; the row is not stored, those before it are. `time`: in the run's unit.
     #[error(
         "{path}: {quantity} is {value} at time {time}: the run has become unstable there; \
          use a smaller step (the rows before it are in the file)",
         path = .path.display()
     )]
-    NotFinite {
-        /// The results file.
-        path: PathBuf,
-        /// Time of the row, in the run's unit of time.
-        time: f64,
-        /// Name of the dataset that was to hold the value.
-        quantity: String,
-        /// The value.
-        value: f64,
-    },
+    NotFinite { path: PathBuf, time: f64, quantity: String, value: f64 },
     /// A constant of the run that is not finite.
     #[error("{path}: {quantity} is {value}, expected a finite number; check the scene's numbers and units", path = .path.display())]
-    ConstantNotFinite {
-        /// The results file.
-        path: PathBuf,
-        /// Name of the dataset or attribute that was to hold it.
-        quantity: String,
-        /// The value.
-        value: f64,
-    },
+    ConstantNotFinite { path: PathBuf, quantity: String, value: f64 },
     /// A symbolic link is where a results file would go.
     #[error(
         "{path}: this is a symbolic link (to {target}); results are not written through a link, nor in its place: remove \
@@ -123,18 +69,10 @@ pub enum FileError {
         path = .path.display(),
         target = .target.display()
     )]
-    Link {
-        /// The link.
-        path: PathBuf,
-        /// Its target.
-        target: PathBuf,
-    },
+    Link { path: PathBuf, target: PathBuf },
     /// A file is where a results file or an export would go.
     #[error("{path}: this file is there already; choose another name or folder, or replace it with --overwrite", path = .path.display())]
-    Exists {
-        /// The file.
-        path: PathBuf,
-    },
+    Exists { path: PathBuf },
 }
 
 /// Refuses a list of the wrong length.

@@ -17,86 +17,35 @@ const NOT_UTF8_CURE: &str = "save it with encoding UTF-8";
 /// help, with the line and a caret under it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum SceneError {
     /// The file is not there or cannot be read.
     #[error("{}: the scene file cannot be read: {cause}\n = {help}", .path.display())]
-    Unreadable {
-        /// The scene file.
-        path: PathBuf,
-        /// Error of the system.
-        cause: io::Error,
-        /// Help for the user.
-        help: &'static str,
-    },
-    /// The file is longer than a scene can be.
+    Unreadable { path: PathBuf, cause: io::Error, help: &'static str },
+    /// The file is longer than a scene can be. `limit`: in bytes.
     #[error("{}: the scene file is longer than {limit} bytes\n = {TOO_LARGE_CURE}", .path.display())]
-    TooLarge {
-        /// The scene file.
-        path: PathBuf,
-        /// The most that is read, bytes.
-        limit: u64,
-    },
-    /// The file is not text in UTF-8.
+    TooLarge { path: PathBuf, limit: u64 },
+    /// The file is not text in UTF-8. `line`: that of the first such byte, from 1.
     #[error(
         "{}:{line}: the scene file is not text in UTF-8: found byte 0x{byte:02x} here\n = {NOT_UTF8_CURE}",
         .path.display()
     )]
-    NotUtf8 {
-        /// The scene file.
-        path: PathBuf,
-        /// Line of the first byte that is not UTF-8, from 1.
-        line: usize,
-        /// The byte.
-        byte: u8,
-    },
-    /// The text is not TOML.
+    NotUtf8 { path: PathBuf, line: usize, byte: u8 },
+    /// The text is not TOML. The key of its place is empty.
     #[error("{}", .at.show(&format!("this is not TOML: {message}"), syntax_help(.message)))]
-    Syntax {
-        /// Where; its key is empty.
-        at: Box<Place>,
-        /// Message of the TOML parser.
-        message: String,
-    },
+    Syntax { at: Box<Place>, message: String },
     /// A key that does not exist, most often misspelt.
     #[error("{}", show_unknown(.at, "key", .key, .known))]
-    UnknownKey {
-        /// Where.
-        at: Box<Place>,
-        /// The key that was found.
-        key: String,
-        /// The keys that are possible there.
-        known: Vec<&'static str>,
-    },
+    UnknownKey { at: Box<Place>, key: String, known: Vec<&'static str> },
     /// A kind, scheme or frame that does not exist, most often misspelt.
     #[error("{}", show_unknown(.at, "value", .found, .known))]
-    UnknownName {
-        /// Where.
-        at: Box<Place>,
-        /// The name that was found.
-        found: String,
-        /// The names that are possible there.
-        known: Vec<&'static str>,
-    },
-    /// A required key or section is absent.
+    UnknownName { at: Box<Place>, found: String, known: Vec<&'static str> },
+    /// A required key or section is absent. The path of the key is that of the absent one.
     #[error("{}", show_missing(.at, .key))]
-    MissingKey {
-        /// Where it is missed; the key path is that of the absent key.
-        at: Box<Place>,
-        /// The absent key.
-        key: String,
-    },
+    MissingKey { at: Box<Place>, key: String },
     /// A value of the wrong type or out of range, or values that contradict each other.
     #[error("{}", .at.show(&format!("found {found}, expected {expected}"), help))]
-    Invalid {
-        /// Where.
-        at: Box<Place>,
-        /// The value found.
-        found: String,
-        /// The value expected.
-        expected: String,
-        /// Help for the user.
-        help: String,
-    },
+    Invalid { at: Box<Place>, found: String, expected: String, help: String },
 }
 
 impl SceneError {

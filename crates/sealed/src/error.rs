@@ -8,95 +8,47 @@ use crate::format::Format;
 /// An error of the writer or the reader.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum SealedError {
-    /// The HDF5 library refused an operation.
+    /// The HDF5 library refused an operation. `words`: the library's own message, as text, so that a program that only
+    /// reads needs no HDF5.
     #[error("{}: cannot {action}: {words}; check its folder and the room on its disk", path.display())]
-    Hdf5 {
-        /// The file.
-        path: PathBuf,
-        /// The operation.
-        action: String,
-        /// The library's own message; as text, so that a program that only reads needs no HDF5.
-        words: String,
-    },
+    Hdf5 { path: PathBuf, action: String, words: String },
     /// The operating system refused an operation.
     #[error("{}: cannot {action}: {source}; {}", path.display(), help(source))]
-    System {
-        /// The file.
-        path: PathBuf,
-        /// The operation.
-        action: String,
-        /// The reason.
-        source: io::Error,
-    },
+    System { path: PathBuf, action: String, source: io::Error },
     /// The name of the folder is not text in UTF-8, which HDF5 wants.
     #[error(
         "{}: HDF5 makes files only in folders whose names are text in UTF-8; choose another folder, or go into this one and \
          name the file from there",
         path.display()
     )]
-    NameNotUtf8 {
-        /// The folder.
-        path: PathBuf,
-    },
+    NameNotUtf8 { path: PathBuf },
     /// A file that does not begin as those of its format do.
     #[error(
         "{}: this is not a {} of this version of flexframe, or its beginning is damaged; check the name (a file that another \
          program has written anew, such as h5repack, is not read), or {}",
         path.display(), format.noun, format.again
     )]
-    NoSeal {
-        /// The file.
-        path: PathBuf,
-        /// The format that it should have.
-        format: &'static Format,
-    },
+    NoSeal { path: PathBuf, format: &'static Format },
     /// A file of another version of the format.
     #[error(
         "{}: this is a {} of version {found}, and this program reads version {}; {}",
         path.display(), format.noun, format.version, format.again
     )]
-    OtherVersion {
-        /// The file.
-        path: PathBuf,
-        /// Its format, with the version that is read.
-        format: &'static Format,
-        /// Its version.
-        found: String,
-    },
+    OtherVersion { path: PathBuf, format: &'static Format, found: String },
     /// A file that has been changed or damaged.
     #[error(
         "{}: the {} is damaged, or another program has changed it: {what}; take an unchanged copy, or {}",
         path.display(), format.noun, format.again
     )]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// Its format.
-        format: &'static Format,
-        /// The content that was found, and the one that was expected.
-        what: String,
-    },
+    Damaged { path: PathBuf, format: &'static Format, what: String },
     /// A dataset that is not there.
     #[error("{}: the {} has no dataset {dataset}; {}", path.display(), format.noun, format.again)]
-    Missing {
-        /// The file.
-        path: PathBuf,
-        /// Its format.
-        format: &'static Format,
-        /// The path of the dataset.
-        dataset: String,
-    },
+    Missing { path: PathBuf, format: &'static Format, dataset: String },
     /// Datasets that were declared otherwise than they are written.
     #[error("{}: the dataset {dataset} was declared otherwise: {what}", path.display())]
-    Declared {
-        /// The file.
-        path: PathBuf,
-        /// The path of the dataset.
-        dataset: String,
-        /// The difference.
-        what: &'static str,
-    },
+    Declared { path: PathBuf, dataset: String, what: &'static str },
 }
 
 /// What helps where the system has refused something.

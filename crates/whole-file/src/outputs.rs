@@ -11,52 +11,29 @@ use crate::written::{OtherEnding, Written};
 
 /// A file that is not written, since something would be lost.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum OutputError {
-    /// The command reads it.
+    /// The command reads it. `input`: the file that is read, as it was named.
     #[error("{}: this file is read by the command, as {}: it is never written over\n = give the output another name", path.display(), input.display())]
-    IsInput {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// The file that is read, as it was named.
-        input: PathBuf,
-    },
+    IsInput { path: PathBuf, input: PathBuf },
     /// Its name is that of another kind of file.
     #[error(transparent)]
     OtherEnding(#[from] OtherEnding),
     /// It is there.
     #[error("{}: this file is there already\n = choose another name or folder, or replace it with --overwrite", path.display())]
-    Exists {
-        /// The file.
-        path: PathBuf,
-    },
+    Exists { path: PathBuf },
     /// A folder has its name.
     #[error("{}: a folder of this name is there\n = name a file in it, or choose another name", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-    },
+    Folder { path: PathBuf },
     /// It is a link to a file that is not there.
     #[error("{}: this symbolic link leads nowhere\n = remove it, or choose another name", path.display())]
-    LostLink {
-        /// The link.
-        path: PathBuf,
-    },
+    LostLink { path: PathBuf },
     /// It is a device or a pipe, and its bytes cannot be written one after another.
     #[error("{}: found a device or a pipe, expected {expected}\n = name a file: its bytes are not written from the first to the last", path.display())]
-    Device {
-        /// The device.
-        path: PathBuf,
-        /// The kind of file.
-        expected: &'static str,
-    },
+    Device { path: PathBuf, expected: &'static str },
     /// The folder that it is to be in is not there.
     #[error("{}: there is no folder {} to write it in\n = make the folder, or correct its path", path.display(), folder.display())]
-    NoFolder {
-        /// The file.
-        path: PathBuf,
-        /// The folder.
-        folder: PathBuf,
-    },
+    NoFolder { path: PathBuf, folder: PathBuf },
 }
 
 /// The files that a command may write.

@@ -72,7 +72,7 @@ pub enum AdviceError {
         expected: &'static str,
     },
     /// An eigenvalue problem without an answer.
-    #[error(transparent)]
+    #[error("{0}")]
     Eigen(#[from] dynamics::EigenError),
 }
 

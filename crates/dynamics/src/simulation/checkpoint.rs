@@ -11,15 +11,13 @@ use crate::error::SetupError;
 /// A checkpoint that cannot be made, or that does not belong to the run that is to go on from it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum CheckpointError {
     /// It was made by a run of something else.
     #[error(
         "the checkpoint is that of another run: {what} has changed since; put back what was changed, or run the scene again from its beginning"
     )]
-    Changed {
-        /// The part that differs.
-        what: String,
-    },
+    Changed { what: String },
     /// The bytes are too few, too many, or hold no state.
     #[error("the checkpoint cannot be decoded: {0}; run the scene again from its beginning")]
     Encoding(#[from] postcard::Error),
@@ -30,10 +28,7 @@ pub enum CheckpointError {
     #[error(
         "the checkpoint does not hold a state of this run: {what} is out of its range; run the scene again from its beginning"
     )]
-    Value {
-        /// Meaning of the value.
-        what: &'static str,
-    },
+    Value { what: &'static str },
 }
 
 /// The bytes of a value.

@@ -46,13 +46,13 @@ pub struct LoadedMode {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadedError {
     /// The rates cannot be evaluated.
-    #[error(transparent)]
+    #[error("{0}")]
     Rates(#[from] StepError),
     /// The eigenvalue problem has no answer.
-    #[error(transparent)]
+    #[error("{0}")]
     Eigen(#[from] EigenError),
     /// The start is none of this body.
-    #[error(transparent)]
+    #[error("{0}")]
     Setup(#[from] crate::error::SetupError),
     /// A body with large modes does not come to rest under its loads.
     #[error(

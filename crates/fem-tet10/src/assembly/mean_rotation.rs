@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-use crate::error::AssemblyError;
+use crate::error::{AssemblyError, AssemblyFault};
 use crate::mesh::checked::Mesh;
 
 /// A patch whose smallest moment of inertia is below this fraction of the largest is a line.
@@ -33,7 +33,7 @@ impl Mesh {
     /// nearest to a point of the body.
     ///
     /// # Errors
-    /// [`AssemblyError::PatchRadius`] for a radius that is not positive, [`AssemblyError::Patch`] for a patch of fewer
+    /// [`AssemblyFault::PatchRadius`] for a radius that is not positive, [`AssemblyFault::Patch`] for a patch of fewer
     /// than three nodes or of nodes on a line; without a radius those of [`Self::locate`].
     pub fn mean_rotation(&self, at: [f64; 3], radius: Option<f64>) -> Result<MeanRotation, AssemblyError> {
         let Some(radius) = radius else {
@@ -44,7 +44,7 @@ impl Mesh {
             return self.mean_rotation_of(nodes.into_iter().collect(), at, 0.0);
         };
         if !(radius > 0.0 && radius.is_finite()) {
-            return Err(AssemblyError::PatchRadius { at, found: radius });
+            return Err(AssemblyFault::PatchRadius { at, found: radius }.into());
         }
         self.mean_rotation_of(self.nodes_within(at, radius), at, radius)
     }
@@ -62,13 +62,8 @@ impl Mesh {
                 let rotation_per_displacement = arms.iter().map(|d| inverse * d.cross_matrix()).collect();
                 Ok(MeanRotation { nodes, rotation_per_displacement })
             }
-            None => Err(AssemblyError::Patch {
-                source_name: self.source().to_owned(),
-                at,
-                radius,
-                count: nodes.len(),
-                distance: self.nearest_node(at).1,
-            }),
+            None => Err(AssemblyFault::Patch { at, radius, count: nodes.len(), distance: self.nearest_node(at).1 }
+                .of(self.source())),
         }
     }
 }

@@ -34,7 +34,7 @@ impl Mesh {
     /// The faces of a physical surface as a patch, each with its area.
     ///
     /// # Errors
-    /// [`MeshError::NoGroup`] with the names of the surfaces there are.
+    /// [`MeshFault::NoGroup`](crate::MeshFault::NoGroup) with the names of the surfaces there are.
     pub fn surface_patch(&self, group: &str) -> Result<Patch, MeshError> {
         Ok(self.patch_of_areas(self.surface_weights(group)?))
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix4, SymmetricEigen, Vector3, Vector4};
 
-use crate::error::AssemblyError;
+use crate::error::{AssemblyError, AssemblyFault};
 use crate::mesh::checked::Mesh;
 use crate::mesh::locate::Location;
 
@@ -34,12 +34,12 @@ impl PointMass {
     /// A mass or a radius that is not positive, a point off the body, too few or too many nodes within the radius.
     pub(crate) fn location(&self, mesh: &Mesh) -> Result<Location, AssemblyError> {
         if !(self.mass > 0.0 && self.mass.is_finite()) {
-            return Err(AssemblyError::PointMass { at: self.at, found: self.mass });
+            return Err(AssemblyFault::PointMass { at: self.at, found: self.mass }.into());
         }
         match self.spread {
             None => mesh.locate(self.at),
             Some(radius) if radius > 0.0 && radius.is_finite() => spread(mesh, self.at, radius),
-            Some(radius) => Err(AssemblyError::SpreadRadius { at: self.at, found: radius }),
+            Some(radius) => Err(AssemblyFault::SpreadRadius { at: self.at, found: radius }.into()),
         }
     }
 }
@@ -52,25 +52,17 @@ fn spread(mesh: &Mesh, at: [f64; 3], radius: f64) -> Result<Location, AssemblyEr
         .filter(|(_, offset)| offset.norm() <= radius)
         .collect();
     if near.len() > MAX_CARRIERS {
-        return Err(AssemblyError::SpreadTooWide {
-            source_name: mesh.source().to_owned(),
-            at,
-            radius,
-            count: near.len(),
-            limit: MAX_CARRIERS,
-        });
+        return Err(
+            AssemblyFault::SpreadTooWide { at, radius, count: near.len(), limit: MAX_CARRIERS }.of(mesh.source())
+        );
     }
     // Offsets in units of the farthest, so that the fit is well scaled in any unit of length, whatever the radius.
     let farthest = near.iter().map(|(_, offset)| offset.norm()).fold(0.0, f64::max);
     let scale = if farthest > 0.0 { farthest } else { 1.0 };
     let within: Vec<(u32, Vector4<f64>)> =
         near.into_iter().map(|(node, offset)| (node, (offset / scale).insert_row(0, 1.0))).collect();
-    let refuse = || AssemblyError::Spread {
-        source_name: mesh.source().to_owned(),
-        at,
-        radius,
-        count: within.len(),
-        distance: mesh.nearest_node(at).1,
+    let refuse = || {
+        AssemblyFault::Spread { at, radius, count: within.len(), distance: mesh.nearest_node(at).1 }.of(mesh.source())
     };
     let normal: Matrix4<f64> = within.iter().map(|(_, z)| z * z.transpose()).sum();
     // Nodes in a plane or on a line determine the fit there if the point is in it too: a pseudo-inverse serves all.

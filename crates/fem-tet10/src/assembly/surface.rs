@@ -12,7 +12,7 @@ use faer::ColRef;
 use nalgebra::Vector3;
 
 use crate::element::quadrature;
-use crate::error::MeshError;
+use crate::error::{MeshError, MeshFault};
 use crate::mesh::checked::Mesh;
 use crate::mesh::faces::{Face, Surface};
 
@@ -31,7 +31,7 @@ impl Mesh {
     /// the corners of flat faces are zero but for rounding. A face between two tetrahedra counts once.
     ///
     /// # Errors
-    /// [`MeshError::NoGroup`] with the names of the surfaces there are.
+    /// [`MeshFault::NoGroup`] with the names of the surfaces there are.
     pub fn surface_weights(&self, group: &str) -> Result<(Vec<u32>, Vec<f64>), MeshError> {
         Ok(self.areas(self.surface(group)?))
     }
@@ -52,7 +52,7 @@ impl Mesh {
     /// Exact on curved faces too, so that resultant and moment of a pressure all round a body vanish.
     ///
     /// # Errors
-    /// [`MeshError::NoGroup`] with the names of the surfaces there are; [`MeshError::InnerFace`] for a face that has
+    /// [`MeshFault::NoGroup`] with the names of the surfaces there are; [`MeshFault::InnerFace`] for a face that has
     /// the body on both sides.
     pub fn surface_pressure(&self, group: &str) -> Result<(Vec<u32>, Vec<Vector3<f64>>), MeshError> {
         let surface = self.outer_surface(group)?;
@@ -90,20 +90,18 @@ impl Mesh {
         let surface = self.surface(group)?;
         match surface.faces.iter().find(|face| face.inner) {
             None => Ok(surface),
-            Some(face) => Err(MeshError::InnerFace {
-                source_name: self.source().to_owned(),
-                group: group.to_owned(),
-                element: face.tag,
-            }),
+            Some(face) => Err(MeshFault::InnerFace { group: group.to_owned(), element: face.tag }.of(self.source())),
         }
     }
 
     fn surface(&self, name: &str) -> Result<&Surface, MeshError> {
-        self.surfaces().iter().find(|surface| surface.name == name).ok_or_else(|| MeshError::NoGroup {
-            source_name: self.source().to_owned(),
-            kind: "surface",
-            group: name.to_owned(),
-            present: self.surface_groups().map(str::to_owned).collect(),
+        self.surfaces().iter().find(|surface| surface.name == name).ok_or_else(|| {
+            MeshFault::NoGroup {
+                kind: "surface",
+                group: name.to_owned(),
+                present: self.surface_groups().map(str::to_owned).collect(),
+            }
+            .of(self.source())
         })
     }
 

@@ -8,7 +8,7 @@ use faer::MatRef;
 use nalgebra::Matrix3;
 
 use crate::element::integration::IntegrationPoint;
-use crate::error::AssemblyError;
+use crate::error::{AssemblyError, AssemblyFault};
 use crate::material::Material;
 use crate::mesh::checked::Mesh;
 
@@ -19,11 +19,11 @@ pub(crate) const OTHERS: usize = 9;
 pub(crate) fn check_field(mesh: &Mesh, what: &'static str, field: MatRef<'_, f64>) -> Result<(), AssemblyError> {
     let expected = 3 * mesh.positions().len();
     if field.nrows() != expected {
-        return Err(AssemblyError::FieldRows { what, expected, found: field.nrows() });
+        return Err(AssemblyFault::FieldRows { what, expected, found: field.nrows() }.into());
     }
     for (column, values) in field.col_iter().enumerate() {
         if let Some((row, found)) = values.iter().enumerate().find(|(_, value)| !value.is_finite()) {
-            return Err(AssemblyError::FieldNotFinite { what, row, column, found: *found });
+            return Err(AssemblyFault::FieldNotFinite { what, row, column, found: *found }.into());
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::element::integration::{self, BadJacobian};
 use crate::element::shape::EDGES;
-use crate::error::MeshError;
+use crate::error::{MeshError, MeshFault};
 use crate::mesh::faces::{self, Surface};
 use crate::mesh::parts::{MeshParts, NodeGroup, SurfaceGroup};
 use crate::mesh::tags::{index_nodes, resolve_tags};
@@ -66,23 +66,23 @@ impl Mesh {
         let of_surfaces = surfaces.iter().map(|s| ("triangle tags", s.triangles.len(), s.triangle_tags.len()));
         for (what, expected, found) in lengths.into_iter().chain(of_surfaces) {
             if expected != found {
-                return Err(MeshError::Lengths { source_name: source, what, expected, found });
+                return Err(MeshFault::Lengths { what, expected, found }.of(source));
             }
         }
         if elements.is_empty() {
-            return Err(MeshError::NoElements { source_name: source });
+            return Err(MeshFault::NoElements.of(source));
         }
         refuse_not_finite(&source, &node_tags, &positions)?;
         if let Some((&region, &element)) =
             element_regions.iter().zip(&element_tags).find(|(region, _)| **region >= regions.len())
         {
-            return Err(MeshError::UnknownRegion { source_name: source, element, region, count: regions.len() });
+            return Err(MeshFault::UnknownRegion { element, region, count: regions.len() }.of(source));
         }
         if let Some((region, group)) = (0..)
             .zip(&regions)
             .find_map(|(region, in_groups)| Some((region, *in_groups.iter().find(|group| **group >= groups.len())?)))
         {
-            return Err(MeshError::UnknownGroup { source_name: source, region, group, count: groups.len() });
+            return Err(MeshFault::UnknownGroup { region, group, count: groups.len() }.of(source));
         }
         let index_of = index_nodes(&source, &node_tags)?;
         let elements = resolve_tags(&source, &index_of, &element_tags, &elements)?;
@@ -119,7 +119,7 @@ impl Mesh {
     ) -> Result<Self, MeshError> {
         if positions.len() != node_tags.len() {
             let (expected, found) = (positions.len(), node_tags.len());
-            return Err(MeshError::Lengths { source_name: source, what: "node tags", expected, found });
+            return Err(MeshFault::Lengths { what: "node tags", expected, found }.of(source));
         }
         refuse_not_finite(&source, &node_tags, &positions)?;
         let index_of = index_nodes(&source, &node_tags)?;
@@ -275,7 +275,7 @@ impl Mesh {
         let tag = |e: usize| self.element_tags[e];
         same.map_or(Ok(()), |pair| {
             let (first, second) = (tag(pair[0].1), tag(pair[1].1));
-            Err(MeshError::SameElement { source_name: self.source.clone(), first, second })
+            Err(MeshFault::SameElement { first, second }.of(&self.source))
         })
     }
 
@@ -287,11 +287,7 @@ impl Mesh {
         let orphans = || used.iter().zip(&self.node_tags).filter(|(used, _)| !**used).map(|(_, tag)| *tag);
         match orphans().count() {
             0 => Ok(()),
-            count => Err(MeshError::OrphanNodes {
-                source_name: self.source.clone(),
-                count,
-                tags: orphans().take(5).collect(),
-            }),
+            count => Err(MeshFault::OrphanNodes { count, tags: orphans().take(5).collect() }.of(&self.source)),
         }
     }
 
@@ -299,13 +295,10 @@ impl Mesh {
     fn refuse_bad_jacobians(&self) -> Result<(), MeshError> {
         match integration::first_bad_jacobian(self.elements.len(), |e| self.element_positions(e)) {
             None => Ok(()),
-            Some(BadJacobian { element, what, jacobian, expected }) => Err(MeshError::Jacobian {
-                source_name: self.source.clone(),
-                element: self.element_tags[element],
-                what,
-                jacobian,
-                expected,
-            }),
+            Some(BadJacobian { element, what, jacobian, expected }) => {
+                Err(MeshFault::Jacobian { element: self.element_tags[element], what, jacobian, expected }
+                    .of(&self.source))
+            }
         }
     }
 
@@ -326,17 +319,17 @@ impl Mesh {
         }
         let mut pieces: Vec<_> = pieces.into_values().collect();
         pieces.sort_by_key(|(size, first)| (std::cmp::Reverse(*size), *first));
-        Err(MeshError::Pieces {
-            source_name: self.source.clone(),
+        Err(MeshFault::Pieces {
             sizes: pieces.iter().map(|(size, _)| *size).collect(),
             examples: pieces.iter().map(|(_, first)| self.element_tags[*first]).collect(),
-        })
+        }
+        .of(&self.source))
     }
 }
 
 fn refuse_not_finite(source: &str, node_tags: &[u64], positions: &[[f64; 3]]) -> Result<(), MeshError> {
     match node_tags.iter().zip(positions).find(|(_, x)| x.iter().any(|c| !c.is_finite())) {
-        Some((&node, &position)) => Err(MeshError::NotFinite { source_name: source.to_owned(), node, position }),
+        Some((&node, &position)) => Err(MeshFault::NotFinite { node, position }.of(source)),
         None => Ok(()),
     }
 }
@@ -349,12 +342,10 @@ fn resolve_node_groups(
     let resolve = |group: NodeGroup| {
         let kind = KINDS[group.dimension.min(1)];
         let index = |node: &u64| {
-            index_of.get(node).copied().ok_or_else(|| MeshError::UnknownGroupNode {
-                source_name: source.to_owned(),
-                kind,
-                group: group.name.clone(),
-                node: *node,
-            })
+            index_of
+                .get(node)
+                .copied()
+                .ok_or_else(|| MeshFault::UnknownGroupNode { kind, group: group.name.clone(), node: *node }.of(source))
         };
         let mut nodes = group.nodes.iter().map(index).collect::<Result<Vec<u32>, _>>()?;
         nodes.sort_unstable();

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::error::MeshError;
+use crate::error::{MeshError, MeshFault};
 use crate::mesh::parts::SurfaceGroup;
 use crate::mesh::tags::indices;
 
@@ -106,7 +106,7 @@ pub(crate) fn resolve(
                     }
                 }
                 _ => {
-                    return Err(MeshError::NotAFace { source_name: source.to_owned(), group: name, element: tag });
+                    return Err(MeshFault::NotAFace { group: name, element: tag }.of(source));
                 }
             }
         }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::element::integration::jacobian;
 use crate::element::shape::{EDGES, barycentric, shape_functions, shape_gradients};
-use crate::error::AssemblyError;
+use crate::error::{AssemblyError, AssemblyFault};
 use crate::mesh::checked::Mesh;
 
 /// Within this fraction of the mesh's diagonal, a point is at a node.
@@ -38,7 +38,7 @@ impl Mesh {
     /// exactly at `point`.
     ///
     /// # Errors
-    /// [`AssemblyError::OffBody`] with the nearest node and its distance, for a point farther outside.
+    /// [`AssemblyFault::OffBody`] with the nearest node and its distance, for a point farther outside.
     pub fn locate(&self, point: [f64; 3]) -> Result<Location, AssemblyError> {
         let (nearest, distance) = self.nearest_node(point);
         if distance <= AT_NODE * self.diagonal() {
@@ -61,13 +61,13 @@ impl Mesh {
             Some((e, at)) if smallest >= -OUTSIDE.max(OUTSIDE_OF_BULGE * bulge(&self.element_positions(e))) => {
                 Ok(Location { nodes: self.elements()[e].to_vec(), weights: shape_functions(at).to_vec() })
             }
-            _ => Err(AssemblyError::OffBody {
-                source_name: self.source().to_owned(),
+            _ => Err(AssemblyFault::OffBody {
                 at: point,
                 node: self.node_tags()[nearest as usize],
                 position: self.positions()[nearest as usize],
                 distance,
-            }),
+            }
+            .of(self.source())),
         }
     }
 }

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use std::io;
 use std::path::Path;
 
-use crate::error::MeshError;
+use crate::error::{MeshError, MeshFault};
 use crate::mesh::checked::Mesh;
 use crate::mesh::parts::MeshParts;
 use block::Block;
@@ -45,13 +45,12 @@ pub fn read_msh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
 /// The contents of a MSH file, for [`parse_msh`].
 ///
 /// # Errors
-/// [`MeshError::Io`], and [`MeshError::Memory`] where its mesh would not fit into the memory.
+/// [`MeshFault::Io`], and [`MeshFault::Memory`] where its mesh would not fit into the memory.
 pub fn msh_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
     let source_name = path.display().to_string();
     let size = std::fs::metadata(path).map_or(0, |found| usize::try_from(found.len()).unwrap_or(usize::MAX));
-    memory::check("the mesh", size.saturating_mul(FACTOR))
-        .map_err(|source| MeshError::Memory { source_name: source_name.clone(), source })?;
-    read_ordinary(path).map_err(|source| MeshError::Io { source_name, source })
+    memory::check("the mesh", size.saturating_mul(FACTOR)).map_err(|error| MeshFault::from(error).of(&source_name))?;
+    read_ordinary(path).map_err(|error| MeshFault::Io(error).of(source_name))
 }
 
 /// A device or a pipe might never end, or never begin.
@@ -97,7 +96,7 @@ fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> 
         }
         source.end_section()?;
     }
-    let missing = |section| MeshError::MissingSection { source_name: source_name.to_owned(), section };
+    let missing = |section| MeshFault::MissingSection { section }.of(source_name);
     if !nodes_seen {
         return Err(missing("$Nodes"));
     }
@@ -165,7 +164,7 @@ fn elements(
                 7 | 14 | 19 => (format!("a pyramid (gmsh's element type {kind})"), TETRAHEDRA_ONLY),
                 _ => (format!("of gmsh's element type {kind}"), TETRAHEDRA_ONLY),
             };
-            return Err(MeshError::ElementType { source_name: parts.source.clone(), element, found, help });
+            return Err(MeshFault::ElementType { element, found, help }.of(&parts.source));
         }
         if kind != TET10 {
             let mut block =

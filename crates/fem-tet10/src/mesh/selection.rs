@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
-use crate::error::MeshError;
+use crate::error::{MeshError, MeshFault};
 use crate::mesh::checked::{KINDS, Mesh};
 
 impl Mesh {
     /// The nodes of a physical group of volumes, surfaces, curves or points, ascending.
     ///
     /// # Errors
-    /// [`MeshError::NoGroup`] with the names of all groups there are; [`MeshError::SeveralGroups`] for a name that
+    /// [`MeshFault::NoGroup`] with the names of all groups there are; [`MeshFault::SeveralGroups`] for a name that
     /// groups of several dimensions have.
     pub fn group_nodes(&self, name: &str) -> Result<Vec<u32>, MeshError> {
         let [.., of_surface, of_volume] = KINDS;
@@ -23,23 +23,22 @@ impl Mesh {
         found.extend(surfaces.map(|surface| (of_surface, surface.nodes())));
         let sets = self.node_sets().iter().filter(|set| set.name == name);
         found.extend(sets.map(|set| (set.kind, set.nodes.clone())));
-        let source_name = || self.source().to_owned();
         match found.pop() {
             Some((_, nodes)) if found.is_empty() => Ok(nodes),
-            Some((kind, _)) => Err(MeshError::SeveralGroups {
-                source_name: source_name(),
+            Some((kind, _)) => Err(MeshFault::SeveralGroups {
                 group: name.to_owned(),
                 kinds: found.into_iter().map(|(kind, _)| kind).chain([kind]).collect(),
-            }),
+            }
+            .of(self.source())),
             None => {
                 let lower = self.node_sets().iter().map(|set| set.name.as_str());
                 let all = self.groups().iter().map(String::as_str).chain(self.surface_groups()).chain(lower);
-                Err(MeshError::NoGroup {
-                    source_name: source_name(),
+                Err(MeshFault::NoGroup {
                     kind: "group",
                     group: name.to_owned(),
                     present: all.map(str::to_owned).collect(),
-                })
+                }
+                .of(self.source()))
             }
         }
     }

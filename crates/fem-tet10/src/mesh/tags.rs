@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use crate::error::MeshError;
+use crate::error::{MeshError, MeshFault};
 
 fn duplicate(source: &str, kind: &'static str, tag: u64) -> MeshError {
-    MeshError::DuplicateTag { source_name: source.to_owned(), kind, tag }
+    MeshFault::DuplicateTag { kind, tag }.of(source)
 }
 
 /// Index of a node by its tag.
@@ -28,11 +28,7 @@ pub(crate) fn indices<const N: usize>(
 ) -> Result<[u32; N], MeshError> {
     let mut indices = [0; N];
     for (index, node) in indices.iter_mut().zip(nodes) {
-        *index = *index_of.get(node).ok_or_else(|| MeshError::UnknownNode {
-            source_name: source.to_owned(),
-            element,
-            node: *node,
-        })?;
+        *index = *index_of.get(node).ok_or_else(|| MeshFault::UnknownNode { element, node: *node }.of(source))?;
     }
     Ok(indices)
 }

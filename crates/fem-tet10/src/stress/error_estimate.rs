@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::{COMPONENTS, StressRecovery};
 use crate::element::deformation::{check_field, displacement_gradients, relative_displacements, strain, stress};
 use crate::element::shape::shape_functions;
-use crate::error::AssemblyError;
+use crate::error::{AssemblyError, AssemblyFault};
 use crate::material::Material;
 
 /// Strain energies of an element, or of a body: of its stress, and of the difference between its stress and the
@@ -47,7 +47,7 @@ impl StressRecovery<'_> {
         check_field(self.mesh, "displacements", displacement.as_mat())?;
         let (expected, found) = (6 * self.sites.len(), nodal_stress.nrows());
         if found != expected {
-            return Err(AssemblyError::FieldRows { what: "nodal stress", expected, found });
+            return Err(AssemblyFault::FieldRows { what: "nodal stress", expected, found }.into());
         }
         let of = |e: usize| self.of_element(e, displacement.as_mat(), nodal_stress);
         Ok((0..self.mesh.elements().len()).into_par_iter().map(of).collect())

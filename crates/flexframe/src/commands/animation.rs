@@ -44,48 +44,31 @@ impl Default for AnimationSettings {
 
 /// An animation that could not be made.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum AnimationError {
     /// The scene could not be run.
-    #[error(transparent)]
+    #[error("{0}")]
     Run(#[from] RunError),
     /// A step failed, and no picture is drawn.
     #[error("{}: {source}", scene.display())]
-    Step {
-        /// The scene file.
-        scene: PathBuf,
-        /// The reason.
-        source: StepError,
-    },
+    Step { scene: PathBuf, source: StepError },
     /// There is nothing to draw.
     #[error("{}: a rigid body without a mesh has no surface to draw; give it a mesh and `flexible = 0`", scene.display())]
-    NoMesh {
-        /// The scene file.
-        scene: PathBuf,
-    },
+    NoMesh { scene: PathBuf },
     /// The name is not that of a GIF: it may be that of a file which is not to be replaced.
     #[error("{}: the animation is a GIF; give its file a name that ends in .gif", path.display())]
-    NotGif {
-        /// Where it was to go.
-        path: PathBuf,
-    },
-    /// The times are not those of the run.
+    NotGif { path: PathBuf },
+    /// The times are not those of the run. `end`: that of the run.
     #[error(
         "--from, --to: found the times from {from} to {to}, expected a part of the run, which goes from 0 to {end}\n = \
          give --from and --to so that 0 ≤ from < to ≤ {end}, or leave them out"
     )]
-    Times {
-        /// First time asked for.
-        from: f64,
-        /// Last time asked for.
-        to: f64,
-        /// End of the run.
-        end: f64,
-    },
+    Times { from: f64, to: f64, end: f64 },
     /// The results file cannot be shown.
-    #[error(transparent)]
+    #[error("{0}")]
     Export(#[from] ExportError),
     /// The picture could not be drawn.
-    #[error(transparent)]
+    #[error("{0}")]
     Figure(#[from] FigureError),
 }
 

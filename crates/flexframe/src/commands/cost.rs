@@ -98,7 +98,7 @@ pub fn price_list(
     step(0);
     let exponential = Method::EXPONENTIAL;
     let reference = converge(&case, exponential, settings.budget(20), 0.0)
-        .map_err(|(steps, failure)| CostError::Reference { scene: scene.path.clone(), steps, failure })?;
+        .map_err(|(steps, source)| CostError::Reference { scene: scene.path.clone(), steps, source })?;
     step(1);
     // The paper's formulation has a limit of its own, to which its schemes converge.
     let (paper_limit, paper_limit_failure) = match converge(&case, frames_rk4::LIMIT, settings.budget(5), 0.0) {

@@ -13,7 +13,7 @@ use crate::drawn::{Drawn, DrawnError, Part};
 #[derive(Debug, thiserror::Error)]
 pub enum HtmlReportError {
     /// The results file, or the shapes of its bodies, cannot be read.
-    #[error(transparent)]
+    #[error("{0}")]
     Drawn(#[from] DrawnError),
     /// A results file that lacks a column of every run.
     #[error("{}: the results lack the columns of a run; run its scene again with --overwrite", results.display())]
@@ -22,7 +22,7 @@ pub enum HtmlReportError {
         results: PathBuf,
     },
     /// The page cannot be written.
-    #[error(transparent)]
+    #[error("{0}")]
     Page(#[from] ReportError),
 }
 

@@ -20,10 +20,10 @@ const MAX_PANELS: usize = 20;
 #[derive(Debug, thiserror::Error)]
 pub enum ShapesError {
     /// The body has no flexible modes.
-    #[error(transparent)]
+    #[error("{0}")]
     Scene(#[from] SceneError),
     /// The picture could not be drawn.
-    #[error(transparent)]
+    #[error("{0}")]
     Figure(#[from] FigureError),
 }
 

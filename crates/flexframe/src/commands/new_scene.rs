@@ -18,16 +18,16 @@ use crate::rows::units::UnitLabels;
 #[derive(Debug, thiserror::Error)]
 pub enum NewSceneError {
     /// The mesh cannot be read.
-    #[error(transparent)]
+    #[error("{0}")]
     Mesh(#[from] ImportError),
     /// The mesh has no mass properties.
-    #[error(transparent)]
+    #[error("{0}")]
     Assembly(#[from] AssemblyError),
     /// A file with the name of the scene is there.
-    #[error(transparent)]
+    #[error("{0}")]
     Output(#[from] OutputError),
     /// The scene cannot be written.
-    #[error(transparent)]
+    #[error("{0}")]
     Write(#[from] WriteError),
 }
 

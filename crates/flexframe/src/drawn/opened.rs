@@ -39,30 +39,23 @@ pub(crate) enum Part {
 
 /// A body that cannot be drawn.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum DrawnError {
     /// The results file cannot be read.
-    #[error(transparent)]
+    #[error("{0}")]
     File(#[from] FileError),
     /// The body file cannot be read.
-    #[error(transparent)]
+    #[error("{0}")]
     BodyFile(#[from] SealedError),
-    /// The results file does not have the shapes, and the body file is not there.
+    /// The results file does not have the shapes, and the body file is not there. `what`: the part that it lacks;
+    /// `places`: where the body file was looked for.
     #[error(
         "{}: {what}, and the body file with them is not there: looked for {}\n = put it there, or make it: flexframe reduce {scene} --stress -o {}",
         results.display(),
         places.iter().map(|place| place.display().to_string()).collect::<Vec<_>>().join(" and "),
         places.last().unwrap_or(results).display()
     )]
-    NoBodyFile {
-        /// The results file.
-        results: PathBuf,
-        /// What it does not carry.
-        what: &'static str,
-        /// Where the body file was looked for.
-        places: Vec<PathBuf>,
-        /// The scene that it is made of.
-        scene: String,
-    },
+    NoBodyFile { results: PathBuf, what: &'static str, places: Vec<PathBuf>, scene: String },
     /// The body file is that of another body.
     #[error(
         "{}: this body file does not have the shapes of the run in {} (another mesh, other modes, or another machine); make it of the scene of the run: flexframe reduce {scene} --stress -o {}",
@@ -70,14 +63,7 @@ pub enum DrawnError {
         results.display(),
         body_file.display()
     )]
-    OtherBody {
-        /// The results file.
-        results: PathBuf,
-        /// The body file.
-        body_file: PathBuf,
-        /// The scene of the run.
-        scene: String,
-    },
+    OtherBody { results: PathBuf, body_file: PathBuf, scene: String },
 }
 
 impl Drawn {

@@ -1,9 +1,15 @@
 //! The kind of every error, and what it knows: the one place where that is decided.
 
+use std::error::Error;
+use std::io;
+use std::iter::successors;
+use std::path::Path;
+
 use advice::AdviceError;
-use dynamics::{EigenError, LoadedError, SetupError};
-use fem_tet10::{AssemblyError, MeshError};
+use dynamics::{LoadedError, SetupError};
+use fem_tet10::{AssemblyError, MeshError, MeshFault};
 use figures::FigureError;
+use memory::OutOfMemory;
 use mesh_import::ImportError;
 use modal::ModalError;
 use model::{BuildError, StartError};
@@ -13,116 +19,163 @@ use scene::SceneError;
 use sealed::SealedError;
 use slepc::SlepcError;
 
-use super::{Details, Failure, Kind};
+use super::{Details, FailureReport, Kind};
 use crate::commands::animation::AnimationError;
 use crate::commands::campbell::CampbellError;
 use crate::commands::cost::CostError;
 use crate::commands::export::ExportError;
 use crate::commands::fmu::FmuError;
 use crate::commands::html_report::HtmlReportError;
-use crate::commands::mode_shapes::ShapesError;
-use crate::commands::new_scene::NewSceneError;
 use crate::commands::paper::PaperError;
-use crate::commands::run::{RunError, RunFailure};
+use crate::commands::run::RunError;
 use crate::commands::sweep::{SWEEP_CURE, SweepError};
 use crate::drawn::DrawnError;
 use crate::files::given_file::OtherFile;
 use crate::files::outputs::OutputError;
 use crate::files::write_error::WriteError;
 
-impl Failure for SceneError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Unreadable { .. } => Kind::Io,
-            _ => Kind::Input,
-        }
+/// The kind of an error and its details, each from the innermost of its sources that knows it. A computation that nothing is known
+/// of did not come to its end.
+pub fn known(error: &(dyn Error + 'static)) -> (Kind, Details) {
+    let sources = successors(Some(error), |&error| error.source());
+    let known = sources.filter_map(|error| FAULTS.iter().find_map(|known| known(error)));
+    let innermost = |outer: Known, inner: Known| Known(inner.0.or(outer.0), inner.1.or(outer.1));
+    let Known(kind, details) = known.fold(Known::default(), innermost);
+    (kind.unwrap_or(Kind::Run), details)
+}
+
+impl FailureReport {
+    /// The failure of an error.
+    pub fn of(error: &(dyn Error + 'static)) -> Self {
+        let (kind, details) = known(error);
+        Self::new(kind, error.to_string(), details)
+    }
+}
+
+/// What an error knows besides its source.
+#[derive(Default)]
+struct Known(Option<Kind>, Details);
+
+impl Kind {
+    /// With details.
+    fn with(self, details: Details) -> Known {
+        Known(Some(self), details)
     }
 
-    fn details(&self) -> Details {
-        Details {
+    /// In a file.
+    fn of(self, file: impl AsRef<Path>) -> Known {
+        self.with(Details::of_file(file))
+    }
+
+    /// Without details.
+    fn alone(self) -> Known {
+        self.with(Details::default())
+    }
+}
+
+/// A file, where the source knows the kind.
+fn in_file(file: impl AsRef<Path>) -> Known {
+    Known(None, Details::of_file(file))
+}
+
+/// An error that knows something.
+trait Fault: Error {
+    fn known(&self) -> Known;
+}
+
+/// All of them.
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 30] = [
+    known_by::<io::Error>,
+    known_by::<OutOfMemory>,
+    known_by::<SceneError>,
+    known_by::<MeshError>,
+    known_by::<AssemblyError>,
+    known_by::<ModalError>,
+    known_by::<SlepcError>,
+    known_by::<AdviceError>,
+    known_by::<ImportError>,
+    known_by::<BuildError>,
+    known_by::<LoadedError>,
+    known_by::<SetupError>,
+    known_by::<StartError>,
+    known_by::<SealedError>,
+    known_by::<FileError>,
+    known_by::<FigureError>,
+    known_by::<ReportError>,
+    known_by::<WriteError>,
+    known_by::<OutputError>,
+    known_by::<OtherFile>,
+    known_by::<DrawnError>,
+    known_by::<RunError>,
+    known_by::<FmuError>,
+    known_by::<AnimationError>,
+    known_by::<ExportError>,
+    known_by::<HtmlReportError>,
+    known_by::<CampbellError>,
+    known_by::<CostError>,
+    known_by::<PaperError>,
+    known_by::<SweepError>,
+];
+
+/// What an error of this type knows, in a box or not.
+fn known_by<E: Fault + 'static>(error: &(dyn Error + 'static)) -> Option<Known> {
+    let boxed = || error.downcast_ref::<Box<E>>().map(|error| &**error);
+    error.downcast_ref::<E>().or_else(boxed).map(Fault::known)
+}
+
+impl Fault for io::Error {
+    fn known(&self) -> Known {
+        Kind::Io.alone()
+    }
+}
+
+impl Fault for OutOfMemory {
+    fn known(&self) -> Known {
+        Kind::Io.alone()
+    }
+}
+
+impl Fault for SceneError {
+    fn known(&self) -> Known {
+        let kind = if matches!(self, Self::Unreadable { .. }) { Kind::Io } else { Kind::Input };
+        kind.with(Details {
             line: self.line(),
             key: self.place().map(|place| place.key.clone()).filter(|key| !key.is_empty()),
             found: self.found(),
             expected: self.expected(),
             help: self.help(),
             ..Details::of_file(self.file())
-        }
+        })
     }
 }
 
-impl Failure for MeshError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Io { .. } | Self::Memory { .. } => Kind::Io,
-            _ => Kind::Input,
-        }
-    }
-
-    fn details(&self) -> Details {
-        let mut details = Details { line: self.line(), ..Details::of_file(self.source_name()) };
-        if let Self::Syntax { expected, found, .. } = self {
-            details.expected = Some(expected.clone());
-            details.found = Some(found.clone());
-        }
-        details
-    }
-}
-
-impl Failure for FmuError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Scene(error) => error.kind(),
-            Self::Build(error) => error.kind(),
-            Self::Start { source, .. } => source.kind(),
-            Self::Body(error) => error.kind(),
-            Self::Unreadable { .. } | Self::Missing { .. } | Self::Library { .. } | Self::Write(_) => Kind::Io,
-            Self::Platform { .. } => Kind::Refused,
-            Self::NoBody | Self::NoScene { .. } | Self::Text(_) | Self::Damaged { .. } | Self::Version { .. } => {
-                Kind::Input
+impl Fault for MeshError {
+    fn known(&self) -> Known {
+        let details = Details { line: self.line(), ..Details::of_file(&self.mesh) };
+        Kind::Input.with(match &self.fault {
+            MeshFault::Syntax { expected, found, .. } => {
+                Details { expected: Some(expected.clone()), found: Some(found.clone()), ..details }
             }
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Scene(error) => error.details(),
-            Self::Build(error) => error.details(),
-            Self::Start { scene, source } => Details { file: Details::of_file(scene).file, ..source.details() },
-            Self::Body(error) => error.details(),
-            Self::Write(error) => error.details(),
-            Self::Library { path, .. }
-            | Self::NoScene { path }
-            | Self::Unreadable { path, .. }
-            | Self::Missing { path, .. }
-            | Self::Damaged { path } => Details::of_file(path),
-            Self::NoBody | Self::Platform { .. } | Self::Text(_) | Self::Version { .. } => Details::default(),
-        }
+            _ => details,
+        })
     }
 }
 
-impl Failure for AssemblyError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Memory(_) => Kind::Io,
-            _ => Kind::Input,
-        }
-    }
-
-    fn details(&self) -> Details {
-        self.source_name().map_or_else(Details::default, Details::of_file)
+impl Fault for AssemblyError {
+    fn known(&self) -> Known {
+        Kind::Input.with(self.mesh.as_ref().map_or_else(Details::default, Details::of_file))
     }
 }
 
-impl Failure for ModalError {
-    fn kind(&self) -> Kind {
+impl Fault for ModalError {
+    fn known(&self) -> Known {
         match self {
             Self::TooManyModes { .. } | Self::HeldNode { .. } | Self::HeldFreedom { .. } | Self::NotUnit { .. } => {
                 Kind::Input
             }
-            Self::Memory(_) => Kind::Io,
-            Self::Engine(source) => source.downcast_ref::<SlepcError>().map_or(Kind::Run, Failure::kind),
-            Self::WrongAnswers { .. } => Kind::Run,
-            Self::Ordering { .. }
+            Self::Engine(_)
+            | Self::WrongAnswers { .. }
+            | Self::Ordering { .. }
             | Self::Factorization { .. }
             | Self::NotConverged { .. }
             | Self::StaticNotConverged { .. }
@@ -130,145 +183,79 @@ impl Failure for ModalError {
             | Self::DenseEigen { .. } => Kind::Run,
             _ => Kind::Refused,
         }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Engine(source) => source.downcast_ref::<SlepcError>().map_or_else(Details::default, Failure::details),
-            _ => Details::default(),
-        }
+        .alone()
     }
 }
 
-impl Failure for SlepcError {
-    fn kind(&self) -> Kind {
+impl Fault for SlepcError {
+    fn known(&self) -> Known {
+        let words = |found: &str, help: &str| Details {
+            found: Some(found.to_owned()),
+            help: Some(help.to_owned()),
+            ..Details::default()
+        };
         match self {
-            Self::NotInstalled { .. } | Self::Io { .. } | Self::NotFinished { .. } => Kind::Io,
-            Self::Refused { .. } | Self::Failed { .. } => Kind::Run,
-            Self::Stopped { .. } => Kind::Stopped,
-            _ => Kind::Input,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::NotInstalled { found, help } | Self::Refused { found, help } => {
-                Details { found: Some(found.clone()), help: Some(help.clone()), ..Details::default() }
+            Self::NotInstalled { found, help } => Kind::Io.with(words(found, help)),
+            Self::Refused { found, help } => Kind::Run.with(words(found, help)),
+            Self::Failed { status, help, .. } => Kind::Run.with(words(status, help)),
+            Self::Stopped { .. } => Kind::Stopped.alone(),
+            Self::Io { path, .. } | Self::NotFinished { folder: path, .. } => Kind::Io.of(path),
+            Self::Damaged { path, .. } | Self::OtherMatrices { folder: path } | Self::FewModes { folder: path, .. } => {
+                Kind::Input.of(path)
             }
-            Self::Failed { status, help, .. } => {
-                Details { found: Some(status.clone()), help: Some(help.clone()), ..Details::default() }
-            }
-            Self::Io { path, .. } | Self::Damaged { path, .. } => Details::of_file(path),
-            Self::NotFinished { folder, .. } | Self::OtherMatrices { folder } | Self::FewModes { folder, .. } => {
-                Details::of_file(folder)
-            }
-            _ => Details::default(),
+            _ => Kind::Input.alone(),
         }
     }
 }
 
-impl Failure for EigenError {
-    fn kind(&self) -> Kind {
-        Kind::Run
+impl Fault for AdviceError {
+    fn known(&self) -> Known {
+        if matches!(self, Self::Eigen(_)) { Kind::Run.alone() } else { Kind::Input.alone() }
     }
 }
 
-impl Failure for AdviceError {
-    fn kind(&self) -> Kind {
+impl Fault for ImportError {
+    fn known(&self) -> Known {
         match self {
-            Self::Eigen(error) => error.kind(),
-            _ => Kind::Input,
-        }
-    }
-}
-
-impl Failure for ImportError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Mesh(error) => error.kind(),
-            Self::NoReader { .. } | Self::Io { .. } => Kind::Io,
-            _ => Kind::Input,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Mesh(error) => error.details(),
-            other => Details::of_file(other.source_name()),
+            Self::NoReader { .. } | Self::Io { .. } => Kind::Io.of(self.source_name()),
+            _ => Kind::Input.of(self.source_name()),
         }
     }
 }
 
-impl Failure for BuildError {
-    fn kind(&self) -> Kind {
+impl Fault for BuildError {
+    fn known(&self) -> Known {
         match self {
-            Self::Scene(error) => error.kind(),
-            Self::Mesh(error) => error.kind(),
-            Self::Import(error) => error.kind(),
-            Self::Assembly(error) => error.kind(),
-            Self::Modal { source, .. } => source.kind(),
-            Self::Advice(error) => error.kind(),
-            Self::Load(error) => error.kind(),
-            Self::BodyFile(error) => error.kind(),
-            Self::Loaded { source, .. } => source.kind(),
-            _ => Kind::Run,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Scene(error) => error.details(),
-            Self::Mesh(error) => error.details(),
-            Self::Import(error) => error.details(),
-            Self::Assembly(error) => error.details(),
-            Self::Modal { scene, source } => {
-                let details = source.details();
-                Details { file: details.file.clone().or(Details::of_file(scene).file), ..details }
-            }
-            Self::Advice(error) => error.details(),
-            Self::Load(error) => error.details(),
-            Self::BodyFile(error) => error.details(),
-            Self::Loaded { scene, .. } => Details::of_file(scene),
-            _ => Details::default(),
+            Self::Modal { scene, .. } | Self::Loaded { scene, .. } => in_file(scene),
+            Self::Refused { scene, .. } => Kind::Refused.of(scene),
+            _ => Known::default(),
         }
     }
 }
 
-impl Failure for LoadedError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Setup(error) => error.kind(),
-            Self::Eigen(error) => error.kind(),
-            Self::NoRest => Kind::Refused,
-            Self::Rates(_) => Kind::Run,
-        }
+impl Fault for LoadedError {
+    fn known(&self) -> Known {
+        if matches!(self, Self::NoRest) { Kind::Refused.alone() } else { Kind::Run.alone() }
     }
 }
 
-impl Failure for SetupError {
-    fn kind(&self) -> Kind {
+impl Fault for SetupError {
+    fn known(&self) -> Known {
         match self {
             Self::FormulaTooFast { .. }
             | Self::StepBeyondLimit { .. }
             | Self::StepBeyondSpin { .. }
             | Self::MotionLeft { .. }
             | Self::CollinearPoints(_)
-            | Self::Inertia(_) => Kind::Refused,
-            _ => Kind::Input,
+            | Self::Inertia(_) => Kind::Refused.alone(),
+            _ => Kind::Input.alone(),
         }
     }
 }
 
-impl Failure for StartError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Setup(error) => error.kind(),
-            _ => Kind::Refused,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
+impl Fault for StartError {
+    fn known(&self) -> Known {
+        Kind::Refused.with(match self {
             Self::Step { at, found, expected, help } => Details {
                 line: Some(at.line),
                 key: Some(at.key.clone()),
@@ -277,67 +264,25 @@ impl Failure for StartError {
                 help: Some((*help).to_owned()),
                 ..Details::of_file(&at.file)
             },
-            _ => Details::default(),
-        }
-    }
-}
-
-impl Failure for RunFailure {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Start(error) => error.kind(),
-            Self::Step(_) | Self::OutOfPatience { .. } => Kind::Run,
-        }
-    }
-}
-
-impl Failure for RunError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Build(error) => error.kind(),
-            Self::Setup { source, .. } => source.kind(),
-            Self::Step { .. } => Kind::Run,
-            Self::Refused { .. } => Kind::Refused,
-            Self::File(error) => error.kind(),
-            Self::Verify { failure, .. } => failure.kind(),
-            Self::Stopped { .. } => Kind::Stopped,
-            Self::Scene(error) => error.kind(),
-            Self::NoBody | Self::Restore { .. } | Self::Changed { .. } => Kind::Input,
-            Self::Folder { .. } => Kind::Io,
-            Self::Output(error) => error.kind(),
-            Self::Large { .. } => Kind::Refused,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Build(error) => error.details(),
-            Self::Setup { scene, source } => Details { file: Details::of_file(scene).file, ..source.details() },
-            Self::Verify { scene, .. } => Details::of_file(scene),
-            Self::Step { results, .. } | Self::Refused { results, .. } => Details::of_file(results),
-            Self::File(error) => error.details(),
-            Self::Stopped { part, .. } | Self::Restore { part, .. } | Self::Changed { part, .. } => {
-                Details::of_file(part)
+            Self::Tied { at } => {
+                Details { line: Some(at.line), key: Some(at.key.clone()), ..Details::of_file(&at.file) }
             }
-            Self::NoBody => Details::default(),
-            Self::Scene(error) => error.details(),
-            Self::Folder { folder, .. } => Details::of_file(folder),
-            Self::Output(error) => error.details(),
-            Self::Large { scene, estimate } => Details {
-                key: Some("output.interval".to_owned()),
-                found: Some(estimate.to_string()),
-                expected: Some("1 GB at the most".to_owned()),
-                help: Some("name fewer rows in [output], or allow it with --large".to_owned()),
-                ..Details::of_file(scene)
-            },
-        }
+            _ => Details::default(),
+        })
     }
 }
 
-impl Failure for FileError {
-    fn kind(&self) -> Kind {
+impl Fault for SealedError {
+    fn known(&self) -> Known {
+        // What is wrong with a file's content, or with the names in it.
+        let kind = if matches!(self, Self::Hdf5 { .. }) { Kind::Io } else { Kind::Input };
+        kind.with(Details { help: self.help().map(str::to_owned), ..Details::of_file(self.path()) })
+    }
+}
+
+impl Fault for FileError {
+    fn known(&self) -> Known {
         match self {
-            Self::Sealed(error) => error.kind(),
             Self::Busy { .. }
             | Self::Exists { .. }
             | Self::Unfinished { .. }
@@ -348,358 +293,208 @@ impl Failure for FileError {
             // What is wrong with a file's content, or with the names in it.
             _ => Kind::Input,
         }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Sealed(error) => error.details(),
-            _ => Details::of_file(self.path()),
-        }
+        .of(self.path())
     }
 }
 
-impl Failure for SealedError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Hdf5 { .. } | Self::System { .. } => Kind::Io,
-            // What is wrong with a file's content, or with the names in it.
-            _ => Kind::Input,
-        }
-    }
-
-    fn details(&self) -> Details {
-        Details { help: self.help().map(str::to_owned), ..Details::of_file(self.path()) }
+impl Fault for FigureError {
+    fn known(&self) -> Known {
+        if let Self::Write { path, .. } = self { Kind::Io.of(path) } else { Known::default() }
     }
 }
 
-impl Failure for FigureError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Write { .. } => Kind::Io,
-            _ => Kind::Run,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Write { path, .. } => Details::of_file(path),
-            _ => Details::default(),
-        }
+impl Fault for ReportError {
+    fn known(&self) -> Known {
+        if let Self::Write { path, .. } = self { in_file(path) } else { Known::default() }
     }
 }
 
-impl Failure for ShapesError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Scene(error) => error.kind(),
-            Self::Figure(error) => error.kind(),
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Scene(error) => error.details(),
-            Self::Figure(error) => error.details(),
-        }
+impl Fault for WriteError {
+    fn known(&self) -> Known {
+        in_file(&self.path)
     }
 }
 
-impl Failure for AnimationError {
-    fn kind(&self) -> Kind {
+impl Fault for OutputError {
+    fn known(&self) -> Known {
         match self {
-            Self::Run(error) => error.kind(),
-            Self::Step { .. } => Kind::Run,
-            Self::NoMesh { .. } => Kind::Input,
-            Self::NotGif { .. } | Self::Times { .. } => Kind::Usage,
-            Self::Export(error) => error.kind(),
-            Self::Figure(error) => error.kind(),
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Run(error) => error.details(),
-            Self::Step { scene, .. } | Self::NoMesh { scene } => Details::of_file(scene),
-            Self::NotGif { path } => Details::of_file(path),
-            Self::Times { from, to, end } => Details {
-                key: Some("--from, --to".to_owned()),
-                found: Some(format!("{from} to {to}")),
-                expected: Some(format!("a part of 0 to {end}")),
-                ..Details::default()
-            },
-            Self::Export(error) => error.details(),
-            Self::Figure(error) => error.details(),
-        }
-    }
-}
-
-impl Failure for DrawnError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::File(error) => error.kind(),
-            Self::BodyFile(error) => error.kind(),
-            Self::NoBodyFile { .. } | Self::OtherBody { .. } => Kind::Input,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::File(error) => error.details(),
-            Self::BodyFile(error) => error.details(),
-            Self::NoBodyFile { results, .. } => Details::of_file(results),
-            Self::OtherBody { body_file, .. } => Details::of_file(body_file),
-        }
-    }
-}
-
-impl Failure for ExportError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::File(error) => error.kind(),
-            Self::Write(error) => error.kind(),
-            Self::Output(error) => error.kind(),
-            Self::Drawn(error) => error.kind(),
-            Self::NoMesh { .. } | Self::NoElements { .. } | Self::NoModes { .. } => Kind::Input,
-            Self::NoRows { .. } | Self::NoColumn { .. } => Kind::Usage,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::File(error) => error.details(),
-            Self::Write(error) => error.details(),
-            Self::Output(error) => error.details(),
-            Self::Drawn(error) => error.details(),
-            Self::NoMesh { path }
-            | Self::NoElements { path }
-            | Self::NoModes { path }
-            | Self::NoRows { path, .. }
-            | Self::NoColumn { path, .. } => Details::of_file(path),
-        }
-    }
-}
-
-impl Failure for ReportError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Write { .. } => Kind::Io,
-            _ => Kind::Run,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Write { path, .. } => Details::of_file(path),
-            _ => Details::default(),
-        }
-    }
-}
-
-impl Failure for HtmlReportError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Drawn(error) => error.kind(),
-            Self::NoColumns { .. } => Kind::Input,
-            Self::Page(error) => error.kind(),
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Drawn(error) => error.details(),
-            Self::NoColumns { results } => Details::of_file(results),
-            Self::Page(error) => error.details(),
-        }
-    }
-}
-
-impl Failure for WriteError {
-    fn kind(&self) -> Kind {
-        Kind::Io
-    }
-
-    fn details(&self) -> Details {
-        Details::of_file(&self.path)
-    }
-}
-
-impl Failure for OutputError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::IsInput { .. } | Self::OtherEnding(_) => Kind::Usage,
-            Self::Exists { .. }
-            | Self::Folder { .. }
-            | Self::LostLink { .. }
-            | Self::Device { .. }
-            | Self::NoFolder { .. } => Kind::Io,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::IsInput { path, .. }
-            | Self::Exists { path }
+            Self::IsInput { path, .. } => Kind::Usage.of(path),
+            Self::OtherEnding(error) => {
+                let (found, expected) = (Some(error.found.to_owned()), Some(error.expected.to_owned()));
+                Kind::Usage.with(Details { found, expected, ..Details::of_file(&error.path) })
+            }
+            Self::Exists { path }
             | Self::Folder { path }
             | Self::LostLink { path }
             | Self::Device { path, .. }
-            | Self::NoFolder { path, .. } => Details::of_file(path),
-            Self::OtherEnding(error) => {
-                let (found, expected) = (Some(error.found.to_owned()), Some(error.expected.to_owned()));
-                Details { found, expected, ..Details::of_file(&error.path) }
-            }
+            | Self::NoFolder { path, .. } => Kind::Io.of(path),
         }
     }
 }
 
-impl Failure for CampbellError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Build(error) => error.kind(),
-            Self::Eigen { source, .. } => source.kind(),
-            Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage,
-            Self::Figure(error) => error.kind(),
-            Self::Write(error) => error.kind(),
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Build(error) => error.details(),
-            Self::Eigen { scene, .. } => Details::of_file(scene),
-            Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Details::default(),
-            Self::Figure(error) => error.details(),
-            Self::Write(error) => error.details(),
-        }
-    }
-}
-
-impl Failure for CostError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Build(error) => error.kind(),
-            Self::NoBody => Kind::Input,
-            Self::Reference { failure, .. } => failure.kind(),
-            Self::Figure(error) => error.kind(),
-            Self::Write(error) => error.kind(),
-            Self::Output(error) => error.kind(),
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Build(error) => error.details(),
-            Self::NoBody => Details::default(),
-            Self::Reference { scene, .. } => Details::of_file(scene),
-            Self::Figure(error) => error.details(),
-            Self::Write(error) => error.details(),
-            Self::Output(error) => error.details(),
-        }
-    }
-}
-
-impl Failure for PaperError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Run(error) => error.kind(),
-            Self::Build(error) => error.kind(),
-            Self::File(error) => error.kind(),
-            Self::Figure(error) => error.kind(),
-            Self::RigidBody(_) => Kind::Refused,
-            Self::Step(_) => Kind::Run,
-            Self::MissingPoint { .. } | Self::NotThePlate { .. } => Kind::Input,
-            Self::Report { .. } => Kind::Io,
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Run(error) => error.details(),
-            Self::Build(error) => error.details(),
-            Self::File(error) => error.details(),
-            Self::Figure(error) => error.details(),
-            Self::RigidBody(_) | Self::Step(_) => Details::default(),
-            Self::MissingPoint { scene, .. } | Self::NotThePlate { scene } => Details::of_file(scene),
-            Self::Report { path, .. } => Details::of_file(path),
-        }
-    }
-}
-
-impl Failure for NewSceneError {
-    fn kind(&self) -> Kind {
-        match self {
-            Self::Mesh(error) => error.kind(),
-            Self::Assembly(error) => error.kind(),
-            Self::Output(error) => error.kind(),
-            Self::Write(error) => error.kind(),
-        }
-    }
-
-    fn details(&self) -> Details {
-        match self {
-            Self::Mesh(error) => error.details(),
-            Self::Assembly(error) => error.details(),
-            Self::Output(error) => error.details(),
-            Self::Write(error) => error.details(),
-        }
-    }
-}
-
-impl Failure for OtherFile {
-    fn kind(&self) -> Kind {
-        Kind::Input
-    }
-
-    fn details(&self) -> Details {
-        Details {
+impl Fault for OtherFile {
+    fn known(&self) -> Known {
+        Kind::Input.with(Details {
             found: Some(self.found.in_words().to_owned()),
             expected: Some(self.expected.to_owned()),
             help: Some(self.found.taken_by(&self.path)),
             ..Details::of_file(&self.path)
+        })
+    }
+}
+
+impl Fault for DrawnError {
+    fn known(&self) -> Known {
+        match self {
+            Self::File(_) | Self::BodyFile(_) => Known::default(),
+            Self::NoBodyFile { results: path, .. } | Self::OtherBody { body_file: path, .. } => Kind::Input.of(path),
         }
     }
 }
 
-impl Failure for SweepError {
-    fn kind(&self) -> Kind {
+impl Fault for RunError {
+    fn known(&self) -> Known {
         match self {
-            Self::Unreadable { .. }
-            | Self::Write(_)
-            | Self::OtherTable { .. }
-            | Self::OtherFiles { .. }
-            | Self::OtherCsv { .. }
-            | Self::Busy { .. }
-            | Self::NoShard { .. } => Kind::Io,
-            Self::Table(error) => error.kind(),
-            Self::Output(error) => error.kind(),
-            Self::AllFailed { .. } => Kind::Run,
-            Self::Invalid { .. } | Self::Form { .. } => Kind::Input,
-            Self::Scene { source, .. } => source.kind(),
-            Self::Build(error) => error.kind(),
+            Self::Build(_) | Self::File(_) | Self::Scene(_) | Self::Output(_) => Known::default(),
+            Self::Setup { scene: path, .. } | Self::Verify { scene: path, .. } | Self::Folder { folder: path, .. } => {
+                in_file(path)
+            }
+            Self::Step { results, .. } => Kind::Run.of(results),
+            Self::Refused { results, .. } => Kind::Refused.of(results),
+            Self::Stopped { part, .. } => Kind::Stopped.of(part),
+            Self::Restore { part, .. } | Self::Changed { part, .. } => Kind::Input.of(part),
+            Self::NoBody => Kind::Input.alone(),
+            Self::Large { scene, estimate } => Kind::Refused.with(Details {
+                key: Some("output.interval".to_owned()),
+                found: Some(estimate.to_string()),
+                expected: Some("1 GB at the most".to_owned()),
+                help: Some("name fewer rows in [output], or allow it with --large".to_owned()),
+                ..Details::of_file(scene)
+            }),
         }
     }
+}
 
-    fn details(&self) -> Details {
+impl Fault for FmuError {
+    fn known(&self) -> Known {
         match self {
+            Self::Scene(_) | Self::Build(_) | Self::Body(_) | Self::Write(_) => Known::default(),
+            Self::Start { scene, .. } => in_file(scene),
+            Self::Library { path, .. } | Self::Unreadable { path, .. } | Self::Missing { path, .. } => {
+                Kind::Io.of(path)
+            }
+            Self::Platform { .. } => Kind::Refused.alone(),
+            Self::NoScene { path } | Self::Damaged { path } => Kind::Input.of(path),
+            Self::NoBody | Self::Text(_) | Self::Version { .. } => Kind::Input.alone(),
+        }
+    }
+}
+
+impl Fault for AnimationError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Run(_) | Self::Export(_) | Self::Figure(_) => Known::default(),
+            Self::Step { scene, .. } => Kind::Run.of(scene),
+            Self::NoMesh { scene } => Kind::Input.of(scene),
+            Self::NotGif { path } => Kind::Usage.of(path),
+            Self::Times { from, to, end } => Kind::Usage.with(Details {
+                key: Some("--from, --to".to_owned()),
+                found: Some(format!("{from} to {to}")),
+                expected: Some(format!("a part of 0 to {end}")),
+                ..Details::default()
+            }),
+        }
+    }
+}
+
+impl Fault for ExportError {
+    fn known(&self) -> Known {
+        match self {
+            Self::File(_) | Self::Write(_) | Self::Output(_) | Self::Drawn(_) => Known::default(),
+            Self::NoMesh { path } | Self::NoElements { path } | Self::NoModes { path } => Kind::Input.of(path),
+            Self::NoRows { path, .. } | Self::NoColumn { path, .. } => Kind::Usage.of(path),
+        }
+    }
+}
+
+impl Fault for HtmlReportError {
+    fn known(&self) -> Known {
+        if let Self::NoColumns { results } = self { Kind::Input.of(results) } else { Known::default() }
+    }
+}
+
+impl Fault for CampbellError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Build(_) | Self::Figure(_) | Self::Write(_) => Known::default(),
+            Self::Eigen { scene, .. } => Kind::Run.of(scene),
+            Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
+        }
+    }
+}
+
+impl Fault for CostError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Build(_) | Self::Figure(_) | Self::Write(_) | Self::Output(_) => Known::default(),
+            Self::NoBody => Kind::Input.alone(),
+            Self::Reference { scene, .. } => in_file(scene),
+        }
+    }
+}
+
+impl Fault for PaperError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Run(_) | Self::Build(_) | Self::File(_) | Self::Figure(_) => Known::default(),
+            Self::RigidBody(_) => Kind::Refused.alone(),
+            Self::Step(_) => Kind::Run.alone(),
+            Self::MissingPoint { scene, .. } | Self::NotThePlate { scene } => Kind::Input.of(scene),
+            Self::Report { path, .. } => Kind::Io.of(path),
+        }
+    }
+}
+
+impl Fault for SweepError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Scene { .. } | Self::Build(_) | Self::Table(_) | Self::Write(_) | Self::Output(_) => Known::default(),
             Self::Unreadable { path, .. }
-            | Self::Form { path, .. }
             | Self::OtherTable { path, .. }
             | Self::OtherFiles { path, .. }
             | Self::OtherCsv { path }
             | Self::Busy { path }
-            | Self::AllFailed { path, .. }
-            | Self::NoShard { first: path, .. } => Details::of_file(path),
-            Self::Invalid { path, key, found, expected } => Details {
+            | Self::NoShard { first: path, .. } => Kind::Io.of(path),
+            Self::AllFailed { path, .. } => Kind::Run.of(path),
+            Self::Form { path, .. } => Kind::Input.of(path),
+            Self::Invalid { path, key, found, expected } => Kind::Input.with(Details {
                 key: Some(key.clone()),
                 found: Some(found.clone()),
                 expected: Some(expected.clone()),
                 help: Some(SWEEP_CURE.to_owned()),
                 ..Details::of_file(path)
-            },
-            Self::Scene { source, .. } => source.details(),
-            Self::Build(error) => error.details(),
-            Self::Table(error) => error.details(),
-            Self::Write(error) => Details::of_file(&error.path),
-            Self::Output(error) => error.details(),
+            }),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kind_and_details_are_of_the_innermost_source_that_knows_them() {
+        let of = |error: RunError| known(&error);
+        let scene = || "a.toml".into();
+        let mesh = fem_tet10::parse_msh(b"$MeshFormat\n4.1 x", "a.msh").unwrap_err();
+        let (kind, details) = of(BuildError::from(Box::new(ImportError::from(mesh))).into());
+        assert_eq!((kind, details.file.as_deref(), details.line), (Kind::Input, Some("a.msh"), Some(2)));
+        let stopped = ModalError::Engine(SlepcError::Stopped { command: "mpirun".to_owned() }.into());
+        let (kind, details) = of(BuildError::Modal { scene: scene(), source: stopped }.into());
+        assert_eq!((kind, details.file.as_deref()), (Kind::Stopped, Some("a.toml")));
+        let source = SetupError::StepBeyondSpin { step: 1.0, limit: 0.1, spin: 2.0 };
+        let (kind, details) = of(RunError::Setup { scene: scene(), source: Box::new(source.into()) });
+        assert_eq!((kind, details), (Kind::Refused, Details::of_file("a.toml")));
+        assert_eq!(known(&std::fmt::Error), (Kind::Run, Details::default()));
     }
 }

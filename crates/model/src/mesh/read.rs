@@ -1,6 +1,6 @@
 //! The mesh of a scene and its matrices.
 
-use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble};
+use fem_tet10::{AssemblyFault, Matrices, Mesh, MeshError, MeshFault, assemble};
 use std::path::Path;
 
 use mesh_import::{ImportError, ImportSettings, Imported, MeshFile, Reader, reader_of};
@@ -47,16 +47,15 @@ pub(crate) fn mesh_in(builder: &Builder, scene: &Scene, file: &MeshFile) -> Resu
 
 fn refused(scene: &Scene) -> impl Fn(ImportError) -> BuildError {
     |error| match error {
-        ImportError::Mesh(MeshError::Io { source_name, source: cause }) | ImportError::Io { source_name, cause } => {
-            scene
-                .refuse(
-                    "body.mesh",
-                    format!("a mesh that cannot be read: {}: {cause}", shorten(&source_name)),
-                    "a mesh file, its path relative to the folder of the scene file",
-                    "correct the path, or make the mesh: gmsh -3 -order 2 -format msh41 BODY.geo",
-                )
-                .into()
-        }
+        ImportError::Mesh(MeshError { mesh, fault: MeshFault::Io(cause), .. })
+        | ImportError::Io { source_name: mesh, cause } => scene
+            .refuse(
+                "body.mesh",
+                format!("a mesh that cannot be read: {}: {cause}", shorten(&mesh)),
+                "a mesh file, its path relative to the folder of the scene file",
+                "correct the path, or make the mesh: gmsh -3 -order 2 -format msh41 BODY.geo",
+            )
+            .into(),
         ImportError::Mesh(error) => BuildError::from(error),
         other => Box::new(other).into(),
     }
@@ -64,9 +63,9 @@ fn refused(scene: &Scene) -> impl Fn(ImportError) -> BuildError {
 
 pub(crate) fn matrices(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<Matrices, BuildError> {
     assemble(mesh, &body.materials, &body.point_masses).map_err(|error| {
-        let at = match &error {
-            AssemblyError::OffBody { at, .. } | AssemblyError::Spread { at, .. } => *at,
-            AssemblyError::MissingGroup { group, .. } => {
+        let at = match &error.fault {
+            AssemblyFault::OffBody { at, .. } | AssemblyFault::Spread { at, .. } => *at,
+            AssemblyFault::MissingGroup { group, .. } => {
                 let key = format!("body.materials.{group}");
                 return refuse(scene, &key, error).into();
             }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use super::block::{Block, TRI6};
 use super::source::Source;
-use crate::error::MeshError;
+use crate::error::{MeshError, MeshFault};
 use crate::mesh::checked::KINDS;
 use crate::mesh::parts::{MeshParts, NodeGroup, SurfaceGroup};
 
@@ -108,12 +108,12 @@ impl PhysicalGroups {
         if let (true, Some(most)) =
             (entries > length.saturating_mul(MAX_ENTRIES), blocks.iter().max_by_key(|block| groups(block)))
         {
-            return Err(MeshError::TooManyGroups {
-                source_name: parts.source.clone(),
+            return Err(MeshFault::TooManyGroups {
                 kind: KINDS[most.dimension.min(2)],
                 entity: most.entity,
                 groups: groups(most),
-            });
+            }
+            .of(&parts.source));
         }
         for dimension in 0..=2 {
             let blocks = || blocks.iter().filter(|block| block.dimension == dimension);
@@ -136,13 +136,11 @@ impl PhysicalGroups {
                     if let (true, Some(element)) = (block.kind != TRI6, block.tags.first()) {
                         if parts.elements.is_empty() {
                             // A mesh of the surface alone: no order of its triangles would help.
-                            return Err(MeshError::NoElements { source_name: parts.source.clone() });
+                            return Err(MeshFault::NoElements.of(&parts.source));
                         }
-                        return Err(MeshError::NotAFace {
-                            source_name: parts.source.clone(),
-                            group: group.name.clone(),
-                            element: *element,
-                        });
+                        return Err(
+                            MeshFault::NotAFace { group: group.name.clone(), element: *element }.of(&parts.source)
+                        );
                     }
                     group.triangle_tags.extend(&block.tags);
                     group.triangles.extend(block.nodes.chunks_exact(6).filter_map(|n| <[u64; 6]>::try_from(n).ok()));
@@ -177,11 +175,8 @@ impl PhysicalGroups {
                     (names.len() - 1, unnamed)
                 });
                 if unnamed != known_unnamed {
-                    return Err(MeshError::AmbiguousGroup {
-                        source_name: source_name.to_owned(),
-                        kind: KINDS[dimension],
-                        name: names.swap_remove(index),
-                    });
+                    return Err(MeshFault::AmbiguousGroup { kind: KINDS[dimension], name: names.swap_remove(index) }
+                        .of(source_name));
                 }
                 of_entity.push(index);
             }

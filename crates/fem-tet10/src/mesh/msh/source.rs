@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::error::{FilePosition, MeshError};
+use crate::error::{FilePosition, MeshError, MeshFault};
 
 /// Most bytes of a file that a message quotes; no name of a section is longer.
 const LONGEST_QUOTE: usize = 40;
@@ -34,7 +34,7 @@ impl<'a> Source<'a> {
         // A byte order mark is no part of the text.
         let at = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
         let mut source = Self { bytes, at, binary: false, section: String::new(), name };
-        let version_error = |found: String| MeshError::Version { source_name: name.to_owned(), found };
+        let version_error = |found: String| MeshFault::Version { found }.of(name);
         match source.next_section() {
             Ok(Some(section)) if section == "$MeshFormat" => {}
             // What is no mesh may be any file, such as one with passwords that a scene from elsewhere names.
@@ -182,26 +182,14 @@ impl<'a> Source<'a> {
         if claimed == found as u64 {
             return Ok(());
         }
-        Err(MeshError::Total {
-            source_name: self.name.to_owned(),
-            place,
-            section: self.section.clone(),
-            what,
-            claimed,
-            found,
-        })
+        Err(MeshFault::Total { section: self.section.clone(), what, claimed, found }.at(self.name, place))
     }
 
     /// An error at the place that has been reached.
     pub(super) fn error(&self, expected: &str, found: &str) -> MeshError {
         let found = if found.is_empty() { "the end of the file".to_owned() } else { format!("{found:?}") };
-        MeshError::Syntax {
-            source_name: self.name.to_owned(),
-            place: self.place(),
-            section: self.section.clone(),
-            expected: expected.to_owned(),
-            found,
-        }
+        MeshFault::Syntax { section: self.section.clone(), expected: expected.to_owned(), found }
+            .at(self.name, self.place())
     }
 
     fn skip_whitespace(&mut self) {

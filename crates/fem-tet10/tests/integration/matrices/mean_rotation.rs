@@ -1,6 +1,6 @@
 //! The mean rotation of a patch, and the forces of a moment.
 
-use fem_tet10::{AssemblyError, MeanRotation, Mesh};
+use fem_tet10::{AssemblyError, AssemblyFault, MeanRotation, Mesh};
 use nalgebra::Vector3;
 
 use crate::fixtures::{Random, data_mesh, workspace_mesh};
@@ -96,13 +96,13 @@ fn patches_without_a_rotation_are_refused() {
     // One node, none, and the three of an edge.
     for (at, radius, count) in [([0.0; 3], 1.0, 1), ([50.0, 0.0, 0.0], 1.0, 0), ([5.0, -9.0, -9.0], 13.7, 3)] {
         let error = cube.mean_rotation(at, Some(radius)).unwrap_err();
-        let AssemblyError::Patch { count: found, .. } = error else { panic!("{error:?}") };
+        let AssemblyError { fault: AssemblyFault::Patch { count: found, .. }, .. } = error else { panic!("{error:?}") };
         assert_eq!(found, count, "{:?}", cube.nodes_within(at, radius));
         assert!(error.to_string().contains("use a larger radius"), "{error}");
     }
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = cube.mean_rotation([0.0; 3], Some(radius)).unwrap_err();
-        assert!(matches!(error, AssemblyError::PatchRadius { .. }), "{error:?}");
+        assert!(matches!(error, AssemblyError { fault: AssemblyFault::PatchRadius { .. }, .. }), "{error:?}");
     }
     assert!(cube.mean_rotation([f64::NAN; 3], Some(1.0)).is_err());
 }

@@ -1,6 +1,6 @@
 //! Point masses keep mass, first and second moments, wherever they sit and whatever carries them.
 
-use fem_tet10::{AssemblyError, Material, Materials, Mesh, PointMass, assemble};
+use fem_tet10::{AssemblyError, AssemblyFault, Material, Materials, Mesh, PointMass, assemble};
 
 use crate::fixtures::{ALUMINIUM, Random, assert_close, data_mesh, form, moments, single, workspace_mesh};
 
@@ -98,7 +98,7 @@ fn spread_over_nodes_in_one_plane_serves_points_of_that_plane_only() {
     let mesh = Mesh::new(single([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 10.0]])).unwrap();
     assert_moments(&mesh, PointMass { at: [3.3, 3.3, 0.0], mass: 0.2, spread: Some(5.0) }, 1e-10);
     let error = assemble(&mesh, &weightless(), &[PointMass { at: [3.3, 3.3, 0.5], mass: 0.2, spread: Some(5.0) }]);
-    assert!(matches!(error, Err(AssemblyError::Spread { count: 4, .. })), "{error:?}");
+    assert!(matches!(error, Err(AssemblyError { fault: AssemblyFault::Spread { count: 4, .. }, .. })), "{error:?}");
 }
 
 /// Conserved: mass, first and second moments of the point mass.

@@ -1,6 +1,6 @@
 //! Files that are refused, and what is said about them.
 
-use fem_tet10::{FilePosition, MeshError, parse_msh, read_msh};
+use fem_tet10::{FilePosition, MeshError, MeshFault, parse_msh, read_msh};
 
 use crate::fixtures::data;
 
@@ -37,7 +37,7 @@ fn other_elements_are_named_with_the_help() {
     ];
     for (name, says) in cases {
         let error = read_msh(data(name)).unwrap_err();
-        assert!(matches!(error, MeshError::ElementType { element: 1, .. }), "{error:?}");
+        assert!(matches!(error, MeshError { fault: MeshFault::ElementType { element: 1, .. }, .. }), "{error:?}");
         assert_says(&error.to_string(), says);
         assert_says(&error.to_string(), &[name]);
     }
@@ -46,7 +46,7 @@ fn other_elements_are_named_with_the_help() {
 #[test]
 fn other_versions_are_named_with_the_help() {
     let error = read_msh(data("cube_msh22.msh")).unwrap_err();
-    assert!(matches!(error, MeshError::Version { .. }), "{error:?}");
+    assert!(matches!(error, MeshError { fault: MeshFault::Version { .. }, .. }), "{error:?}");
     assert_says(&error.to_string(), &["cube_msh22.msh", "version 2.2", "-save -format msh41", "-order 2"]);
 }
 
@@ -56,7 +56,7 @@ fn what_is_no_mesh_is_called_so() {
         ["", "\n\n", "solid cube\nfacet normal 0 0 1\n", "*NODE\n1, 0, 0, 0\n", "$Nodes\n0 0 0 0\n$EndNodes\n"]
     {
         let (error, message) = refusal(contents);
-        assert!(matches!(error, MeshError::Version { .. }), "{error:?}");
+        assert!(matches!(error, MeshError { fault: MeshFault::Version { .. }, .. }), "{error:?}");
         assert_says(&message, &["not a MSH 4.1 file", "-format msh41"]);
     }
     let (_, message) = refusal([0xff, 0xd8, 0xff, 0xe0, 0x00]);
@@ -72,7 +72,7 @@ fn what_is_no_mesh_is_called_so() {
 #[test]
 fn a_file_that_is_not_there_is_named() {
     let error = read_msh("no/such.msh").unwrap_err();
-    assert!(matches!(error, MeshError::Io { .. }), "{error:?}");
+    assert!(matches!(error, MeshError { fault: MeshFault::Io { .. }, .. }), "{error:?}");
     assert_says(&error.to_string(), &["no/such.msh", "cannot read"]);
 }
 
@@ -98,7 +98,11 @@ fn a_file_cut_off_anywhere_is_refused() {
         for length in 0..whole.len() {
             // A section that starts at the cut is not noticed: the rest may have been all there was.
             match parse_msh(&whole[..length], name) {
-                Err(MeshError::Syntax { .. } | MeshError::Version { .. } | MeshError::MissingSection { .. }) => {}
+                Err(
+                    MeshError { fault: MeshFault::Syntax { .. }, .. }
+                    | MeshError { fault: MeshFault::Version { .. }, .. }
+                    | MeshError { fault: MeshFault::MissingSection { .. }, .. },
+                ) => {}
                 Ok(_) => {
                     assert!(whole[length..].starts_with(b"\n$Periodic") || whole[length..].starts_with(b"$Periodic"))
                 }
@@ -114,13 +118,16 @@ fn the_place_of_a_cut_is_told() {
     let cut = whole.find("$Elements").unwrap() + "$Elements\n1 24".len();
     let lines = whole[..cut].lines().count();
     let (error, message) = refusal(&whole[..cut]);
-    assert!(matches!(error, MeshError::Syntax { place: FilePosition::Line(l), .. } if l == lines), "{message}");
+    assert!(
+        matches!(error, MeshError { place: Some(FilePosition::Line(l)), fault: MeshFault::Syntax { .. }, .. } if l == lines),
+        "{message}"
+    );
     assert_says(&message, &["$Elements", "the end of the file"]);
 
     let whole = std::fs::read(data("cube_binary.msh")).unwrap();
     let (error, message) = refusal(&whole[..1000]);
     assert!(
-        matches!(error, MeshError::Syntax { place: FilePosition::Byte(b), .. } if (992..=1000).contains(&b)),
+        matches!(error, MeshError { place: Some(FilePosition::Byte(b)), fault: MeshFault::Syntax { .. }, .. } if (992..=1000).contains(&b)),
         "{message}"
     );
     assert_says(&message, &["the end of the file"]);
@@ -131,7 +138,10 @@ fn a_missing_section_is_named() {
     let whole = text("cube.msh");
     let elements = whole.find("$Elements").unwrap();
     let (error, message) = refusal(&whole[..elements]);
-    assert!(matches!(error, MeshError::MissingSection { section: "$Elements", .. }), "{error:?}");
+    assert!(
+        matches!(error, MeshError { fault: MeshFault::MissingSection { section: "$Elements", .. }, .. }),
+        "{error:?}"
+    );
     assert_says(&message, &["there is no $Elements section", "gmsh -3"]);
     let (_, message) = refusal("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
     assert_says(&message, &["there is no $Nodes section"]);
@@ -156,7 +166,7 @@ fn the_line_of_an_error_is_right() {
                 continue; // the size of a number, checked above
             }
             assert!(
-                matches!(error, MeshError::Syntax { place: FilePosition::Line(l), .. } if l == number),
+                matches!(error, MeshError { place: Some(FilePosition::Line(l)), fault: MeshFault::Syntax { .. }, .. } if l == number),
                 "{number}: {message}"
             );
             assert_says(&message, &["expected", "\"1x2\"", &format!("line {number}:")]);
@@ -198,13 +208,16 @@ fn a_total_that_the_blocks_do_not_hold_is_refused() {
             ];
             let says = says.each_ref().map(String::as_str);
             let (error, message) = refusal(format!("{start}{} {claim} {} {}{rest}", words[0], words[2], words[3]));
-            assert!(matches!(error, MeshError::Total { place: FilePosition::Line(l), .. } if l == line), "{message}");
+            assert!(
+                matches!(error, MeshError { place: Some(FilePosition::Line(l)), fault: MeshFault::Total { .. }, .. } if l == line),
+                "{message}"
+            );
             assert_says(&message, &says);
             assert_says(&message, &["save the mesh again"]);
             spoiled[place..place + 8].copy_from_slice(&claim.to_le_bytes());
             let (error, message) = refusal(&spoiled);
             assert!(
-                matches!(error, MeshError::Total { place: FilePosition::Byte(b), .. } if b == place + 8),
+                matches!(error, MeshError { place: Some(FilePosition::Byte(b)), fault: MeshFault::Total { .. }, .. } if b == place + 8),
                 "{message}"
             );
             assert_says(&message, &says);
@@ -222,7 +235,7 @@ fn a_byte_order_mark_is_passed_over() {
 fn what_is_no_ordinary_file_is_refused_before_it_is_opened() {
     let says = |path: &std::path::Path| {
         let error = read_msh(path).unwrap_err();
-        assert!(matches!(error, MeshError::Io { .. }), "{error:?}");
+        assert!(matches!(error, MeshError { fault: MeshFault::Io { .. }, .. }), "{error:?}");
         error.to_string()
     };
     assert_says(&says(&data("")), &["cannot read the mesh", "a folder", "name the mesh file in it"]);
@@ -257,7 +270,10 @@ fn a_group_named_as_another_is_numbered_is_refused() {
         let spoiled = whole.replace(&format!("\"{name}\""), "\"7\"");
         assert_ne!(spoiled, whole);
         let (error, message) = refusal(spoiled);
-        assert!(matches!(&error, MeshError::AmbiguousGroup { name, .. } if name == "7"), "{error:?}");
+        assert!(
+            matches!(&error, MeshError { fault: MeshFault::AmbiguousGroup { name, .. }, .. } if name == "7"),
+            "{error:?}"
+        );
         assert_says(&message, &["physical volume 7 has no name", "named \"7\"", "name the first", "rename the other"]);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use fem_tet10::{AssemblyError, Material, Materials, PointMass, assemble, centroid_lumped_inertia};
+use fem_tet10::{AssemblyError, AssemblyFault, Material, Materials, PointMass, assemble, centroid_lumped_inertia};
 
 use crate::fixtures::{ALUMINIUM, aluminium, data_mesh, workspace_mesh};
 
@@ -61,7 +61,7 @@ fn an_element_without_material_is_told_with_its_group() {
         &[],
         &["two_materials.msh", "has no material", "give one to its physical group \"tip\""],
     );
-    let AssemblyError::NoMaterial { element, .. } = error else { panic!("{error:?}") };
+    let AssemblyError { fault: AssemblyFault::NoMaterial { element, .. }, .. } = error else { panic!("{error:?}") };
     let mesh = data_mesh("two_materials.msh");
     let index = mesh.element_tags().iter().position(|tag| *tag == element).unwrap();
     assert_eq!(mesh.element_groups(index), [1]);
@@ -81,7 +81,9 @@ fn different_materials_for_one_element_are_told_with_both_groups() {
             assert!(message.contains(part), "\"{part}\" is missing in: {message}");
         }
         assert_eq!(centroid_lumped_inertia(&mesh, &materials, &[]).unwrap_err().to_string(), message);
-        let AssemblyError::TwoMaterials { element, mut groups, .. } = error else { panic!("{error:?}") };
+        let AssemblyError { fault: AssemblyFault::TwoMaterials { element, mut groups, .. }, .. } = error else {
+            panic!("{error:?}")
+        };
         groups.sort_unstable();
         assert_eq!(groups, ["all", "tip"]);
         // The first element of the tip, which alone is in both.
@@ -123,7 +125,7 @@ fn a_mass_off_the_body_is_told_with_the_distance() {
         &[point],
         &["two_materials.msh", "[31.0, 14.0, 22.0] is not on the body", "[28.0, 10.0, 10.0], 13.000000 away"],
     );
-    let AssemblyError::OffBody { distance, node, .. } = error else { panic!("{error:?}") };
+    let AssemblyError { fault: AssemblyFault::OffBody { distance, node, .. }, .. } = error else { panic!("{error:?}") };
     assert!((distance - 13.0).abs() < 1e-12);
     let mesh = data_mesh("two_materials.msh");
     let corner = mesh.positions().iter().position(|x| *x == [28.0, 10.0, 10.0]).unwrap();
@@ -141,7 +143,7 @@ fn a_spread_that_cannot_carry_the_mass_is_refused() {
     // One node is near enough, but not at the point: it cannot carry the first moment.
     let beside = PointMass { at: [0.1, 0.0, 0.0], mass: 1.0, spread: Some(0.2) };
     let error = refusal(&aluminium(), &[beside], &["the 1 node(s) within 0.2", "0.100000 away", "use a larger spread"]);
-    assert!(matches!(error, AssemblyError::Spread { count: 1, .. }));
+    assert!(matches!(error, AssemblyError { fault: AssemblyFault::Spread { count: 1, .. }, .. }));
 }
 
 #[test]
@@ -164,8 +166,11 @@ fn a_spread_over_more_nodes_than_can_be_coupled_is_refused() {
     for part in ["plate.msh", &says, "over 500 at most", "use a smaller spread"] {
         assert!(message.contains(part), "\"{part}\" is missing in: {message}");
     }
-    assert!(matches!(error, AssemblyError::SpreadTooWide { count: 501, limit: 500, .. }), "{error:?}");
-    assert!(matches!(spread(1e6), Err(AssemblyError::SpreadTooWide { count: 9437, .. })));
+    assert!(
+        matches!(error, AssemblyError { fault: AssemblyFault::SpreadTooWide { count: 501, limit: 500, .. }, .. }),
+        "{error:?}"
+    );
+    assert!(matches!(spread(1e6), Err(AssemblyError { fault: AssemblyFault::SpreadTooWide { count: 9437, .. }, .. })));
 }
 
 #[test]

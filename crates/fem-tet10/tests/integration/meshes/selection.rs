@@ -1,6 +1,6 @@
 //! Nodes by group and by place.
 
-use fem_tet10::{Mesh, MeshError, NodeGroup, parse_msh};
+use fem_tet10::{Mesh, MeshError, MeshFault, NodeGroup, parse_msh};
 use nalgebra::Vector3;
 
 use crate::fixtures::{data, data_mesh, parts, workspace_mesh};
@@ -48,7 +48,7 @@ fn a_name_in_several_dimensions_is_refused_where_it_is_asked_for() {
     let text = text.replace("\"rim\"", "\"head\"").replace("\"mark\"", "\"head\"");
     let mesh = parse_msh(text.as_bytes(), "heads.msh").unwrap();
     let error = mesh.group_nodes("head").unwrap_err();
-    let MeshError::SeveralGroups { kinds, .. } = &error else { panic!("{error:?}") };
+    let MeshError { fault: MeshFault::SeveralGroups { kinds, .. }, .. } = &error else { panic!("{error:?}") };
     assert_eq!(kinds, &["surface", "point", "curve"]);
     assert!(mesh.surface_weights("head").is_ok());
 }
@@ -58,7 +58,10 @@ fn a_group_of_nodes_that_are_not_there_is_refused() {
     let mut parts = parts(&data_mesh("cube.msh"));
     parts.node_groups = vec![NodeGroup { name: "edge".to_owned(), dimension: 1, nodes: vec![1, 4711] }];
     let error = Mesh::new(parts).unwrap_err();
-    assert!(matches!(&error, MeshError::UnknownGroupNode { kind: "curve", node: 4711, .. }), "{error:?}");
+    assert!(
+        matches!(&error, MeshError { fault: MeshFault::UnknownGroupNode { kind: "curve", node: 4711, .. }, .. }),
+        "{error:?}"
+    );
 }
 
 #[test]

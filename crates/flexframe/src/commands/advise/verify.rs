@@ -44,7 +44,7 @@ impl<'a, 'b> Base<'a, 'b> {
         // Settled as the others are, so that nothing but the switch is between them.
         let settled = settled(scene, model, None);
         let motion = follow(&settled, &builder.build(&settled, |_| ())?)
-            .map_err(|failure| RunError::Verify { scene: scene.path.clone(), failure: Box::new(failure) })?;
+            .map_err(|source| RunError::Verify { scene: scene.path.clone(), source: Box::new(source) })?;
         Ok(Self { scene, model, builder, motion })
     }
 

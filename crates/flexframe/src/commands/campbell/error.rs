@@ -13,47 +13,30 @@ pub(super) const MAX_SPEEDS: usize = 10_000;
 
 /// A diagram that could not be made.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum CampbellError {
     /// The scene cannot be built, or has no modes.
-    #[error(transparent)]
+    #[error("{0}")]
     Build(#[from] BuildError),
     /// The vibrations cannot be found.
     #[error("{}: {source}", scene.display())]
-    Eigen {
-        /// The scene file.
-        scene: PathBuf,
-        /// The reason.
-        source: EigenError,
-    },
+    Eigen { scene: PathBuf, source: EigenError },
     /// The axis has no direction.
     #[error("axis {axis:?}: expected three finite numbers that are not all zero, in the axes of the mesh")]
-    Axis {
-        /// The axis.
-        axis: [f64; 3],
-    },
+    Axis { axis: [f64; 3] },
     /// The speeds are no range.
     #[error(
         "speeds {start}:{end}:{count}: expected start:end:count, radians per time, with 0 ≤ start < end and a count of 2 \
          to {MAX_SPEEDS}, e.g. 0:200:50"
     )]
-    Speeds {
-        /// The lowest.
-        start: f64,
-        /// The highest.
-        end: f64,
-        /// How many.
-        count: usize,
-    },
+    Speeds { start: f64, end: f64, count: usize },
     /// An engine order is not positive.
     #[error("order {order}: expected a positive number of times a turn, e.g. 1, 2 or 0.5")]
-    Order {
-        /// The order.
-        order: f64,
-    },
+    Order { order: f64 },
     /// The diagram cannot be drawn.
-    #[error(transparent)]
+    #[error("{0}")]
     Figure(#[from] FigureError),
     /// A file cannot be written.
-    #[error(transparent)]
+    #[error("{0}")]
     Write(#[from] WriteError),
 }

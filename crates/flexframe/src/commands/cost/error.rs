@@ -11,34 +11,28 @@ use crate::files::write_error::WriteError;
 
 /// A price list that could not be made.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum CostError {
     /// The scene cannot be built.
-    #[error(transparent)]
+    #[error("{0}")]
     Build(#[from] BuildError),
     /// No body was given.
     #[error("there is no body to run")]
     NoBody,
-    /// No run of the reference came to its end.
+    /// No run of the reference came to its end. `steps`: those of the last try.
     #[error(
-        "{scene}: no reference can be made: a run of {steps} steps of the exponential scheme failed: {failure}; make the \
+        "{scene}: no reference can be made: a run of {steps} steps of the exponential scheme failed: {source}; make the \
          run shorter, or give more time with --patience",
         scene = scene.display()
     )]
-    Reference {
-        /// The scene file.
-        scene: PathBuf,
-        /// Steps of the last try.
-        steps: u64,
-        /// Reason of the failure.
-        failure: RunFailure,
-    },
+    Reference { scene: PathBuf, steps: u64, source: RunFailure },
     /// The diagram cannot be drawn.
-    #[error(transparent)]
+    #[error("{0}")]
     Figure(#[from] FigureError),
     /// A file cannot be written.
-    #[error(transparent)]
+    #[error("{0}")]
     Write(#[from] WriteError),
     /// A file that is there may not be replaced.
-    #[error(transparent)]
+    #[error("{0}")]
     Output(#[from] OutputError),
 }

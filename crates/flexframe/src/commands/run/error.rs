@@ -14,85 +14,45 @@ use crate::files::write_error::help_of_writing;
 
 /// A run that could not be done.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum RunError {
     /// The scene cannot be built.
-    #[error(transparent)]
+    #[error("{0}")]
     Build(#[from] BuildError),
     /// The motion cannot start.
     #[error("{}", source.in_scene(scene))]
-    Setup {
-        /// The scene file.
-        scene: PathBuf,
-        /// The reason.
-        source: Box<StartError>,
-    },
-    /// A step failed. The states before it are in the unfinished file.
+    Setup { scene: PathBuf, source: Box<StartError> },
+    /// A step failed. `results`: the unfinished file, with the states before it; `body`: where there are several.
     #[error("{}{source} (the states before it are in {results})", prefix(body.as_deref()), results = results.display())]
-    Step {
-        /// The unfinished file.
-        results: PathBuf,
-        /// The body, where there are several.
-        body: Option<String>,
-        /// The reason.
-        source: StepError,
-    },
+    Step { results: PathBuf, body: Option<String>, source: StepError },
     /// The motion has come where the model is known to be wrong. The states before it are in the unfinished file.
+    /// `results`: the unfinished file; `body`: where there are several; `time`: the first such.
     #[error("{}at time {time:.6}: {refusal} (the states up to there are in {})", prefix(body.as_deref()), results.display())]
-    Refused {
-        /// The unfinished file.
-        results: PathBuf,
-        /// The body, where there are several.
-        body: Option<String>,
-        /// When it was so for the first time.
-        time: f64,
-        /// The reason.
-        refusal: Refusal,
-    },
+    Refused { results: PathBuf, body: Option<String>, time: f64, refusal: Refusal },
     /// The results file cannot be written.
-    #[error(transparent)]
+    #[error("{0}")]
     File(#[from] FileError),
     /// The scene cannot be run to compare other runs with.
-    #[error("{}: the scene itself does not run, so that there is nothing to verify against: {failure}", scene.display())]
-    Verify {
-        /// The scene file.
-        scene: PathBuf,
-        /// The reason.
-        failure: Box<RunFailure>,
-    },
-    /// The run was asked to stop. The states up to there are in the unfinished file.
+    #[error("{}: the scene itself does not run, so that there is nothing to verify against: {source}", scene.display())]
+    Verify { scene: PathBuf, source: Box<RunFailure> },
+    /// The run was asked to stop. `part`: the unfinished file, with the states up to there; `replaces`: another results file is
+    /// there that it may replace.
     #[error("stopped at time {time}; go on with: flexframe resume {}{}", part.display(), if *replaces { " --overwrite" } else { "" })]
-    Stopped {
-        /// The unfinished file.
-        part: PathBuf,
-        /// The time that was reached.
-        time: f64,
-        /// True if another results file is there that it may replace.
-        replaces: bool,
-    },
+    Stopped { part: PathBuf, time: f64, replaces: bool },
     /// The scene in an unfinished file is invalid.
-    #[error(transparent)]
+    #[error("{0}")]
     Scene(#[from] SceneError),
-    /// The checkpoint of an unfinished file is that of another scene, or damaged.
+    /// The checkpoint of an unfinished file is that of another scene, or damaged. `part`: the unfinished file.
     #[error("{}: {source}", part.display())]
-    Restore {
-        /// The unfinished file.
-        part: PathBuf,
-        /// The reason.
-        source: CheckpointError,
-    },
-    /// A result of now differs from that of then.
+    Restore { part: PathBuf, source: CheckpointError },
+    /// A result of now differs from that of then. `part`: the unfinished file.
     #[error(
         "{}: {what} has changed since the run began (a changed mesh or table, another version of flexframe, or another machine); a run is continued only if it stays the same bit for bit: run the scene again with --overwrite",
         part.display()
     )]
-    Changed {
-        /// The unfinished file.
-        part: PathBuf,
-        /// The changed part.
-        what: &'static str,
-    },
+    Changed { part: PathBuf, what: &'static str },
     /// The results would go where a file is that the run reads.
-    #[error(transparent)]
+    #[error("{0}")]
     Output(#[from] OutputError),
     /// The results file would be larger than anybody wants unasked.
     #[error(
@@ -100,23 +60,13 @@ pub enum RunError {
          `interval` out; if you want a file of more than 1 GB, allow it with --large",
         scene.display(), estimate.rows, memory::Bytes(usize::try_from(estimate.bytes).unwrap_or(usize::MAX))
     )]
-    Large {
-        /// The scene file.
-        scene: PathBuf,
-        /// Its estimate.
-        estimate: Estimate,
-    },
+    Large { scene: PathBuf, estimate: Estimate },
     /// A run of no body.
     #[error("there is no body to run; give one or more")]
     NoBody,
     /// The output folder cannot be made.
     #[error("{}: cannot make the output folder: {source}\n = {}", folder.display(), help_of_writing(source))]
-    Folder {
-        /// The folder.
-        folder: PathBuf,
-        /// The reason.
-        source: std::io::Error,
-    },
+    Folder { folder: PathBuf, source: std::io::Error },
 }
 
 impl RunError {
@@ -139,22 +89,19 @@ fn prefix(body: Option<&str>) -> String {
 
 /// Reason of a run that did not come to its end.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum RunFailure {
     /// It could not start.
-    #[error(transparent)]
+    #[error("{0}")]
     Start(#[from] StartError),
     /// A step failed.
-    #[error(transparent)]
+    #[error("{0}")]
     Step(#[from] StepError),
-    /// It was stopped when the time that it may take was used up.
+    /// It was stopped when the time that it may take was used up. `patience`: the time of computing that it was
+    /// allowed, s; `reached`: the part of the motion, 0 to 1.
     #[error(
         "stopped at {:.2} % of the motion, when its patience of {patience} s was used up (allow more with --patience)",
         100.0 * reached
     )]
-    OutOfPatience {
-        /// Time of computing that it was allowed, seconds.
-        patience: f64,
-        /// Part of the motion that it came to, 0 to 1.
-        reached: f64,
-    },
+    OutOfPatience { patience: f64, reached: f64 },
 }

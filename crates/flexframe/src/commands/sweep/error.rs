@@ -14,45 +14,23 @@ pub(crate) const SWEEP_CURE: &str = "correct it: docs/reference/cli.md, \"Sweeps
 
 /// A sweep that could not be made. What fails in a row of it is in its table.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum SweepError {
     /// The file of the sweep cannot be read.
     #[error("{}: the file of the sweep cannot be read: {source}\n = check its name; it is relative to the folder you are in", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        source: std::io::Error,
-    },
+    Unreadable { path: PathBuf, source: std::io::Error },
     /// The file of the sweep says something that cannot be right.
     #[error("{}: `{key}`: found {found}, expected {expected}\n = {SWEEP_CURE}", path.display())]
-    Invalid {
-        /// The file.
-        path: PathBuf,
-        /// The key in it.
-        key: String,
-        /// The value that stands there.
-        found: String,
-        /// The value that should stand there.
-        expected: String,
-    },
-    /// The file of the sweep is not TOML, or has another form.
+    Invalid { path: PathBuf, key: String, found: String, expected: String },
+    /// The file of the sweep is not TOML, or has another form. `message`: of the parser, with the place.
     #[error("{}: {message}\n = {SWEEP_CURE}", path.display())]
-    Form {
-        /// The file.
-        path: PathBuf,
-        /// Message of the parser, with the place.
-        message: String,
-    },
-    /// The scene cannot be read, or no row of the sweep is a scene.
+    Form { path: PathBuf, message: String },
+    /// The scene cannot be read, or no row of the sweep is a scene. `key`: the parameters of the first row, if it is
+    /// not the scene itself.
     #[error("{source}{}", where_(key.as_deref()))]
-    Scene {
-        /// The parameters of the first row, if it is not the scene itself.
-        key: Option<String>,
-        /// The reason.
-        source: SceneError,
-    },
+    Scene { key: Option<String>, source: SceneError },
     /// The body cannot be made.
-    #[error(transparent)]
+    #[error("{0}")]
     Build(#[from] BuildError),
     /// A file that is there is not the table of this sweep.
     #[error(
@@ -60,14 +38,9 @@ pub enum SweepError {
          with --overwrite",
         path.display()
     )]
-    OtherTable {
-        /// The file.
-        path: PathBuf,
-        /// Its kind.
-        what: String,
-    },
+    OtherTable { path: PathBuf, what: String },
     /// The table would go where a file is that the sweep reads.
-    #[error(transparent)]
+    #[error("{0}")]
     Output(#[from] OutputError),
     /// A file is where the CSV file would go, which the sweep has not written.
     #[error(
@@ -75,54 +48,31 @@ pub enum SweepError {
          the table with -o, or replace both with --overwrite",
         path.display()
     )]
-    OtherCsv {
-        /// The file.
-        path: PathBuf,
-    },
+    OtherCsv { path: PathBuf },
     /// Another sweep writes the table.
     #[error("{}: another sweep is writing this table\n = wait for its end, or choose another file with -o", path.display())]
-    Busy {
-        /// The table.
-        path: PathBuf,
-    },
-    /// A shard has rows of other files than there are now.
+    Busy { path: PathBuf },
+    /// A shard has rows of other files than there are now. `path`: the table of the shard.
     #[error(
         "{}: {rows} of its rows were computed from files that have changed since: a mesh, what it includes, or a table of a load\n = \
          run this shard again, which computes them anew, and then merge",
         path.display()
     )]
-    OtherFiles {
-        /// The table of the shard.
-        path: PathBuf,
-        /// So many.
-        rows: usize,
-    },
-    /// No row is done.
+    OtherFiles { path: PathBuf, rows: usize },
+    /// No row is done. `row`: the first that failed; `words`: its reason.
     #[error("{}: all rows that were run have failed; row {row}: {words}", path.display())]
-    AllFailed {
-        /// The table.
-        path: PathBuf,
-        /// The first of them.
-        row: usize,
-        /// Reason of the failure.
-        words: String,
-    },
-    /// There is nothing to merge.
+    AllFailed { path: PathBuf, row: usize, words: String },
+    /// There is nothing to merge. `first`: the table of the first shard; `count`: as many were asked for.
     #[error(
         "{}: there is no such table, nor one of the other shards of {count}; run the shards first (--shard 1/{count} and so on), with \
          the same -o, or merge as many as there are", first.display()
     )]
-    NoShard {
-        /// The table of the first shard.
-        first: PathBuf,
-        /// As many shards were asked for.
-        count: usize,
-    },
+    NoShard { first: PathBuf, count: usize },
     /// The table cannot be written.
-    #[error(transparent)]
+    #[error("{0}")]
     Table(#[from] SealedError),
     /// A folder cannot be made.
-    #[error(transparent)]
+    #[error("{0}")]
     Write(#[from] WriteError),
 }
 
