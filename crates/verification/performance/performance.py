@@ -43,9 +43,9 @@ def main(words):
     for part in parts:
         PARTS[part](Store(part, asdict(EFFORTS[name])), EFFORTS[name])
     # Here, since the process that measures has to be small.
-    import page
+    from page.write import write
 
-    page.write()
+    write()
 
 
 if __name__ == "__main__":

@@ -5,9 +5,9 @@ import "./style.css";
 import { Clock } from "./clock";
 import { readReport, type Report } from "./data";
 import { Motion } from "./motion";
-import { panels } from "./panels";
+import { panels } from "./plots/panels";
 import { listenToPrinter } from "./print";
-import { Viewer } from "./viewer";
+import { Viewer } from "./picture/viewer";
 
 function header(report: Report) {
     document.title = `${report.title} – report`;

@@ -1,7 +1,7 @@
 // The report on paper: all its parts, in the light scheme, with a picture that stands still.
 
-import type { Panels } from "./panels";
-import type { Viewer } from "./viewer";
+import type { Panels } from "./plots/panels";
+import type { Viewer } from "./picture/viewer";
 
 /// Width of plots: that of A4 and of Letter between their margins, with some room.
 const PLOT_WIDTH = 660;

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { SCALE } from "../src/scale.mjs";
+import { SCALE } from "../src/picture/scale.mjs";
 import { frame, launch, open, pixels } from "./browser.mjs";
 
 let browser;

@@ -5,15 +5,11 @@ import sys
 from pathlib import Path
 from string import Template
 
-import figures
 import loop
-import loop_tables
 import modes
-import modes_tables
-import size_tables
-import summary
-from markdown import number, table
 from measure import HERE
+from page import figures, loop_tables, modes_tables, size_tables, summary
+from page.markdown import number, table
 from store import FOLDER
 
 PAGE = Path("docs/evidence/performance.md")
@@ -60,7 +56,7 @@ def write():
         "end": f"{loop.END:g}",
         "errors": loop_tables.error_table(of_loop, speeds),
     }
-    PAGE.write_text(Template((HERE / "page.template").read_text()).substitute(words))
+    PAGE.write_text(Template((HERE / "page/page.template").read_text()).substitute(words))
     print(PAGE, *sorted(folder.glob("*.svg")), sep="\n")
 
 

@@ -1,10 +1,10 @@
 // One plot of courses over time, with the values at the time that is shown.
 
 import uPlot from "uplot";
-import type { Clock } from "./clock";
-import { cssColour } from "./colours";
-import { number, withUnit } from "./format";
-import { rowAt } from "./motion";
+import type { Clock } from "../clock";
+import { cssColour } from "../colours";
+import { number, withUnit } from "../format";
+import { rowAt } from "../motion";
 
 export interface Course { name: string; values: Float32Array }
 

@@ -2,9 +2,9 @@
 
 import * as THREE from "three";
 import { Body } from "./body";
-import { cssColour } from "./colours";
-import type { BodyData } from "./data";
-import type { BodyMotion } from "./motion";
+import { cssColour } from "../colours";
+import type { BodyData } from "../data";
+import type { BodyMotion } from "../motion";
 
 const AXIS_COLOURS = ["axis-x", "axis-y", "axis-z"];
 

@@ -1,6 +1,6 @@
 """Tables and numbers in Markdown."""
 
-import summary
+from page import summary
 
 
 def table(head, rows, left=1):

@@ -2,10 +2,10 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { cssColour } from "./colours";
-import type { Report } from "./data";
-import { roundStep } from "./format";
-import type { BodyMotion, Motion } from "./motion";
+import { cssColour } from "../colours";
+import type { Report } from "../data";
+import { roundStep } from "../format";
+import type { BodyMotion, Motion } from "../motion";
 import { stagedBodies, type StagedBody } from "./staged";
 import { Triad } from "./triad";
 

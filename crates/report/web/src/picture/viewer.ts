@@ -1,12 +1,12 @@
 // The picture of the body with its controls.
 
 import type { Body, Field } from "./body";
-import { nextStep, type Clock } from "./clock";
-import { onSchemeChange } from "./colours";
+import { nextStep, type Clock } from "../clock";
+import { onSchemeChange } from "../colours";
 import { SCALE } from "./scale.mjs";
-import type { Report } from "./data";
-import { minus, number, timeDecimals, withUnit } from "./format";
-import { Motion } from "./motion";
+import type { Report } from "../data";
+import { minus, number, timeDecimals, withUnit } from "../format";
+import { Motion } from "../motion";
 import { Stage } from "./stage";
 
 /// A shape shown alone swings so far, as a part of the body's radius.

@@ -3,8 +3,8 @@
 from statistics import median
 
 import loop
-import summary
-from markdown import number, ratio, table
+from page import summary
+from page.markdown import number, ratio, table
 
 
 def speeds_by_modes(results):

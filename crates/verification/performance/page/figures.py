@@ -5,8 +5,8 @@ import math
 import loop as the_loop
 import matplotlib
 import modes as the_modes
-import summary
-from markdown import number
+from page import summary
+from page.markdown import number
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plot

@@ -1,8 +1,8 @@
 """Tables of docs/evidence/performance.md about cost against size."""
 
 import modes
-import summary
-from markdown import number, seconds, spread, table
+from page import summary
+from page.markdown import number, seconds, spread, table
 
 
 def runs_by_size(results):

@@ -2,8 +2,8 @@
 // layer for each shape. A frame sends only the coordinates.
 
 import * as THREE from "three";
-import { indices, quantised, single, type BodyData, type Numbers } from "./data";
-import { rgb } from "./colours";
+import { indices, quantised, single, type BodyData, type Numbers } from "../data";
+import { rgb } from "../colours";
 import { SCALE } from "./scale.mjs";
 
 export type Field = "none" | "displacement" | "stress";

@@ -1,8 +1,8 @@
 """Tables of docs/evidence/performance.md about the modes."""
 
 import modes
-import summary
-from markdown import number, ratio, seconds, spread, table
+from page import summary
+from page.markdown import number, ratio, seconds, spread, table
 
 
 def modes_by_case(results):

@@ -1,12 +1,12 @@
 // Plots and tables beside the body.
 
-import type { Clock } from "./clock";
-import { onSchemeChange } from "./colours";
-import { double, single, type BodyData, type Component, type Report } from "./data";
-import { number, withUnit } from "./format";
-import type { Motion } from "./motion";
+import type { Clock } from "../clock";
+import { onSchemeChange } from "../colours";
+import { double, single, type BodyData, type Component, type Report } from "../data";
+import { number, withUnit } from "../format";
+import type { Motion } from "../motion";
 import { Plot, PlotGroup } from "./plot";
-import type { Viewer } from "./viewer";
+import type { Viewer } from "../picture/viewer";
 
 type Cell = string | HTMLElement;
 
