@@ -12,13 +12,13 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 
-use crate::arrays::{fields, table, view};
-use crate::constants::constants;
 use crate::errors::{exception, warn, wrong_input};
-use crate::html::{heading, table as html_table};
 use crate::interrupt::{Stop, interruptible};
-use crate::numbers::numbers;
 use crate::scene::Scene;
+use crate::values::arrays::{fields, table, view};
+use crate::values::constants::constants;
+use crate::values::html::{heading, table as html_table};
+use crate::values::numbers::numbers;
 
 /// The body of a scene: its mesh is read, its modes are found, and it is reduced.
 ///

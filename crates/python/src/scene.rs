@@ -10,10 +10,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::builder::{MODULE, builder};
-use crate::dict::{to_text, to_toml};
 use crate::errors::{exception, wrong_input};
-use crate::html::{escaped, heading};
 use crate::threads::detached;
+use crate::values::dict::{to_text, to_toml};
+use crate::values::html::{escaped, heading};
 
 /// Name of a dict that gets none.
 const NAME: &str = "scene";

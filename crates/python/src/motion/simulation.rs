@@ -15,15 +15,15 @@ use pyo3::types::PyDict;
 
 use crate::body::Body;
 use crate::errors::{add_note, exception, exception_of, wrong_input};
-use crate::faults::Faults;
-use crate::load::{listed, load_of};
-use crate::motion::Points;
-use crate::numbers::described;
-use crate::results::{Occurred, Rows};
-use crate::row::Row;
+use crate::motion::faults::Faults;
+use crate::motion::load::{listed, load_of};
+use crate::motion::seen::Points;
+use crate::motion::state::{changed, to_dict};
+use crate::rows::results::{Occurred, Rows};
+use crate::rows::row::Row;
 use crate::scene::Scene;
-use crate::state::{changed, to_dict};
 use crate::threads::{detached, in_pool};
+use crate::values::numbers::described;
 
 /// Steps between two looks at signals.
 const STEPS_PER_LOOK: u64 = 4096;

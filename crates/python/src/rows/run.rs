@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use crate::builder::builder;
 use crate::errors::{add_note, exception, warn};
 use crate::interrupt::{Stop, interruptible};
-use crate::results::read_results;
+use crate::rows::results::read_results;
 use crate::scene::Scene;
 
 /// Runs the bodies of a scene as the program does, and writes their results to `<folder>/<name of the scene>.h5`.

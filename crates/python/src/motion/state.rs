@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::wrong_input;
-use crate::numbers::{numbers, vector};
+use crate::values::numbers::{numbers, vector};
 
 const KEYS: [&str; 7] =
     ["time", "attitude", "origin", "velocity", "angular_velocity", "modal_displacement", "modal_velocity"];

@@ -9,7 +9,7 @@ use flexframe::row::BodyRow;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
-use crate::columns::{of_row, of_run};
+use crate::rows::columns::{of_row, of_run};
 use crate::threads::in_pool;
 
 /// Path of the time.

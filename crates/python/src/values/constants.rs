@@ -11,7 +11,7 @@ use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{matrix3, view};
+use crate::values::arrays::{matrix3, view};
 
 /// All of them by the names of [`Constants`]: those without an index of their own look into the model, the others are put
 /// together.

@@ -9,8 +9,8 @@ use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::columns::{History, dimensions, of_run, scope, shaped};
 use crate::errors::exception;
+use crate::rows::columns::{History, dimensions, of_run, scope, shaped};
 use crate::scene::units;
 use crate::threads::detached;
 

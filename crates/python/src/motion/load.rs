@@ -8,9 +8,9 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::errors::{add_note, wrong_input};
-use crate::faults::Faults;
-use crate::motion::{Motion, Points, point_number};
-use crate::numbers::{numbers, vector};
+use crate::motion::faults::Faults;
+use crate::motion::seen::{Motion, Points, point_number};
+use crate::values::numbers::{numbers, vector};
 
 /// The entries of a list of loads.
 pub(crate) fn listed(loads: Option<Bound<'_, PyAny>>) -> PyResult<Vec<Bound<'_, PyAny>>> {
