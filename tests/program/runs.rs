@@ -8,3 +8,4 @@ pub(crate) mod reactions;
 pub(crate) mod rows;
 pub(crate) mod spin_up;
 pub(crate) mod threads;
+pub(crate) mod tied;

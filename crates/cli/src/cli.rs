@@ -430,13 +430,14 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Run { scene: SceneArgs { scene, json }, output, files, large, solver } => {
             output::require_file("--output", output.as_deref())?;
-            let scenes = read_bodies(scene)?;
-            if let Some(to) = solver.take_of(&scenes, &mut builder, signals.slepc())? {
-                return write_only(&scenes[0], &builder, &to, files.overwrite, bar);
+            let system = scene.read_system()?;
+            system.bodies.iter().for_each(tell_doubts);
+            if let Some(to) = solver.take_of(&system.bodies, &mut builder, signals.slepc())? {
+                return write_only(&system.bodies[0], &builder, &to, files.overwrite, bar);
             }
-            let folder = folder(&scenes[0], output)?;
+            let folder = folder(&system.bodies[0], output)?;
             let settings = RunSettings { large, ..settings(&signals, files.overwrite, &builder) };
-            let (_, report) = run::run(&scenes, &folder, &settings, |p| {
+            let (_, report) = run::run(&system, &folder, &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;

@@ -66,11 +66,16 @@ impl SceneInput {
 
     /// Reads the scenes of all bodies, or of the one that was named.
     pub fn read_bodies(self) -> Result<Vec<Scene>, Box<dyn Error>> {
+        Ok(self.read_system()?.bodies)
+    }
+
+    /// Reads all bodies with what ties them together, or the one that was named.
+    pub fn read_system(self) -> Result<System, Box<dyn Error>> {
         if self.body.is_some() {
-            return Ok(vec![self.read()?]);
+            return Ok(self.read()?.into());
         }
         let (text, path) = self.text()?;
-        Ok(System::parse(&text, path)?.bodies)
+        Ok(System::parse(&text, path)?)
     }
 
     /// The text with the values set, and where it comes from.

@@ -72,6 +72,7 @@ pub use system::joint::coordinate::{Coordinate, JointCoordinates};
 pub use system::joint::coupling::{CoupledCoordinate, Coupling};
 pub use system::joint::drive::JointDrive;
 pub use system::joint::force::{Friction, JointForce, Stops};
+pub use system::joint::observation::JointObservation;
 pub use system::joint::row::Row;
 pub use system::marker::Marker;
 pub use system::marker::motion::{MarkerMotion, MarkerWrench};

@@ -92,7 +92,11 @@ impl Motion {
             Err(error) => return Err((Box::new(fmu), error)),
         };
         Ok(Self {
-            row: Row { time: 0.0, bodies: fmu.bodies.iter().map(|body| BodyRow::new(&body.model)).collect() },
+            row: Row {
+                time: 0.0,
+                bodies: fmu.bodies.iter().map(|body| BodyRow::new(&body.model)).collect(),
+                joints: Vec::new(),
+            },
             reviewed: Some(Reviewed::of(Owner { fmu, initial })),
             changed: vec![false; simulations.len()],
             simulations,

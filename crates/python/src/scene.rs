@@ -31,6 +31,7 @@ const NAME: &str = "scene";
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Scene {
     /// One for each body.
+    system: Arc<flexframe::scene::System>,
     scenes: Vec<Arc<flexframe::scene::Scene>>,
     /// The body that was named.
     body: Option<String>,
@@ -53,9 +54,9 @@ impl Scene {
         }
     }
 
-    /// The scenes of all its bodies.
-    pub(crate) fn scenes(&self) -> Vec<flexframe::scene::Scene> {
-        self.scenes.iter().map(|scene| (**scene).clone()).collect()
+    /// Its bodies with what ties them together.
+    pub(crate) fn system(&self) -> &Arc<flexframe::scene::System> {
+        &self.system
     }
 
     /// What builds its bodies.
@@ -70,12 +71,13 @@ impl Scene {
 
     fn parsed(py: Python<'_>, text: &str, path: PathBuf, body: Option<String>, builder: Builder) -> PyResult<Self> {
         // Tables of histories are read, too.
-        let scenes = detached(py, || match &body {
-            Some(body) => Ok(vec![flexframe::scene::Scene::parse_body(text, path, Some(body))?]),
-            None => Ok(flexframe::scene::System::parse(text, path)?.bodies),
+        let system = detached(py, || match &body {
+            Some(body) => Ok(flexframe::scene::Scene::parse_body(text, path, Some(body))?.into()),
+            None => flexframe::scene::System::parse(text, path),
         })?;
-        let scenes = scenes.map_err(|error: SceneError| exception(py, &error))?;
-        Ok(Self { scenes: scenes.into_iter().map(Arc::new).collect(), body, builder })
+        let system = Arc::new(system.map_err(|error: SceneError| exception(py, &error))?);
+        let scenes = system.bodies.iter().cloned().map(Arc::new).collect();
+        Ok(Self { system, scenes, body, builder })
     }
 }
 

@@ -9,9 +9,9 @@ use crate::deserialize::from_document;
 use crate::document::{BODIES, Document, Node, OF_A_BODY, OUTPUT_OF_A_BODY};
 use crate::error::SceneError;
 use crate::file::{refuse_long, text_of};
-use crate::joint::{Bushing, Joint, Spring};
+use crate::joint::{Bushing, End, Joint, Spring};
 use crate::marker::GroundMarker;
-use crate::name::{GROUND, check_key};
+use crate::name::{GROUND, ONLY_BODY, check_key};
 use crate::place::Place;
 use crate::scene::Scene;
 
@@ -19,7 +19,8 @@ use crate::scene::Scene;
 const MAX_BODIES: usize = 1000;
 
 /// Keys at the root of a scene of several bodies.
-const SHARED: [&str; 9] = ["title", "units", BODIES, GROUND, "joints", "springs", "bushings", "time", "output"];
+const SHARED: [&str; 10] =
+    ["title", "units", "relaxed", BODIES, GROUND, "joints", "springs", "bushings", "time", "output"];
 
 /// A scene of one body or several, each as a scene of its own with the units, the times and the rows of all.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +35,16 @@ pub struct System {
     pub springs: Vec<Spring>,
     /// Bushings between markers, in the order of the file.
     pub bushings: Vec<Bushing>,
+    /// True if tied bodies begin deformed as the forces of their motion and their joints ask, so that nothing rings.
+    pub relaxed: bool,
+}
+
+/// A body alone.
+impl From<Scene> for System {
+    fn from(scene: Scene) -> Self {
+        let Ties { ground, joints, springs, bushings, relaxed } = Ties::default();
+        Self { bodies: vec![scene], ground, joints, springs, bushings, relaxed }
+    }
 }
 
 impl System {
@@ -59,16 +70,30 @@ impl System {
         let ties = document.take_ties();
         let bodies = bodies(&document, text, ties.as_ref())?;
         let end = bodies.first().map_or(0.0, |scene| scene.time.end);
-        let Ties { ground, joints, springs, bushings } = match &ties {
+        let Ties { ground, joints, springs, bushings, relaxed } = match &ties {
             Some(ties) => Check::new(ties, end).ties(from_document(ties)?, &bodies)?,
             None => Ties::default(),
         };
-        Ok(Self { bodies, ground, joints, springs, bushings })
+        Ok(Self { bodies, ground, joints, springs, bushings, relaxed })
     }
 
     /// True if joints, springs or bushings tie bodies together or to the ground.
     pub fn has_ties(&self) -> bool {
         self.bodies.iter().any(|scene| scene.tied)
+    }
+
+    /// The name of an end as `between` has it, such as `arm.root`, `ground.wall` or `ground`.
+    pub fn name_of(&self, end: End) -> String {
+        let name = match end {
+            End::Body { body, marker } => self.bodies.get(body).and_then(|scene| {
+                let marker = scene.markers.get(marker)?;
+                Some(format!("{}.{}", scene.name.as_deref().unwrap_or(ONLY_BODY), marker.name))
+            }),
+            End::Ground { marker } => {
+                marker.and_then(|marker| self.ground.get(marker)).map(|marker| format!("{GROUND}.{}", marker.name))
+            }
+        };
+        name.unwrap_or_else(|| GROUND.to_owned())
     }
 
     /// The place in the scene file of the value with a key path such as `joints[2].between`, or of what is around it.

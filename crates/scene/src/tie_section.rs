@@ -13,6 +13,7 @@ use crate::joint::{AlongAndAbout, Coordinate, Friction, JointKind};
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct TieSections {
+    pub relaxed: bool,
     pub ground: GroundSection,
     pub joints: Vec<JointSection>,
     pub springs: Vec<SpringSection>,

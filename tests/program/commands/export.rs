@@ -242,7 +242,7 @@ fn what_cannot_be_exported_is_refused_and_an_unfinished_run_is_marked() {
         let motion = now.unwrap();
         let time = motion.time;
         let body = BodyRow { motion, ..BodyRow::new(&model) };
-        writer.push(&Row { time, bodies: vec![body] }).unwrap();
+        writer.push(&Row { time, bodies: vec![body], joints: Vec::new() }).unwrap();
     }
     drop(writer);
     let said = done(&["export", part.to_str().unwrap(), "--csv", &at("cut.csv")]);

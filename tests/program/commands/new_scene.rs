@@ -30,7 +30,7 @@ fn it_names_groups_and_mass_and_runs() {
     let scene = Scene::read(&path).unwrap();
     let Body::Meshed(body) = &scene.body else { panic!("it has a mesh") };
     assert_eq!(body.mesh, mesh);
-    let (models, report) = run::run(&[scene], folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let (models, report) = run::run(&scene.into(), folder.path(), &RunSettings::default(), |_| ()).unwrap();
     let mass = models[0].body.mass;
     assert!((mass / 1.57e-4 - 1.0).abs() < 1e-9, "{mass}");
     let balances = &report.bodies[0].balances;

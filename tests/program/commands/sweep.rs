@@ -87,8 +87,13 @@ fn a_blade_at_twenty_speeds_costs_one_reduction_and_each_row_is_that_of_its_own_
     for row in [0, 7, 19] {
         let text = SCENE.replace("10.0]", &format!("{:?}]", speeds[row]));
         let scene = Scene::parse(&text, case.path("blade.toml")).unwrap();
-        run::run(&[scene], &case.path("alone"), &RunSettings { overwrite: true, ..RunSettings::default() }, |_| ())
-            .unwrap();
+        run::run(
+            &scene.into(),
+            &case.path("alone"),
+            &RunSettings { overwrite: true, ..RunSettings::default() },
+            |_| (),
+        )
+        .unwrap();
         let file = hdf5::File::open(case.path("alone/blade.h5")).unwrap();
         let alone: Vec<f64> = file.dataset("points/displacement").unwrap().read_raw().unwrap();
         assert_eq!(tip[3 * row..3 * row + 3], alone[alone.len() - 3..]);

@@ -1,7 +1,5 @@
 //! Stress from the scene to the results file, against closed forms.
 
-use std::slice::from_ref;
-
 use flexframe::columns::COLUMNS;
 use flexframe::peak_stress::PeakStress;
 use flexframe::results::Results;
@@ -13,7 +11,7 @@ use crate::examples::{build, repository, scene};
 /// The results file of a scene and the peak of its summary.
 fn outcome(scene: &Scene) -> (Results, Option<PeakStress>) {
     let folder = tempfile::tempdir().unwrap();
-    let mut report = run(from_ref(scene), folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
+    let mut report = run(&scene.clone().into(), folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
     (Results::open(report.results, &COLUMNS).unwrap(), report.bodies.remove(0).peak_stress)
 }
 

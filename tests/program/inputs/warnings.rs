@@ -22,7 +22,7 @@ fn scene(text: &str) -> Scene {
 
 fn report(text: &str) -> RunReport {
     let folder = tempfile::tempdir().unwrap();
-    let report = run(&[scene(text)], folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
+    let report = run(&scene(text).into(), folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
     // The results file has them, too.
     assert_eq!(Results::open(&report.results, &COLUMNS).unwrap().metadata.warnings, report.warnings);
     report
@@ -142,7 +142,7 @@ fn of_a_body_that_bends_far_it_says_what_is_wrong_by_how_much_and_too_far_is_ref
         assert!(warning.contains(words), "{warning}");
     }
     let text = bent_plate(36.0 / unit, "");
-    let failed = run(&[scene(&text)], tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ());
+    let failed = run(&scene(&text).into(), tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ());
     let message = failed.unwrap_err().to_string();
     assert!(message.contains("36.00 times its length"), "{message}");
     assert!(
@@ -159,7 +159,7 @@ fn of_a_load_that_bends_the_body_without_end_the_run_stops() {
     let load = "[[loads]]\nkind = \"force\"\nat = [500.0, 25.0, 10.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = 1e5\n\
                 history = { kind = \"half-sine\", start = 0.0, duration = 0.02 }\n";
     let folder = tempfile::tempdir().unwrap();
-    let failed = run(&[scene(&bent_plate(0.0, load))], folder.path(), &RunSettings::default(), |_| ());
+    let failed = run(&scene(&bent_plate(0.0, load)).into(), folder.path(), &RunSettings::default(), |_| ());
     let message = failed.unwrap_err().to_string();
     assert!(message.contains("at time 0.0") && message.contains("means nothing"), "{message}");
 }
@@ -174,7 +174,7 @@ fn of_modes_that_long_steps_get_wrong_though_the_energy_is_right_there_is_one() 
         scene.output.rows = flexframe::scene::Rows::EverySteps(1);
         let table = advise(&scene, &Builder::default(), false, |_| ()).unwrap();
         let report =
-            run(from_ref(&scene), tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ()).unwrap().1;
+            run(&scene.clone().into(), tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ()).unwrap().1;
         (table.rows.into_iter().find(|row| row.subject.name() == "step").unwrap(), report)
     };
     let (row, report) = with_step(2.5e-3);
@@ -230,7 +230,7 @@ fn clamped(modes: &str, displacement: f64, velocity: f64) -> Scene {
 fn of_large_modes_it_is_the_order_that_is_left_out() {
     let report = |scene: &Scene| {
         let folder = tempfile::tempdir().unwrap();
-        run(from_ref(scene), folder.path(), &RunSettings::default(), |_| ()).unwrap().1
+        run(&scene.clone().into(), folder.path(), &RunSettings::default(), |_| ()).unwrap().1
     };
     // By itself where it bends far, and right: no word of it.
     let right = report(&clamped("", 0.15, 0.0));
@@ -262,7 +262,7 @@ fn far_beyond_it_the_run_stops_and_its_file_can_be_read() {
         Err(RunError::Refused { time, refusal: Refusal::BeyondFourthOrder { error, .. }, .. }) => (time, error),
         other => panic!("{other:?}"),
     };
-    let (time, error) = refusal(run(from_ref(&scene), folder.path(), &RunSettings::default(), |_| ()));
+    let (time, error) = refusal(run(&scene.clone().into(), folder.path(), &RunSettings::default(), |_| ()));
     assert!(time > 1e-4 && error > 0.25, "{time} {error}");
     let part = unfinished(results_path(from_ref(&scene), folder.path()).unwrap());
     let rows = Results::open(&part, &COLUMNS).unwrap().rows();
@@ -325,7 +325,7 @@ fn of_a_mesh_that_was_not_read_whole() {
     is_told(&reduce(&imported, &builder, &path("bar.body.h5"), false, false, |_| ()).unwrap().warnings);
     std::fs::remove_file(path("bar.inp")).unwrap();
     let settings = RunSettings { builder: builder.clone(), ..RunSettings::default() };
-    let report = run(&[scene("file = \"bar.body.h5\"")], folder.path(), &settings, |_| ()).unwrap().1;
+    let report = run(&scene("file = \"bar.body.h5\"").into(), folder.path(), &settings, |_| ()).unwrap().1;
     is_told(&report.warnings);
     is_told(&Results::open(&report.results, &COLUMNS).unwrap().metadata.warnings);
     assert!(builder.cache.notes().warnings.is_empty(), "{:?}", builder.cache.notes());

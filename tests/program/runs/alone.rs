@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
-use std::slice::from_ref;
 
 use flexframe::columns::COLUMNS;
 use flexframe::run::{RunSettings, run};
@@ -168,14 +167,14 @@ fn shapes_that_are_not_in_the_results_file_come_from_the_body_file_that_it_names
     fs::write(desk.path().join("of_body.toml"), BEAM.replace("BODY", "file = \"some.body.h5\"")).unwrap();
     let scene = Scene::read(desk.path().join("of_body.toml")).unwrap();
     let out = desk.path().join("out");
-    run(from_ref(&scene), &out, &RunSettings::default(), |_| ()).unwrap();
+    run(&scene.clone().into(), &out, &RunSettings::default(), |_| ()).unwrap();
     what_comes_after(desk.path(), "out/of_body.h5");
     let with_shapes = fs::metadata(out.join("of_body.h5")).unwrap().len();
     let page = |name: &str| fs::read(desk.path().join(name)).unwrap();
     let expected = page("page.html");
 
     let settings = RunSettings { overwrite: true, rows_alone: true, ..RunSettings::default() };
-    run(from_ref(&scene), &out, &settings, |_| ()).unwrap();
+    run(&scene.clone().into(), &out, &settings, |_| ()).unwrap();
     assert!(fs::metadata(out.join("of_body.h5")).unwrap().len() < with_shapes);
     let metadata = Results::open(out.join("of_body.h5"), &COLUMNS).unwrap().metadata;
     assert!(metadata.bodies[0].model.mesh.as_ref().unwrap().body_file.ends_with("some.body.h5"));

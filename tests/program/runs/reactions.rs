@@ -173,7 +173,7 @@ fn on_supports(rest: &str) -> (Model, Results) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/of_a_test.toml");
     let scene = Scene::parse(&format!("{BEAM}{rest}"), path).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let (mut models, report) = run(&[scene], folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let (mut models, report) = run(&scene.into(), folder.path(), &RunSettings::default(), |_| ()).unwrap();
     (models.remove(0), Results::open(report.results, &COLUMNS).unwrap())
 }
 

@@ -25,7 +25,7 @@ fn scene(time: &str) -> Scene {
 fn done(time: &str, folder: &Path) -> (Estimate, Result<u64, RunError>, u64) {
     let mut estimate = None;
     let settings = RunSettings { overwrite: true, ..RunSettings::default() };
-    let done = run(&[scene(time)], folder, &settings, |progress| {
+    let done = run(&scene(time).into(), folder, &settings, |progress| {
         if let RunProgress::Estimate(told) = progress {
             estimate = Some(told);
         }
@@ -62,14 +62,16 @@ fn a_long_run_has_some_thousand_rows_and_what_is_estimated_is_written() {
 fn more_than_a_gigabyte_is_refused_unless_it_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     let time = "time = { end = 1e6, step = 0.1 }\noutput = { every = 1 }";
-    let Err(error) = run(&[scene(time)], folder.path(), &RunSettings::default(), |_| ()) else { panic!() };
+    let Err(error) = run(&scene(time).into(), folder.path(), &RunSettings::default(), |_| ()) else { panic!() };
     let text = error.to_string();
     assert!(matches!(error, RunError::Large { estimate: Estimate { rows: 10_000_001, .. }, .. }), "{text}");
     assert!(text.contains("10000001 rows, ") && text.contains(" GB") && text.contains("--large"), "{text}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     // Asked for, it takes room as it goes on, not for all rows at once.
     let settings = RunSettings { large: true, stop: Arc::new(AtomicBool::new(true)), ..RunSettings::default() };
-    let Err(RunError::Stopped { part, .. }) = run(&[scene(time)], folder.path(), &settings, |_| ()) else { panic!() };
+    let Err(RunError::Stopped { part, .. }) = run(&scene(time).into(), folder.path(), &settings, |_| ()) else {
+        panic!()
+    };
     assert!(fs::metadata(part).unwrap().len() < 100 << 20);
 }
 
@@ -81,7 +83,7 @@ fn the_memory_of_a_run_does_not_go_with_its_end() {
     if let Ok(end) = std::env::var(END) {
         let folder = tempfile::tempdir().unwrap();
         run(
-            &[scene(&format!("time = {{ end = {end}, tolerance = 1e-3 }}"))],
+            &scene(&format!("time = {{ end = {end}, tolerance = 1e-3 }}")).into(),
             folder.path(),
             &RunSettings::default(),
             |_| (),

@@ -18,7 +18,7 @@ use crate::simulation::checkpoint::{fixed_room, from_words, to_words};
 use crate::simulation::plan::{EqualSteps, Plan, Progress, Rows, Segment, StepControl};
 use crate::simulation::{Reached, Stats};
 use crate::system::description::System;
-use crate::system::marker::motion::MarkerWrench;
+use crate::system::joint::observation::JointObservation;
 use crate::system::radau::{Failed, SystemMotion, Tried};
 use crate::system::saved::SavedMotion;
 
@@ -224,9 +224,9 @@ impl SystemSimulation {
         self.account.check(&sum, 0.0, step)
     }
 
-    /// What a joint puts on its second marker, after [`Self::observe`]; on the first it is the opposite, about the same point.
-    pub fn reaction(&self, joint: usize) -> MarkerWrench {
-        self.motion.reaction(joint)
+    /// Observes a joint, after [`Self::observe`].
+    pub fn observe_joint(&self, joint: usize) -> JointObservation {
+        self.motion.observe_joint(joint)
     }
 
     /// Goes on to the next row, or as far as `max_steps` tries lead; `watch` sees the motion of each body once for each step

@@ -66,7 +66,7 @@ pub fn reproduce(
     if !scene.output.points.contains_key(WATCHED_POINT) {
         return Err(PaperError::MissingPoint { scene: scene.path.clone(), point: WATCHED_POINT });
     }
-    let (models, mut run) = run(std::slice::from_ref(scene), folder, settings, progress)?;
+    let (models, mut run) = run(&scene.clone().into(), folder, settings, progress)?;
     let ([model], [of_plate]) = (&models[..], &run.bodies[..]) else { return Err(only_plates()) };
     let started = Instant::now();
     let results = Results::open(&run.results, &COLUMNS)?;

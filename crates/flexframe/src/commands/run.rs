@@ -1,7 +1,7 @@
 //! `flexframe run`: a scene from its meshes to its results file.
 //!
-//! Nothing acts between the bodies of a scene: each is a set of equations of its own with steps of its own, and moves as it would
-//! alone. They meet at the rows (`row_times`), which are written together.
+//! Bodies that joints, springs or bushings tie together are one motion with steps of its own (`motion`); so is each body that
+//! nothing ties, which moves as it would alone. Motions meet at the rows (`row_times`), which are written together.
 
 mod balances;
 mod body;
@@ -10,6 +10,8 @@ mod checkpoint;
 mod error;
 mod estimate;
 mod metadata;
+mod motion;
+mod mover;
 mod recorder;
 mod report;
 mod row_times;
@@ -21,8 +23,8 @@ mod words;
 use std::path::Path;
 use std::time::Instant;
 
-use dynamics::{Initial, Simulation};
-use model::{BuildError, BuildProgress, Builder, Model};
+use dynamics::{Initial, Rows, SystemSetup, SystemSimulation};
+use model::{BuildError, BuildProgress, Builder, Model, StartError, Tied, tie};
 use results::{Expected, Results, Resumed, Writer, unfinished};
 use scene::{Scene, System};
 
@@ -44,11 +46,14 @@ pub use crate::files::results_path::results_path;
 use crate::files::scene_file;
 use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;
-use body::MovingBody;
+use body::FollowedBody;
 use checkpoint::{checkpoint, restored};
 use estimate::LARGE;
 use metadata::metadata_of_file;
+use motion::Motion;
+use mover::Mover;
 use recorder::Recorder;
+use row_times::RowTimes;
 
 /// Runs the bodies of a scene and writes their results to `<folder>/<name of the scene file>.h5`; until the end they are in an
 /// unfinished file beside it ([`results::unfinished`]). `progress` hears how far it is, at every phase and every few
@@ -57,16 +62,16 @@ use recorder::Recorder;
 /// # Errors
 /// [`RunError`]. When a step fails, the unfinished file keeps the rows before it.
 pub fn run(
-    scenes: &[Scene],
+    system: &System,
     folder: &Path,
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Vec<Model>, RunReport), RunError> {
-    check(scenes, folder, settings)?;
-    let models = build(scenes, &settings.builder, |p| progress(RunProgress::Build(p)))?;
+    check(&system.bodies, folder, settings)?;
+    let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
     // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
     progress(RunProgress::Built);
-    let report = run_models(&bodies(scenes, &models), folder, settings, progress)?;
+    let report = run_models(system, &models, folder, settings, progress)?;
     Ok((models, report))
 }
 
@@ -93,36 +98,38 @@ pub(crate) fn bodies<'a>(scenes: &'a [Scene], models: &'a [Model]) -> Vec<RunBod
     scenes.iter().zip(models).map(|(scene, model)| RunBody { scene, model }).collect()
 }
 
-/// The same of models that are there already.
+/// The same of models that are there already, one for each body.
 ///
 /// # Errors
 /// As [`run`].
 pub fn run_models(
-    bodies: &[RunBody<'_>],
+    system: &System,
+    models: &[Model],
     folder: &Path,
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<RunReport, RunError> {
+    let bodies = bodies(&system.bodies, models);
     let scene = bodies.first().ok_or(RunError::NoBody)?.scene;
-    let path = results_path(bodies.iter().map(|body| body.scene), folder).ok_or(RunError::NoBody)?;
+    let path = results_path(&system.bodies, folder).ok_or(RunError::NoBody)?;
     let started = Instant::now();
-    let simulations: Vec<Simulation> = bodies.iter().map(start).collect::<Result<_, _>>()?;
-    let checkpoint = checkpoint(&simulations, &path)?.len();
-    let metadata = metadata_of_file(bodies, &settings.builder).ok_or(RunError::NoBody)?;
+    let initial = initial(&bodies);
+    let movers = movers(system, &bodies, models, &initial)?;
+    let checkpoint = checkpoint(movers.iter().map(|mover| &mover.motion), &path)?.len();
+    let metadata = metadata_of_file(system, &bodies, &settings.builder).ok_or(RunError::NoBody)?;
     let estimate = Estimate::of_rows(scene, &metadata);
     if estimate.bytes > LARGE && !settings.large {
         return Err(RunError::Large { scene: scene.path.clone(), estimate });
     }
-    let estimate = estimate.with_seconds(&simulations, &settings.stop);
+    let estimate = estimate.with_seconds(movers.iter().map(|mover| &mover.motion), &settings.stop);
     progress(RunProgress::Estimate(estimate));
     let rows = usize::try_from(estimate.rows).unwrap_or(usize::MAX);
-    let shapes = if settings.rows_alone { Vec::new() } else { stored_shapes(bodies).map_err(BuildError::from)? };
+    let shapes = if settings.rows_alone { Vec::new() } else { stored_shapes(&bodies).map_err(BuildError::from)? };
     let expected = Expected { rows, checkpoint, overwrite: settings.overwrite };
     let writer = Writer::create(&path, &metadata, &shapes, &COLUMNS, expected)?;
     drop(shapes);
     progress(RunProgress::Motion(0.0));
-    let initial = initial(bodies);
-    let mut recorder = Recorder::new(moving(bodies, &initial, simulations)?, writer, estimate);
+    let mut recorder = Recorder::new(&bodies, movers, writer, estimate);
     recorder.begin()?;
     recorder.follow(started, settings, progress)
 }
@@ -141,15 +148,14 @@ pub fn resume(
     let Resumed { writer, results, checkpoint: state } = Writer::resume(file, &COLUMNS, settings.overwrite)?;
     let part = writer.unfinished().to_path_buf();
     let changed = |what| RunError::Changed { part: part.clone(), what };
-    let scenes = scenes_of(&results)?.ok_or_else(|| changed("the list of bodies"))?;
-    outputs_of_scenes(&scenes, &settings.builder, settings.overwrite).spare(writer.path())?;
-    let models = build(&scenes, &settings.builder, |p| progress(RunProgress::Build(p)))?;
+    let system = system_of(&results)?.ok_or_else(|| changed("the list of bodies"))?;
+    outputs_of_scenes(&system.bodies, &settings.builder, settings.overwrite).spare(writer.path())?;
+    let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
     progress(RunProgress::Built);
-    let bodies = bodies(&scenes, &models);
+    let bodies = bodies(&system.bodies, &models);
     let estimate = Estimate::of_rows(bodies.first().ok_or(RunError::NoBody)?.scene, &results.metadata);
     let started = Instant::now();
-    let mut simulations: Vec<Simulation> = bodies.iter().map(start).collect::<Result<_, _>>()?;
-    let now = metadata_of_file(&bodies, &settings.builder).ok_or(RunError::NoBody)?;
+    let now = metadata_of_file(&system, &bodies, &settings.builder).ok_or(RunError::NoBody)?;
     if now.program_version != results.metadata.program_version {
         return Err(changed("the version of flexframe"));
     }
@@ -157,13 +163,19 @@ pub fn resume(
     if !are_same {
         return Err(changed("the body"));
     }
-    progress(RunProgress::Motion(0.0));
-    if let Some(state) = &state {
-        simulations =
-            restored(simulations, state).map_err(|source| RunError::Restore { part: part.clone(), source })?;
+    if now.joints != results.metadata.joints {
+        return Err(changed("a joint"));
     }
     let initial = initial(&bodies);
-    let mut recorder = Recorder::new(moving(&bodies, &initial, simulations)?, writer, estimate);
+    let mut movers = movers(&system, &bodies, &models, &initial)?;
+    progress(RunProgress::Motion(0.0));
+    if let Some(mut states) = state.as_deref() {
+        for mover in &mut movers {
+            mover.motion = restored(mover.motion.clone(), &mut states)
+                .map_err(|source| RunError::Restore { part: part.clone(), source })?;
+        }
+    }
+    let mut recorder = Recorder::new(&bodies, movers, writer, estimate);
     match state {
         Some(_) => recorder.take_up(&results)?,
         None => recorder.begin()?,
@@ -171,27 +183,70 @@ pub fn resume(
     recorder.follow(started, settings, progress)
 }
 
-/// The scenes of the bodies of a run that is to go on; `None` where one of them is not there.
-fn scenes_of(results: &Results) -> Result<Option<Vec<Scene>>, RunError> {
+/// The system of a run that is to go on, with the bodies that the run has; `None` where one of them is not there.
+fn system_of(results: &Results) -> Result<Option<System>, RunError> {
     let metadata = &results.metadata;
     let system = System::parse(&metadata.scene_text, scene_file::to_path(&metadata.scene_file))?;
+    let are_all = system.bodies.len() == metadata.bodies.len()
+        && system.bodies.iter().zip(&metadata.bodies).all(|(scene, body)| body::name(scene) == body.name);
+    if are_all || system.has_ties() {
+        return Ok(are_all.then_some(system));
+    }
     let scene_of = |name: &str| system.bodies.iter().find(|scene| body::name(scene) == name);
-    Ok(metadata.bodies.iter().map(|body| scene_of(&body.name).cloned()).collect())
+    let bodies: Option<Vec<Scene>> = metadata.bodies.iter().map(|body| scene_of(&body.name).cloned()).collect();
+    Ok(bodies.map(|bodies| System { bodies, ..system.clone() }))
 }
 
-fn start(RunBody { scene, model }: &RunBody<'_>) -> Result<Simulation, RunError> {
+/// The motions of a system with the bodies that they move.
+fn movers<'a>(
+    system: &System,
+    bodies: &[RunBody<'a>],
+    models: &[Model],
+    initial: &'a [Initial],
+) -> Result<Vec<Mover<'a>>, RunError> {
+    let follow = |number: usize| FollowedBody::new(bodies[number], number, &initial[number]);
+    let mut movers = Vec::new();
+    let tied = tie(system, models)?;
+    for (number, body) in bodies.iter().enumerate() {
+        if tied.iter().all(|tied| !tied.bodies.contains(&number)) {
+            let motion = Motion::Alone(Box::new(start(body)?));
+            movers.push(Mover { motion, bodies: vec![follow(number)?], joints: Vec::new() });
+        }
+    }
+    for tied in tied {
+        let numbers = tied.bodies.clone();
+        let joints = tied.joints.clone();
+        let motion = Motion::Tied(Box::new(start_tied(system, tied, models)?));
+        let bodies = numbers.into_iter().map(follow).collect::<Result<_, _>>()?;
+        movers.push(Mover { motion, bodies, joints });
+    }
+    Ok(movers)
+}
+
+fn start(RunBody { scene, model }: &RunBody<'_>) -> Result<dynamics::Simulation, RunError> {
     model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })
+}
+
+/// The motion of bodies that are tied together, whose steps end at the rows of the scene.
+fn start_tied(system: &System, tied: Tied, models: &[Model]) -> Result<SystemSimulation, RunError> {
+    let scene = &system.bodies[tied.bodies[0]];
+    let points = |body: &usize| models[*body].points.iter().map(|(_, point)| point.clone()).collect();
+    let setup = SystemSetup {
+        points: tied.bodies.iter().map(points).collect(),
+        system: tied.system,
+        states: tied.states,
+        relaxed: system.relaxed,
+        control: scene.time.control,
+        end: scene.time.end,
+        rows: Rows::Interval(RowTimes::new(scene).of(1)),
+    };
+    let refused = |source: dynamics::SetupError| RunError::Setup {
+        scene: scene.path.clone(),
+        source: Box::new(StartError::from(source)),
+    };
+    SystemSimulation::new(setup).map_err(refused)
 }
 
 fn initial(bodies: &[RunBody<'_>]) -> Vec<Initial> {
     bodies.iter().map(|RunBody { scene, model }| model.initial(scene)).collect()
-}
-
-fn moving<'a>(
-    bodies: &[RunBody<'a>],
-    initial: &'a [Initial],
-    simulations: Vec<Simulation>,
-) -> Result<Vec<MovingBody<'a>>, RunError> {
-    let bodies = bodies.iter().zip(initial).zip(simulations);
-    bodies.map(|((body, initial), simulation)| MovingBody::new(*body, initial, simulation)).collect()
 }

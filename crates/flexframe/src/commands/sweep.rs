@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use keys::Hash;
 use model::{Assembly, BuildError, BuildProgress, Builder, Model, Variants};
 use results::{ColumnTable, Results};
-use scene::Scene;
+use scene::{Scene, System};
 use serde::Serialize;
 use whole_file::{FileLock, TemporaryFolder};
 
@@ -177,8 +177,8 @@ pub fn sweep(
     for (i, row) in plan.rows.iter().enumerate() {
         match row {
             _ if table.rows[i] != RowState::Open || !is_mine(i) => {}
-            Ok(scenes) => {
-                let made_of: Vec<String> = scenes.iter().map(Assembly::made_of).collect();
+            Ok(system) => {
+                let made_of: Vec<String> = system.bodies.iter().map(Assembly::made_of).collect();
                 groups.entry(made_of.join("\n")).or_default().push(i);
             }
             Err(words) => table.rows[i] = RowState::Failed(words.clone()),
@@ -191,7 +191,7 @@ pub fn sweep(
         let mut all_failed =
             |words: &str| rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(words.to_owned()));
         let assemblies: Result<Vec<_>, _> =
-            first.iter().map(|scene| builder.assemble(scene, |p| progress(SweepProgress::Build(p)))).collect();
+            first.bodies.iter().map(|scene| builder.assemble(scene, |p| progress(SweepProgress::Build(p)))).collect();
         let assemblies = match assemblies {
             Ok(assemblies) => assemblies,
             Err(error) => {
@@ -301,7 +301,7 @@ const CHANGED: &str = "a file of the body was changed while the sweep ran\n = ru
 fn outputs(plan: &Plan, sweep: &Path, builder: &Builder, overwrite: bool) -> Outputs {
     // Rows with the same body and histories have the same files.
     let same = |scene: &Scene| format!("{:?} {:?} {:?}", scene.body, scene.loads, scene.constraint);
-    let scenes = plan.rows.iter().flatten().flatten();
+    let scenes = plan.rows.iter().flatten().flat_map(|system| &system.bodies);
     let scenes: BTreeMap<String, &Scene> = scenes.map(|scene| (same(scene), scene)).collect();
     let files = scenes.into_values().flat_map(|scene| builder.files(scene));
     Outputs::new(std::iter::once(sweep.to_owned()).chain(files).collect(), overwrite)
@@ -330,7 +330,7 @@ fn run_rows(
             scope.spawn(move || {
                 while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let outcome = match &plan.rows[*row] {
-                        Ok(scenes) => run_row(scenes, plan, variants, folder, settings)
+                        Ok(system) => run_row(system, plan, variants, folder, settings)
                             .map_or_else(RowState::Failed, RowState::Done),
                         Err(words) => RowState::Failed(words.clone()),
                     };
@@ -348,7 +348,7 @@ fn run_rows(
 
 /// The results of a row, or why there are none.
 fn run_row(
-    scenes: &[Scene],
+    system: &System,
     plan: &Plan,
     variants: &[Mutex<Variants<'_>>],
     folder: &Path,
@@ -362,7 +362,8 @@ fn run_row(
     let mut done = Done { results: Vec::new(), warnings: Vec::new() };
     let mut frequencies: BTreeMap<Option<&str>, Vec<f64>> = BTreeMap::new();
     if asks_frequencies {
-        for (scene, variants) in scenes.iter().zip(variants).filter(|(scene, _)| plan.asks_frequencies_of(scene)) {
+        for (scene, variants) in system.bodies.iter().zip(variants).filter(|(scene, _)| plan.asks_frequencies_of(scene))
+        {
             let unloaded = modes::unloaded(scene);
             let model = build(&unloaded, variants)?;
             modes::require_flexible(&unloaded, &model).map_err(|error| error.to_string())?;
@@ -373,9 +374,9 @@ fn run_row(
     let folder = TemporaryFolder::inside(folder).map_err(|error| error.to_string())?;
     let mut results = None;
     if asks_run {
-        let models = scenes.iter().zip(variants).map(|(scene, variants)| build(scene, variants));
+        let models = system.bodies.iter().zip(variants).map(|(scene, variants)| build(scene, variants));
         let models = models.collect::<Result<Vec<_>, _>>()?;
-        let run = run::run_models(&run::bodies(scenes, &models), folder.path(), settings, |_| ());
+        let run = run::run_models(system, &models, folder.path(), settings, |_| ());
         let run = run.map_err(|error| error.without_files())?;
         done.warnings = run.warnings;
         results = Some(Results::open(run.results, &COLUMNS).map_err(|error| error.to_string())?);

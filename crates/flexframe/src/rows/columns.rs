@@ -4,6 +4,7 @@
 //! reading, the check that numbers are finite, and the attributes in the file follow from the line; a test says what to put into
 //! `docs/reference/results.md`.
 
+use dynamics::JointObservation;
 use results::Dimension::{
     Acceleration, Angle, AngularAcceleration, AngularMomentum, AngularVelocity, Energy, Force, Length, Moment,
     Momentum, Other, Power, Stress, Velocity,
@@ -15,7 +16,8 @@ use results::{Column, Dimension, Quantities, Quantity, Scope};
 
 use crate::rows::row::{BodyRow, Row};
 
-/// Parts of bodies that have more columns: see [`results::BodyMetadata::parts`].
+/// Parts of bodies and joints that have more columns: see [`results::BodyMetadata::parts`] and
+/// [`results::JointMetadata::parts`].
 pub mod part {
     /// Something holds the body.
     pub const CONSTRAINT: &str = "constraint";
@@ -33,10 +35,20 @@ pub mod part {
     pub const DRIVEN_HINGE: &str = "driven hinge";
     /// The slider is driven.
     pub const DRIVEN_SLIDER: &str = "driven slider";
+    /// The joint may turn about its axis.
+    pub const TURNS: &str = "turns";
+    /// The joint may slide along its axis.
+    pub const SLIDES: &str = "slides";
+    /// A spring or a motor acts about the axis of the joint.
+    pub const TURN_FORCE: &str = "turn force";
+    /// A spring or a motor acts along the axis of the joint.
+    pub const SLIDE_FORCE: &str = "slide force";
+    /// A spring acts in the joint, with a damper, stops and friction.
+    pub const SPRING: &str = "spring";
 }
 
 /// All columns; those of the system come last.
-pub static COLUMNS: [Column<Row>; 47] = [
+pub static COLUMNS: [Column<Row>; 61] = [
     // Each body.
     body(["", "attitude"], (Dimension::Number, "body to global"), "unit quaternion (w, x, y, z) that takes body components to global ones", Quaternion(|now| now.attitude.wxyz())),
     body(["", "origin"], (Length, "global"), "position of the origin of the body frame", Vector(|now| now.origin_global.into())),
@@ -78,6 +90,21 @@ pub static COLUMNS: [Column<Row>; 47] = [
     points("stress", (Stress, "body"), "stress at the point: components xx, yy, zz, xy, yz, zx", Named(&STRESSES, |now, i| Some(&now.stress.get(i)?.components))).only_with(part::STRESS),
     points("von_mises_stress", (Stress, "none"), "von Mises stress at the point", Quantities::Number(|now, i| Some(now.stress.get(i)?.von_mises))).only_with(part::STRESS),
     points("principal_stress", (Stress, "none"), "principal stresses at the point, the largest first", Named(&["1", "2", "3"], |now, i| Some(&now.stress.get(i)?.principal))).only_with(part::STRESS),
+    // Each joint.
+    joint("angle", (Angle, "none"), "angle about the z axis of the first marker, from its x axis to that of the second; it grows beyond a turn", Number(|now| now.coordinates.turn)).only_with(part::TURNS),
+    joint("rate", (AngularVelocity, "none"), "rate of the angle", Number(|now| now.coordinates.turn_rate)).only_with(part::TURNS),
+    joint("position", (Length, "none"), "distance of the second marker along the z axis of the first", Number(|now| now.coordinates.slide)).only_with(part::SLIDES),
+    joint("velocity", (Velocity, "none"), "rate of the position", Number(|now| now.coordinates.slide_rate)).only_with(part::SLIDES),
+    joint("torque", (Moment, "none"), "moment of the spring, the damper, the stops, friction and the motor on the second body, about the axis", Number(|now| now.turn_effort)).only_with(part::TURN_FORCE).in_role(Direct),
+    joint("thrust", (Force, "none"), "force of the same along the axis", Number(|now| now.slide_effort)).only_with(part::SLIDE_FORCE).in_role(Direct),
+    joint("force", (Force, "global"), "force of the joint on its second body, at the second marker; on the first it is the opposite", Vector(|now| now.reaction_global.force_global.into())).in_role(Direct),
+    joint("moment", (Moment, "global"), "moment of the joint on its second body, about the second marker", Vector(|now| now.reaction_global.moment_global.into())).in_role(Direct),
+    joint("force_marker", (Force, "first marker"), "the same force, in the axes of the first marker", Vector(|now| now.force_marker.into())).in_role(Direct),
+    joint("moment_marker", (Moment, "first marker"), "the same moment, in the axes of the first marker", Vector(|now| now.moment_marker.into())).in_role(Direct),
+    joint("drive_work", (Energy, "none"), "work of the drive and the motor since t = 0", Number(|now| now.work.drive)).only_with(part::DRIVE).in_role(Internal),
+    joint("drive_power", (Power, "none"), "power of the drive and the motor", Number(|now| now.drive_power)).only_with(part::DRIVE).in_role(Direct),
+    joint("spring_work", (Energy, "none"), "work of the spring, the stops and the preload since t = 0", Number(|now| now.work.spring)).only_with(part::SPRING).in_role(Internal),
+    joint("loss", (Energy, "none"), "energy that friction and the damper have taken since t = 0", Number(|now| now.work.loss)).only_with(part::SPRING).in_role(Internal),
     // All bodies together.
     system(["energy", "kinetic"], (Energy, "none"), "kinetic energy of all bodies", Number(Row::kinetic_energy)),
     system(["energy", "strain"], (Energy, "none"), "strain energy of all bodies", Number(Row::strain_energy)),
@@ -94,6 +121,7 @@ pub fn column_of(path: &str) -> Option<&'static Column<Row>> {
     let parts: Vec<&str> = path.split('/').collect();
     let (scopes, rest): (&[Scope], &[&str]) = match &parts[..] {
         ["system", rest @ ..] => (&[Scope::System], rest),
+        ["joints", _, rest @ ..] => (&[Scope::Joint], rest),
         ["bodies", _, rest @ ..] => (&[Scope::Body, Scope::Point, Scope::Support], rest),
         rest => (&[Scope::Body, Scope::Point, Scope::Support], rest),
     };
@@ -101,7 +129,7 @@ pub fn column_of(path: &str) -> Option<&'static Column<Row>> {
         ([group, _, name], Scope::Point | Scope::Support) | ([group, name], Scope::System | Scope::Body) => {
             [column.group, column.name] == [*group, *name]
         }
-        ([name], Scope::Body) => ["", *name] == [column.group, column.name],
+        ([name], Scope::Body | Scope::Joint) => ["", *name] == [column.group, column.name],
         _ => false,
     };
     COLUMNS.iter().filter(|column| scopes.contains(&column.scope())).find(is_it)
@@ -137,6 +165,15 @@ const fn modes(
 
 const fn points(name: &'static str, kind: Kind, description: &'static str, values: Quantities<BodyRow>) -> Column<Row> {
     Column::of_points(name, kind, description, values)
+}
+
+const fn joint(
+    name: &'static str,
+    kind: Kind,
+    description: &'static str,
+    values: Quantity<JointObservation>,
+) -> Column<Row> {
+    Column::of_joint(["", name], kind, description, values)
 }
 
 const fn supports(

@@ -2,7 +2,7 @@
 
 use std::ops::Deref;
 
-use dynamics::Observation;
+use dynamics::{JointObservation, Observation};
 use fem_tet10::{principal_stresses, von_mises};
 use model::Model;
 use nalgebra::Vector3;
@@ -15,6 +15,8 @@ pub struct Row {
     pub time: f64,
     /// The bodies, in the order of the scene.
     pub bodies: Vec<BodyRow>,
+    /// The joints, in the order of the scene.
+    pub joints: Vec<JointObservation>,
 }
 
 /// A body in a row: its motion, and what was asked for besides.
@@ -77,6 +79,12 @@ impl SystemRow for Row {
 
     fn bodies(&self) -> &[BodyRow] {
         &self.bodies
+    }
+
+    type Joint = JointObservation;
+
+    fn joints(&self) -> &[JointObservation] {
+        &self.joints
     }
 }
 

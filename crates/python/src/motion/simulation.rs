@@ -189,7 +189,7 @@ impl Simulation {
         events: &mut Vec<Occurred>,
     ) -> PyResult<()> {
         let model = self.body.get().model();
-        let mut row = flexframe::row::Row { time: 0.0, bodies: vec![BodyRow::new(model)] };
+        let mut row = flexframe::row::Row { time: 0.0, bodies: vec![BodyRow::new(model)], joints: Vec::new() };
         let mut record = |running: &mut Running, watch: &mut Watch<'_>| -> PyResult<()> {
             for body in &mut row.bodies {
                 let observed = detached(py, || running.simulation.observe(&mut body.motion))?;
@@ -347,7 +347,8 @@ impl Simulation {
         let followed = self.follow(py, &mut running, &mut watch, &mut rows, &mut events);
         match followed {
             Ok(()) => {
-                let warnings = watch.finish(&running.simulation).warnings;
+                let warnings =
+                    watch.finish(running.simulation.exchanged(), running.simulation.stats().longest).warnings;
                 let metadata = Metadata { warnings, ..(*self.metadata).clone() };
                 rows.into_results(py, &metadata, true, &events)
             }

@@ -21,6 +21,7 @@ pub(crate) fn scope(history: History) -> &'static str {
         Scope::Body => "body",
         Scope::Point => "point",
         Scope::Support => "support",
+        Scope::Joint => "joint",
     }
 }
 

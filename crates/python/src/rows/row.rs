@@ -27,7 +27,7 @@ impl Row {
         let mut body = BodyRow::new(model);
         body.motion.clone_from(motion);
         in_pool(|| body.complete(model))?;
-        let row = flexframe::row::Row { time: motion.time, bodies: vec![body] };
+        let row = flexframe::row::Row { time: motion.time, bodies: vec![body], joints: Vec::new() };
         Ok(Self { row, metadata: metadata.clone() })
     }
 }

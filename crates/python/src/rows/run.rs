@@ -27,9 +27,9 @@ pub(crate) fn run(
     overwrite: bool,
     large: bool,
 ) -> PyResult<Bound<'_, PyAny>> {
-    let (scenes, builder) = (scene.get().scenes(), scene.get().builder().clone());
+    let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
     followed(py, (overwrite, large), builder, move |settings, progress| {
-        flexframe::run::run(&scenes, &folder, settings, progress).map(|(_, report)| report)
+        flexframe::run::run(&system, &folder, settings, progress).map(|(_, report)| report)
     })
 }
 

@@ -26,6 +26,7 @@ pub(crate) struct Ties {
     pub joints: Vec<Joint>,
     pub springs: Vec<Spring>,
     pub bushings: Vec<Bushing>,
+    pub relaxed: bool,
 }
 
 /// The bodies and the ground that ends are looked up in.
@@ -37,7 +38,7 @@ struct Ends<'a> {
 impl Check<'_> {
     /// Joints, springs and bushings between these bodies.
     pub fn ties(&self, sections: TieSections, bodies: &[Scene]) -> Result<Ties, SceneError> {
-        let TieSections { ground, joints, springs, bushings } = sections;
+        let TieSections { relaxed, ground, joints, springs, bushings } = sections;
         let ground = self.ground_markers(ground.markers)?;
         for (key, entries) in [("joints", joints.len()), ("springs", springs.len()), ("bushings", bushings.len())] {
             self.not_too_many(key, entries, "make several scenes of them")?;
@@ -51,7 +52,7 @@ impl Check<'_> {
         let bushing = |(i, section)| self.bushing(&format!("bushings[{i}]"), i, section, &ends, &mut names);
         let bushings = bushings.into_iter().enumerate().map(bushing).collect::<Result<_, _>>()?;
         bodies.iter().filter(|scene| scene.tied).try_for_each(can_be_tied)?;
-        Ok(Ties { ground, joints, springs, bushings })
+        Ok(Ties { ground, joints, springs, bushings, relaxed })
     }
 
     fn joint(

@@ -16,7 +16,7 @@ pub struct MarkerMotion {
 }
 
 /// A force and a moment on a marker, global.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MarkerWrench {
     /// The force.
     pub force_global: Vector3<f64>,

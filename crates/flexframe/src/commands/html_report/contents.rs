@@ -62,18 +62,20 @@ fn body(of: BodyResults<'_>, shapes: Option<Shapes>, results: &Results) -> Optio
     })
 }
 
-/// The histories in the order in which they are looked at: body by body, first the motion of the points, last the quaternion.
+/// The histories in the order in which they are looked at: body by body, first the motion of the points, last the quaternion;
+/// then joint by joint, and the system.
 /// Those of the system are the same as those of a single body.
 fn in_order(run: &Metadata) -> Vec<History<Row>> {
     let is_several = run.only_body().is_none();
-    let mut all: Vec<_> = histories(&COLUMNS, run).filter(|history| history.body.is_some() || is_several).collect();
+    let mut all: Vec<_> =
+        histories(&COLUMNS, run).filter(|history| history.column.scope() != Scope::System || is_several).collect();
     all.sort_by_key(|history| {
         let within = match (history.column.scope(), history.column.components()) {
             (Scope::Point, _) => 0,
             (_, Components::Quaternion) => 2,
             _ => 1,
         };
-        (history.body.unwrap_or(usize::MAX), within)
+        (history.body.unwrap_or(usize::MAX), history.joint.unwrap_or(usize::MAX), within)
     });
     all
 }
@@ -201,8 +203,12 @@ fn motion(of: BodyResults<'_>, rows: usize, shapes: Option<&Shapes>) -> Option<M
     })
 }
 
-/// The name of a body in front of what is of it; nothing of a single body, and that of all bodies of the system.
+/// The name of a joint, or that of a body in front of what is of it; nothing of a single body, and that of all bodies of the
+/// system.
 fn prefix(history: History<Row>, run: &Metadata) -> String {
+    if let Some(joint) = history.joint(run) {
+        return format!("joint {}", joint.name);
+    }
     match history.body(run) {
         None => "all bodies: ".to_owned(),
         Some(_) if run.only_body().is_some() => String::new(),
@@ -229,9 +235,10 @@ fn courses(history: History<Row>, results: &Results, quantities: &Quantities<'_>
     let places = match column.scope() {
         Scope::Point => "point",
         Scope::Support => "support",
-        Scope::System | Scope::Body => {
+        Scope::System | Scope::Body | Scope::Joint => {
             let group = match (column.components(), column.group) {
                 (Components::Modes, _) => "modal coordinates",
+                (_, "") if column.scope() == Scope::Joint => "",
                 (_, "") => "body",
                 (_, group) => group,
             };
@@ -267,7 +274,7 @@ fn balances(results: &Results, quantities: &Quantities<'_>) -> Option<Vec<Balanc
     let run = &results.metadata;
     let of = |body: Option<usize>, words, group: &str, terms: &[&str], error: &str| {
         let history = |name: &str| {
-            let mut all = histories(&COLUMNS, run).filter(|history| history.body == body);
+            let mut all = histories(&COLUMNS, run).filter(|history| history.body == body && history.joint.is_none());
             all.find(|history| [history.column.group, history.column.name] == [group, name])
         };
         balance(

@@ -53,8 +53,9 @@ impl<'a> Quantities<'a> {
     /// How long the axis of a history is at least, so that rounding does not fill it.
     pub(super) fn least_range(&self, history: History<Row>) -> f64 {
         let dimension = history.column.dimension;
-        let alike = histories(&COLUMNS, &self.results.metadata)
-            .filter(|other| other.body == history.body && other.column.dimension == dimension);
+        let alike = histories(&COLUMNS, &self.results.metadata).filter(|other| {
+            (other.body, other.joint) == (history.body, history.joint) && other.column.dimension == dimension
+        });
         let greatest = alike.map(|other| self.greatest(other)).fold(0.0, f64::max);
         let bodies = match history.body {
             Some(body) => &self.bodies[body..=body],

@@ -1,6 +1,6 @@
-//! One body of a run on its way.
+//! One body of a run: what is seen of it on its way, whatever moves it.
 
-use dynamics::{Initial, Reached, Simulation, StepError};
+use dynamics::{Initial, Moment, Stats};
 use model::Model;
 use nalgebra::Vector3;
 use results::BodyResults;
@@ -10,15 +10,11 @@ use scene::Scene;
 use super::balances::Conserved;
 use super::body_report::BodyRunReport;
 use super::error::RunError;
-use super::row_times::RowTimes;
 use super::watch::{Watch, Watched};
 use crate::report::{BodyReport, MeshReport};
 use crate::rows::effects;
 use crate::rows::peak_stress::Largest;
 use crate::rows::row::BodyRow;
-
-/// Steps between two reports of progress, where no row comes first.
-pub(super) const STEPS_PER_REPORT: u64 = 4096;
 
 /// A body that is to run: its scene and its model.
 #[derive(Debug, Clone, Copy)]
@@ -41,19 +37,11 @@ pub(super) fn name(scene: &Scene) -> &str {
     scene.name.as_deref().unwrap_or("body")
 }
 
-/// Where a body goes next.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Next {
-    /// To its own next row.
-    Row,
-    /// To a time, or beyond it by less than a step.
-    Time(f64),
-}
-
 /// A body on its way.
-pub(super) struct MovingBody<'a> {
+pub(super) struct FollowedBody<'a> {
     pub of: RunBody<'a>,
-    simulation: Simulation,
+    /// Its number in the scene.
+    pub number: usize,
     watch: Watch<'a>,
     peak_strain_energy: f64,
     peak_stress: Option<Largest>,
@@ -62,14 +50,14 @@ pub(super) struct MovingBody<'a> {
     first_center: Vector3<f64>,
 }
 
-impl<'a> MovingBody<'a> {
-    pub fn new(of: RunBody<'a>, initial: &'a Initial, simulation: Simulation) -> Result<Self, RunError> {
+impl<'a> FollowedBody<'a> {
+    pub fn new(of: RunBody<'a>, number: usize, initial: &'a Initial) -> Result<Self, RunError> {
         let RunBody { scene, model } = of;
         let (origin, center) = (model.body.origin, model.body.center_of_mass);
         let first_center = initial.origin.unwrap_or(origin) + initial.attitude.to_global(&(center - origin));
         Ok(Self {
             of,
-            simulation,
+            number,
             watch: Watch::new(scene, model, initial, model.physics.effects)?,
             peak_strain_energy: 0.0,
             peak_stress: None,
@@ -78,14 +66,9 @@ impl<'a> MovingBody<'a> {
         })
     }
 
-    /// The motion.
-    pub fn simulation(&self) -> &Simulation {
-        &self.simulation
-    }
-
-    /// Keeps what [`Self::observe`] needs at times between steps.
-    pub fn keep_last_step(&mut self) {
-        self.simulation.keep_last_step();
+    /// Sees a moment between rows.
+    pub fn look(&mut self, moment: &Moment) {
+        self.watch.look(moment);
     }
 
     /// Takes a row before a checkpoint into account. `None` where the file lacks a column.
@@ -101,47 +84,9 @@ impl<'a> MovingBody<'a> {
         Some(seen)
     }
 
-    /// Goes on, at the most by as many steps as there are between two reports. Gives [`Reached::Row`] where it has come to.
-    ///
-    /// # Errors
-    /// A step that failed; but [`Self::refusal`] comes before it.
-    pub fn go(&mut self, next: Next, times: Option<&RowTimes>) -> Result<Reached, StepError> {
-        let Self { simulation, watch, .. } = self;
-        match (next, times) {
-            (Next::Time(time), Some(times)) => {
-                let before = simulation.stats();
-                let tried = |simulation: &Simulation| {
-                    let now = simulation.stats();
-                    now.accepted + now.rejected - before.accepted - before.rejected
-                };
-                while simulation.time() < time && !times.are_same(simulation.time(), time) {
-                    let left = STEPS_PER_REPORT.saturating_sub(tried(simulation));
-                    if left == 0 {
-                        return Ok(Reached::Between);
-                    }
-                    // Its own rows may be beyond the time by many steps.
-                    let tries = if times.may_be_between_steps() { 1 } else { left };
-                    simulation.advance_watched(tries, |moment| watch.look(moment))?;
-                }
-                Ok(Reached::Row)
-            }
-            _ => simulation.advance_watched(STEPS_PER_REPORT, |moment| watch.look(moment)),
-        }
-    }
-
     /// Refusal to go on, and since when, where the review has found that the model is wrong, unless the scene wants to.
     pub fn refusal(&self) -> Option<(f64, advice::Refusal)> {
         self.watch.refusal()
-    }
-
-    /// Observes the motion at the time that it has come to, or at the time of a row within its last step.
-    pub fn observe(&mut self, at: Option<f64>, out: &mut BodyRow) -> Result<(), StepError> {
-        match at {
-            Some(time) => self.simulation.interpolate(time, &mut out.motion)?,
-            None => self.simulation.observe(&mut out.motion)?,
-        }
-        out.complete(self.of.model);
-        Ok(())
     }
 
     /// Takes a row into account.
@@ -155,10 +100,11 @@ impl<'a> MovingBody<'a> {
         Largest::watch(&mut self.peak_stress, self.of.model, now);
     }
 
-    /// What is told of it when it has come to its end, with the last row; and warnings.
-    pub fn report(mut self, last: &BodyRow) -> (BodyRunReport, Vec<String>) {
-        let stats = self.simulation.stats();
-        let Watched { balances, right_unsummed, left_out, turned, warnings } = self.watch.finish(&self.simulation);
+    /// What is told of it when it has come to its end, with the last row, the cost of its motion and the energy that came and
+    /// went; and warnings.
+    pub fn report(mut self, last: &BodyRow, stats: &Stats, exchanged: f64) -> (BodyRunReport, Vec<String>) {
+        let Watched { balances, right_unsummed, left_out, turned, warnings } =
+            self.watch.finish(exchanged, stats.longest);
         let RunBody { scene, model } = self.of;
         let report = BodyRunReport {
             name: self.of.name().to_owned(),

@@ -1,26 +1,21 @@
-//! Checkpoints of the simulations of a run.
+//! Checkpoints of the motions of a run.
 
 use std::path::Path;
 
-use dynamics::{CheckpointError, Simulation};
+use dynamics::CheckpointError;
 
 use super::error::RunError;
+use super::motion::Motion;
 
-/// The states of all simulations, one after the other: each takes the same room at any time.
-pub(super) fn checkpoint<'s>(
-    simulations: impl IntoIterator<Item = &'s Simulation>,
-    part: &Path,
-) -> Result<Vec<u64>, RunError> {
-    let states = simulations.into_iter().map(Simulation::checkpoint).collect::<Result<Vec<_>, _>>();
+/// The states of all motions, one after the other: each takes the same room at any time.
+pub(super) fn checkpoint<'m>(motions: impl IntoIterator<Item = &'m Motion>, part: &Path) -> Result<Vec<u64>, RunError> {
+    let states = motions.into_iter().map(Motion::checkpoint).collect::<Result<Vec<_>, _>>();
     Ok(states.map_err(|source| RunError::Restore { part: part.to_owned(), source })?.concat())
 }
 
-/// The simulations in the states of a checkpoint.
-pub(super) fn restored(simulations: Vec<Simulation>, mut states: &[u64]) -> Result<Vec<Simulation>, CheckpointError> {
-    let state = |simulation: Simulation| {
-        let (state, rest) = states.split_at(simulation.checkpoint()?.len().min(states.len()));
-        states = rest;
-        simulation.restored(state)
-    };
-    simulations.into_iter().map(state).collect()
+/// A motion in its state, the first of those in a checkpoint, which become the others.
+pub(super) fn restored(motion: Motion, states: &mut &[u64]) -> Result<Motion, CheckpointError> {
+    let (state, rest) = states.split_at(motion.checkpoint()?.len().min(states.len()));
+    *states = rest;
+    motion.restored(state)
 }

@@ -4,12 +4,13 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use dynamics::{Reached, Simulation};
+use dynamics::Reached;
 use memory::Bytes;
 use results::{Metadata, bytes_per_row};
 use scene::Scene;
 use serde::Serialize;
 
+use super::motion::Motion;
 use super::row_times::RowTimes;
 use crate::rows::columns::COLUMNS;
 
@@ -40,20 +41,24 @@ impl Estimate {
         Self { rows, bytes: rows.saturating_mul(bytes_per_row(&COLUMNS, metadata)), seconds: None }
     }
 
-    /// With the time of all bodies together, by trials that leave their simulations as they are.
-    pub(super) fn with_seconds(self, simulations: &[Simulation], stop: &AtomicBool) -> Self {
-        let trial = TRIAL / simulations.len().max(1) as f64;
-        Self { seconds: simulations.iter().map(|simulation| seconds(simulation.clone(), trial, stop)).sum(), ..self }
+    /// With the time of all motions together, by trials that leave them as they are.
+    pub(super) fn with_seconds<'m>(
+        self,
+        motions: impl ExactSizeIterator<Item = &'m Motion>,
+        stop: &AtomicBool,
+    ) -> Self {
+        let trial = TRIAL / motions.len().max(1) as f64;
+        Self { seconds: motions.map(|motion| seconds(motion.clone(), trial, stop)).sum(), ..self }
     }
 }
 
 /// The time of the later half of some steps, which under step control have found their length by then, for the whole motion.
-fn seconds(mut simulation: Simulation, trial: f64, stop: &AtomicBool) -> Option<f64> {
-    let (started, end) = (Instant::now(), simulation.end());
+fn seconds(mut motion: Motion, trial: f64, stop: &AtomicBool) -> Option<f64> {
+    let (started, end) = (Instant::now(), motion.end());
     let mut before = (0.0, 0.0);
     loop {
-        let reached = simulation.advance(STEPS_PER_LOOK).ok()?;
-        let (time, taken) = (simulation.time(), started.elapsed().as_secs_f64());
+        let reached = motion.advance(STEPS_PER_LOOK, |_, _| ()).ok()?;
+        let (time, taken) = (motion.time(), started.elapsed().as_secs_f64());
         let is_over = taken >= trial || time >= TRIAL_PART * end || stop.load(Ordering::Relaxed);
         if is_over || reached == Reached::End {
             return (time > before.0).then(|| (taken - before.1) / (time - before.0) * end);

@@ -2,8 +2,8 @@
 
 use dynamics::DrivenMotion;
 use model::Builder;
-use results::{BodyMetadata, BodyProperties, Metadata, Units};
-use scene::{Scene, StepControl};
+use results::{BodyMetadata, BodyProperties, JointMetadata, Metadata, Units};
+use scene::{Coordinate, Joint, Scene, StepControl, System};
 
 use super::body::RunBody;
 use crate::drawn::mesh_properties;
@@ -13,7 +13,7 @@ use crate::rows::columns::part;
 use crate::rows::effects;
 
 /// The metadata in the results file of a run; `None` without a body.
-pub(super) fn metadata_of_file(bodies: &[RunBody<'_>], builder: &Builder) -> Option<Metadata> {
+pub(super) fn metadata_of_file(system: &System, bodies: &[RunBody<'_>], builder: &Builder) -> Option<Metadata> {
     let mut metadata = metadata(bodies)?;
     let mut files: Vec<String> = Vec::new();
     for (RunBody { scene, model }, body) in bodies.iter().zip(&mut metadata.bodies) {
@@ -25,7 +25,8 @@ pub(super) fn metadata_of_file(bodies: &[RunBody<'_>], builder: &Builder) -> Opt
         }
         body.model.mesh = mesh_properties(scene, model);
     }
-    Some(Metadata { input_files: files, ..metadata })
+    let joints = system.joints.iter().map(|joint| joint_metadata(system, joint)).collect();
+    Some(Metadata { input_files: files, joints, ..metadata })
 }
 
 /// The metadata of a run without what only a file has: the files that it read, and the sizes of meshes. `None` without a body.
@@ -49,6 +50,7 @@ pub fn metadata(bodies: &[RunBody<'_>]) -> Option<Metadata> {
         scene_file: scene_file::to_text(&scene.path),
         input_files: Vec::new(),
         bodies: bodies.iter().map(body_metadata).collect(),
+        joints: Vec::new(),
         warnings: Vec::new(),
     })
 }
@@ -76,6 +78,28 @@ fn body_metadata(of: &RunBody<'_>) -> BodyMetadata {
         support_names: model.supports.as_ref().map_or(Vec::new(), |supports| supports.names().to_vec()),
         effects: effects::described(scene, model),
         refusal: model.refusal.map(|refusal| refusal.to_string()),
+    }
+}
+
+fn joint_metadata(system: &System, joint: &Joint) -> JointMetadata {
+    let coordinates = joint.kind.coordinates();
+    let acts = |along| {
+        let of_spring = joint.spring.iter().map(|spring| spring.along);
+        of_spring.chain(joint.motor.iter().map(|motor| motor.along)).any(|coordinate| coordinate == along)
+    };
+    let parts = [
+        (part::TURNS, coordinates.contains(&Coordinate::Turn)),
+        (part::SLIDES, coordinates.contains(&Coordinate::Slide)),
+        (part::DRIVE, joint.drive.is_some() || joint.motor.is_some()),
+        (part::SPRING, joint.spring.is_some()),
+        (part::TURN_FORCE, acts(Coordinate::Turn)),
+        (part::SLIDE_FORCE, acts(Coordinate::Slide)),
+    ];
+    JointMetadata {
+        name: joint.name.clone(),
+        kind: joint.kind.name().to_owned(),
+        between: joint.between.map(|end| system.name_of(end)),
+        parts: parts.into_iter().filter(|(_, has)| *has).map(|(part, _)| part.to_owned()).collect(),
     }
 }
 

@@ -3,14 +3,17 @@
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use dynamics::{Reached, StepError};
-use results::{Results, Writer};
-use scene::StepControl;
+use dynamics::{JointObservation, Reached, StepError};
+use results::{BodyResults, Results, Writer};
+use scene::{Scene, StepControl};
 
-use super::body::{MovingBody, Next};
+use super::body::{FollowedBody, RunBody};
+use super::body_report::BodyRunReport;
 use super::checkpoint::checkpoint;
 use super::error::RunError;
 use super::estimate::Estimate;
+use super::motion::Motion;
+use super::mover::{Mover, Next};
 use super::report::{RunReport, SystemReport};
 use super::row_times::RowTimes;
 use super::settings::{RunProgress, RunSettings};
@@ -24,23 +27,29 @@ const STEPS_PER_LOOK: u64 = 64;
 
 /// Follows a run, and turns its observations into rows of the results file.
 pub(super) struct Recorder<'a> {
-    bodies: Vec<MovingBody<'a>>,
+    movers: Vec<Mover<'a>>,
     row: Row,
     writer: Writer<Row>,
     rows: u64,
-    /// Of several bodies; a single one has its rows where it takes them.
+    /// Of several bodies and of tied ones; a single free one has its rows where it takes them.
     times: Option<RowTimes>,
     estimate: Estimate,
 }
 
 impl<'a> Recorder<'a> {
-    pub fn new(mut bodies: Vec<MovingBody<'a>>, writer: Writer<Row>, estimate: Estimate) -> Self {
-        let times = bodies.first().filter(|_| bodies.len() > 1).map(|body| RowTimes::new(body.of.scene));
+    pub fn new(bodies: &[RunBody<'_>], mut movers: Vec<Mover<'a>>, writer: Writer<Row>, estimate: Estimate) -> Self {
+        let is_alone = matches!(&movers[..], [Mover { motion: Motion::Alone(_), .. }]);
+        let times = bodies.first().filter(|_| !is_alone).map(|body| RowTimes::new(body.scene));
         if times.is_some_and(|times| times.may_be_between_steps()) {
-            bodies.iter_mut().for_each(MovingBody::keep_last_step);
+            movers.iter_mut().for_each(|mover| mover.motion.keep_last_step());
         }
-        let row = Row { time: 0.0, bodies: bodies.iter().map(|body| BodyRow::new(body.of.model)).collect() };
-        Self { bodies, row, writer, rows: 0, times, estimate }
+        let joints = movers.iter().map(|mover| mover.joints.len()).sum();
+        let row = Row {
+            time: 0.0,
+            bodies: bodies.iter().map(|body| BodyRow::new(body.model)).collect(),
+            joints: vec![JointObservation::default(); joints],
+        };
+        Self { movers, row, writer, rows: 0, times, estimate }
     }
 
     /// The first row, and a first checkpoint.
@@ -55,15 +64,18 @@ impl<'a> Recorder<'a> {
         let changed = |what| RunError::Changed { part: part.clone(), what };
         let times = results.numbers("time").unwrap_or_default();
         for (row, time) in times.iter().enumerate() {
-            let bodies = self.bodies.iter_mut().zip(results.bodies()).zip(&mut self.row.bodies);
-            for ((body, results), out) in bodies {
-                body.take_up(results, (row, *time), out).ok_or_else(|| changed("the columns"))??;
+            let results: Vec<BodyResults<'_>> = results.bodies().collect();
+            for body in self.movers.iter_mut().flat_map(|mover| &mut mover.bodies) {
+                let number = body.number;
+                let of = results.get(number).ok_or_else(|| changed("the list of bodies"))?;
+                let out = &mut self.row.bodies[number];
+                body.take_up(*of, (row, *time), out).ok_or_else(|| changed("the columns"))??;
             }
         }
         self.rows = results.rows() as u64;
         let Some(last) = self.rows.checked_sub(1) else { return Err(changed("the motion at the checkpoint")) };
         // A body that was between two steps at the row is beyond it.
-        if (0..self.bodies.len()).any(|body| self.row_within_step(body, last).is_some()) {
+        if self.movers.iter().any(|mover| self.row_within_step(mover, last).is_some()) {
             return Ok(());
         }
         self.observe(last)?;
@@ -111,19 +123,15 @@ impl<'a> Recorder<'a> {
         // Should there be no room for the results file, they can still be had from here.
         self.flush()?;
         let time = started.elapsed();
-        let Self { bodies, row, mut writer, rows, estimate, .. } = self;
-        let steps: u64 = bodies.iter().map(|body| body.simulation().stats().accepted).sum();
-        let Some(scene) = bodies.first().map(|body| body.of.scene) else { return Err(RunError::NoBody) };
-        let count = bodies.len();
-        let (mut reports, mut warnings, mut times) = (Vec::new(), Vec::new(), Times::default());
-        for (body, last) in bodies.into_iter().zip(&row.bodies) {
-            let of = body.of;
-            times.add_all(&Times::of_model(of.model));
-            let (report, of_body) = body.report(last);
-            let of_body = of_body.into_iter().chain(not_stored(of, count));
-            warnings.extend(of_body.map(|text| if count == 1 { text } else { format!("body {}: {text}", of.name()) }));
-            reports.push(report);
-        }
+        let steps = self.steps();
+        let Self { movers, row, mut writer, rows, estimate, .. } = self;
+        let count = row.bodies.len();
+        let mut reports: Vec<_> = movers.into_iter().flat_map(|mover| reports(mover, &row, count)).collect();
+        reports.sort_by_key(|report| report.number);
+        let Some(scene) = reports.first().map(|report| report.scene) else { return Err(RunError::NoBody) };
+        let mut times = Times::default();
+        reports.iter().for_each(|report| times.add_all(&report.times));
+        let warnings = reports.iter().flat_map(|report| report.warnings.clone()).collect();
         let mut report = RunReport {
             title: scene.title.clone(),
             units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
@@ -137,7 +145,7 @@ impl<'a> Recorder<'a> {
                 StepControl::Tolerance(tolerance) => Some(tolerance),
             },
             steps_per_second: (steps - before) as f64 / time.as_secs_f64(),
-            bodies: reports,
+            bodies: reports.into_iter().map(|report| report.body).collect(),
             system: SystemReport::of(&row),
             warnings,
             times,
@@ -156,13 +164,14 @@ impl<'a> Recorder<'a> {
             None => Next::Row,
         };
         let mut last = Reached::Row;
-        for i in 0..self.bodies.len() {
-            let body = &mut self.bodies[i];
-            let reached = body.go(next, self.times.as_ref());
+        for i in 0..self.movers.len() {
+            let mover = &mut self.movers[i];
+            let reached = mover.go(next, self.times.as_ref());
             // A step that fails after the model has come to mean nothing fails for that.
-            if let Some((time, refusal)) = body.refusal() {
+            let refused = mover.bodies.iter().find_map(|body| Some((body.number, body.refusal()?)));
+            if let Some((body, (time, refusal))) = refused {
                 let results = self.writer.unfinished().to_path_buf();
-                return Err(RunError::Refused { results, body: self.name_of(i), time, refusal });
+                return Err(RunError::Refused { results, body: self.name_of(body), time, refusal });
             }
             last = reached.map_err(|source| self.failed(i, source))?;
             if last == Reached::Between {
@@ -174,26 +183,27 @@ impl<'a> Recorder<'a> {
 
     /// Time that all bodies have come to.
     fn time(&self) -> f64 {
-        self.bodies.iter().map(|body| body.simulation().time()).fold(f64::INFINITY, f64::min)
+        self.movers.iter().map(|mover| mover.motion.time()).fold(f64::INFINITY, f64::min)
     }
 
     fn end(&self) -> f64 {
-        self.bodies.first().map_or(0.0, |body| body.simulation().end())
+        self.movers.first().map_or(0.0, |mover| mover.motion.end())
     }
 
-    /// Steps of all bodies.
+    /// Steps of all motions.
     fn steps(&self) -> u64 {
-        self.bodies.iter().map(|body| body.simulation().stats().accepted).sum()
+        self.movers.iter().map(|mover| mover.motion.stats().accepted).sum()
     }
 
     /// The same, with those that were tried in vain.
     fn tried(&self) -> u64 {
-        self.bodies.iter().map(|body| body.simulation().stats()).map(|stats| stats.accepted + stats.rejected).sum()
+        self.movers.iter().map(|mover| mover.motion.tried()).sum()
     }
 
     /// Name of a body among several, for messages.
     fn name_of(&self, body: usize) -> Option<String> {
-        (self.bodies.len() > 1).then(|| self.bodies[body].of.name().to_owned())
+        let mut bodies = self.movers.iter().flat_map(|mover| &mover.bodies).filter(|_| self.row.bodies.len() > 1);
+        bodies.find(|of| of.number == body).map(|of| of.of.name().to_owned())
     }
 
     fn stopped(&self, settings: &RunSettings) -> RunError {
@@ -201,22 +211,27 @@ impl<'a> Recorder<'a> {
         RunError::Stopped { part: self.writer.unfinished().to_path_buf(), time: self.time(), replaces }
     }
 
-    fn failed(&self, body: usize, source: StepError) -> RunError {
-        RunError::Step { results: self.writer.unfinished().to_path_buf(), body: self.name_of(body), source }
+    /// The error of a step of a motion, with the name of its body where it has one.
+    fn failed(&self, mover: usize, source: StepError) -> RunError {
+        let body = match &self.movers[mover].bodies[..] {
+            [body] => self.name_of(body.number),
+            _ => None,
+        };
+        RunError::Step { results: self.writer.unfinished().to_path_buf(), body, source }
     }
 
-    /// Time of a row, where it is within the last step of a body.
-    fn row_within_step(&self, body: usize, row: u64) -> Option<f64> {
+    /// Time of a row, where it is within the last step of a motion.
+    fn row_within_step(&self, mover: &Mover<'_>, row: u64) -> Option<f64> {
         let times = self.times.as_ref()?;
         let time = times.of(row);
-        (!times.are_same(self.bodies[body].simulation().time(), time)).then_some(time)
+        (!times.are_same(mover.motion.time(), time)).then_some(time)
     }
 
     /// Observes the motion at a row.
     fn observe(&mut self, row: u64) -> Result<(), RunError> {
-        for i in 0..self.bodies.len() {
-            let within = self.row_within_step(i, row);
-            let observed = self.bodies[i].observe(within, &mut self.row.bodies[i]);
+        for i in 0..self.movers.len() {
+            let within = self.row_within_step(&self.movers[i], row);
+            let observed = self.movers[i].observe(within, &mut self.row);
             observed.map_err(|source| self.failed(i, source))?;
         }
         self.row.time = self.times.as_ref().map_or_else(|| self.time(), |times| times.of(row));
@@ -228,7 +243,8 @@ impl<'a> Recorder<'a> {
         self.observe(self.rows)?;
         // It refuses what is not finite.
         self.writer.push(&self.row)?;
-        self.bodies.iter_mut().zip(&self.row.bodies).try_for_each(|(body, now)| body.record(now))?;
+        let mut bodies = self.movers.iter_mut().flat_map(|mover| &mut mover.bodies);
+        bodies.try_for_each(|body| body.record(&self.row.bodies[body.number]))?;
         self.rows += 1;
         Ok(())
     }
@@ -237,10 +253,37 @@ impl<'a> Recorder<'a> {
     /// already, which could then not be found again.
     fn flush(&mut self) -> Result<(), RunError> {
         let next = self.times.as_ref().map_or(f64::INFINITY, |times| times.of(self.rows));
-        if next < self.end() && self.bodies.iter().any(|body| body.simulation().time() > next) {
+        if next < self.end() && self.movers.iter().any(|mover| mover.motion.time() > next) {
             return Ok(());
         }
-        let checkpoint = checkpoint(self.bodies.iter().map(MovingBody::simulation), self.writer.unfinished())?;
+        let checkpoint = checkpoint(self.movers.iter().map(|mover| &mover.motion), self.writer.unfinished())?;
         Ok(self.writer.flush(&checkpoint)?)
     }
+}
+
+/// A body at the end of its run.
+struct Finished<'a> {
+    number: usize,
+    scene: &'a Scene,
+    body: BodyRunReport,
+    warnings: Vec<String>,
+    times: Times,
+}
+
+/// What is told of the bodies of a motion that has come to its end, of `count` in all.
+fn reports<'a>(Mover { motion, bodies, .. }: Mover<'a>, last: &Row, count: usize) -> Vec<Finished<'a>> {
+    let stats = motion.stats();
+    let report = |(i, body): (usize, FollowedBody<'a>)| {
+        let (of, number) = (body.of, body.number);
+        let (report, warnings) = body.report(&last.bodies[number], &stats, motion.exchanged(i));
+        let named = |text| if count == 1 { text } else { format!("body {}: {text}", of.name()) };
+        Finished {
+            number,
+            scene: of.scene,
+            body: report,
+            warnings: warnings.into_iter().chain(not_stored(of, count)).map(named).collect(),
+            times: Times::of_model(of.model),
+        }
+    };
+    bodies.into_iter().enumerate().map(report).collect()
 }

@@ -1,7 +1,7 @@
 //! Watch of a motion beside its rows: the assumptions of its model, and the quantities that should stay as they are.
 
 use advice::{Refusal, Review, StepEstimate};
-use dynamics::{EffectMap, Initial, Moment, Observation, Simulation};
+use dynamics::{EffectMap, Initial, Moment, Observation};
 use model::{BuildError, Model};
 use scene::{Load, Scene};
 
@@ -100,12 +100,12 @@ impl<'a> Watch<'a> {
         self.review.stop().filter(|_| self.scene.effects.refuse)
     }
 
-    /// Findings when `simulation` has come to its end.
-    pub fn finish(&mut self, simulation: &Simulation) -> Watched {
+    /// Findings when the motion has come to its end, in which this energy came and went, in steps of at most this length.
+    pub fn finish(&mut self, exchanged: f64, longest_step: f64) -> Watched {
         let Self { scene, model, .. } = *self;
-        self.monitor.exchanged(simulation.exchanged());
+        self.monitor.exchanged(exchanged);
         let balances = self.monitor.balances();
-        let right_unsummed = balances.energy > OPEN && self.is_right_unsummed(simulation.stats().longest);
+        let right_unsummed = balances.energy > OPEN && self.is_right_unsummed(longest_step);
         let open =
             (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
         let moments = right_unsummed.then(|| pointed_moments(scene)).flatten();

@@ -83,7 +83,7 @@ pub(super) struct Plan {
     pub parameters: Vec<(String, Vec<Value>)>,
     pub results: BTreeMap<String, Asked>,
     /// The scenes of the bodies in each row, or why there are none.
-    pub rows: Vec<Result<Vec<Scene>, String>>,
+    pub rows: Vec<Result<System, String>>,
     /// Hash for each row: of its scene and of the bytes of all files that are read for it.
     pub identities: Vec<u64>,
 }
@@ -157,7 +157,7 @@ impl Plan {
                 invalid(&format!("parameters.\"{key}\""), found, &expected)
             })?;
             rows.push(match System::parse(&text, &scene_path) {
-                Ok(System { bodies, .. }) => Ok(bodies),
+                Ok(system) => Ok(system),
                 Err(refusal) => {
                     let words = refusal.to_string();
                     first_refusal.get_or_insert((row, refusal));
@@ -197,7 +197,7 @@ impl Plan {
     pub fn has_changed(&self, row: usize) -> bool {
         self.rows[row]
             .as_ref()
-            .is_ok_and(|scenes| identity(scenes, |scene| contents(&scene.body)) != self.identities[row])
+            .is_ok_and(|system| identity(&system.bodies, |scene| contents(&scene.body)) != self.identities[row])
     }
 }
 
@@ -222,12 +222,12 @@ fn check_bodies(system: &System, results: &BTreeMap<String, Asked>) -> Result<()
 }
 
 /// Hash for each row.
-fn identities(rows: &[Result<Vec<Scene>, String>]) -> Vec<u64> {
+fn identities(rows: &[Result<System, String>]) -> Vec<u64> {
     // The files of each body are read once.
     let mut bodies: BTreeMap<String, Hash> = BTreeMap::new();
     let mut contents_of =
         |scene: &Scene| *bodies.entry(format!("{:?}", scene.body)).or_insert_with(|| contents(&scene.body));
-    let of_row = |row: &Result<Vec<Scene>, String>| row.as_ref().map_or(0, |scenes| identity(scenes, &mut contents_of));
+    let of_row = |row: &Result<System, String>| row.as_ref().map_or(0, |system| identity(&system.bodies, &mut contents_of));
     rows.iter().map(of_row).collect()
 }
 
