@@ -10,10 +10,11 @@
 //! Eqs. (J9) of `docs/method/systems.md`.
 
 use crate::conservative::{get, part};
-use crate::system::elimination::inverse::Inverse;
+use crate::system::description::System;
+use crate::system::elimination::inverse::{Inertia, Inverse};
 use crate::system::elimination::joint_matrix::JointMatrix;
 use crate::system::radau::{Failed, SystemMotion};
-use crate::system::stage::{put, vector};
+use crate::system::stage::{Stage, put, vector};
 
 /// Passes: the deformation changes the forces a little.
 const PASSES: usize = 6;
@@ -44,21 +45,9 @@ impl SystemMotion {
         self.find_row_accelerations(&velocities, &mut change);
         let Self { first, system, patterns, matrices, .. } = self;
         let mut acceleration = vec![0.0; system.coordinates()];
-        let mut inverses: Vec<Inverse<f64>> = Vec::new();
-        for (b, inertia) in first.inertia.iter().enumerate() {
+        let inverses = rigid_inverses(first, system).ok_or(Failed::Newton)?;
+        for (b, inverse) in inverses.iter().enumerate() {
             let own = system.first[b]..system.first[b + 1];
-            let mut rigid = inertia.clone();
-            // J of the body as it is deformed, without its modes.
-            for (i, a) in inertia.coupling.iter().enumerate() {
-                for (j, b) in inertia.coupling.iter().enumerate() {
-                    rigid.locked[(i, j)] += a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-                }
-            }
-            rigid.coupling.iter_mut().for_each(|s| s.fill(0.0));
-            let mut inverse = Inverse::new(own.len() - 6);
-            if !inverse.find(1.0, &rigid, std::iter::repeat_n([f64::INFINITY, 0.0], own.len() - 6)) {
-                return Err(Failed::Newton);
-            }
             let rates = &first.evaluations[b].rates;
             let force = first.attitudes[b] * get(rates.slow(), part::MOMENTUM);
             let [velocity, omega] = [0, 3].map(|at| vector(&first.velocities, own.start + at));
@@ -71,7 +60,6 @@ impl SystemMotion {
             // V has the axes of the body, which turn.
             let turned = vector(acceleration, 0) - omega.cross(&velocity);
             put(acceleration, 0, &turned);
-            inverses.push(inverse);
         }
         first.constraints.add_rates(1.0, &acceleration, &mut change);
         change.iter_mut().for_each(|sum| *sum = -*sum);
@@ -80,6 +68,19 @@ impl SystemMotion {
         of_rigid.factor(&patterns.rows, &mut matrices.is_left_out, true);
         of_rigid.solve(&patterns.rows, &mut change);
         Ok(change)
+    }
+
+    /// For each row of the joints and couplings, true if others imply it where bodies are rigid: what such rows share is not
+    /// determined by rigid bodies. The system is where it has been assembled.
+    pub(super) fn implied_rows(&self) -> Vec<bool> {
+        let Self { first, system, patterns, .. } = self;
+        let mut is_implied = vec![false; system.rows()];
+        if let Some(inverses) = rigid_inverses(first, system) {
+            let mut of_rigid = JointMatrix::new(&patterns.rows, system.coordinates());
+            of_rigid.assemble(&patterns.rows, &first.constraints, &inverses);
+            of_rigid.factor(&patterns.rows, &mut is_implied, true);
+        }
+        is_implied
     }
 
     /// Sets q by these multipliers, and p so that q̇ is zero.
@@ -100,4 +101,22 @@ impl SystemMotion {
             }
         }
     }
+}
+
+/// Inverses of the inertia of bodies without their modes, where the system is; `None` where one is singular.
+fn rigid_inverses(first: &Stage, system: &System) -> Option<Vec<Inverse<f64>>> {
+    let of_body = |(b, inertia): (usize, &Inertia)| {
+        let flexible = system.first[b + 1] - system.first[b] - 6;
+        let mut rigid = inertia.clone();
+        // J of the body as it is deformed, without its modes.
+        for (i, a) in inertia.coupling.iter().enumerate() {
+            for (j, b) in inertia.coupling.iter().enumerate() {
+                rigid.locked[(i, j)] += a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            }
+        }
+        rigid.coupling.iter_mut().for_each(|s| s.fill(0.0));
+        let mut inverse = Inverse::new(flexible);
+        inverse.find(1.0, &rigid, std::iter::repeat_n([f64::INFINITY, 0.0], flexible)).then_some(inverse)
+    };
+    first.inertia.iter().enumerate().map(of_body).collect()
 }

@@ -74,7 +74,9 @@ pub struct SystemSimulation {
     formula_steps: FormulaSteps,
     histories: Vec<History>,
     points: Vec<Vec<PointShapes>>,
+    size: f64,
     assembled: Vec<Assembled>,
+    redundant: Vec<(String, usize)>,
     stats: Stats,
     account: EnergyAccount,
     exchanged: Vec<Exchanged>,
@@ -117,6 +119,9 @@ struct Saved {
 }
 
 impl SystemSimulation {
+    /// Name of its scheme: Radau IIA of three stages.
+    pub const SCHEME: &str = "radau";
+
     /// Puts the bodies together, and begins a run.
     ///
     /// # Errors
@@ -137,7 +142,17 @@ impl SystemSimulation {
             Rows::Interval(interval) => positive("the interval of the rows", interval)?,
         }
         let mut motion = SystemMotion::new(system, &states)?;
-        let assembled = assemble(&mut motion, &states, relaxed)?;
+        let size = size(motion.system(), &states);
+        let assembled = assemble(&mut motion, &states, relaxed, [size, end])?;
+        let mut redundant: Vec<(String, usize)> = Vec::new();
+        for (name, _) in
+            motion.system().connections.names().zip(motion.implied_rows()).filter(|(_, is_implied)| *is_implied)
+        {
+            match redundant.last_mut() {
+                Some((last, rows)) if last == name => *rows += 1,
+                _ => redundant.push((name.to_owned(), 1)),
+            }
+        }
         let bodies = motion.system().bodies();
         let loads = || bodies.iter().flat_map(|body| body.loads());
         let of_joints = || motion.system().joints().iter().flat_map(|joint| joint.histories());
@@ -160,7 +175,9 @@ impl SystemSimulation {
             formula_steps,
             histories,
             points,
+            size,
             assembled,
+            redundant,
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
             account: EnergyAccount::default(),
             exchanged: vec![Exchanged::default(); count],
@@ -185,6 +202,24 @@ impl SystemSimulation {
     /// Changes of each body by which the joints closed at the beginning.
     pub fn assembled(&self) -> &[Assembled] {
         &self.assembled
+    }
+
+    /// Largest distance of two bodies at the beginning, or the largest radius of gyration, if that is more.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Names of the joints and couplings with rows that others imply where bodies are rigid, at the beginning, each with how many:
+    /// what they bear is then not determined by rigid bodies, but by how the bodies give.
+    pub fn redundant(&self) -> &[(String, usize)] {
+        &self.redundant
+    }
+
+    /// Degrees of freedom that the joints leave rigid bodies at the beginning.
+    pub fn rigid_dofs(&self) -> usize {
+        let system = self.motion.system();
+        let implied: usize = self.redundant.iter().map(|(_, rows)| rows).sum();
+        (6 * system.bodies().len() + implied).saturating_sub(system.rows())
     }
 
     /// Sum of |work of loads, joints and elements| + |dissipation| of all steps, of a body.
@@ -372,11 +407,24 @@ impl SystemSimulation {
     }
 }
 
+/// Largest distance of bodies from the first, or the largest radius of gyration.
+fn size(system: &System, states: &[MotionState]) -> f64 {
+    let first = states.first().map_or_else(Vector3::zeros, |state| state.origin_global);
+    let spread = states.iter().map(|state| (state.origin_global - first).norm());
+    let radii = system.bodies().iter().map(|body| body.radius_of_gyration());
+    spread.chain(radii).fold(f64::MIN_POSITIVE, f64::max)
+}
+
 /// A body that does not resist a motion.
 const SINGULAR: SetupError = SetupError::Value { what: "the inertia of a body", found: 0.0, expected: "above 0" };
 
 /// Moves the bodies so that the joints close, and finds by how much.
-fn assemble(motion: &mut SystemMotion, states: &[MotionState], relaxed: bool) -> Result<Vec<Assembled>, SetupError> {
+fn assemble(
+    motion: &mut SystemMotion,
+    states: &[MotionState],
+    relaxed: bool,
+    [size, end]: [f64; 2],
+) -> Result<Vec<Assembled>, SetupError> {
     let done = if relaxed { motion.relax() } else { motion.assemble() };
     let [left, rates] = match done {
         Ok(left) => left,
@@ -384,16 +432,9 @@ fn assemble(motion: &mut SystemMotion, states: &[MotionState], relaxed: bool) ->
             return Err(SINGULAR);
         }
     };
-    let system = motion.system();
-    let size = system.bodies().iter().map(|body| body.radius_of_gyration()).fold(0.0, f64::max);
-    let spread = |states: &[MotionState]| {
-        let first = states.first().map_or_else(Vector3::zeros, |state| state.origin_global);
-        states.iter().map(|state| (state.origin_global - first).norm()).fold(0.0, f64::max)
-    };
-    let size = size.max(spread(states)).max(f64::MIN_POSITIVE);
     let fastest = states.iter().map(|state| state.velocity_global.norm() + size * state.omega_body.norm());
     let is_open = |left: f64, scale: f64| left.is_nan() || left > CLOSED * scale;
-    if is_open(left, size.max(1.0)) || is_open(rates, size.max(1.0) + fastest.fold(0.0, f64::max)) {
+    if is_open(left, size) || is_open(rates, size / end + fastest.fold(0.0, f64::max)) {
         let joint = motion.worst_joint().map_or_else(Box::default, Into::into);
         return Err(SetupError::NotAssembled { joint, left, rate: rates });
     }

@@ -16,6 +16,7 @@ mod recorder;
 mod report;
 mod row_times;
 mod settings;
+mod tied_report;
 mod turn;
 mod watch;
 mod words;
@@ -38,6 +39,7 @@ pub use metadata::metadata;
 pub(crate) use metadata::units;
 pub use report::{RunReport, SystemReport};
 pub use settings::{RunProgress, RunSettings};
+pub use tied_report::{AssembledReport, TiedReport};
 pub use watch::{Watch, Watched};
 
 use crate::drawn::stored_shapes;

@@ -21,6 +21,17 @@ pub struct Balances {
     pub angular_momentum: f64,
 }
 
+impl Balances {
+    /// The larger of each.
+    pub(super) fn or_larger(&self, other: &Self) -> Self {
+        Self {
+            energy: self.energy.max(other.energy),
+            linear_momentum: self.linear_momentum.max(other.linear_momentum),
+            angular_momentum: self.angular_momentum.max(other.angular_momentum),
+        }
+    }
+}
+
 /// Energy, and linear and angular momentum.
 pub(super) type Momenta = (f64, Vector3<f64>, Vector3<f64>);
 
@@ -61,6 +72,17 @@ impl Monitor {
     /// Takes into account how much energy has come and gone between the rows: they may all fall where there is none.
     pub(super) fn exchanged(&mut self, energy: f64) {
         self.scales.energy = self.scales.energy.max(energy);
+    }
+
+    /// The largest values so far.
+    pub(super) fn scales(&self) -> Balances {
+        self.scales
+    }
+
+    /// Takes larger values as those that changes are relative to: of bodies that pass momentum and energy to each other, those of
+    /// all of them.
+    pub(super) fn widen(&mut self, scales: &Balances) {
+        self.scales = self.scales.or_larger(scales);
     }
 
     /// Largest changes so far, relative to the largest values.

@@ -7,7 +7,7 @@ use results::BodyResults;
 use rigid_kin::Attitude;
 use scene::Scene;
 
-use super::balances::Conserved;
+use super::balances::{Conserved, Monitor};
 use super::body_report::BodyRunReport;
 use super::error::RunError;
 use super::watch::{Watch, Watched};
@@ -66,6 +66,11 @@ impl<'a> FollowedBody<'a> {
         })
     }
 
+    /// The monitor of what exact motion conserves.
+    pub fn monitor_mut(&mut self) -> &mut Monitor {
+        self.watch.monitor_mut()
+    }
+
     /// Sees a moment between rows.
     pub fn look(&mut self, moment: &Moment) {
         self.watch.look(moment);
@@ -100,14 +105,19 @@ impl<'a> FollowedBody<'a> {
         Largest::watch(&mut self.peak_stress, self.of.model, now);
     }
 
-    /// What is told of it when it has come to its end, with the last row, the cost of its motion and the energy that came and
-    /// went; and warnings.
-    pub fn report(mut self, last: &BodyRow, stats: &Stats, exchanged: f64) -> (BodyRunReport, Vec<String>) {
+    /// What is told of it when it has come to its end, with the last row, the cost of its motion, the energy that came and
+    /// went, and its scheme; and warnings.
+    pub fn report(
+        mut self,
+        last: &BodyRow,
+        (stats, exchanged, scheme): (&Stats, f64, &str),
+    ) -> (BodyRunReport, Vec<String>) {
         let Watched { balances, right_unsummed, left_out, turned, warnings } =
             self.watch.finish(exchanged, stats.longest);
         let RunBody { scene, model } = self.of;
         let report = BodyRunReport {
             name: self.of.name().to_owned(),
+            scheme: scheme.to_owned(),
             steps: stats.accepted,
             rejected_steps: stats.rejected,
             step_lengths: [stats.shortest, stats.longest],

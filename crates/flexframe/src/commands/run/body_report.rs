@@ -12,6 +12,8 @@ use crate::rows::peak_stress::PeakStress;
 pub struct BodyRunReport {
     /// Its name.
     pub name: String,
+    /// Formulation and scheme, in words.
+    pub scheme: String,
     /// Steps taken.
     pub steps: u64,
     /// Steps that step control tried in vain.

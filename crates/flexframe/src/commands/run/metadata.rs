@@ -1,6 +1,6 @@
 //! The metadata of a results file.
 
-use dynamics::DrivenMotion;
+use dynamics::{DrivenMotion, SystemSimulation};
 use model::Builder;
 use results::{BodyMetadata, BodyProperties, JointMetadata, Metadata, Units};
 use scene::{Coordinate, Joint, Scene, StepControl, System};
@@ -41,7 +41,7 @@ pub fn metadata(bodies: &[RunBody<'_>]) -> Option<Metadata> {
         title: scene.title.clone(),
         units: units(scene),
         formulation: method.formulation.to_owned(),
-        scheme: method.scheme.to_owned(),
+        scheme: scheme(bodies),
         step,
         tolerance,
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -53,6 +53,17 @@ pub fn metadata(bodies: &[RunBody<'_>]) -> Option<Metadata> {
         joints: Vec::new(),
         warnings: Vec::new(),
     })
+}
+
+/// The scheme, or the two of bodies that are tied and bodies that are not.
+fn scheme(bodies: &[RunBody<'_>]) -> String {
+    let of = |RunBody { scene, .. }: &RunBody<'_>| {
+        if scene.tied { SystemSimulation::SCHEME } else { scene.time.method.scheme }
+    };
+    let mut schemes: Vec<&str> = bodies.iter().map(of).collect();
+    schemes.sort_unstable();
+    schemes.dedup();
+    schemes.join(", ")
 }
 
 fn body_metadata(of: &RunBody<'_>) -> BodyMetadata {

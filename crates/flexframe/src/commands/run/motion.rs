@@ -3,6 +3,7 @@
 use dynamics::{
     CheckpointError, JointObservation, Moment, Observation, Reached, Simulation, Stats, StepError, SystemSimulation,
 };
+use scene::Scene;
 
 /// A motion with steps of its own.
 #[derive(Debug, Clone)]
@@ -27,6 +28,14 @@ impl Motion {
         match self {
             Self::Alone(simulation) => simulation.end(),
             Self::Tied(simulation) => simulation.end(),
+        }
+    }
+
+    /// Name of its scheme, of a scene.
+    pub fn scheme<'s>(&self, scene: &'s Scene) -> &'s str {
+        match self {
+            Self::Alone(_) => scene.time.method.scheme,
+            Self::Tied(_) => SystemSimulation::SCHEME,
         }
     }
 

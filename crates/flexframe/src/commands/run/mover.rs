@@ -5,6 +5,7 @@ use dynamics::{Reached, StepError};
 use super::body::FollowedBody;
 use super::motion::Motion;
 use super::row_times::RowTimes;
+use super::tied_report::TiedReport;
 use crate::rows::row::{BodyRow, Row};
 
 /// Steps between two reports of progress, where no row comes first.
@@ -28,6 +29,12 @@ pub(super) enum Next {
 }
 
 impl Mover<'_> {
+    /// What is told of it where its bodies are tied together.
+    pub fn tied_report(&self) -> Option<TiedReport> {
+        let Motion::Tied(simulation) = &self.motion else { return None };
+        Some(TiedReport::new(simulation, self.bodies.iter().map(|body| body.of.name().to_owned()).collect()))
+    }
+
     /// Goes on, at the most by as many steps as there are between two reports. Gives [`Reached::Row`] where it has come to.
     ///
     /// # Errors

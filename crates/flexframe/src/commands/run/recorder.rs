@@ -124,11 +124,15 @@ impl<'a> Recorder<'a> {
         self.flush()?;
         let time = started.elapsed();
         let steps = self.steps();
+        let tied = self.movers.iter().filter_map(Mover::tied_report).collect();
         let Self { movers, row, mut writer, rows, estimate, .. } = self;
         let count = row.bodies.len();
         let mut reports: Vec<_> = movers.into_iter().flat_map(|mover| reports(mover, &row, count)).collect();
         reports.sort_by_key(|report| report.number);
         let Some(scene) = reports.first().map(|report| report.scene) else { return Err(RunError::NoBody) };
+        let mut schemes: Vec<&str> = reports.iter().map(|report| report.body.scheme.as_str()).collect();
+        schemes.sort_unstable();
+        schemes.dedup();
         let mut times = Times::default();
         reports.iter().for_each(|report| times.add_all(&report.times));
         let warnings = reports.iter().flat_map(|report| report.warnings.clone()).collect();
@@ -139,12 +143,14 @@ impl<'a> Recorder<'a> {
             rows,
             estimate,
             formulation: scene.time.method.formulation.to_owned(),
-            scheme: scene.time.method.scheme.to_owned(),
+            scheme: schemes.join(", "),
             tolerance: match scene.time.control {
                 StepControl::Fixed(_) => None,
                 StepControl::Tolerance(tolerance) => Some(tolerance),
             },
             steps_per_second: (steps - before) as f64 / time.as_secs_f64(),
+            tied,
+            steps,
             bodies: reports.into_iter().map(|report| report.body).collect(),
             system: SystemReport::of(&row),
             warnings,
@@ -271,11 +277,16 @@ struct Finished<'a> {
 }
 
 /// What is told of the bodies of a motion that has come to its end, of `count` in all.
-fn reports<'a>(Mover { motion, bodies, .. }: Mover<'a>, last: &Row, count: usize) -> Vec<Finished<'a>> {
+fn reports<'a>(Mover { motion, mut bodies, .. }: Mover<'a>, last: &Row, count: usize) -> Vec<Finished<'a>> {
+    let scales = bodies.iter_mut().map(|body| body.monitor_mut().scales());
+    if let Some(scales) = scales.reduce(|most, scales| most.or_larger(&scales)) {
+        bodies.iter_mut().for_each(|body| body.monitor_mut().widen(&scales));
+    }
     let stats = motion.stats();
     let report = |(i, body): (usize, FollowedBody<'a>)| {
         let (of, number) = (body.of, body.number);
-        let (report, warnings) = body.report(&last.bodies[number], &stats, motion.exchanged(i));
+        let (report, warnings) =
+            body.report(&last.bodies[number], (&stats, motion.exchanged(i), motion.scheme(of.scene)));
         let named = |text| if count == 1 { text } else { format!("body {}: {text}", of.name()) };
         Finished {
             number,

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::body_report::BodyRunReport;
 use super::estimate::Estimate;
+use super::tied_report::TiedReport;
 use crate::files::json;
 use crate::report::{Times, list_of_bodies};
 use crate::rows::row::Row;
@@ -36,6 +37,10 @@ pub struct RunReport {
     /// Each body, in the order of the scene. As JSON, what is told of a single one stands beside the list, too.
     #[serde(flatten, serialize_with = "list_of_bodies")]
     pub bodies: Vec<BodyRunReport>,
+    /// Bodies that joints, springs or bushings tie together, and their joints.
+    pub tied: Vec<TiedReport>,
+    /// Steps of all motions.
+    pub steps: u64,
     /// All bodies together, at the end.
     pub system: SystemReport,
     /// Assumptions that did not hold, with the name of the body where there are several.

@@ -100,6 +100,11 @@ impl<'a> Watch<'a> {
         self.review.stop().filter(|_| self.scene.effects.refuse)
     }
 
+    /// The monitor of what exact motion conserves.
+    pub(super) fn monitor_mut(&mut self) -> &mut Monitor {
+        &mut self.monitor
+    }
+
     /// Findings when the motion has come to its end, in which this energy came and went, in steps of at most this length.
     pub fn finish(&mut self, exchanged: f64, longest_step: f64) -> Watched {
         let Self { scene, model, .. } = *self;

@@ -23,10 +23,13 @@ impl fmt::Display for RunReport {
             }
             body.write(f, self, is_single)?;
         }
+        if is_single {
+            self.tied.iter().try_for_each(|tied| write!(f, "{tied}"))?;
+        }
         if !is_single {
-            let steps: u64 = self.bodies.iter().map(|body| body.steps).sum();
             writeln!(f, "all {} bodies", self.bodies.len())?;
-            writeln!(f, "  motion   {steps} steps, {:.0} steps per second", self.steps_per_second)?;
+            self.tied.iter().try_for_each(|tied| write!(f, "{tied}"))?;
+            writeln!(f, "  motion   {} steps, {:.0} steps per second", self.steps, self.steps_per_second)?;
             writeln!(f, "  energy   {} {} at the end", quantity(self.system.final_energy), units.energy())?;
         }
         writeln!(f, "  time     {}", self.times)?;
@@ -56,7 +59,7 @@ impl BodyRunReport {
             Some(tolerance) => format!(" ({} rejected, tolerance {tolerance:e})", self.rejected_steps),
             None => String::new(),
         };
-        format!("{form} form, scheme {}, {} steps{control} {lengths}", run.scheme, self.steps)
+        format!("{form} form, scheme {}, {} steps{control} {lengths}", self.scheme, self.steps)
     }
 
     /// "turned by 300 rad (47.7 turns), to an attitude 1.59 rad from the first".

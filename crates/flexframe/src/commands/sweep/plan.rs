@@ -227,7 +227,8 @@ fn identities(rows: &[Result<System, String>]) -> Vec<u64> {
     let mut bodies: BTreeMap<String, Hash> = BTreeMap::new();
     let mut contents_of =
         |scene: &Scene| *bodies.entry(format!("{:?}", scene.body)).or_insert_with(|| contents(&scene.body));
-    let of_row = |row: &Result<System, String>| row.as_ref().map_or(0, |system| identity(&system.bodies, &mut contents_of));
+    let of_row =
+        |row: &Result<System, String>| row.as_ref().map_or(0, |system| identity(&system.bodies, &mut contents_of));
     rows.iter().map(of_row).collect()
 }
 

@@ -1,0 +1,114 @@
+//! The part of the report of `flexframe run` that is of bodies tied together.
+
+use std::fmt;
+
+use dynamics::SystemSimulation;
+use serde::Serialize;
+
+use crate::files::json;
+use crate::report::quantity;
+
+/// Changes of a body at the beginning below these parts of the size of the system and of its speeds are not told.
+const TOLD: f64 = 1e-9;
+
+/// Report of bodies that joints, springs or bushings tie together.
+#[derive(Debug, Clone, Serialize)]
+pub struct TiedReport {
+    /// Names of the bodies.
+    pub bodies: Vec<String>,
+    /// Names of the joints.
+    pub joints: Vec<String>,
+    /// Rows of the joints.
+    pub rows: usize,
+    /// Degrees of freedom that they leave rigid bodies at the beginning.
+    pub rigid_dofs: usize,
+    /// Joints with rows that others imply where bodies are rigid, and how many.
+    pub redundant: Vec<(String, usize)>,
+    /// Changes by which the joints closed at the beginning, of the bodies that were not where they had to be.
+    pub assembled: Vec<AssembledReport>,
+    /// Steps taken.
+    pub steps: u64,
+}
+
+/// Change of a body at the beginning.
+#[derive(Debug, Clone, Serialize)]
+pub struct AssembledReport {
+    /// The body.
+    pub body: String,
+    /// Distance by which it was moved.
+    #[serde(serialize_with = "json::number")]
+    pub moved: f64,
+    /// Angle by which it was turned, rad.
+    #[serde(serialize_with = "json::number")]
+    pub turned: f64,
+    /// Change of its velocity.
+    #[serde(serialize_with = "json::number")]
+    pub velocity: f64,
+    /// Change of its angular velocity.
+    #[serde(serialize_with = "json::number")]
+    pub angular_velocity: f64,
+}
+
+impl TiedReport {
+    pub(super) fn new(simulation: &SystemSimulation, bodies: Vec<String>) -> Self {
+        let system = simulation.motion().system();
+        let size = simulation.size();
+        let speed = size / simulation.end();
+        let assembled = simulation.assembled().iter().zip(&bodies);
+        let assembled = assembled.map(|(change, body)| AssembledReport {
+            body: body.clone(),
+            moved: change.moved,
+            turned: change.turned,
+            velocity: change.velocity,
+            angular_velocity: change.angular_velocity,
+        });
+        let is_told = |of: &AssembledReport| {
+            let AssembledReport { moved, turned, velocity, angular_velocity, .. } = *of;
+            moved.max(turned * size) > TOLD * size || velocity.max(angular_velocity * size) > TOLD * speed
+        };
+        Self {
+            joints: system.joints().iter().map(|joint| joint.name.clone()).collect(),
+            rows: system.joints().iter().map(|joint| joint.rows.len()).sum(),
+            rigid_dofs: simulation.rigid_dofs(),
+            redundant: simulation.redundant().to_vec(),
+            assembled: assembled.filter(is_told).collect(),
+            steps: simulation.stats().accepted,
+            bodies,
+        }
+    }
+}
+
+impl fmt::Display for TiedReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { bodies, joints, rows, rigid_dofs, redundant, assembled, .. } = self;
+        let s = |count: usize| if count == 1 { "" } else { "s" };
+        writeln!(
+            f,
+            "  joints   {} bod{} and {} joint{} with {rows} rows: {rigid_dofs} degree{} of freedom of rigid bodies",
+            bodies.len(),
+            if bodies.len() == 1 { "y" } else { "ies" },
+            joints.len(),
+            s(joints.len()),
+            s(*rigid_dofs),
+        )?;
+        if !redundant.is_empty() {
+            let list: Vec<String> = redundant.iter().map(|(joint, rows)| format!("{joint} ({rows})")).collect();
+            writeln!(
+                f,
+                "           others imply rows of {}: the reactions there are not determined by rigid bodies, but by how the \
+                 bodies give",
+                list.join(", ")
+            )?;
+        }
+        for AssembledReport { body, moved, turned, velocity, angular_velocity } in assembled {
+            let [moved, turned, velocity, angular_velocity] = [*moved, *turned, *velocity, *angular_velocity]
+                .map(|x| quantity(format!("{x:.3e}").parse().unwrap_or(x)));
+            writeln!(
+                f,
+                "  closed   {body} moved by {moved} and turned by {turned} rad, its velocity changed by {velocity} and \
+                 its angular velocity by {angular_velocity} rad per time, so that the joints hold at the start"
+            )?;
+        }
+        Ok(())
+    }
+}
