@@ -15,7 +15,7 @@ pub(crate) const BODIES: &str = "bodies";
 pub(crate) const OF_A_BODY: [&str; 6] = ["modes", "effects", "frame", "initial", "constraints", "loads"];
 
 /// Tables of a scene that tie its bodies together.
-pub(crate) const TIES: [&str; 5] = ["relaxed", "ground", "joints", "springs", "bushings"];
+pub(crate) const TIES: [&str; 6] = ["relaxed", "ground", "joints", "springs", "bushings", "couplings"];
 
 /// Keys of `output` that belong to a body.
 pub(crate) const OUTPUT_OF_A_BODY: [&str; 3] = ["points", "stress", "peak_stress"];

@@ -49,6 +49,19 @@ pub enum JointKind {
     Universal,
     /// Slides at right angles to the z axis, and the turn about it.
     Planar,
+    /// Key `locked` in the place of `kind`: all that it does not name.
+    #[serde(skip)]
+    Other(Locked),
+}
+
+/// Motions of the second end against the first that a joint does not leave free. One turn alone is that of two axes, the next
+/// of the first end and the one after of the second, which stay at right angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Locked {
+    /// Displacements along x, y and z of the first end.
+    pub displacements: [bool; 3],
+    /// Turns about x, y and z.
+    pub turns: [bool; 3],
 }
 
 /// A coordinate that a joint leaves free.
@@ -72,16 +85,33 @@ impl JointKind {
             Self::Spherical => "spherical",
             Self::Universal => "universal",
             Self::Planar => "planar",
+            Self::Other(_) => "locked",
+        }
+    }
+
+    /// The motions that it does not leave free.
+    pub fn locked(self) -> Locked {
+        let locked = |displacements, turns| Locked { displacements, turns };
+        match self {
+            Self::Fixed => locked([true; 3], [true; 3]),
+            Self::Revolute => locked([true; 3], [true, true, false]),
+            Self::Prismatic => locked([true, true, false], [true; 3]),
+            Self::Cylindrical => locked([true, true, false], [true, true, false]),
+            Self::Spherical => locked([true; 3], [false; 3]),
+            Self::Universal => locked([true; 3], [false, false, true]),
+            Self::Planar => locked([false, false, true], [true, true, false]),
+            Self::Other(locked) => locked,
         }
     }
 
     /// The free coordinates that a drive, a spring or a motor can act along.
     pub fn coordinates(self) -> &'static [Coordinate] {
-        match self {
-            Self::Fixed | Self::Spherical | Self::Universal => &[],
-            Self::Revolute | Self::Planar => &[Coordinate::Turn],
-            Self::Prismatic => &[Coordinate::Slide],
-            Self::Cylindrical => &[Coordinate::Turn, Coordinate::Slide],
+        let Locked { displacements, turns } = self.locked();
+        match (turns, displacements[2]) {
+            ([true, true, false], true) => &[Coordinate::Turn],
+            ([true, true, false], false) => &[Coordinate::Turn, Coordinate::Slide],
+            ([true, true, true], false) => &[Coordinate::Slide],
+            _ => &[],
         }
     }
 
@@ -209,4 +239,49 @@ pub struct AlongAndAbout {
     pub translation: [f64; 3],
     /// About x, y and z.
     pub rotation: [f64; 3],
+}
+
+/// Joints whose coordinates go together: one `[[couplings]]` entry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coupling {
+    /// Its name, as [`Joint::name`].
+    pub name: String,
+    /// The joints, and how their coordinates go together from the start on.
+    pub kind: CouplingKind,
+}
+
+/// How coordinates go together. Joints are numbers in [`System::joints`](crate::System::joints).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CouplingKind {
+    /// `kind = "gear"`: the first joint turns `ratio` times as much as the second.
+    Gear {
+        /// Two joints that turn.
+        joints: [usize; 2],
+        /// Not 0; negative of two outer gears.
+        ratio: f64,
+    },
+    /// `kind = "rack"`: the second joint slides by `radius` for each radian that the first one turns.
+    Rack {
+        /// A joint that turns and one that slides.
+        joints: [usize; 2],
+        /// Length, not 0.
+        radius: f64,
+    },
+    /// `kind = "screw"`: the joint slides by `lead` for each full turn.
+    Screw {
+        /// A cylindrical joint.
+        joint: usize,
+        /// Length, not 0.
+        lead: f64,
+    },
+}
+
+impl CouplingKind {
+    /// The joints.
+    pub fn joints(&self) -> [usize; 2] {
+        match *self {
+            Self::Gear { joints, .. } | Self::Rack { joints, .. } => joints,
+            Self::Screw { joint, .. } => [joint; 2],
+        }
+    }
 }

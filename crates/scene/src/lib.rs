@@ -70,7 +70,8 @@ pub use fem_tet10::{Material, Materials, PointMass};
 pub use file::{text_from, text_of};
 pub use history::{DrivenSpeed, Formula, History, TablePoints};
 pub use joint::{
-    AlongAndAbout, Bushing, Coordinate, End, Friction, Joint, JointDrive, JointKind, JointSpring, Spring, Stops,
+    AlongAndAbout, Bushing, Coordinate, Coupling, CouplingKind, End, Friction, Joint, JointDrive, JointKind,
+    JointSpring, Locked, Spring, Stops,
 };
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace};

@@ -9,7 +9,7 @@ use crate::deserialize::from_document;
 use crate::document::{BODIES, Document, Node, OF_A_BODY, OUTPUT_OF_A_BODY};
 use crate::error::SceneError;
 use crate::file::{refuse_long, text_of};
-use crate::joint::{Bushing, End, Joint, Spring};
+use crate::joint::{Bushing, Coupling, End, Joint, Spring};
 use crate::marker::GroundMarker;
 use crate::name::{GROUND, ONLY_BODY, check_key};
 use crate::place::Place;
@@ -19,8 +19,8 @@ use crate::scene::Scene;
 const MAX_BODIES: usize = 1000;
 
 /// Keys at the root of a scene of several bodies.
-const SHARED: [&str; 10] =
-    ["title", "units", "relaxed", BODIES, GROUND, "joints", "springs", "bushings", "time", "output"];
+const SHARED: [&str; 11] =
+    ["title", "units", "relaxed", BODIES, GROUND, "joints", "springs", "bushings", "couplings", "time", "output"];
 
 /// A scene of one body or several, each as a scene of its own with the units, the times and the rows of all.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +35,8 @@ pub struct System {
     pub springs: Vec<Spring>,
     /// Bushings between markers, in the order of the file.
     pub bushings: Vec<Bushing>,
+    /// Joints whose coordinates go together, in the order of the file.
+    pub couplings: Vec<Coupling>,
     /// True if tied bodies begin deformed as the forces of their motion and their joints ask, so that nothing rings.
     pub relaxed: bool,
 }
@@ -42,8 +44,8 @@ pub struct System {
 /// A body alone.
 impl From<Scene> for System {
     fn from(scene: Scene) -> Self {
-        let Ties { ground, joints, springs, bushings, relaxed } = Ties::default();
-        Self { bodies: vec![scene], ground, joints, springs, bushings, relaxed }
+        let Ties { ground, joints, springs, bushings, couplings, relaxed } = Ties::default();
+        Self { bodies: vec![scene], ground, joints, springs, bushings, couplings, relaxed }
     }
 }
 
@@ -70,11 +72,11 @@ impl System {
         let ties = document.take_ties();
         let bodies = bodies(&document, text, ties.as_ref())?;
         let end = bodies.first().map_or(0.0, |scene| scene.time.end);
-        let Ties { ground, joints, springs, bushings, relaxed } = match &ties {
+        let Ties { ground, joints, springs, bushings, couplings, relaxed } = match &ties {
             Some(ties) => Check::new(ties, end).ties(from_document(ties)?, &bodies)?,
             None => Ties::default(),
         };
-        Ok(Self { bodies, ground, joints, springs, bushings, relaxed })
+        Ok(Self { bodies, ground, joints, springs, bushings, couplings, relaxed })
     }
 
     /// True if joints, springs or bushings tie bodies together or to the ground.

@@ -18,6 +18,7 @@ pub(crate) struct TieSections {
     pub joints: Vec<JointSection>,
     pub springs: Vec<SpringSection>,
     pub bushings: Vec<BushingSection>,
+    pub couplings: Vec<CouplingSection>,
 }
 
 #[derive(Default, Deserialize)]
@@ -49,7 +50,8 @@ pub(crate) struct GroundMarkerSection {
 #[serde(deny_unknown_fields)]
 pub(crate) struct JointSection {
     pub name: Option<String>,
-    pub kind: JointKind,
+    pub kind: Option<JointKind>,
+    pub locked: Option<Vec<String>>,
     pub between: Vec<String>,
     pub axis: Option<[f64; 3]>,
     pub drive: Option<DriveSection>,
@@ -112,6 +114,14 @@ pub(crate) struct BushingSection {
     pub stiffness: AlongAndAbout,
     #[serde(default)]
     pub damping: AlongAndAbout,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum CouplingSection {
+    Gear { name: Option<String>, joints: Vec<String>, ratio: f64 },
+    Rack { name: Option<String>, joints: Vec<String>, radius: f64 },
+    Screw { name: Option<String>, joint: String, lead: f64 },
 }
 
 /// The entries of a table by name, in the order of the text.

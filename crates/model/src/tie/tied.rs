@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use dynamics::{ConservativeBody, Coordinate, ForceElement, JointForce, Marker, MotionState, PointSpring};
 use nalgebra::Vector3;
-use scene::{AlongAndAbout, Bushing, End, Joint, JointDrive, JointKind, JointSpring, Spring, System};
+use scene::{AlongAndAbout, Bushing, CouplingKind, End, Joint, JointDrive, JointSpring, Locked, Spring, System};
 
 use crate::error::BuildError;
 use crate::load::history::history;
@@ -24,6 +24,8 @@ pub struct Tied {
     pub bodies: Vec<usize>,
     /// The numbers of their joints in the scene, in the order of the system.
     pub joints: Vec<usize>,
+    /// The numbers of their couplings in the scene, in the order of the system.
+    pub couplings: Vec<usize>,
     /// Names of their springs and bushings, in the order of the system.
     pub elements: Vec<String>,
     /// The bodies, the joints and the elements.
@@ -41,7 +43,11 @@ pub fn tie(system: &System, models: &[Model]) -> Result<Vec<Tied>, BuildError> {
     let System { joints, springs, bushings, .. } = system;
     let of_joints = joints.iter().map(|joint| joint.between);
     let of_elements = springs.iter().map(|spring| spring.between).chain(bushings.iter().map(|b| b.between));
-    let pairs: Vec<_> = of_joints.chain(of_elements).map(|between| between.map(|end| end.body())).collect();
+    let pairs = of_joints.chain(of_elements).map(|between| between.map(|end| end.body()));
+    // Joints that are coupled may have nothing but the ground in common.
+    let first_body = |joint: usize| joints[joint].between.iter().find_map(End::body);
+    let coupled = system.couplings.iter().map(|coupling| coupling.kind.joints().map(first_body));
+    let pairs: Vec<_> = pairs.chain(coupled).collect();
     islands(models.len(), &pairs).into_iter().map(|bodies| Island::new(system, models, bodies)?.tied()).collect()
 }
 
@@ -99,8 +105,16 @@ impl<'a> Island<'a> {
             names.push(bushing.name.clone());
             elements.push(Arc::new(self.bushing(&format!("bushings[{number}]"), bushing)?));
         }
-        let system = dynamics::System::new(bodies, joints)?.with_elements(elements)?;
-        Ok(Tied { bodies: self.bodies, joints: numbers, elements: names, system, states: self.states })
+        let number_here = |joint: usize| numbers.iter().position(|number| *number == joint);
+        let of_couplings = scene.couplings.iter().enumerate();
+        let (couplings, coupled): (Vec<_>, Vec<_>) = of_couplings
+            .filter_map(|(number, coupling)| {
+                let [first, second] = coupling.kind.joints().map(number_here);
+                Some((number, self::coupling(&coupling.name, coupling.kind, [first?, second?])))
+            })
+            .unzip();
+        let system = dynamics::System::new(bodies, joints)?.with_couplings(coupled)?.with_elements(elements)?;
+        Ok(Tied { bodies: self.bodies, joints: numbers, couplings, elements: names, system, states: self.states })
     }
 
     /// True if one of the ends is on a body of these.
@@ -128,15 +142,8 @@ impl<'a> Island<'a> {
         let acts_on_turn = turns.contains(&Some(scene::Coordinate::Turn));
         self.knows_turns(key, joint, acts_on_turn)?;
         let markers = self.markers(*between, *axis);
-        let mut made = match kind {
-            JointKind::Fixed => dynamics::Joint::fixed(name, markers),
-            JointKind::Revolute => dynamics::Joint::revolute(name, markers),
-            JointKind::Prismatic => dynamics::Joint::prismatic(name, markers),
-            JointKind::Cylindrical => dynamics::Joint::cylindrical(name, markers),
-            JointKind::Spherical => dynamics::Joint::spherical(name, markers),
-            JointKind::Universal => dynamics::Joint::universal(name, markers),
-            JointKind::Planar => dynamics::Joint::planar(name, markers),
-        };
+        let Locked { displacements, turns } = kind.locked();
+        let mut made = dynamics::Joint::locked(name, markers, displacements, turns);
         if let Some(drive) = drive {
             let given = self.drive(&format!("{key}.drive"), drive)?;
             made = match drive.along {
@@ -166,21 +173,13 @@ impl<'a> Island<'a> {
         let ends = self.ends(joint.between);
         let both = axes(&ends, joint.axis.map(Vector3::from));
         for (i, (end, axes)) in ends.iter().zip(&both).enumerate() {
-            let holds = |line: Vector3<f64>| {
-                let z: Vector3<f64> = axes.column(2).into();
-                match joint.kind {
-                    JointKind::Spherical => false,
-                    JointKind::Fixed | JointKind::Prismatic => true,
-                    JointKind::Universal => z.dot(&line).abs() > ALONG,
-                    JointKind::Revolute | JointKind::Cylindrical | JointKind::Planar => {
-                        acts_on_turn || z.cross(&line).norm() > ALONG
-                    }
-                }
-            };
+            let turns = joint.kind.locked().turns;
+            let is_held = |line: &Vector3<f64>, k: usize| turns[k] && axes.column(k).dot(line).abs() > ALONG;
+            let holds = |line: Vector3<f64>| acts_on_turn || (0..3).any(|k| is_held(&line, k));
             let (found, held) = match end.unknown_turns() {
                 UnknownTurns::None => continue,
                 UnknownTurns::About(line) => ("nodes on a line, which have no turn about it", holds(line)),
-                UnknownTurns::All => ("a node that has no turn", joint.kind != JointKind::Spherical),
+                UnknownTurns::All => ("a node that has no turn", turns.contains(&true)),
             };
             if held {
                 return Err(self.refuse(&format!("{key}.between[{i}]"), found, joint.kind.name()));
@@ -228,6 +227,15 @@ impl<'a> Island<'a> {
             stiffness: lists(bushing.stiffness),
             damping: lists(bushing.damping),
         })
+    }
+}
+
+/// A coupling of two joints by their numbers in the system.
+fn coupling(name: &str, kind: CouplingKind, joints: [usize; 2]) -> dynamics::Coupling {
+    match kind {
+        CouplingKind::Gear { ratio, .. } => dynamics::Coupling::gear(name, joints, ratio),
+        CouplingKind::Rack { radius, .. } => dynamics::Coupling::rack(name, joints, radius),
+        CouplingKind::Screw { lead, .. } => dynamics::Coupling::screw(name, joints[0], lead),
     }
 }
 

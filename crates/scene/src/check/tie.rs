@@ -9,14 +9,16 @@ use crate::document::join;
 use crate::effects::Choice;
 use crate::error::SceneError;
 use crate::joint::{
-    AlongAndAbout, Bushing, Coordinate, End, Friction, Joint, JointDrive, JointKind, JointSpring, Spring, Stops,
+    AlongAndAbout, Bushing, Coordinate, Coupling, CouplingKind, End, Friction, Joint, JointDrive, JointKind,
+    JointSpring, Locked, Spring, Stops,
 };
 use crate::marker::GroundMarker;
 use crate::name::{GROUND, ONLY_BODY, is_part_of_path};
 use crate::scene::Scene;
 use crate::suggest::{nearest, one_of};
 use crate::tie_section::{
-    BushingSection, DriveSection, JointSection, JointSpringSection, SpringSection, StopsSection, TieSections,
+    BushingSection, CouplingSection, DriveSection, JointSection, JointSpringSection, SpringSection, StopsSection,
+    TieSections,
 };
 
 /// What ties the bodies of a scene together.
@@ -26,6 +28,7 @@ pub(crate) struct Ties {
     pub joints: Vec<Joint>,
     pub springs: Vec<Spring>,
     pub bushings: Vec<Bushing>,
+    pub couplings: Vec<Coupling>,
     pub relaxed: bool,
 }
 
@@ -38,21 +41,29 @@ struct Ends<'a> {
 impl Check<'_> {
     /// Joints, springs and bushings between these bodies.
     pub fn ties(&self, sections: TieSections, bodies: &[Scene]) -> Result<Ties, SceneError> {
-        let TieSections { relaxed, ground, joints, springs, bushings } = sections;
+        let TieSections { relaxed, ground, joints, springs, bushings, couplings } = sections;
         let ground = self.ground_markers(ground.markers)?;
-        for (key, entries) in [("joints", joints.len()), ("springs", springs.len()), ("bushings", bushings.len())] {
+        let counts = [
+            ("joints", joints.len()),
+            ("springs", springs.len()),
+            ("bushings", bushings.len()),
+            ("couplings", couplings.len()),
+        ];
+        for (key, entries) in counts {
             self.not_too_many(key, entries, "make several scenes of them")?;
         }
         let ends = Ends { bodies, ground: &ground };
         let mut names = BTreeSet::new();
         let joint = |(i, section)| self.joint(&format!("joints[{i}]"), i, section, &ends, &mut names);
-        let joints = joints.into_iter().enumerate().map(joint).collect::<Result<_, _>>()?;
+        let joints = joints.into_iter().enumerate().map(joint).collect::<Result<Vec<_>, _>>()?;
         let spring = |(i, section)| self.spring(&format!("springs[{i}]"), i, section, &ends, &mut names);
         let springs = springs.into_iter().enumerate().map(spring).collect::<Result<_, _>>()?;
         let bushing = |(i, section)| self.bushing(&format!("bushings[{i}]"), i, section, &ends, &mut names);
         let bushings = bushings.into_iter().enumerate().map(bushing).collect::<Result<_, _>>()?;
+        let coupling = |(i, section)| self.coupling(&format!("couplings[{i}]"), i, section, &joints, &mut names);
+        let couplings = couplings.into_iter().enumerate().map(coupling).collect::<Result<_, _>>()?;
         bodies.iter().filter(|scene| scene.tied).try_for_each(can_be_tied)?;
-        Ok(Ties { ground, joints, springs, bushings, relaxed })
+        Ok(Ties { ground, joints, springs, bushings, couplings, relaxed })
     }
 
     fn joint(
@@ -63,7 +74,8 @@ impl Check<'_> {
         ends: &Ends<'_>,
         names: &mut BTreeSet<String>,
     ) -> Result<Joint, SceneError> {
-        let JointSection { name, kind, between, mut axis, drive, spring, motor } = section;
+        let JointSection { name, kind, locked, between, mut axis, drive, spring, motor } = section;
+        let kind = self.kind(key, kind, locked)?;
         let name = self.tie_name(key, name, "joint", number, names)?;
         let between = self.between(key, &between, ends)?;
         if let Some(axis) = &mut axis {
@@ -82,6 +94,93 @@ impl Check<'_> {
             return Err(self.document.place(&join(key, "motor")).refuse(found, "one of them", help));
         }
         Ok(Joint { name, kind, between, axis, drive, spring, motor })
+    }
+
+    fn kind(&self, key: &str, kind: Option<JointKind>, locked: Option<Vec<String>>) -> Result<JointKind, SceneError> {
+        const NAMES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+        self.at_most_one(key, &["kind", "locked"], "keep `kind`, or `locked` for a joint that has no kind")?;
+        let names = match (kind, locked) {
+            (Some(kind), _) => return Ok(kind),
+            (None, None) => return Err(self.missing(key, "kind")),
+            (None, Some(names)) => names,
+        };
+        let key = join(key, "locked");
+        let (expected, help) =
+            ("some of \"x\", \"y\", \"z\", \"rx\", \"ry\" and \"rz\", each once", "e.g. `locked = [\"x\", \"rz\"]`");
+        self.require(!names.is_empty(), &key, expected, help)?;
+        let mut all = [false; 6];
+        for (i, name) in names.iter().enumerate() {
+            let axis = NAMES.iter().position(|known| known == name);
+            self.require(axis.is_some_and(|axis| !all[axis]), &format!("{key}[{i}]"), expected, help)?;
+            axis.into_iter().for_each(|axis| all[axis] = true);
+        }
+        let [x, y, z, rx, ry, rz] = all;
+        Ok(JointKind::Other(Locked { displacements: [x, y, z], turns: [rx, ry, rz] }))
+    }
+
+    fn coupling(
+        &self,
+        key: &str,
+        number: usize,
+        section: CouplingSection,
+        joints: &[Joint],
+        names: &mut BTreeSet<String>,
+    ) -> Result<Coupling, SceneError> {
+        let (turn, slide) = (Coordinate::Turn, Coordinate::Slide);
+        let two = |names: &[String], coordinates: [Coordinate; 2]| {
+            let key = join(key, "joints");
+            let [first, second] = names else {
+                let found = format!("{} names", names.len());
+                let help = "name two, e.g. `joints = [\"pinion\", \"wheel\"]`";
+                return Err(self.document.place(&key).refuse(found, "two joints", help));
+            };
+            let find = |i: usize, name: &str| self.joint_with(&format!("{key}[{i}]"), name, coordinates[i], joints);
+            let found = [find(0, first)?, find(1, second)?];
+            let help = "name the other joint";
+            self.require(found[0] != found[1], &key, "two different joints", help)?;
+            Ok(found)
+        };
+        let not_zero = |name: &str, value: f64| {
+            self.require(
+                value != 0.0,
+                &join(key, name),
+                "a number that is not 0",
+                "give how far the one goes for the other",
+            )
+        };
+        let (name, kind) = match section {
+            CouplingSection::Gear { name, joints, ratio } => {
+                not_zero("ratio", ratio)?;
+                (name, CouplingKind::Gear { joints: two(&joints, [turn, turn])?, ratio })
+            }
+            CouplingSection::Rack { name, joints, radius } => {
+                not_zero("radius", radius)?;
+                (name, CouplingKind::Rack { joints: two(&joints, [turn, slide])?, radius })
+            }
+            CouplingSection::Screw { name, joint, lead } => {
+                not_zero("lead", lead)?;
+                let key = join(key, "joint");
+                self.joint_with(&key, &joint, turn, joints)?;
+                (name, CouplingKind::Screw { joint: self.joint_with(&key, &joint, slide, joints)?, lead })
+            }
+        };
+        Ok(Coupling { name: self.tie_name(key, name, "coupling", number, names)?, kind })
+    }
+
+    /// The number of a joint by its name, which has the coordinate.
+    fn joint_with(&self, key: &str, name: &str, coordinate: Coordinate, joints: &[Joint]) -> Result<usize, SceneError> {
+        let names = joints.iter().map(|joint| joint.name.as_str());
+        let number = number_of(name, names, &format!("joint {name:?}"), "[[joints]]")
+            .map_err(|NoEnd { found, expected, help }| self.document.place(key).refuse(found, expected, help))?;
+        let kind = joints[number].kind;
+        if kind.coordinates().contains(&coordinate) {
+            return Ok(number);
+        }
+        let (found, expected) = (
+            format!("a {} joint, which has no {}", kind.name(), coordinate.name()),
+            format!("a joint with a {}", coordinate.name()),
+        );
+        Err(self.document.place(key).refuse(found, expected, "name another joint, or change its kind"))
     }
 
     fn spring(
@@ -150,7 +249,11 @@ impl Check<'_> {
             return Ok(name);
         }
         let help = format!("give the {what} a `name` of its own");
-        Err(place().refuse(format!("a second {name:?}"), "each name once among joints, springs and bushings", help))
+        Err(place().refuse(
+            format!("a second {name:?}"),
+            "each name once among joints, springs, bushings and couplings",
+            help,
+        ))
     }
 
     /// The ends that `between` names.

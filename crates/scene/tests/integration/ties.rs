@@ -1,6 +1,9 @@
 //! Markers, joints, springs and bushings: what is read, and what is refused at which place.
 
-use scene::{Coordinate, End, JointKind, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError, System};
+use scene::{
+    Coordinate, CouplingKind, End, JointKind, Locked, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError,
+    System,
+};
 
 const HEAD: &str = "title = 'three'\nunits = { length = 'm', mass = 'kg', time = 's' }\n";
 const RIGID: &str = "rigid = { mass = 2.0, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 2, 0], [0, 0, 2]] }\n";
@@ -71,6 +74,43 @@ fn all_keys_are_read() {
     assert_eq!((system.ground[0].at, system.ground[0].axes.unwrap().z), ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]));
     let place = system.place("joints[1].spring.free");
     assert_eq!((place.line, &*place.key), (38, "joints[1].spring.free"));
+}
+
+#[test]
+fn joints_without_a_kind_and_couplings_are_read_and_refused() {
+    let text = three().replace("kind = 'revolute'", "locked = ['x', 'y', 'z', 'rx', 'ry']").replace(
+        "[time]",
+        "[[couplings]]\nkind = 'rack'\njoints = ['shoulder', 'joint2']\nradius = 0.5\n\
+         [[couplings]]\nname = 'thread'\nkind = 'screw'\njoint = 'joint2'\nlead = 1e-3\n[time]",
+    );
+    let system = parse(&text).unwrap();
+    let locked = Locked { displacements: [true; 3], turns: [true, true, false] };
+    assert_eq!((system.joints[0].kind, JointKind::Revolute.locked()), (JointKind::Other(locked), locked));
+    assert_eq!(system.couplings[0].kind, CouplingKind::Rack { joints: [0, 1], radius: 0.5 });
+    let [rack, screw] = [0, 1].map(|i| &*system.couplings[i].name);
+    assert_eq!(
+        (rack, screw, system.couplings[1].kind),
+        ("coupling1", "thread", CouplingKind::Screw { joint: 1, lead: 1e-3 })
+    );
+    for (from, to, key, words) in [
+        ("'rx', 'ry'", "'rx', 'rx'", "joints[0].locked[4]", "each once"),
+        ("'rx', 'ry'", "'rx', 'ru'", "joints[0].locked[4]", "some of"),
+        ("locked = [", "kind = 'fixed'\nlocked = [", "joints[0].locked", "both `kind` and `locked`"),
+        ("locked = ['x', 'y', 'z', 'rx', 'ry']\n", "", "joints[0].kind", "`kind` is missing"),
+        ("'shoulder', 'joint2'", "'sholder', 'joint2'", "couplings[0].joints[0]", "did you mean `shoulder`?"),
+        ("'shoulder', 'joint2'", "'joint2', 'shoulder'", "couplings[0].joints[1]", "which has no slide"),
+        ("'shoulder', 'joint2'", "'joint2', 'joint2'", "couplings[0].joints", "two different joints"),
+        ("'shoulder', 'joint2'", "'joint2'", "couplings[0].joints", "1 names"),
+        ("joint = 'joint2'", "joint = 'shoulder'", "couplings[1].joint", "which has no slide"),
+        ("lead = 1e-3", "lead = 0", "couplings[1].lead", "not 0"),
+        ("'thread'", "'rubber'", "couplings[1].name", "each name once"),
+        ("'rack'", "'rak'", "couplings[0].kind", "did you mean `rack`?"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let error = parse(&text.replacen(from, to, 1)).expect_err(to);
+        assert_eq!(&*error.place().unwrap().key, key, "{error}");
+        assert!(error.to_string().contains(words), "{words}: {error}");
+    }
 }
 
 /// The scene of a body in joints is a scene without them.
