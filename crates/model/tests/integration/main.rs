@@ -6,6 +6,7 @@ mod histories;
 mod kept;
 mod loads;
 mod matrices;
+mod mechanisms;
 mod off;
 mod quasi_static;
 mod statics;
