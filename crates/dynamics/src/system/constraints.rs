@@ -97,7 +97,8 @@ impl Constraints {
     ) {
         let Connections { joints, couplings, .. } = connections;
         let places_of = |joint: &Joint| -> [MarkerPlace; 2] {
-            joint.markers.each_ref().map(|marker| marker.place(marker.body().map(&place).as_ref()))
+            let [i, j] = &joint.markers;
+            [i.place(i.body().map(&place).as_ref()), j.place(j.body().map(&place).as_ref())]
         };
         let mut row = 0;
         for joint in joints {

@@ -84,6 +84,16 @@ impl Marker {
                 tangent: Matrix3::identity(),
             };
         };
+        let global_from_body = body_from_global.transpose();
+        if self.displacement.is_empty() {
+            return MarkerPlace {
+                position: origin + global_from_body * self.position,
+                axes: global_from_body * self.axes,
+                arm: self.position,
+                body_from_global: *body_from_global,
+                tangent: Matrix3::identity(),
+            };
+        }
         let (mut arm, mut theta) = (self.position, Vector3::zeros());
         for ((psi, turn), q) in self.displacement.iter().zip(&self.rotation).zip(*q) {
             arm += psi * *q;
@@ -92,7 +102,6 @@ impl Marker {
         for (sum, second_order) in [&mut arm, &mut theta].into_iter().zip(&self.second_order) {
             *sum += second_order.as_ref().map_or_else(Vector3::zeros, |of| of.displacement(q));
         }
-        let global_from_body = body_from_global.transpose();
         MarkerPlace {
             position: origin + global_from_body * arm,
             axes: global_from_body * transformation_matrix(&-theta) * self.axes,

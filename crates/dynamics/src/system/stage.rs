@@ -239,8 +239,8 @@ impl Stage {
     /// expected of it.
     pub fn joint_coordinates(&self, system: &System, joint: usize, expected_turn: f64) -> JointCoordinates {
         let markers = &system.connections.joints[joint].markers;
-        let places =
-            markers.each_ref().map(|marker| marker.place(marker.body().map(|b| self.body_place(system, b)).as_ref()));
+        let place = |k: usize| markers[k].place(markers[k].body().map(|b| self.body_place(system, b)).as_ref());
+        let places = [place(0), place(1)];
         let motions = [0, 1].map(|k: usize| {
             let of_body = markers[k].body().map_or([&[][..]; 2], |b| {
                 [self.body_place(system, b).q, &self.velocities[system.first[b]..system.first[b + 1]]]

@@ -4,6 +4,7 @@ mod andrews;
 mod coordinates;
 mod elements;
 mod flexible;
+mod hard;
 mod mechanism;
 mod rigid;
 mod run;

@@ -9,8 +9,11 @@ use nalgebra::Complex;
 use crate::system::constraints::{Constraints, End};
 use crate::system::elimination::inverse::{Inverse, Number};
 
-/// A pivot below this part of its diagonal entry belongs to a row that others imply.
+/// A pivot below this part of its diagonal entry belongs to a row that others imply. Of a diagonal entry counts the smallest part
+/// by one body, times the number of bodies: a body of hardly any mass has a large part, and the row is not implied for that.
 const DEPENDENT: f64 = 1e-8;
+/// A pivot below this part of its diagonal entry is rounding.
+const ROUNDING: f64 = 1e-13;
 
 /// Which blocks there are, and in which order they are eliminated: constants of a system.
 #[derive(Debug, Clone)]
@@ -25,10 +28,31 @@ pub(crate) struct Pattern {
     blocks: Vec<usize>,
     /// For a pair of joints that meet a third one: their block, by the third and the places among those below it.
     updates: Vec<Vec<usize>>,
-    /// Of each body, the rows that it has an end of, with the place among the ends.
-    rows_of_body: Vec<Vec<(usize, usize)>>,
+    /// Of each body, the rows that it has an end of, with what they meet there.
+    columns: Vec<Vec<Column>>,
     joint_of_row: Vec<usize>,
     entries: usize,
+}
+
+/// A row with an end on a body, as a column of the matrix.
+#[derive(Debug, Clone)]
+struct Column {
+    end: RowEnd,
+    /// The rows that meet it there, and their entries.
+    rows: Vec<(RowEnd, usize)>,
+}
+
+/// A row, and the place of a body among its ends.
+#[derive(Debug, Clone, Copy)]
+struct RowEnd {
+    row: usize,
+    place: usize,
+}
+
+impl RowEnd {
+    fn entries(self, constraints: &Constraints) -> &[f64] {
+        &constraints.ends[self.row][self.place].entries
+    }
 }
 
 impl Pattern {
@@ -40,11 +64,11 @@ impl Pattern {
             rows.iter().enumerate().flat_map(|(joint, rows)| std::iter::repeat_n(joint, *rows)).collect();
         let mut rows_of_body = vec![Vec::new(); bodies];
         for (row, ends) in ends[..joint_of_row.len()].iter().enumerate() {
-            ends.iter().enumerate().for_each(|(k, end)| rows_of_body[end.body].push((row, k)));
+            ends.iter().enumerate().for_each(|(place, end)| rows_of_body[end.body].push(RowEnd { row, place }));
         }
         let mut meets = vec![std::collections::BTreeSet::new(); rows.len()];
         for rows in &rows_of_body {
-            let joints: Vec<usize> = rows.iter().map(|(row, _)| joint_of_row[*row]).collect();
+            let joints: Vec<usize> = rows.iter().map(|end| joint_of_row[end.row]).collect();
             for a in &joints {
                 meets[*a].extend(joints.iter().copied().filter(|b| b != a));
             }
@@ -89,7 +113,14 @@ impl Pattern {
                 pairs.filter_map(|pair| number.get(&pair).copied()).collect()
             })
             .collect();
-        Self { first, order, below, blocks, updates, rows_of_body, joint_of_row, entries }
+        let mut pattern = Self { first, order, below, blocks, updates, columns: Vec::new(), joint_of_row, entries };
+        let column = |end: RowEnd, ends: &[RowEnd]| {
+            let meets = ends.iter().filter_map(|other| Some((*other, pattern.entry(other.row, end.row)?)));
+            Column { end, rows: meets.collect() }
+        };
+        let columns = rows_of_body.iter().map(|ends| ends.iter().map(|end| column(*end, ends)).collect()).collect();
+        pattern.columns = columns;
+        pattern
     }
 
     fn rows(&self, joint: usize) -> usize {
@@ -101,10 +132,13 @@ impl Pattern {
         self.joint_of_row.len()
     }
 
-    /// The block of a row and a column, its row and column within, where the row's joint is eliminated last or the same.
+    /// The entry of a row and a column of the lower triangle: the row's joint is eliminated last, or both are of one joint.
     fn entry(&self, row: usize, column: usize) -> Option<usize> {
         let [of_row, of_column] = [row, column].map(|row| self.joint_of_row[row]);
         let block = if of_row == of_column {
+            if row < column {
+                return None;
+            }
             of_row
         } else {
             self.below[of_column].iter().find(|(other, _)| *other == of_row)?.1
@@ -121,6 +155,8 @@ pub(crate) struct JointMatrix<T> {
     /// 1/D; zero for rows that are left out.
     inverse_pivots: Vec<T>,
     diagonal: Vec<f64>,
+    /// The smallest part of each diagonal entry by one body, times the number of bodies.
+    least: Vec<f64>,
     /// A column of Z⁻¹ Gᵀ.
     column: Vec<T>,
     /// A block before it is divided by the pivots.
@@ -136,6 +172,7 @@ impl<T: Number> JointMatrix<T> {
             entries: vec![zero; pattern.entries],
             inverse_pivots: vec![zero; pattern.len()],
             diagonal: vec![0.0; pattern.len()],
+            least: vec![0.0; pattern.len()],
             column: vec![zero; coordinates],
             scratch: vec![zero; most_below * widest * widest],
         }
@@ -144,18 +181,20 @@ impl<T: Number> JointMatrix<T> {
     /// Assembles G Z⁻¹ Gᵀ.
     pub fn assemble(&mut self, pattern: &Pattern, constraints: &Constraints, inverses: &[Inverse<T>]) {
         self.entries.fill(T::from_real(0.0));
-        for (rows, inverse) in pattern.rows_of_body.iter().zip(inverses) {
-            for (column, k) in rows {
-                let end = &constraints.ends[*column][*k];
-                let z_g = &mut self.column[..end.entries.len()];
-                z_g.iter_mut().zip(&end.entries).for_each(|(z, g)| *z = T::from_real(*g));
+        self.least.fill(f64::INFINITY);
+        for (columns, inverse) in pattern.columns.iter().zip(inverses) {
+            for Column { end, rows } in columns {
+                let g = end.entries(constraints);
+                let z_g = &mut self.column[..g.len()];
+                z_g.iter_mut().zip(g).for_each(|(z, g)| *z = T::from_real(*g));
                 inverse.apply(z_g);
-                for (row, k) in rows {
-                    if let Some(entry) = pattern.entry(*row, *column) {
-                        let mut sum = T::from_real(0.0);
-                        let g = &constraints.ends[*row][*k].entries;
-                        g.iter().zip(&*z_g).for_each(|(g, z)| sum += z.scale(*g));
-                        self.entries[entry] += sum;
+                for (row, entry) in rows {
+                    let mut sum = T::from_real(0.0);
+                    row.entries(constraints).iter().zip(&*z_g).for_each(|(g, z)| sum += z.scale(*g));
+                    self.entries[*entry] += sum;
+                    if row.row == end.row {
+                        let bodies = constraints.ends[end.row].len() as f64;
+                        self.least[end.row] = self.least[end.row].min(bodies * sum.modulus());
                     }
                 }
             }
@@ -188,8 +227,9 @@ impl<T: Number> JointMatrix<T> {
                 }
                 let row = first + k;
                 if find_them {
-                    let part = pivot.real() / self.diagonal[row];
-                    is_left_out[row] = part <= DEPENDENT || part.is_nan();
+                    let diagonal = self.diagonal[row];
+                    let least = (DEPENDENT * self.least[row].min(diagonal)).max(ROUNDING * diagonal);
+                    is_left_out[row] = pivot.real() <= least || pivot.real().is_nan();
                 }
                 self.entries[block + k * n + k] = pivot;
                 let inverse = if is_left_out[row] { T::from_real(0.0) } else { pivot.recip() };

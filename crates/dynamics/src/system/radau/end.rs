@@ -70,8 +70,6 @@ impl SystemMotion {
         // Positions.
         let (mut left, real) = (f64::INFINITY, &mut room.real);
         for _ in 0..MAX_PROJECTIONS {
-            last.place(system, start);
-            last.find_constraints(system, start, times);
             let largest = last.constraints.residuals.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
             if largest >= 0.5 * left || largest == 0.0 {
                 left = largest.min(left);
@@ -89,6 +87,8 @@ impl SystemMotion {
             }
             real.y.fill(0.0);
             last.add_in_body_axes(system, &mut real.x, &mut real.y);
+            last.place(system, start);
+            last.find_constraints(system, start, times);
         }
         // Velocities.
         last.evaluate(system, start, times)?;
