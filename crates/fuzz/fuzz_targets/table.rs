@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use libfuzzer_sys::fuzz_target;
 use scene::{History, Load, Scene};
 
-const SCENE: &str = include_str!("../../scene/src/example.toml");
+const SCENE: &str = include_str!("../../scene/src/text/example.toml");
 
 /// A folder with a scene, whose load has its history from `table.csv`, and the scene's text.
 static SETUP: LazyLock<(tempfile::TempDir, PathBuf, String)> = LazyLock::new(|| {

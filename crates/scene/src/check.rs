@@ -17,9 +17,9 @@ use nalgebra::Vector3;
 
 use crate::document::{Document, join};
 use crate::error::SceneError;
+use crate::loads::unit_vector::unit;
 use crate::scene::{Frame, Units};
-use crate::shorten::shorten;
-use crate::unit_vector::unit;
+use crate::text::shorten::shorten;
 
 /// Three points whose triangle has an angle with a smaller sine count as lying on one line.
 const LEAST_SINE: f64 = 1e-6;

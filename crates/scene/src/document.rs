@@ -6,7 +6,7 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use crate::place::Place;
+use crate::text::place::Place;
 
 /// The table of the bodies of a scene of several.
 pub(crate) const BODIES: &str = "bodies";

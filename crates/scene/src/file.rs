@@ -8,10 +8,10 @@ use crate::check::Check;
 use crate::document::{BODIES, Document, Node};
 use crate::error::SceneError;
 use crate::name::ONLY_BODY;
-use crate::ordinary_file::open_ordinary;
-use crate::place::Place;
 use crate::scene::Scene;
 use crate::section::Sections;
+use crate::text::ordinary_file::open_ordinary;
+use crate::text::place::Place;
 
 /// The longest scene that is read, in bytes (1 MiB): a text of nothing but tables within tables is 600 times as long in
 /// memory. Long tables of numbers have files of their own.
@@ -83,7 +83,7 @@ impl Scene {
         ties: Option<&Document<'_>>,
     ) -> Result<Self, SceneError> {
         let Sections { title, units, mut body, modes, effects, frame, initial, constraints, mut loads, time, output } =
-            crate::deserialize::from_document(document)?;
+            crate::text::deserialize::from_document(document)?;
 
         let check = Check::new(document, time.end);
         check.label("title", &title)?;

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::history::History;
+use crate::loads::history::History;
 
 /// An end of a joint, a spring or a bushing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -20,66 +20,53 @@
 //!
 //! One file of this crate per idea:
 //! `document` is the TOML tree in which every value knows its key path and its place;
-//! `deserialize` lets serde fill structs from that tree;
-//! `section`, `tie_section`, `scene`, `modes`, `effects`, `constraint`, `load`, `history`, `marker` and `joint` are those
-//! structs, and so the list of all keys;
-//! `check` has the rules on their values;
-//! `assign` sets values in the text of a scene from outside of it.
-//! A new kind of load is a new variant in `load`, of constraint in `section` and `constraint`; its rules are in `check`.
+//! `text` lets serde fill structs from that tree, sets values in the text of a scene from outside of it, and shows places;
+//! `section`, `tie_section`, `scene`, `body`, `loads`, `marker` and `joint` are those structs, and so the list of all keys;
+//! `check` has the rules on their values.
+//! A new kind of load is a new variant in `loads`, of constraint in `section` and `body`; its rules are in `check`.
 //! The kinds of histories, the effects and the schemes are those of `dynamics`; `check` has the rules on histories.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod alone;
-mod assign;
+mod body;
 mod check;
-mod constraint;
-mod deserialize;
 mod document;
-mod effects;
 mod error;
-mod example;
 mod file;
-mod files;
-mod history;
 mod joint;
-mod load;
+mod loads;
 mod marker;
 mod methods;
-mod modes;
 mod name;
-mod ordinary_file;
-mod place;
 mod scene;
 mod section;
-mod shape;
-mod shorten;
 mod suggest;
 mod system;
+mod text;
 mod tie_section;
-mod unit_vector;
 
-pub use assign::{AssignError, assign};
-pub use constraint::{Constraint, HeldDirections, HingeLine, Region};
+pub use body::constraint::{Constraint, HeldDirections, HingeLine, Region};
+pub use body::effects::{Choice, Effects};
+pub use body::modes::{Damping, Flexible, Large, Modes, Rayleigh};
 pub use document::join as key_path;
 pub use dynamics::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
-pub use effects::{Choice, Effects};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
 pub use file::{text_from, text_of};
-pub use history::{DrivenSpeed, Formula, History, TablePoints};
 pub use joint::{
     AlongAndAbout, Bushing, Coordinate, Coupling, CouplingKind, End, Friction, Joint, JointDrive, JointKind,
     JointSpring, Locked, Spring, Stops,
 };
-pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
+pub use loads::history::{DrivenSpeed, Formula, History, TablePoints};
+pub use loads::load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace};
 pub use matrix_import::MatrixFiles;
 pub use methods::{METHODS, method_named};
-pub use modes::{Damping, Flexible, Large, Modes, Rayleigh};
-pub use place::Place;
 pub use scene::{Body, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Time, Units};
-pub use shorten::shorten;
 pub use suggest::one_of;
 pub use system::System;
+pub use text::assign::{AssignError, assign};
+pub use text::place::Place;
+pub use text::shorten::shorten;

@@ -1,6 +1,6 @@
 //! Places with axes that bodies and the ground carry: the ends of joints.
 
-use crate::constraint::Region;
+use crate::body::constraint::Region;
 
 /// A place with axes on a body: `[bodies.NAME.markers.MARKER]`.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,11 +13,11 @@ use fem_tet10::{Materials, PointMass};
 use matrix_import::MatrixFiles;
 use serde::Deserialize;
 
-use crate::constraint::Constraint;
-use crate::effects::{Choice, Effects};
-use crate::load::Load;
+use crate::body::constraint::Constraint;
+use crate::body::effects::{Choice, Effects};
+use crate::body::modes::Modes;
+use crate::loads::load::Load;
 use crate::marker::Marker;
-use crate::modes::Modes;
 
 /// A scene that obeys every rule which needs no mesh: all numbers are finite and in range.
 #[derive(Clone, Debug, PartialEq)]

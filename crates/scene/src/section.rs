@@ -8,11 +8,11 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{DeserializeSeed, EnumAccess, Error, SeqAccess, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use crate::effects::{Choice, Effects, auto};
-use crate::history::DrivenSpeed;
-use crate::load::Load;
+use crate::body::effects::{Choice, Effects, auto};
+use crate::body::modes::Rayleigh;
+use crate::loads::history::DrivenSpeed;
+use crate::loads::load::Load;
 use crate::methods::{formulation_names, scheme_names};
-use crate::modes::Rayleigh;
 use crate::scene::{Frame, Initial, Units};
 use crate::tie_section::{InOrder, MarkerSection};
 

@@ -1,6 +1,6 @@
 //! The right names for a misspelt one.
 
-use crate::shorten::shorten;
+use crate::text::shorten::shorten;
 
 /// Names that other programs and textbooks have for ours.
 const SYNONYMS: [(&str, &str); 45] = [

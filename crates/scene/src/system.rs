@@ -5,15 +5,15 @@ use std::path::Path;
 use crate::alone::BodyTexts;
 use crate::check::Check;
 use crate::check::tie::Ties;
-use crate::deserialize::from_document;
 use crate::document::{BODIES, Document, Node, OF_A_BODY, OUTPUT_OF_A_BODY};
 use crate::error::SceneError;
 use crate::file::{refuse_long, text_of};
 use crate::joint::{Bushing, Coupling, End, Joint, Spring};
 use crate::marker::GroundMarker;
 use crate::name::{GROUND, ONLY_BODY, check_key};
-use crate::place::Place;
 use crate::scene::Scene;
+use crate::text::deserialize::from_document;
+use crate::text::place::Place;
 
 /// Bodies of a scene at the most.
 const MAX_BODIES: usize = 1000;

@@ -6,8 +6,8 @@ use std::marker::PhantomData;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use crate::history::History;
 use crate::joint::{AlongAndAbout, Coordinate, Friction, JointKind};
+use crate::loads::history::History;
 
 /// The tables that tie bodies together.
 #[derive(Default, Deserialize)]

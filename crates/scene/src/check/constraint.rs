@@ -1,10 +1,10 @@
 //! The rules on `[[constraints]]`.
 
 use super::Check;
-use crate::constraint::{Constraint, HeldDirections, HingeLine, Region};
+use crate::body::constraint::{Constraint, HeldDirections, HingeLine, Region};
 use crate::document::join;
 use crate::error::SceneError;
-use crate::history::DrivenSpeed;
+use crate::loads::history::DrivenSpeed;
 use crate::scene::Body;
 use crate::section::ConstraintSection;
 

@@ -3,12 +3,12 @@
 use dynamics::{Effect, Method};
 
 use super::Check;
-use crate::constraint::Constraint;
+use crate::body::constraint::Constraint;
+use crate::body::effects::{Choice, Effects};
+use crate::body::modes::{Flexible, Modes};
 use crate::document::join;
-use crate::effects::{Choice, Effects};
 use crate::error::SceneError;
-use crate::load::Load;
-use crate::modes::{Flexible, Modes};
+use crate::loads::load::Load;
 use crate::scene::{Body, Initial};
 
 impl Check<'_> {

@@ -6,10 +6,10 @@ use std::path::Path;
 use super::{Check, LONGEST_TABLES};
 use crate::document::join;
 use crate::error::SceneError;
-use crate::history::{Formula, History, TablePoints};
-use crate::ordinary_file::open_ordinary;
-use crate::place::Place;
-use crate::shorten::shorten;
+use crate::loads::history::{Formula, History, TablePoints};
+use crate::text::ordinary_file::open_ordinary;
+use crate::text::place::Place;
+use crate::text::shorten::shorten;
 
 /// Content of a table.
 const PAIRS: &str = "pairs of time and factor";

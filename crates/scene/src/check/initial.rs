@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
 use super::Check;
-use crate::constraint::Constraint;
+use crate::body::constraint::Constraint;
+use crate::body::modes::Modes;
 use crate::error::SceneError;
-use crate::modes::Modes;
 use crate::scene::Initial;
 
 /// Sine of the angle between an initial velocity and the direction that is left, up to which it counts as rounding.

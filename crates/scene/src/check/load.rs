@@ -3,10 +3,10 @@
 use dynamics::LoadFrame;
 
 use super::Check;
-use crate::constraint::Constraint;
+use crate::body::constraint::Constraint;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::load::{self, Load};
+use crate::loads::load::{self, Load};
 use crate::scene::Body;
 
 impl Check<'_> {

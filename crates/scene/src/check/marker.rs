@@ -6,11 +6,11 @@ use super::Check;
 use super::constraint::RegionKeys;
 use crate::document::join;
 use crate::error::SceneError;
+use crate::loads::unit_vector::unit;
 use crate::marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace};
 use crate::name::check_key;
 use crate::scene::Body;
 use crate::tie_section::{GroundMarkerSection, InOrder, MarkerSection};
-use crate::unit_vector::unit;
 
 /// Sine of the angle between z and x below which they have one direction.
 const PARALLEL: f64 = 1e-6;

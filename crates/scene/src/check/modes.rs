@@ -3,9 +3,9 @@
 use dynamics::MAX_LARGE;
 
 use super::Check;
-use crate::effects::Choice;
+use crate::body::effects::Choice;
+use crate::body::modes::{Damping, Flexible, Large, Modes, Rayleigh};
 use crate::error::SceneError;
-use crate::modes::{Damping, Flexible, Large, Modes, Rayleigh};
 use crate::scene::Body;
 use crate::section::{CountOrAuto, CountOrList, ModesSection, NumberOrList};
 

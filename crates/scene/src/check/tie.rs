@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use dynamics::Effect;
 
 use super::Check;
+use crate::body::effects::Choice;
 use crate::document::join;
-use crate::effects::Choice;
 use crate::error::SceneError;
 use crate::joint::{
     AlongAndAbout, Bushing, Coordinate, Coupling, CouplingKind, End, Friction, Joint, JointDrive, JointKind,

@@ -8,7 +8,7 @@ use crate::error::SceneError;
 use crate::methods::{METHODS, RADAU, method_named};
 use crate::scene::{Body, Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
-use crate::shorten::shorten;
+use crate::text::shorten::shorten;
 
 /// Intervals between rows where the scene gives a tolerance and names no rows.
 const DEFAULT_ROWS: f64 = 500.0;

@@ -2,7 +2,7 @@
 
 use scene::{Scene, SceneError};
 
-pub const EXAMPLE: &str = include_str!("../../src/example.toml");
+pub const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
 /// The error of the example after `from` has been replaced by `to`.
 pub fn refusal(from: &str, to: &str) -> (String, SceneError) {

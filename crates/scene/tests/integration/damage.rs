@@ -2,7 +2,7 @@
 
 use scene::Scene;
 
-const EXAMPLE: &str = include_str!("../../src/example.toml");
+const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
 /// Reads the text; a refusal must have a place within it and a message.
 fn read(text: &str) -> Result<Scene, String> {

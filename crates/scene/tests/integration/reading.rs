@@ -7,7 +7,7 @@ use scene::{
     Method, Rows, Scene, SceneError, StepControl,
 };
 
-const EXAMPLE: &str = include_str!("../../src/example.toml");
+const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
 /// Closed form: the direction (1, 0, 1)/√2.
 #[test]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use scene::System;
 
-const EXAMPLE: &str = include_str!("../../src/example.toml");
+const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
 /// Cost of reading a text, and its result.
 struct Read {

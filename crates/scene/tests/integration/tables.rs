@@ -4,7 +4,7 @@ use std::path::Path;
 
 use scene::{History, Load, Scene, SceneError, TablePoints};
 
-const EXAMPLE: &str = include_str!("../../src/example.toml");
+const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
 /// The example, its history a table from `pulse.csv` with these bytes.
 fn read(folder: &Path, table: &[u8]) -> Result<Scene, SceneError> {

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::history::DrivenSpeed;
-use crate::unit_vector::unit;
+use crate::loads::history::DrivenSpeed;
+use crate::loads::unit_vector::unit;
 
 /// A constraint of the body, chosen by the key `kind` of the `[[constraints]]` entry.
 #[derive(Clone, Debug, PartialEq)]

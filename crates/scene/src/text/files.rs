@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::constraint::Constraint;
-use crate::history::{History, TablePoints};
-use crate::load::Load;
+use crate::body::constraint::Constraint;
+use crate::loads::history::{History, TablePoints};
+use crate::loads::load::Load;
 use crate::scene::Scene;
 
 impl Scene {

@@ -6,8 +6,8 @@ use toml::de::DeValue;
 
 use crate::document::Node;
 use crate::error::SceneError;
-use crate::example::example;
-use crate::shorten::shorten;
+use crate::text::example::example;
+use crate::text::shorten::shorten;
 
 /// A shape that a value must have.
 #[derive(Clone, Copy, Debug)]

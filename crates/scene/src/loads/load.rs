@@ -3,7 +3,7 @@
 use dynamics::LoadFrame;
 use serde::Deserialize;
 
-use crate::history::History;
+use crate::loads::history::History;
 
 /// One `[[loads]]` entry, chosen by its key `kind`.
 ///

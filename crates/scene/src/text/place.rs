@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::shorten::{SHOWN, shorten};
+use crate::text::shorten::{SHOWN, shorten};
 
 /// A place in a scene file. Displayed as `file:line:column: ` and the key.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -15,7 +15,7 @@ use toml::de::DeValue;
 
 use crate::document::{Document, Node};
 use crate::error::SceneError;
-use crate::shape::{Shape, wrong_shape, wrong_type};
+use crate::text::shape::{Shape, wrong_shape, wrong_type};
 
 /// The key that chooses the variant of an enum.
 const KIND: &str = "kind";

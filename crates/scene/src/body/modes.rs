@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::effects::Choice;
+use crate::body::effects::Choice;
 
 /// The modes kept and their damping: `[modes]`.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,5 @@
+//! The body: the constraints that hold it, the modes kept, the effects simulated.
+
+pub(crate) mod constraint;
+pub(crate) mod effects;
+pub(crate) mod modes;
