@@ -28,7 +28,7 @@ use crate::stress::shapes::BodyStress;
 use crate::structure::Structure;
 use crate::structure::kept::Found;
 use crate::support::reactions::SupportRows;
-use crate::tie::mesh_marker::{self, MeshMarker};
+use crate::tie::mesh_marker;
 
 /// The model of a scene, from its mesh and the modes that it asks for.
 pub(crate) fn reduce(
@@ -57,7 +57,7 @@ pub(crate) fn reduce(
     let survey = Survey::new(&model, modes, on_all_modes, progress)?;
     let has_statics = survey.statics.any() || survey.of_markers.is_some();
     let decision = Decision::new(scene, &survey);
-    let Reduction { modes, modal: reduced, large, backbones, stress, advice } =
+    let Reduction { modes, modal: reduced, large, backbones, stress, of_markers, advice } =
         Reduction::new(&model, survey, &decision)?;
     if has_statics {
         times.statics = started.elapsed();
@@ -68,8 +68,7 @@ pub(crate) fn reduce(
         Some(large) => points(scene, mesh, large.modes(), large.manifold.body())?,
         None => points(scene, mesh, &modes, &reduced.body)?,
     };
-    let on_body = |marker: &MeshMarker| marker.reduced(scene, mesh, dofs, &reduced.body, &modes);
-    let markers = model.markers.iter().map(on_body).collect::<Result<_, _>>()?;
+    let markers = mesh_marker::reduced(&model.markers, scene, mesh, &reduced.body, &modes, &of_markers)?;
     let reference_points = reference_points(scene, mesh, &reduced.body);
     let extended = large.as_ref().map(|large| (&large.manifold, large.modes()));
     let has_gravity = decision.effects[Effect::Gravity];

@@ -43,7 +43,8 @@ pub(crate) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: 
     // The paper's formulation has the effects that it has; gravity is a load like others.
     let in_any_case = |effect: Effect| !scene.time.method.abilities.switches_effects && effect != Effect::Gravity;
     // The forces of joints are not known.
-    let unknown = if scene.markers.is_empty() { Vec::new() } else { scene.on_under_unknown_forces() };
+    let has_markers = !scene.markers.is_empty();
+    let unknown = if has_markers { scene.on_under_unknown_forces() } else { Vec::new() };
     let has_weight = !body.motion.is_free() && bears_weight(scene, body.mass);
     let mut effects = EffectMap::from_fn(|effect| match scene.effects.choices[effect] {
         Choice::On => true,
@@ -52,6 +53,7 @@ pub(crate) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: 
             in_any_case(effect)
                 || advice.effects[effect].on
                 || unknown.contains(&effect)
+                || (effect == Effect::GeometricStiffening && has_markers)
                 || (effect == Effect::Gravity && has_weight)
         }
     });

@@ -2,6 +2,8 @@
 
 use advice::{Advice, Backbone, Findings, advise};
 use dynamics::Effect;
+use faer::Mat;
+use fem_tet10::GeometricTerms;
 use modal::Modes;
 
 use crate::error::BuildError;
@@ -10,6 +12,7 @@ use crate::reduction::decide::Decision;
 use crate::reduction::manifold::LargeDeflection;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
+use crate::reduction::physics;
 use crate::reduction::survey::Survey;
 use crate::stress::Stress;
 use crate::structure::kept::Basis;
@@ -25,6 +28,8 @@ pub(crate) struct Reduction {
     /// Backbones of the modes that are kept.
     pub backbones: Vec<Option<Backbone>>,
     pub stress: Stress,
+    /// Stiffness by the stress of unit forces and moments on the markers (nf×nf each); none where it is left out.
+    pub of_markers: Vec<Mat<f64>>,
     /// The manifold of the large modes, if any are.
     pub large: Option<LargeDeflection>,
     /// With what only this body tells.
@@ -70,6 +75,12 @@ impl Reduction {
         } else {
             (modal, stress, None)
         };
+        let of_markers = match &of_markers {
+            Some(responses) if physics::may_stress(model.scene) => {
+                model.structure.stress_stiffness(responses.as_ref(), &modes, GeometricTerms::InitialStress, &[])?
+            }
+            _ => Vec::new(),
+        };
         let findings = Findings { deflection, stress: stress.row.clone(), lacks_stretch: decision.lacks.is_some() };
         let mut advice = advice.completed(findings);
         if !model.scene.body.has_elements() {
@@ -80,6 +91,6 @@ impl Reduction {
                 }
             }
         }
-        Ok(Self { modes, modal, large, backbones, stress, advice })
+        Ok(Self { modes, modal, large, backbones, stress, of_markers, advice })
     }
 }

@@ -76,7 +76,7 @@ impl Survey {
 
 /// The static responses to unit forces and moments on the markers.
 fn to_markers(model: &MeshModel<'_, '_>, modes: &Modes, modal: &ModalModel) -> Result<Mat<f64>, BuildError> {
-    let forces = unit_forces(&model.markers, model.dofs * model.mesh.positions().len(), model.dofs);
+    let forces = unit_forces(&model.markers, model.dofs * model.mesh.positions().len());
     let forces = StaticForces { of_loads: forces.as_ref(), spin: false, drive: None, origin: modal.body.origin };
     Ok(model.structure.static_responses(modes, &forces)?.fields)
 }
@@ -94,7 +94,8 @@ fn may_stiffen(model: &MeshModel<'_, '_>, modal: &ModalModel) -> Result<bool, Bu
         Choice::Auto => {
             scene.time.method.abilities.geometric_stiffening
                 && physics::may_spin(scene, support.motion, model.drive.as_ref())
-                && screen(&modal.case(model), scene.effects.tolerance)?.on
+                // How fast joints let it turn is not known.
+                && (!model.markers.is_empty() || screen(&modal.case(model), scene.effects.tolerance)?.on)
         }
     })
 }

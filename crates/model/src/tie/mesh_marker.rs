@@ -1,6 +1,6 @@
 //! Places with axes on a mesh: the nodes that carry them, the forces of their unit wrenches, and how modes move them.
 
-use dynamics::{PointShapes, RotationShapes};
+use dynamics::{PointShapes, RotationShapes, SecondOrder};
 use faer::Mat;
 use fem_tet10::{Location, MeanRotation, Mesh, Patch};
 use modal::{BodyPoint, Modes, ReducedBody};
@@ -25,6 +25,8 @@ pub(crate) struct MeshMarker {
     rotation: Option<Rotation>,
     axes: Matrix3<f64>,
     unknown_turns: UnknownTurns,
+    /// Degrees of freedom of a node.
+    dofs: usize,
 }
 
 /// The markers of a scene on its mesh.
@@ -33,21 +35,40 @@ pub(crate) fn on_mesh(scene: &Scene, mesh: &Mesh, dofs: usize) -> Result<Vec<Mes
 }
 
 /// Forces (N×k) of unit forces and moments on each of the markers, side by side.
-pub(crate) fn unit_forces(markers: &[MeshMarker], unknowns: usize, dofs: usize) -> Mat<f64> {
+pub(crate) fn unit_forces(markers: &[MeshMarker], unknowns: usize) -> Mat<f64> {
     let wrenches: Vec<_> =
         markers.iter().flat_map(|marker| marker.wrenches().map(move |wrench| (marker, wrench))).collect();
     let mut forces = Mat::zeros(unknowns, wrenches.len());
     for ((marker, [force, moment]), mut column) in wrenches.iter().zip(forces.as_mut().col_iter_mut()) {
         for (node, weight) in marker.nodes.iter().zip(&marker.weights) {
             for axis in 0..3 {
-                column[dofs * *node as usize + axis] += force[axis] * weight;
+                column[marker.dofs * *node as usize + axis] += force[axis] * weight;
             }
         }
         if let Some(rotation) = &marker.rotation {
-            rotation.add_unit_nodal_forces(dofs, moment, column);
+            rotation.add_unit_nodal_forces(marker.dofs, moment, column);
         }
     }
     forces
+}
+
+/// Markers on a body in some modes. `stiffness` is that (nf×nf each) by the stress of the forces of
+/// [`unit_forces`]; none where it is left out.
+pub(crate) fn reduced(
+    markers: &[MeshMarker],
+    scene: &Scene,
+    mesh: &Mesh,
+    body: &ReducedBody,
+    modes: &Modes,
+    stiffness: &[Mat<f64>],
+) -> Result<Vec<BodyMarker>, BuildError> {
+    let mut rest = stiffness;
+    let on_body = |marker: &MeshMarker| {
+        let (own, others) = rest.split_at(rest.len().min(marker.wrenches().count()));
+        rest = others;
+        marker.reduced(scene, mesh, body, modes, own)
+    };
+    markers.iter().map(on_body).collect()
 }
 
 impl MeshMarker {
@@ -63,7 +84,7 @@ impl MeshMarker {
                     false => None,
                 };
                 let unknown_turns = if rotation.is_some() { UnknownTurns::None } else { UnknownTurns::All };
-                return Ok(Self { name, nodes, weights, rotation, axes, unknown_turns });
+                return Ok(Self { name, nodes, weights, rotation, axes, unknown_turns, dofs });
             }
             MarkerPlace::Region(region) => region,
         };
@@ -76,7 +97,7 @@ impl MeshMarker {
         let Patch { nodes, weights, rotation_per_displacement, .. } = patch;
         let mean = MeanRotation { nodes: nodes.clone(), rotation_per_displacement };
         let rotation = (unknown_turns != UnknownTurns::All).then_some(Rotation::Mean(mean));
-        Ok(Self { name, nodes, weights, rotation, axes, unknown_turns })
+        Ok(Self { name, nodes, weights, rotation, axes, unknown_turns, dofs })
     }
 
     /// Unit forces and moments that it can bear: those about turns that are not known are left out.
@@ -93,23 +114,36 @@ impl MeshMarker {
         forces.into_iter().chain(moments.into_iter().map(|moment| [Vector3::zeros(), moment]))
     }
 
-    /// The marker on a body in some modes.
-    pub fn reduced(
+    /// The marker on a body in some modes, which its unit forces and moments stiffen so (nf×nf each).
+    fn reduced(
         &self,
         scene: &Scene,
         mesh: &Mesh,
-        dofs: usize,
         body: &ReducedBody,
         modes: &Modes,
+        stiffness: &[Mat<f64>],
     ) -> Result<BodyMarker, BuildError> {
         let point = BodyPoint::new(modes, mesh.positions(), &self.nodes, &self.weights).map_err(modal(scene))?;
-        let turning = match &self.rotation {
-            Some(rotation) => rotation.shapes(dofs, body, modes),
+        let mut point = PointShapes::new(body, &point);
+        let mut turning = match &self.rotation {
+            Some(rotation) => rotation.shapes(self.dofs, body, modes),
             None => RotationShapes::new(body, Mat::zeros(3, body.flexible()).as_ref()),
         };
+        let (mut by_forces, mut by_moments) = (Vec::new(), Vec::new());
+        for ([force, moment], stiffness) in self.wrenches().zip(stiffness) {
+            match force.norm() > 0.0 {
+                true => by_forces.push((force, stiffness.clone())),
+                false => by_moments.push((moment, stiffness.clone())),
+            }
+        }
+        if !by_forces.is_empty() {
+            point = point.with_second_order(SecondOrder::new(by_forces)?);
+        }
+        if !by_moments.is_empty() {
+            turning = turning.with_second_order(SecondOrder::new(by_moments)?);
+        }
         // What does not deform is turned as the body is.
         let unknown_turns = if body.flexible() == 0 { UnknownTurns::None } else { self.unknown_turns };
-        let point = PointShapes::new(body, &point);
         Ok(BodyMarker { name: self.name.clone(), point, turning, axes: self.axes, unknown_turns })
     }
 }

@@ -10,7 +10,7 @@ use scene::System;
 use crate::build;
 
 /// The mechanism of an example at its start.
-fn mechanism(name: &str, relaxed: bool, rows: f64) -> SystemSimulation {
+fn mechanism(name: &str, rows: f64) -> SystemSimulation {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/mechanisms").join(name);
     let system = System::read(path).unwrap_or_else(|error| panic!("{error}"));
     let models: Vec<Model> = system.bodies.iter().map(build).collect();
@@ -21,14 +21,14 @@ fn mechanism(name: &str, relaxed: bool, rows: f64) -> SystemSimulation {
         points: vec![Vec::new(); tied.bodies.len()],
         system: tied.system,
         states: tied.states,
-        relaxed,
+        relaxed: system.relaxed,
         control: time.control,
         end: time.end,
         rows: Rows::Interval(rows),
     })
     .unwrap_or_else(|error| panic!("{error}"));
     for change in simulation.assembled() {
-        assert!(relaxed || change.moved < 1e-9 && change.turned < 1e-9, "its bodies are placed: {change:?}");
+        assert!(system.relaxed || change.moved < 1e-9 && change.turned < 1e-9, "its bodies are placed: {change:?}");
     }
     simulation
 }
@@ -51,7 +51,7 @@ fn turn(simulation: &SystemSimulation, joint: usize) -> f64 {
 /// Closed form, integrated here: the equations of Lagrange of two rigid bars.
 #[test]
 fn the_double_pendulum_falls_as_two_rods_do() {
-    let mut simulation = mechanism("double_pendulum.toml", false, 0.2);
+    let mut simulation = mechanism("double_pendulum.toml", 0.2);
     let (l, h, g) = (200.0, 10.0, 9810.0);
     // Over the mass.
     let j = (l * l + h * h) / 12.0;
@@ -83,7 +83,7 @@ fn the_double_pendulum_falls_as_two_rods_do() {
 /// Independent reference: Simeon's plane beam, after 0.1 s.
 #[test]
 fn the_slider_crank_of_a_scene_ends_where_others_have_it() {
-    let mut simulation = mechanism("slider_crank.toml", true, 0.1);
+    let mut simulation = mechanism("slider_crank.toml", 0.1);
     while to_row(&mut simulation) {}
     let motion = simulation.motion();
     let slider = motion.state(2).unwrap().origin_global;
@@ -98,7 +98,7 @@ fn the_slider_crank_of_a_scene_ends_where_others_have_it() {
 /// Closed form: the loop of rigid links.
 #[test]
 fn the_four_bar_linkage_turns_as_its_loop_says() {
-    let mut simulation = mechanism("four_bar.toml", false, 0.1);
+    let mut simulation = mechanism("four_bar.toml", 0.1);
     let rocker = |crank: f64| {
         let pin = [60.0 * crank.sin(), 60.0 * crank.cos()];
         let (dx, dz) = (200.0 - pin[0], -pin[1]);
@@ -125,7 +125,7 @@ fn the_four_bar_linkage_turns_as_its_loop_says() {
 /// Conserved: the momenta of a satellite without forces. Closed form: the angles at rest.
 #[test]
 fn the_panels_deploy_to_their_stops_and_momenta_stay_zero() {
-    let mut simulation = mechanism("deployment.toml", false, 0.5);
+    let mut simulation = mechanism("deployment.toml", 0.5);
     let mut most = 0.0_f64;
     let mut largest = [0.0_f64; 2];
     while to_row(&mut simulation) {
@@ -145,7 +145,7 @@ fn the_panels_deploy_to_their_stops_and_momenta_stay_zero() {
 /// Closed form: where the controllers bear the weight of rigid links.
 #[test]
 fn the_robot_arm_comes_to_rest_where_its_controllers_bear_its_weight() {
-    let mut simulation = mechanism("robot_arm.toml", false, 1.0);
+    let mut simulation = mechanism("robot_arm.toml", 1.0);
     while to_row(&mut simulation) {}
     let weight = 200.0 * 100.0 * 2.7e-9 * 9810.0 * 200.0;
     let [mut a, mut b] = [0.8_f64, -1.2_f64];
@@ -162,7 +162,7 @@ fn the_robot_arm_comes_to_rest_where_its_controllers_bear_its_weight() {
 #[test]
 fn the_blade_flaps_at_the_frequency_of_its_hinge() {
     let step = 1e-3;
-    let mut simulation = mechanism("rotor_blade.toml", false, step);
+    let mut simulation = mechanism("rotor_blade.toml", step);
     let mut times = Vec::new();
     let mut before = turn(&simulation, 1);
     while to_row(&mut simulation) {

@@ -166,6 +166,35 @@ fn a_ball_to_the_ground_moves_a_bar_as_a_pin_does() {
     assert!((found - expected).norm() < 1e-3 * expected.norm());
 }
 
+/// Closed form: a cantilever that is pulled with P = 4 EI/L² bends by 3 (1 − tanh(2)/2)/4 of what it does without.
+#[test]
+fn the_force_of_a_joint_stiffens_its_body() {
+    let bent = |pull: f64, effects: &str| {
+        let bending = 70e3 * 1e4 / 12.0;
+        let text = format!(
+            "{HEAD}[body]\n{BAR}markers = {{ root = {{ group = 'root' }} }}\n[modes]\nflexible = 4\ndamping_ratio = 1.0\n{effects}\
+             [[loads]]\nkind = 'force'\nat = [200, 0, 0]\ndirection = [1, 0, 0]\namplitude = {:e}\n\
+             [[loads]]\nkind = 'force'\nat = [200, 0, 0]\ndirection = [0, 1, 0]\namplitude = 1.0\n\
+             [[joints]]\nkind = 'fixed'\nbetween = ['body.root', 'ground']\n\
+             [output]\npoints = {{ tip = [200, 0, 0] }}\n[time]\nend = 0.1\ntolerance = 1e-6\n",
+            pull * bending / (200.0 * 200.0)
+        );
+        let (system, models) = system(&text);
+        let tied = tie(&system, &models).unwrap().remove(0);
+        let mut simulation = start(&tied, StepControl::Tolerance(1e-6), 0.1);
+        while simulation.advance_watched(1000, |_, _| ()).unwrap() != Reached::End {}
+        let state = simulation.motion().state(0).unwrap();
+        let (_, tip) = &models[0].points[0];
+        let arm = tip.position_body() + tip.deformation(&state.modal_displacement);
+        (state.origin_global + state.attitude.to_global(&arm)).y
+    };
+    let free = bent(0.0, "");
+    let expected = 3.0 * (1.0 - 2.0_f64.tanh() / 2.0) / 4.0;
+    let [stiffened, not] = ["", "[effects]\ngeometric_stiffening = false\n"].map(|effects| bent(4.0, effects) / free);
+    println!("{stiffened} {not} {expected}");
+    assert!((stiffened / expected - 1.0).abs() < 0.02 && not > 1.05 * expected, "{stiffened} {not} {expected}");
+}
+
 #[test]
 fn joints_of_markers_that_do_not_tell_their_turns_and_regions_without_faces_are_refused() {
     let nodes = |kind: &str, marker: &str, axis: &str| {
