@@ -64,6 +64,7 @@ pub use simulation::plan::{Rows, StepControl};
 pub use simulation::setup::{Begin, Beginning, Method, Setup, StepLimit};
 pub use simulation::{Reached, Simulation, Stats};
 pub use state::{Layout, Rotation, State, attitude_at, vector_at};
+pub use system::collocation::SystemScheme;
 pub use system::description::System;
 pub use system::element::springs::{Bushing, PointSpring};
 pub use system::element::{ForceElement, SetDirection};

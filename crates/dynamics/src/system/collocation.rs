@@ -1,4 +1,4 @@
-//! Collocation at three times in a step: Radau IIA of order 5, in the form of its structured Newton.
+//! Collocation at three times in a step: Radau IIA of order 5 and Gauss of order 6, in the form of their structured Newton.
 //!
 //! Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5 and IV.8; Eqs. (J5)–(J7) of `docs/method/systems.md`.
 
@@ -7,10 +7,20 @@ use nalgebra::{Complex, Matrix3, Vector3};
 /// Stages of a step.
 pub(crate) const STAGES: usize = 3;
 
+/// A scheme for the steps of a system.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum SystemScheme {
+    /// Radau IIA of order 5: forgets vibration that its steps do not resolve.
+    #[default]
+    Radau,
+    /// Gauss of order 6: keeps all vibration, and energy better over long times, but needs shorter steps for what rings.
+    Gauss,
+}
+
 /// The constants of the scheme.
 #[derive(Debug, Clone)]
 pub(crate) struct Collocation {
-    /// c: times of the stages, as fractions of the step. The last is its end.
+    /// c: times of the stages, as fractions of the step.
     pub times: [f64; STAGES],
     /// b: the weights of their rates.
     pub weights: [f64; STAGES],
@@ -27,6 +37,8 @@ pub(crate) struct Collocation {
     pub from_complex: Vector3<Complex<f64>>,
     /// Values at the start of the step of the polynomials that are 1 at one stage and 0 at the others.
     pub at_start: [f64; STAGES],
+    /// Factors of the increments at the stages in that at the end of the step; `None` where the last stage is the end.
+    pub at_end: Option<[f64; STAGES]>,
 }
 
 impl Collocation {
@@ -45,7 +57,27 @@ impl Collocation {
             (16.0 + root) / 36.0,
             1.0 / 9.0,
         );
-        let weights = [a[(2, 0)], a[(2, 1)], a[(2, 2)]];
+        Self { at_end: None, ..Self::new(times, a, [a[(2, 0)], a[(2, 1)], a[(2, 2)]]) }
+    }
+
+    /// Gauss with three stages.
+    pub fn gauss() -> Self {
+        let root = 15.0_f64.sqrt();
+        let a = Matrix3::new(
+            5.0 / 36.0,
+            2.0 / 9.0 - root / 15.0,
+            5.0 / 36.0 - root / 30.0,
+            5.0 / 36.0 + root / 24.0,
+            2.0 / 9.0,
+            5.0 / 36.0 - root / 24.0,
+            5.0 / 36.0 + root / 30.0,
+            2.0 / 9.0 + root / 15.0,
+            5.0 / 36.0,
+        );
+        Self::new([0.5 - root / 10.0, 0.5, 0.5 + root / 10.0], a, [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0])
+    }
+
+    fn new(times: [f64; STAGES], a: Matrix3<f64>, weights: [f64; STAGES]) -> Self {
         let inverse = a.try_inverse().unwrap_or_else(Matrix3::zeros);
         let real = real_eigenvalue(&inverse);
         // The other two are the roots of κ² − (tr − κ_r) κ + det/κ_r.
@@ -59,7 +91,7 @@ impl Collocation {
             let others = (0..STAGES).filter(|j| *j != i);
             others.map(|j| times[j] / (times[j] - times[i])).product()
         });
-        Self {
+        let mut scheme = Self {
             times,
             weights,
             inverse,
@@ -70,20 +102,26 @@ impl Collocation {
             from_real,
             from_complex,
             at_start,
-        }
+            at_end: None,
+        };
+        scheme.at_end = Some(scheme.at(1.0));
+        scheme
+    }
+
+    /// Factors of the increments at the stages in that at a time, counted in steps.
+    fn at(&self, time: f64) -> [f64; STAGES] {
+        std::array::from_fn(|i| {
+            let others = (0..STAGES).filter(|j| *j != i);
+            time / self.times[i]
+                * others.map(|j| (time - self.times[j]) / (self.times[i] - self.times[j])).product::<f64>()
+        })
     }
 
     /// Factors of the increments at the stages of one step in those at a time of the next, both counted from their own
     /// starts: `time` is counted in steps of the last from its start.
     pub fn continued(&self, time: f64) -> [f64; STAGES] {
-        std::array::from_fn(|i| {
-            let at = |time: f64| {
-                let others = (0..STAGES).filter(|j| *j != i);
-                time / self.times[i]
-                    * others.map(|j| (time - self.times[j]) / (self.times[i] - self.times[j])).product::<f64>()
-            };
-            at(time) - at(1.0)
-        })
+        let [then, end] = [time, 1.0].map(|time| self.at(time));
+        std::array::from_fn(|i| then[i] - end[i])
     }
 }
 
@@ -124,12 +162,13 @@ mod tests {
     /// Conserved: T Λ T⁻¹ = A⁻¹.
     #[test]
     fn the_transform_makes_the_inverse_diagonal() {
-        let Collocation { inverse, real, complex, to_real, to_complex, from_real, from_complex, .. } =
-            Collocation::radau();
-        let made = Matrix3::from_fn(|i, j| {
-            from_real[i] * real * to_real[j] + 2.0 * (from_complex[i] * complex * to_complex[j]).re
-        });
-        assert!((made - inverse).norm() < 1e-12);
+        for scheme in [Collocation::radau(), Collocation::gauss()] {
+            let Collocation { inverse, real, complex, to_real, to_complex, from_real, from_complex, .. } = scheme;
+            let made = Matrix3::from_fn(|i, j| {
+                from_real[i] * real * to_real[j] + 2.0 * (from_complex[i] * complex * to_complex[j]).re
+            });
+            assert!((made - inverse).norm() < 1e-12);
+        }
     }
 
     /// Closed form: a polynomial of degree 3.

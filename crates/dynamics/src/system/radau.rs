@@ -19,7 +19,7 @@ use crate::conservative::{get, part};
 use crate::equations::Equations;
 use crate::error::{RateError, SetupError};
 use crate::state::State;
-use crate::system::collocation::{Collocation, STAGES};
+use crate::system::collocation::{Collocation, STAGES, SystemScheme};
 use crate::system::description::System;
 use crate::system::elimination::matrices::Matrices;
 use crate::system::elimination::newton::Solution;
@@ -169,6 +169,16 @@ impl SystemMotion {
         };
         motion.find_joint_coordinates();
         Ok(motion)
+    }
+
+    /// The same motion by another scheme.
+    #[must_use]
+    pub fn with_scheme(self, scheme: SystemScheme) -> Self {
+        let scheme = match scheme {
+            SystemScheme::Radau => Collocation::radau(),
+            SystemScheme::Gauss => Collocation::gauss(),
+        };
+        Self { scheme, last_length: 0.0, ..self }
     }
 
     /// Finds the coordinates of the joints, and the sums of the couplings that have none, where the system is at first.
@@ -321,7 +331,7 @@ impl SystemMotion {
             }
             self.last_length = h;
             self.add_work(h);
-            self.sum_momenta(h);
+            self.reach_end(h);
             self.end([end, branch_time], h)?;
         }
         Ok(Tried { error, passes })

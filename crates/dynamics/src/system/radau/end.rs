@@ -12,13 +12,22 @@ use crate::system::stage::{about_global_origin, put, vector};
 const MAX_PROJECTIONS: usize = 20;
 
 impl SystemMotion {
-    /// Gives what flies freely the momenta that the loads have given it.
-    pub(super) fn sum_momenta(&mut self, h: f64) {
+    /// Takes the increments to the end of the step, and gives what flies freely the momenta that the loads have given it.
+    pub(super) fn reach_end(&mut self, h: f64) {
         let Self { stages, system, multipliers, scheme, room, .. } = self;
         for (i, stage) in stages.iter_mut().enumerate() {
             stage.find_y_rates(system, &multipliers[i], &mut room.y_rates[i]);
         }
-        let [.., last] = stages;
+        let [first, middle, last] = stages;
+        if let Some([a, b, c]) = scheme.at_end {
+            for (last, [first, middle]) in [(&mut last.x, [&first.x, &middle.x]), (&mut last.y, [&first.y, &middle.y])]
+            {
+                let others = first.iter().zip(middle);
+                last.iter_mut()
+                    .zip(others)
+                    .for_each(|(last, (first, middle))| *last = a * first + b * middle + c * *last);
+            }
+        }
         let rates = &room.y_rates;
         last.correct_momenta(system, |k| {
             h * rates.iter().zip(scheme.weights).map(|(rates, weight)| weight * rates[k]).sum::<f64>()
