@@ -3,10 +3,12 @@
 #[allow(dead_code)] // shared with the other test programs, which use all of it
 mod common;
 
+use std::sync::Arc;
+
 use allocation_counter::measure;
 use dynamics::{
-    ConservativeBody, Expression, History, Initial, Joint, Marker, Method, MotionState, Physics, Reached, Rows, Setup,
-    Simulation, StepControl, System, SystemMotion, Table,
+    Bushing, ConservativeBody, Coordinate, Expression, Friction, History, Initial, Joint, JointForce, Marker, Method,
+    MotionState, Physics, Reached, Rows, Setup, Simulation, StepControl, Stops, System, SystemMotion, Table,
 };
 use frames_rk4::Paper;
 use nalgebra::Vector3;
@@ -81,13 +83,27 @@ fn steps_of_a_system_with_joints_allocate_nothing() {
     let axes = nalgebra::Matrix3::identity();
     let pin = Marker::on_rigid(0, Vector3::new(-100.0, 0.0, 0.0), axes);
     let joints = vec![
-        Joint::revolute("hinge", [Marker::on_ground(Vector3::zeros(), axes), pin]),
+        Joint::revolute("hinge", [Marker::on_ground(Vector3::zeros(), axes), pin]).with_force(
+            Coordinate::Turn,
+            JointForce {
+                stiffness: 3.0,
+                stops: Some(Stops { limits: [-0.1, 0.1], stiffness: 1e6, damping: 0.0 }),
+                friction: Some(Friction { force: 1.0, rate_scale: 0.1 }),
+                ..JointForce::default()
+            },
+        ),
         Joint::spherical(
             "between",
             [Marker::on_rigid(0, Vector3::x() * 90.0, axes), Marker::on_rigid(1, Vector3::y(), axes)],
         ),
     ];
+    let bushing = Bushing {
+        markers: [Marker::on_rigid(0, Vector3::x() * 90.0, axes), Marker::on_rigid(1, Vector3::y(), axes)],
+        stiffness: [Vector3::zeros(), Vector3::repeat(1e4)],
+        damping: [Vector3::zeros(); 2],
+    };
     let system = System::new(vec![body.clone(), body], joints).unwrap();
+    let system = system.with_elements(vec![Arc::new(bushing)]).unwrap();
     let start = |x: f64| MotionState {
         time: 0.0,
         attitude: rigid_kin::Attitude::identity(),

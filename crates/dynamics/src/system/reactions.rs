@@ -97,6 +97,26 @@ impl SystemMotion {
         sum
     }
 
+    /// What the drive and the motors of a joint put in now, after [`Self::find_reactions`].
+    pub fn drive_power(&self, joint: usize) -> f64 {
+        let Self { system, first, .. } = self;
+        let joints = &system.connections.joints;
+        let before: usize = joints[..joint].iter().map(|joint| joint.rows.len()).sum();
+        let rows = before..before + joints[joint].rows.len();
+        let of_row = |(multiplier, rate): (&f64, &f64)| -multiplier * rate;
+        let of_drive: f64 =
+            self.reactions[rows.clone()].iter().zip(&first.constraints.own_rates[rows]).map(of_row).sum();
+        let forces = system.connections.joint_forces().zip(&first.joint_powers);
+        of_drive + forces.filter(|((number, ..), _)| *number == joint).map(|(_, power)| power.motor).sum::<f64>()
+    }
+
+    /// The force that a coupling puts on its sum, after [`Self::find_reactions`]: times the factor of a coordinate, its force or moment
+    /// there.
+    pub fn coupling_force(&self, coupling: usize) -> f64 {
+        let joints = &self.system.connections.joints;
+        self.reactions[joints.iter().map(|joint| joint.rows.len()).sum::<usize>() + coupling]
+    }
+
     /// out = Ġ v + ġ_t for these velocities, where the first stage is.
     pub(super) fn find_row_accelerations(&mut self, velocities: &[f64], out: &mut Vec<f64>) {
         let omegas = self.system.first[..self.system.bodies.len()].iter().map(|first| vector(velocities, first + 3));

@@ -151,7 +151,25 @@ fn a_motor_turns_a_rotor() {
     let found = motion.joint_coordinates(0);
     assert!((found.turn - 2.0 * moment / INERTIA).abs() < 1e-9, "{found:?}");
     assert!((motion.joint_work(0).drive - moment * found.turn).abs() < 1e-9);
+    motion.find_reactions().unwrap();
+    assert!((motion.drive_power(0) - moment * found.turn_rate).abs() < 1e-9);
     assert!(imbalance(&motion, 0.0) < 1e-9);
+}
+
+/// Closed form: the power of a drive that swings a rotor, J φ'' φ'.
+#[test]
+fn a_drive_has_the_power_of_its_rotor() {
+    let history = History::Sine { frequency: 0.5, phase: 0.0, start: -1.0, duration: None };
+    let drive = JointDrive { amplitude: 0.7, history };
+    let joint = Joint::revolute("joint", [ground(0.0), on(0, 0.0)]).turned_by(drive);
+    let system = System::new(bodies(1), vec![joint]).unwrap();
+    let mut motion = SystemMotion::new(system, &[at(0.0, 0.0, -0.7 * PI)]).unwrap();
+    motion.assemble().unwrap();
+    motion.advance(0.3, 1e-9, &mut 1e-3).unwrap();
+    motion.find_reactions().unwrap();
+    let (sine, cosine) = (PI * 1.3).sin_cos();
+    let expected = -INERTIA * 0.49 * PI.powi(3) * sine * cosine;
+    assert!((motion.drive_power(0) / expected - 1.0).abs() < 1e-5, "{} {expected}", motion.drive_power(0));
 }
 
 /// Conserved: the energy of a mass on a spring whose force is a formula, −20 x³.
@@ -188,6 +206,10 @@ fn gears_turn_together() {
     let expected = 0.5 * 36.0 * 1.4 / (INERTIA * (1.0 + ratio * ratio));
     assert!((first / expected - 1.0).abs() < 1e-9 && expected > 8.0, "{first} {expected}");
     assert!((second - ratio * first).abs() < 1e-11, "{second} {first}");
+    // What the gear puts on the second wheel.
+    motion.find_reactions().unwrap();
+    let moment = INERTIA * ratio * 1.4 / (INERTIA * (1.0 + ratio * ratio));
+    assert!((motion.coupling_force(0) / moment - 1.0).abs() < 1e-9, "{} {moment}", motion.coupling_force(0));
     assert_eq!(motion.dependent_rows(), 0);
 }
 
