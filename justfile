@@ -16,6 +16,8 @@ plate: build
 # Every test.
 test:
     cargo test --workspace --quiet
+    # A crate of somebody else, which sees only what is public.
+    cargo test --manifest-path tests/outside/Cargo.toml --target-dir target --locked --quiet
 
 # Formatting, clippy and rustdoc, with warnings as errors.
 lint:
