@@ -48,6 +48,21 @@ fn turn(simulation: &SystemSimulation, joint: usize) -> f64 {
     simulation.motion().joint_coordinates(joint).turn
 }
 
+/// Conserved: the energy of a rigid bar on the hinge.
+#[test]
+fn the_bar_on_a_hinge_falls_with_the_energy_of_its_weight() {
+    let mut simulation = mechanism("hinge.toml", 0.02);
+    let over_mass = 200.0_f64.powi(2) / 3.0 + 100.0 / 12.0;
+    let mut rows = 0;
+    while to_row(&mut simulation) {
+        let hinge = simulation.motion().joint_coordinates(0);
+        let (kinetic, fallen) = (0.5 * over_mass * hinge.turn_rate.powi(2), 9810.0 * 100.0 * hinge.turn.sin());
+        assert!((kinetic - fallen).abs() < 2e-3 * 9810.0 * 100.0, "{}: {kinetic} {fallen}", simulation.time());
+        rows += 1;
+    }
+    assert!(rows > 10);
+}
+
 /// Closed form, integrated here: the equations of Lagrange of two rigid bars.
 #[test]
 fn the_double_pendulum_falls_as_two_rods_do() {
