@@ -512,9 +512,9 @@ impl<'a> Review<'a> {
         case.backbones.iter().enumerate().filter_map(of).collect()
     }
 
-    /// True if an effect of turning and bending was left out, for which the estimates had to hold.
+    /// True if an effect of turning and bending was left out, for which the estimates had to hold. What has no modes has none.
     fn something_is_off(&self) -> bool {
-        self.turns() && !OF_TURNING.into_iter().all(|effect| self.effects[effect])
+        !self.case.peaks.is_empty() && self.turns() && !OF_TURNING.into_iter().all(|effect| self.effects[effect])
     }
 
     /// True if the body can turn: if not, nothing of turning is left out, whatever is off.

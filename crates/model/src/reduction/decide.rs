@@ -34,7 +34,8 @@ impl Decision {
             && match physics::static_correction(scene, flexible) {
                 Choice::On => true,
                 Choice::Off => false,
-                Choice::Auto => advice.static_correction.on,
+                // How fast joints let it turn is not known.
+                Choice::Auto => advice.static_correction.on || !scene.markers.is_empty() && statics.of_spin.is_some(),
             };
         let of_spin = statics.of_spin.as_ref().filter(|_| keep > 0 && !has_static_shapes);
         let large = physics::large_modes(scene, advice, keep);

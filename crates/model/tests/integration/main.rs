@@ -3,6 +3,7 @@
 mod auto;
 mod damping;
 mod histories;
+mod hostile_ties;
 mod kept;
 mod loads;
 mod matrices;
