@@ -18,18 +18,19 @@ top = { at = [1.0, 2.0, 4.0], z = [0.0, 1.0, 0.2], x = [1.0, 0.3, 0.1] }
 side = { at = [2.0, 2.0, 3.0] }
 [bodies.bar]
 mesh = "../data/bar.msh"
-material = { young_modulus = 7e4, poisson_ratio = 0.33, density = 2.7e-3 }
+material = { young_modulus = 7e10, poisson_ratio = 0.33, density = 2.7e-3 }
 modes = { flexible = 2, damping_ratio = 0.1 }
+initial = { position = [2.1, 2.2, 3.3] }
 [bodies.bar.markers]
 root = { box = [[0.0, -9.0, -9.0], [0.0, 9.0, 9.0]], z = [0.0, 0.0, 1.0] }
 tip = { at = [200.0, 0.0, 0.0], radius = 8.0 }
 [ground.markers.wall]
-at = [1.0, 2.0, 5.0]
-z = [0.0, 1.0, 0.0]
+at = [1.1, 2.2, 4.3]
+z = [0.0, 1.0, 0.2]
 [[joints]]
 kind = "cylindrical"
 between = ["ground.wall", "stone.top"]
-drive = { along = "slide", amplitude = 0.1, history = { kind = "sine", frequency = 2.0, phase = 0.5 } }
+drive = { along = "slide", amplitude = 0.1, history = { kind = "sine", frequency = 2.0, phase = 0.0 } }
 motor = { along = "turn", amplitude = 3.0, history = { kind = "ramp", duration = 0.1 } }
 [joints.spring]
 along = "turn"
@@ -42,7 +43,7 @@ friction = { force = 0.5, rate = 1e-2 }
 [[joints]]
 kind = "revolute"
 between = ["stone.side", "bar.root"]
-axis = [0.3, 0.0, 1.0]
+axis = [0.0, 0.0, 1.0]
 [[couplings]]
 kind = "gear"
 joints = ["joint1", "joint2"]
@@ -122,7 +123,7 @@ fn bad_numbers_of_joints_are_refused_or_move_with_finite_ones() {
         (state >> 33) as usize % end
     };
     let mut ended = [0; 6];
-    for _ in 0..120 {
+    for _ in 0..40 {
         let mut spoiled = SCENE.to_owned();
         for _ in 0..=below(2) {
             let places = numbers(&spoiled);
