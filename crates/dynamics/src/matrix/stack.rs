@@ -7,6 +7,8 @@
 //!
 //! So the matrices are read from end to end, and the sums of four rows of all of them stay in registers.
 
+use std::sync::Arc;
+
 use faer::Mat;
 use pulp::Simd;
 
@@ -23,8 +25,8 @@ pub(crate) struct Stack {
     size: usize,
     /// Columns with those of zeros that fill the last turn.
     columns: usize,
-    /// In one column, which begins at the start of a line of the cache, so that no vector lies across two.
-    entries: Mat<f64>,
+    /// In one column, which begins at the start of a line of the cache, so that no vector lies across two. Equal bodies share it.
+    entries: Arc<Mat<f64>>,
 }
 
 /// Where products go: in lists of `width` groups for each four rows, from the group `first` on.
@@ -48,7 +50,8 @@ impl Stack {
                 }
             }
         }
-        Self { count, size, columns, entries: Mat::from_fn(entries.len(), 1, |k, _| entries[k]) }
+        let entries = Arc::new(Mat::from_fn(entries.len(), 1, |k, _| entries[k]));
+        Self { count, size, columns, entries }
     }
 
     /// Numbers of the matrices themselves.
