@@ -24,8 +24,6 @@ impl Decision {
         let Survey { modal, advice, statics, .. } = survey;
         let flexible = modal.body.flexible();
         let keep = match (scene.modes.flexible, scene.effects.choices[Effect::Flexibility]) {
-            // The forces of joints are not known.
-            (Flexible::Auto { .. }, _) if !scene.markers.is_empty() => flexible,
             (Flexible::Auto { .. }, Choice::On) => advice.keep.max(1).min(flexible),
             (Flexible::Auto { .. }, Choice::Auto) => advice.keep,
             _ => flexible,

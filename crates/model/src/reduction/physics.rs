@@ -42,25 +42,43 @@ pub(crate) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
 pub(crate) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: usize) -> EffectMap<bool> {
     // The paper's formulation has the effects that it has; gravity is a load like others.
     let in_any_case = |effect: Effect| !scene.time.method.abilities.switches_effects && effect != Effect::Gravity;
-    // The forces of joints are not known.
-    let has_markers = !scene.markers.is_empty();
-    let unknown = if has_markers { scene.on_under_unknown_forces() } else { Vec::new() };
     let has_weight = !body.motion.is_free() && bears_weight(scene, body.mass);
     let mut effects = EffectMap::from_fn(|effect| match scene.effects.choices[effect] {
         Choice::On => true,
         Choice::Off => false,
-        Choice::Auto => {
-            in_any_case(effect)
-                || advice.effects[effect].on
-                || unknown.contains(&effect)
-                || (effect == Effect::GeometricStiffening && has_markers)
-                || (effect == Effect::Gravity && has_weight)
-        }
+        Choice::Auto => in_any_case(effect) || advice.effects[effect].on || (effect == Effect::Gravity && has_weight),
     });
     effects[Effect::Flexibility] = keep > 0;
     effects[Effect::GeometricStiffening] &=
         keep > 0 && body.stress_stiffness.is_some() && effects[Effect::DeformedInertia];
     effects
+}
+
+/// Sentence about what forces of joints may call for.
+const IN_JOINTS: &str = "The body has markers: what joints will put on it is not known while it is built.";
+
+/// The advice on a body with markers, on which joints put forces that nobody knows while it is built: what such forces may call
+/// for is on, and all modes are kept. That on another body is as it was.
+pub(crate) fn in_joints(scene: &Scene, mut advice: Advice) -> Advice {
+    if scene.markers.is_empty() {
+        return advice;
+    }
+    let is_missing = |effect: &Effect| {
+        *effect == Effect::Gravity && !scene.loads.iter().any(|load| matches!(load, Load::Gravity(_)))
+    };
+    let has_modes = !advice.modes.is_empty();
+    let flexibility = Some(Effect::Flexibility).filter(|_| has_modes);
+    let stiffening = Some(Effect::GeometricStiffening).filter(|_| has_modes && scene.body.has_elements());
+    let called_for = scene.on_under_unknown_forces().into_iter().filter(|effect| !is_missing(effect));
+    for effect in called_for.chain(flexibility).chain(stiffening) {
+        let row = &mut advice.effects[effect];
+        if !row.on {
+            (row.on, row.why) = (true, IN_JOINTS.to_owned());
+        }
+    }
+    advice.keep = advice.modes.len();
+    advice.modes.iter_mut().for_each(|mode| mode.worth_keeping = true);
+    advice
 }
 
 /// True if the constraint bears the weight of the body, however little that moves it: it is no less than `tolerance` of each

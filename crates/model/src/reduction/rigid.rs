@@ -57,6 +57,7 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         },
         scene.effects.tolerance,
     )?;
+    let advice = physics::in_joints(scene, advice);
     let effects = physics::effects(scene, &advice, &body, 0);
     Ok(Model {
         meshed: None,

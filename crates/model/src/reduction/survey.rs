@@ -70,6 +70,7 @@ impl Survey {
         } else {
             first
         };
+        let advice = physics::in_joints(model.scene, advice);
         Ok(Self { modes, modal, spin, statics, of_markers, backbones, advice })
     }
 }
