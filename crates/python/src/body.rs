@@ -20,7 +20,7 @@ use crate::values::constants::constants;
 use crate::values::html::{heading, table as html_table};
 use crate::values::numbers::numbers;
 
-/// The body of a scene: its mesh is read, its modes are found, and it is reduced.
+/// The body of a scene of one: its mesh is read, its modes are found, and it is reduced.
 ///
 /// Results of a mesh are kept in the user's cache, as by the program: the same body is there at once the next
 /// time, also in another process. So a body that is pickled is its scene, and is made again from the cache where it is

@@ -76,10 +76,10 @@ def built_in_another_process(folder):
     """The files that the cache has after a ring was built, and whether any of them is new."""
     code = f"import flexframe; flexframe.Body(flexframe.Scene({RING!r}, base={str(EXAMPLES)!r}))"
     environment = {**os.environ, "FLEXFRAME_CACHE": str(folder)}
-    before = {path: path.stat().st_ino for path in folder.rglob("*.h5")}
+    before = {path: path.stat().st_ino for path in folder.rglob("*") if path.is_file()}
     said = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
     assert said.returncode == 0, said.stderr
-    after = {path: path.stat().st_ino for path in folder.rglob("*.h5")}
+    after = {path: path.stat().st_ino for path in folder.rglob("*") if path.is_file()}
     return after, after != before
 
 
@@ -94,7 +94,7 @@ def test_runs_of_one_body_search_no_modes_again(tmp_path, monkeypatch):
     monkeypatch.setenv("FLEXFRAME_CACHE", str(tmp_path))
     scene = flexframe.Scene(RING, base=EXAMPLES)
     body = flexframe.Body(scene)
-    files = lambda: {path: path.stat().st_ino for path in tmp_path.rglob("*.h5")}
+    files = lambda: {path: path.stat().st_ino for path in tmp_path.rglob("*") if path.is_file()}
     kept = files()
     for values in ({"loads[0].amplitude": 350.0}, {"time.end": 0.005}, {"initial": {"velocity": [1.0, 0.0, 0.0]}}):
         flexframe.Simulation(body, scene=scene.with_values(values)).run()

@@ -99,7 +99,7 @@ def test_a_scene_has_several_bodies_or_one_of_them_alone():
     assert (ring.units, ring.end) == (block.units, block.end) == (both.units, both.end)
     longer = block.with_values({"time.end": 0.5, "bodies.block.initial.velocity": [1.0, 0.0, 0.0]})
     assert (longer.bodies, longer.end) == (["block"], 0.5)
-    with pytest.raises(flexframe.InputError, match="2 bodies; expected one of ring, block"):
+    with pytest.raises(flexframe.InputError, match="found 2 bodies, expected one of ring, block"):
         flexframe.Body(both)
     with pytest.raises(flexframe.InputError, match="no body `wheel`"):
         flexframe.Scene(pair, body="wheel")
