@@ -70,8 +70,11 @@ build:
 mesh:
     cd meshes && for geo in *.geo; do gmsh -3 -format msh41 -v 2 "$geo" -o "${geo%.geo}.msh"; done
 
-# The moving picture of the README; its motion has to be within the range of the model.
+# The moving pictures of the README; the plate's motion has to be within the range of the model.
 picture: build
+    mkdir -p out/picture
+    {{flexframe}} run examples/mechanisms/deployment.toml -o out/picture --overwrite > out/picture/deployment.txt
+    {{flexframe}} animate out/picture/deployment.h5 -o docs/start/deployment.gif --to 4 --frames 60 --overwrite
     if {{flexframe}} run examples/thrown_plate.toml -o out/picture --overwrite | grep '^  warning'; then exit 1; fi
     {{flexframe}} animate examples/thrown_plate.toml -o docs/start/thrown_plate.gif --frames 80 --overwrite
 
