@@ -6,6 +6,7 @@
 
 use dynamics::Effect;
 use fem_tet10::{Material, Materials};
+use modal::NoCycles;
 use model::{Doubt, Meshed, Model};
 use scene::{Body, Choice, Load, Scene, Units};
 
@@ -63,6 +64,9 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         doubts.extend(mesh_notes.iter().map(|note| format!("{}: {note}", body.mesh.display())));
         doubts.extend(model::doubts(scene, body, mesh).into_iter().map(|doubt: Doubt| doubt.to_string()));
     }
+    if let Some(reason) = model.meshed.as_ref().and_then(|meshed| meshed.no_cycles.as_ref()) {
+        doubts.push(without_cycles(reason));
+    }
     let ratios = &model.damping_ratios()[..model.body.flexible() - model.static_shapes()];
     let over: Vec<f64> = ratios.iter().copied().filter(|ratio| *ratio > 1.0).collect();
     if let Some(largest) = over.iter().copied().reduce(f64::max) {
@@ -74,6 +78,13 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         ));
     }
     doubts
+}
+
+/// Multigrid cycles that could not spare a long time and much memory.
+fn without_cycles(reason: &NoCycles) -> String {
+    format!(
+        "the stiffness matrix was factored, which takes long: multigrid cycles did not take the place of the factor; {reason}"
+    )
 }
 
 /// Parts of a motion that a body of matrices may lack.
@@ -186,6 +197,12 @@ mod tests {
 
     fn units(length: &str, mass: &str) -> Units {
         Units { length: length.into(), mass: mass.into(), time: "s".into() }
+    }
+
+    #[test]
+    fn a_factor_in_the_place_of_cycles_is_told_with_the_reason() {
+        let told = without_cycles(&NoCycles::FlatElements { left: 0.81, limit: 0.75 });
+        assert!(told.contains("takes long") && told.contains("leaves 0.81 of the strain energy"), "{told}");
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! The Cholesky factor of K + sM.
 
+#[cfg(all(test, feature = "threads-in-faer"))]
+mod against_faer;
 pub(crate) mod cholesky;
 pub(crate) mod interleave;
 pub(crate) mod layout;

@@ -38,6 +38,7 @@ pub use matrix::mass::NodalMass;
 pub use matrix::mass_matrix::{GeneralMass, MassMatrix};
 pub use matrix::stiffness::{NodalStiffness, StiffnessMatrix};
 pub use memory_estimate::{Forecast, reserve_of_dense_products};
+pub use multigrid::NoCycles;
 pub use progress::{EnginePhase, Progress};
 pub use reduction::body::{BodyPoint, Constants, ReducedBody};
 pub use reduction::fields::{acceleration_fields, centrifugal_fields, turning_field};

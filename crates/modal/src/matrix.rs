@@ -9,6 +9,7 @@ pub(crate) mod packed_rows;
 pub(crate) mod pairs;
 pub(crate) mod pattern;
 pub(crate) mod products;
+pub(crate) mod renumbering;
 pub(crate) mod row_chunks;
 pub(crate) mod stiffness;
 pub(crate) mod symmetry;

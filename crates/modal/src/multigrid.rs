@@ -1,13 +1,15 @@
-//! Modes and static responses by multigrid cycles, without the factor.
+//! Modes and static responses by multigrid cycles, without the factor of K + sM. The door is [`Cycles`]; where they do not do,
+//! [`NoCycles`] is the reason.
 
 pub(crate) mod coarse;
-pub(crate) mod cycle;
-pub(crate) mod davidson;
-pub(crate) mod levels;
-pub(crate) mod make_levels;
-pub(crate) mod modes_by_cycles;
-pub(crate) mod renumbering;
-pub(crate) mod smoother;
+mod cycle;
+mod cycles;
+mod davidson;
+mod no_cycles;
+mod smoother;
 pub(crate) mod spatial_order;
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;
+
+pub(crate) use cycles::{CycledBody, CycledInverse, Cycles, are_faster};
+pub use no_cycles::NoCycles;

@@ -7,7 +7,7 @@ use faer::sparse::SparseColMatRef;
 use faer::{ColRef, Mat};
 
 use crate::eigen::engine::{Engine, EngineStats};
-use crate::eigen::lanczos::{BLOCK, FIXED, largest_pairs, room};
+use crate::eigen::lanczos::{BLOCK, FIXED, LanczosPairs, largest_pairs, room};
 use crate::eigen::polynomials::Polynomials;
 use crate::eigen::ritz::{RitzPairs, rayleigh_ritz};
 use crate::eigen::start;
@@ -20,7 +20,7 @@ use crate::matrix::mass_matrix::{MassMatrix, dofs};
 use crate::matrix::stiffness::{NodalStiffness, StiffnessMatrix};
 use crate::matrix::symmetry::check_symmetric;
 use crate::memory_estimate::MemoryEstimate;
-use crate::multigrid::levels::Levels;
+use crate::multigrid::{CycledBody, Cycles, NoCycles, are_faster};
 use crate::progress::Progress;
 use crate::support::constraints::Constraints;
 use crate::support::held_problem::HeldProblem;
@@ -126,7 +126,7 @@ pub(crate) enum Inverse<'a> {
     /// The factor of K + sM.
     Factor(&'a Shifted),
     /// Multigrid cycles.
-    Cycles(&'a Levels),
+    Cycles(&'a Cycles),
 }
 
 /// Modes of a body, Eq. (M5) of `docs/method/modes.md`: the body, its support, and from the first question on the inverse that
@@ -140,7 +140,8 @@ pub struct Solver<'a> {
     pub(crate) rigid: RigidModes,
     pub(crate) constraints: Constraints,
     factor: OnceLock<Shifted>,
-    pub(crate) levels: OnceLock<Levels>,
+    pub(crate) cycles: OnceLock<Cycles>,
+    no_cycles: OnceLock<NoCycles>,
     shift: OnceLock<f64>,
     /// Polynomial fields that tell the shift, for matrices over nodes.
     polynomials: Option<Polynomials>,
@@ -242,7 +243,8 @@ impl<'a> Solver<'a> {
             rigid,
             constraints,
             factor: OnceLock::new(),
-            levels: OnceLock::new(),
+            cycles: OnceLock::new(),
+            no_cycles: OnceLock::new(),
             shift: OnceLock::new(),
             polynomials,
             engine: None,
@@ -312,9 +314,9 @@ impl<'a> Solver<'a> {
         let mut tried = Duration::ZERO;
         let factor = match self.made() {
             Some(Inverse::Factor(factor)) => factor,
-            Some(Inverse::Cycles(levels)) => {
+            Some(Inverse::Cycles(cycles)) => {
                 let started = Instant::now();
-                if let Some(modes) = self.modes_by_cycles(levels, flexible, &mut progress)? {
+                if let Some(modes) = self.modes_by_cycles(cycles, flexible, Duration::ZERO, &mut progress)? {
                     return Ok(modes);
                 }
                 tried = started.elapsed();
@@ -323,10 +325,10 @@ impl<'a> Solver<'a> {
             None => {
                 let (ordered, estimate_time) = self.ordered(&mut progress)?;
                 let started = Instant::now();
-                if let Some(levels) = self.levels_for(flexible, &ordered, &mut progress)
-                    && let Some(modes) = self.modes_by_cycles(&levels, flexible, &mut progress)?
+                if let Some(cycles) = self.cycles_for(flexible, &ordered, &mut progress)?
+                    && let Some(modes) = self.modes_by_cycles(&cycles, flexible, ordered.time(), &mut progress)?
                 {
-                    self.levels.get_or_init(|| levels);
+                    self.cycles.get_or_init(|| cycles);
                     return Ok(modes);
                 }
                 tried = started.elapsed();
@@ -352,19 +354,98 @@ impl<'a> Solver<'a> {
         stats.peak_bytes = factor.memory.peak(factor.memory.of_search(FIXED + pairs.basis_size, BLOCK, flexible));
         stats.lanczos_time = tried + started.elapsed();
 
+        self.ritz(pairs.vectors, pairs.residuals, stats)
+    }
+
+    /// The modes by cycles; none where these do not find them.
+    fn modes_by_cycles(
+        &self,
+        cycles: &Cycles,
+        flexible: usize,
+        ordering_time: Duration,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Option<Modes>, ModalError> {
+        let started = Instant::now();
+        let pairs = cycles.lowest_pairs(self.rigid.shapes.as_ref(), flexible, |converged| {
+            progress(Progress::Lanczos { converged, requested: flexible });
+        });
+        let LanczosPairs { vectors, residuals, block_solves, basis_size } = match pairs {
+            Ok(pairs) => pairs,
+            Err(reason) => {
+                self.without_cycles(reason);
+                return Ok(None);
+            }
+        };
+        let factor = &cycles.factor;
+        let stats = SolveStats {
+            shift: factor.shift,
+            unknowns: self.stiffness.ncols(),
+            factor_entries: factor.entries(),
+            peak_bytes: cycles.peak_bytes(flexible),
+            block_solves,
+            basis_size,
+            cycles: block_solves,
+            preparation_time: self.preparation_time,
+            ordering_time: ordering_time + factor.ordering_time,
+            factor_time: cycles.time,
+            lanczos_time: started.elapsed(),
+            ..SolveStats::default()
+        };
+        self.ritz(vectors, residuals, stats).map(Some)
+    }
+
+    /// The modes in the span of these vectors.
+    fn ritz(&self, vectors: Mat<f64>, residuals: Vec<f64>, stats: SolveStats) -> Result<Modes, ModalError> {
         let started = Instant::now();
         let RitzPairs { eigenvalues, shapes, force_residuals } =
-            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, pairs.vectors)?;
+            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, vectors)?;
         self.refuse_soft(&eigenvalues, &shapes, stats.shift)?;
-        stats.ritz_time = started.elapsed();
-        let (rigid, residuals) = (self.rigid.clone(), pairs.residuals);
-        Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats })
+        let stats = SolveStats { ritz_time: started.elapsed(), ..stats };
+        Ok(Modes { rigid: self.rigid.clone(), eigenvalues, shapes, residuals, force_residuals, stats })
+    }
+
+    /// Cycles, should they be faster for `modes` modes than the factor of K + sM; none for bodies of which they cannot be made, too.
+    fn cycles_for(
+        &self,
+        modes: usize,
+        ordered: &Ordered<'_>,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Option<Cycles>, ModalError> {
+        if !are_faster(ordered.multiplications(), self.stiffness.ncols(), modes) {
+            return Ok(None);
+        }
+        let cycles = Cycles::new(&self.cycled_body()?, modes, |forecast| progress(Progress::Factorizing(forecast)));
+        Ok(cycles.map_err(|reason| self.without_cycles(reason)).ok())
+    }
+
+    /// What cycles are made of.
+    pub(crate) fn cycled_body(&self) -> Result<CycledBody<'_>, ModalError> {
+        Ok(CycledBody {
+            stiffness: self.stiffness,
+            mass: &self.mass,
+            positions: self.positions,
+            edge_ends: self.edge_ends.as_deref(),
+            constraints: &self.constraints,
+            shift: self.shift()?,
+            matrix_bytes: self.matrix_bytes,
+        })
+    }
+
+    /// Notes the reason that the factor is made in the place of cycles.
+    pub(crate) fn without_cycles(&self, reason: NoCycles) {
+        self.no_cycles.get_or_init(|| reason);
+    }
+
+    /// The reason that the factor of K + sM was made though it takes long; `None` where it does not, or where multigrid cycles
+    /// took its place.
+    pub fn no_cycles(&self) -> Option<&NoCycles> {
+        self.no_cycles.get()
     }
 
     /// The inverse, as far as it is made: the factor where cycles were no help.
     fn made(&self) -> Option<Inverse<'_>> {
-        let levels = || self.levels.get().map(Inverse::Cycles);
-        self.factor.get().map(Inverse::Factor).or_else(levels)
+        let cycles = || self.cycles.get().map(Inverse::Cycles);
+        self.factor.get().map(Inverse::Factor).or_else(cycles)
     }
 
     /// The inverse for static responses, made at the first call: beside `modes` modes, where there is memory for the
@@ -379,8 +460,8 @@ impl<'a> Solver<'a> {
             return Ok(made);
         }
         let (ordered, estimate_time) = self.ordered(progress)?;
-        if let Some(levels) = self.levels_for(modes, &ordered, progress) {
-            return Ok(Inverse::Cycles(self.levels.get_or_init(|| levels)));
+        if let Some(cycles) = self.cycles_for(modes, &ordered, progress)? {
+            return Ok(Inverse::Cycles(self.cycles.get_or_init(|| cycles)));
         }
         Ok(Inverse::Factor(self.factor_of(ordered, estimate_time, search, progress)?))
     }
@@ -444,7 +525,7 @@ impl<'a> Solver<'a> {
     /// How many blocks of columns, and columns, the factor was used for up to now: of K + sM, or of its corners in the cycles.
     pub fn solved(&self) -> [usize; 2] {
         match self.made() {
-            Some(Inverse::Factor(factor) | Inverse::Cycles(Levels { factor, .. })) => factor.solved(),
+            Some(Inverse::Factor(factor) | Inverse::Cycles(Cycles { factor, .. })) => factor.solved(),
             None => [0; 2],
         }
     }

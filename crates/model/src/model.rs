@@ -14,7 +14,7 @@ use dynamics::{
 use faer::Mat;
 use fem_tet10::Mesh;
 use frames_rk4::Paper;
-use modal::{Modes, ReducedBody};
+use modal::{Modes, NoCycles, ReducedBody};
 use scene::{MeshedBody, Scene};
 
 use crate::error::StartError;
@@ -39,6 +39,8 @@ pub struct Meshed {
     pub mesh_notes: Vec<String>,
     /// Checks of the matrices, of a body of matrices from another program.
     pub checks: Option<MatrixChecks>,
+    /// The reason that a factor that takes long was made here, where multigrid cycles could not take its place.
+    pub no_cycles: Option<NoCycles>,
     /// Bytes that the mass and stiffness matrices took.
     pub matrix_bytes: usize,
     /// Rigid and flexible modes on the mesh.

@@ -17,8 +17,8 @@ use fem_tet10::{
 };
 use keys::{Key, Keyed};
 use modal::{
-    BucklingAccuracy, ModalError, Modes, ReducedBody, Solver, StaticAccuracy, acceleration_fields, centrifugal_fields,
-    mass_left_out, turning_field,
+    BucklingAccuracy, ModalError, Modes, NoCycles, ReducedBody, Solver, StaticAccuracy, acceleration_fields,
+    centrifugal_fields, mass_left_out, turning_field,
 };
 use nalgebra::Vector3;
 use slepc::write_folder;
@@ -212,6 +212,11 @@ impl<'a> Structure<'a> {
     pub fn work(&self) -> BuildWork {
         let [blocks, columns] = self.solver.get().map_or([0; 2], Solver::solved);
         BuildWork { blocks, columns, element_passes: self.element_passes.get() }
+    }
+
+    /// The reason that a factor that takes long was made, where multigrid cycles could not take its place.
+    pub fn no_cycles(&self) -> Option<&NoCycles> {
+        self.solver.get().and_then(Solver::no_cycles)
     }
 
     /// Number of flexible modes that there are.

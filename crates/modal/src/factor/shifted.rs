@@ -22,10 +22,10 @@ use crate::factor::symbolic::{Supernodal, Symbolic, failed};
 use crate::factor::{cholesky, substitution};
 use crate::matrix::dense::whitening;
 use crate::matrix::mass_matrix::MassMatrix;
+use crate::matrix::renumbering::Renumbering;
 use crate::matrix::stiffness::StiffnessMatrix;
 use crate::matrix::tall;
 use crate::memory_estimate::{Forecast, MemoryEstimate, reserve_of_dense_products};
-use crate::multigrid::renumbering::Renumbering;
 use crate::support::constraints::Constraints;
 
 /// Purpose of the memory, in messages.

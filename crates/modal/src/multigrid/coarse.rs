@@ -7,6 +7,7 @@ use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
 use crate::matrix::mass::NodalMass;
+use crate::matrix::renumbering::rows_at;
 use crate::matrix::stiffness::NodalStiffness;
 
 /// Corners that one task makes the columns of.
@@ -53,9 +54,9 @@ impl Corners {
         self.nodes.len()
     }
 
-    /// True if this number of vectors over corners can be told from each other.
-    pub(crate) fn are_enough_for(&self, vectors: usize) -> bool {
-        2 * vectors <= 3 * self.count()
+    /// Number of corners with which so many vectors over them can be told from each other.
+    pub(crate) fn needed_for(vectors: usize) -> usize {
+        (2 * vectors).div_ceil(3)
     }
 
     /// Number of all nodes.
@@ -178,11 +179,6 @@ impl Corners {
         }
         columns.mass.extend(found.iter().map(|(.., mass)| mass));
     }
-}
-
-/// The rows of these nodes, in their order.
-pub(crate) fn rows_at(nodes: &[u32], x: MatRef<'_, f64>) -> Mat<f64> {
-    Mat::from_fn(3 * nodes.len(), x.ncols(), |row, k| x[(3 * nodes[row / 3] as usize + row % 3, k)])
 }
 
 impl CoarseMatrices {

@@ -21,6 +21,7 @@ use crate::matrix::stiffness::StiffnessMatrix;
 use crate::matrix::tall;
 use crate::memory_estimate::{of_vectors, reserve_of_dense_products};
 use crate::multigrid::cycle::Multigrid;
+use crate::multigrid::no_cycles::NoCycles;
 
 /// √(rᵀBr/λ) of a pair that is accepted: its λ errs by the square.
 const TOLERANCE: f64 = 1e-9;
@@ -45,8 +46,7 @@ const STEPS_IN_ROOM: usize = 5;
 /// Rows that one task computes.
 const ROWS: usize = 4096;
 
-/// The `count` pairs with the lowest λ that are M-orthogonal to `rigid`, from the vectors of `start` on, or none where they are
-/// not found in this number of steps.
+/// The `count` pairs with the lowest λ that are M-orthogonal to `rigid`, from the vectors of `start` on.
 ///
 /// `report` is called after each step with how far it has come, as a number of pairs.
 pub(crate) fn lowest_pairs(
@@ -57,7 +57,7 @@ pub(crate) fn lowest_pairs(
     start: Mat<f64>,
     count: usize,
     mut report: impl FnMut(usize),
-) -> Result<Option<LanczosPairs>, ModalError> {
+) -> Result<LanczosPairs, NoCycles> {
     let mut search = Search::new(stiffness, mass, rigid, count)?;
     for first in (0..start.ncols()).step_by(count) {
         let columns = start.subcols(first, count.min(start.ncols() - first));
@@ -72,7 +72,7 @@ pub(crate) fn lowest_pairs(
     for step in 1..=MAX_STEPS {
         let (mut eigenvalues, mut coefficients) = symmetric_eigen(&search.projected)?;
         if eigenvalues.len() < count {
-            return Ok(None);
+            return Err(NoCycles::NotConverged { steps: step });
         }
         // Those that have converged wait for the others: what is kept of the basis has them.
         let open: Vec<usize> = (0..count).filter(|k| residuals[*k] > tolerance).collect();
@@ -85,7 +85,7 @@ pub(crate) fn lowest_pairs(
         let squared = search.correct(&lambdas, of_open.as_ref(), multigrid);
         // B is positive; where it is not, it is no help.
         if !squared.iter().all(|squared| *squared >= 0.0) {
-            return Ok(None);
+            return Err(NoCycles::NotConverged { steps: step });
         }
         for (k, squared) in open.iter().zip(squared) {
             let residual = squared.sqrt();
@@ -107,10 +107,10 @@ pub(crate) fn lowest_pairs(
         if is_found {
             let basis_size = search.most;
             let vectors = product(search.basis(), coefficients.subcols(0, count));
-            return Ok(Some(LanczosPairs { vectors, residuals, block_solves: step, basis_size }));
+            return Ok(LanczosPairs { vectors, residuals, block_solves: step, basis_size });
         }
         if step >= FIRST_STEPS && found * (MAX_STEPS as f64) < (count * step) as f64 {
-            return Ok(None);
+            return Err(NoCycles::NotConverged { steps: step });
         }
         let still: Vec<usize> = (0..open.len()).filter(|k| residuals[open[*k]] > tolerance).collect();
         let mut next = search.next(open.len());
@@ -119,11 +119,11 @@ pub(crate) fn lowest_pairs(
             left.col_mut(to).copy_from(right.col(0));
         }
         if search.extend(still.len())? == 0 {
-            return Ok(None);
+            return Err(NoCycles::NotConverged { steps: step });
         }
         before = coefficients.subcols(0, count).to_owned();
     }
-    Ok(None)
+    Err(NoCycles::NotConverged { steps: MAX_STEPS })
 }
 
 /// Vectors that a search for `count` pairs has room for.

@@ -3,7 +3,7 @@
 //! A mesh generator numbers the corners first and then the middles of the edges, surface by surface. Products over nodes then
 //! wait for memory: in this order they take two thirds of the time.
 
-use crate::multigrid::renumbering::Renumbering;
+use crate::matrix::renumbering::Renumbering;
 
 /// Bits of each coordinate.
 const BITS: u32 = 21;

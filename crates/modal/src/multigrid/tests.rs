@@ -14,6 +14,7 @@ use crate::multigrid::coarse::CoarseMatrices;
 use crate::multigrid::coarse::tests::Block;
 use crate::multigrid::cycle::Multigrid;
 use crate::multigrid::smoother::Smoother;
+use crate::multigrid::{Cycles, NoCycles};
 use crate::solve::{Inverse, Solver};
 use crate::statics::response::StaticAccuracy;
 use crate::support::constraints::Constraints;
@@ -166,11 +167,15 @@ fn solver(block: &Block) -> Solver<'_> {
     Solver::of_nodes(block.stiffness(), block.mass(), block.mesh.positions(), &Support::free()).unwrap()
 }
 
+fn cycles(solver: &Solver<'_>, modes: usize) -> Result<Cycles, NoCycles> {
+    Cycles::new(&solver.cycled_body().unwrap(), modes, |_| ())
+}
+
 /// One that has its answers from cycles, in spite of the few unknowns.
 fn solver_by_cycles(block: &Block) -> Solver<'_> {
     let solver = solver(block).with_edge_ends(block.ends()).unwrap();
-    let levels = solver.make_levels(20, &mut |_| ()).unwrap().unwrap();
-    assert!(solver.levels.set(levels).is_ok());
+    let cycles = cycles(&solver, 20).unwrap();
+    assert!(solver.cycles.set(cycles).is_ok());
     solver
 }
 
@@ -237,24 +242,40 @@ fn cycles_end_where_rounding_leaves_no_more() {
 }
 
 #[test]
-fn cycles_are_left_where_they_are_no_help() {
-    let levels = |solver: Solver<'_>, block: &Block, modes| {
-        solver.with_edge_ends(block.ends()).unwrap().make_levels(modes, &mut |_| ()).unwrap()
+fn where_cycles_are_no_help_they_say_why() {
+    let refused = |solver: Solver<'_>, block: &Block, modes| {
+        cycles(&solver.with_edge_ends(block.ends()).unwrap(), modes).err().unwrap()
     };
     let block = Block::new([6, 5, 4]);
-    assert!(levels(solver(&block), &block, 20).is_some());
+    assert!(matches!(cycles(&solver(&block), 20), Err(NoCycles::NoCorners)));
     // So many modes are not to be had from the corners.
-    assert!(levels(solver(&block), &block, 250).is_none());
-    // Something holds it.
+    let few = refused(solver(&block), &block, 250);
+    assert!(matches!(few, NoCycles::FewCorners { modes: 250, needed: 256, found: 210 }), "{few}");
     let support = Support { nodes: vec![0, 1, 2, 3], ..Support::free() };
     let held = Solver::of_nodes(block.stiffness(), block.mass(), block.mesh.positions(), &support).unwrap();
-    assert!(levels(held, &block, 20).is_none());
+    assert!(matches!(refused(held, &block, 20), NoCycles::Held));
     // The corners alone are far too stiff where elements are flat.
     let flat = Block::stretched([8, 8, 1], [1.0, 1.0, 0.02]);
-    assert!(levels(solver(&flat), &flat, 20).is_none());
-    // The factor of a small body takes no time.
+    let left = refused(solver(&flat), &flat, 20);
+    assert!(matches!(left, NoCycles::FlatElements { left, .. } if left > 0.75), "{left}");
+    assert!(left.to_string().contains("about as long as they are thick"), "{left}");
+}
+
+/// Independent reference: the modes by the factor.
+#[test]
+fn the_factor_takes_the_place_of_cycles_that_give_up_and_the_reason_is_told() {
+    let block = Block::new([6, 5, 4]);
+    let by_cycles = solver_by_cycles(&block);
+    assert!(by_cycles.no_cycles().is_none());
+    let found = by_cycles.modes(250, |_| ()).unwrap();
+    assert_eq!(found.stats.cycles, 0);
+    assert_eq!(found.eigenvalues, solver(&block).modes(250, |_| ()).unwrap().eigenvalues);
+    let reason = by_cycles.no_cycles().unwrap();
+    assert!(matches!(reason, NoCycles::FewCorners { modes: 250, .. }), "{reason}");
+    // The factor of a small body takes no time: nothing has to be said.
     let solver = solver(&block).with_edge_ends(block.ends()).unwrap();
     assert_eq!(solver.modes(4, |_| ()).unwrap().stats.cycles, 0);
+    assert!(solver.no_cycles().is_none());
 }
 
 #[test]

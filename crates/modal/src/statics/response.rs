@@ -19,8 +19,7 @@ use crate::input::{check_finite_columns, check_rows};
 use crate::matrix::products::Packed;
 use crate::matrix::tall;
 use crate::memory_estimate::{MemoryEstimate, of_vectors};
-use crate::multigrid::cycle::Multigrid;
-use crate::multigrid::levels::Levels;
+use crate::multigrid::{CycledInverse, Cycles};
 use crate::solve::{Inverse, Modes, Solver};
 use crate::statics::inertia_relief::InertiaRelief;
 
@@ -88,14 +87,13 @@ impl Solver<'_> {
         memory::check("static responses", of_vectors(expected, modes.natural() + forces.ncols() + 10 * BLOCK))?;
         let search = |memory: &MemoryEstimate| memory.of_search(FIXED, BLOCK, 0);
         let inverse = self.inverse(modes.natural(), search, &mut |_| ())?;
-        let answers = self.static_response_with(inverse, modes, forces, accuracy);
-        match (inverse, &answers) {
-            // Where cycles do not do, the factor does.
-            (Inverse::Cycles(_), Err(_)) => {
+        match (inverse, self.static_response_with(inverse, modes, forces, accuracy)) {
+            (Inverse::Cycles(_), Err(error)) => {
+                self.without_cycles(error.into());
                 let factor = Inverse::Factor(self.factor(search, &mut |_| ())?);
                 self.static_response_with(factor, modes, forces, accuracy)
             }
-            _ => answers,
+            (_, answers) => answers,
         }
     }
 
@@ -350,8 +348,8 @@ enum Preconditioner<'a> {
     },
     /// Cycles for a body that nothing holds.
     Cycles {
-        levels: &'a Levels,
-        multigrid: Box<Multigrid<'a>>,
+        cycles: &'a Cycles,
+        inverse: Box<CycledInverse<'a>>,
     },
 }
 
@@ -359,14 +357,14 @@ impl<'a> Preconditioner<'a> {
     fn new(inverse: Inverse<'a>) -> Result<Self, ModalError> {
         Ok(match inverse {
             Inverse::Factor(factor) => Self::Factor { factor, scratch: factor.solve_scratch(BLOCK)? },
-            Inverse::Cycles(levels) => Self::Cycles { levels, multigrid: Box::new(levels.multigrid()?) },
+            Inverse::Cycles(cycles) => Self::Cycles { cycles, inverse: Box::new(cycles.inverse()?) },
         })
     }
 
     fn shift(&self) -> f64 {
         match self {
             Self::Factor { factor, .. } => factor.shift,
-            Self::Cycles { levels, .. } => levels.factor.shift,
+            Self::Cycles { cycles, .. } => cycles.factor.shift,
         }
     }
 
@@ -390,12 +388,7 @@ impl<'a> Preconditioner<'a> {
     fn apply(&mut self, x: &mut Mat<f64>) {
         match self {
             Self::Factor { factor, scratch } => factor.solve_in_place(x.as_mut(), scratch),
-            Self::Cycles { levels: Levels { order, .. }, multigrid } => {
-                let mut in_order = order.rows(x.as_ref());
-                multigrid.apply(in_order.as_mut());
-                order.restore(&mut in_order);
-                *x = in_order;
-            }
+            Self::Cycles { inverse, .. } => inverse.apply(x),
         }
     }
 }

@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, Vector3};
 
 use crate::error::ModalError;
 use crate::input::check_held;
-use crate::multigrid::renumbering::Renumbering;
+use crate::matrix::renumbering::Renumbering;
 use crate::support::motion::{RigidMotion, Support};
 
 /// A motion that moves the held nodes by less than this, relative to the size of the body, does not move them.

@@ -113,6 +113,7 @@ pub(crate) fn reduce(
             elements: assembled.elements().cloned(),
             mesh_notes: assembled.mesh_notes.clone(),
             checks: structure.checks(&modes)?,
+            no_cycles: structure.no_cycles().cloned(),
             modes,
             following,
         }),

@@ -6,7 +6,6 @@ use faer::{Mat, MatRef};
 use crate::matrix::mass::NodalMass;
 use crate::matrix::node_pairs::NodePairs;
 use crate::matrix::stiffness::NodalStiffness;
-use crate::multigrid::coarse::rows_at;
 
 /// An order of nodes.
 pub(crate) struct Renumbering {
@@ -116,6 +115,11 @@ impl NodeValues {
     pub(crate) fn as_mass(&self) -> NodalMass<'_> {
         NodalMass::of_checked_nodes(&self.start, &self.nodes, &self.values)
     }
+}
+
+/// The rows (3n×k) of these nodes, in their order.
+pub(crate) fn rows_at(nodes: &[u32], x: MatRef<'_, f64>) -> Mat<f64> {
+    Mat::from_fn(3 * nodes.len(), x.ncols(), |row, k| x[(3 * nodes[row / 3] as usize + row % 3, k)])
 }
 
 #[cfg(test)]
