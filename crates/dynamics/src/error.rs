@@ -36,12 +36,11 @@ pub enum SetupError {
         "the history of a load is {found} at time {time}; an expression must be finite through the whole run: write it so that it is, or multiply it by what is zero there in a form without a division by zero"
     )]
     HistoryNotFinite { time: f64, found: f64 },
-    /// A formula that changes within the shortest steps that are tried. `step`: that of the run; under step control,
-    /// the length of the stretches in which formulas are looked at.
+    /// A formula that changes within the shortest steps that are tried, between two discontinuities or the ends of the run.
     #[error(
-        "the expression \"{text}\" changes too fast: even steps of {shortest:.3e}, a thousandth of {step:e}, do not see it as it is; write it as a sine or a sweep, name the times between which it changes so fast as discontinuities, or take a smaller step"
+        "the expression \"{text}\" changes too fast: between the times {from} and {to}, even steps of {shortest:.3e} do not see it as it is; write it as a sine or a sweep, or name the times between which it changes so fast as discontinuities"
     )]
-    FormulaTooFast { text: String, step: f64, shortest: f64 },
+    FormulaTooFast { text: String, from: f64, to: f64, shortest: f64 },
     /// A step at which RK4 amplifies a mode. `mode`: from 1.
     #[error(
         "a step of {step:e} is beyond the stability limit {limit:.4e} that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4; take a smaller step or fewer modes"

@@ -187,20 +187,18 @@ impl Simulation {
     }
 
     fn begin(motion: Box<dyn Motion>, energy_of_loads: f64, setup: &Setup) -> Result<Self, SetupError> {
-        let (step, walk) = match setup.control {
-            StepControl::Fixed(step) => (Some(step), Walk::Equal { step, steps: None }),
-            StepControl::Tolerance(tolerance) => (
-                None,
-                Walk::Halved { tolerance, allowance: Allowance::default(), longest_try: f64::INFINITY, steps: None },
-            ),
+        let walk = match setup.control {
+            StepControl::Fixed(step) => Walk::Equal { step, steps: None },
+            StepControl::Tolerance(tolerance) => {
+                Walk::Halved { tolerance, allowance: Allowance::default(), longest_try: f64::INFINITY, steps: None }
+            }
         };
         let drive = setup.physics.drive.as_ref().map(|drive| drive.speed.history.clone());
         let of_loads = setup.loads.iter().filter_map(|load| load.history());
         let histories: Vec<History> = of_loads.chain(&drive).cloned().collect();
-        let formula_steps = FormulaSteps::new(&histories, setup.end, step)?;
+        let formula_steps = FormulaSteps::new(&histories, setup.end)?;
         let of_loads = setup.loads.iter().flat_map(|load| load.discontinuities());
-        let discontinuities =
-            of_loads.chain(drive.iter().flat_map(History::discontinuities)).chain(formula_steps.stops());
+        let discontinuities = of_loads.chain(drive.iter().flat_map(History::discontinuities));
         let looked_at = Observation::new(motion.flexible(), setup.points.len());
         let account = EnergyAccount::new(motion.energies(), energy_of_loads);
         Ok(Self {

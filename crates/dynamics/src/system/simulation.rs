@@ -129,14 +129,10 @@ impl SystemSimulation {
     pub fn new(setup: SystemSetup) -> Result<Self, SetupError> {
         let SystemSetup { system, states, relaxed, control, end, rows, points } = setup;
         positive("the end", end)?;
-        let step = match control {
-            StepControl::Fixed(step) => Some(step),
-            StepControl::Tolerance(tolerance) => {
-                positive("the tolerance", tolerance)?;
-                None
-            }
-        };
-        step.iter().try_for_each(|step| positive("the step", *step))?;
+        match control {
+            StepControl::Fixed(step) => positive("the step", step)?,
+            StepControl::Tolerance(tolerance) => positive("the tolerance", tolerance)?,
+        }
         match rows {
             Rows::EverySteps(_) => {}
             Rows::Interval(interval) => positive("the interval of the rows", interval)?,
@@ -157,11 +153,10 @@ impl SystemSimulation {
         let loads = || bodies.iter().flat_map(|body| body.loads());
         let of_joints = || motion.system().joints().iter().flat_map(|joint| joint.histories());
         let histories: Vec<History> = loads().filter_map(|load| load.history()).chain(of_joints()).cloned().collect();
-        let formula_steps = FormulaSteps::new(&histories, end, step)?;
+        let formula_steps = FormulaSteps::new(&histories, end)?;
         let discontinuities: Vec<f64> = loads()
             .flat_map(|load| load.discontinuities())
             .chain(of_joints().flat_map(History::discontinuities))
-            .chain(formula_steps.stops())
             .collect();
         let count = bodies.len();
         Ok(Self {
