@@ -101,6 +101,21 @@ bench:
     cargo bench --quiet --package dynamics --bench chain
     cargo bench --quiet --package flexframe-cli --bench effects
 
+# The factor of K + sM and its solutions against faer's, in turn: the table of docs/evidence/factor.md (gmsh; ten minutes, on a quiet machine).
+factor:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    mkdir -p out/factor
+    mesh() {
+        sed "s/\(MeshSizeM[a-z]*\) = .*;/\1 = $2;/" "$1" >out/factor/$3.geo
+        gmsh -3 -format msh41 -v 2 out/factor/$3.geo -o out/factor/$3.msh
+    }
+    mesh meshes/plate.geo 6 plate_6
+    mesh meshes/plate.geo 4.2 plate_4.2
+    mesh crates/verification/performance/block.geo 5 block_5
+    FLEXFRAME_MESHES=$(realpath out/factor/{plate_6,plate_4.2,block_5}.msh | paste -sd :) \
+        cargo test --quiet --release --package modal --features threads-in-faer --lib against_faer -- --ignored --nocapture
+
 # docs/evidence/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: twenty minutes, `full`: hours, with all peers to their ends; parts: `modes`, `size`, `loop`, `page`).
 performance *what: build
     .tools/performance/bin/python crates/verification/performance/performance.py {{what}}
