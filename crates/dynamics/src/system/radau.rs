@@ -15,7 +15,7 @@ use nalgebra::{Complex, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::body::motion_state::MotionState;
-use crate::conservative::{get, part};
+use crate::conservative::{ConservativeBody, get, part};
 use crate::equations::Equations;
 use crate::error::{RateError, SetupError};
 use crate::state::State;
@@ -30,6 +30,10 @@ use crate::system::stage::{BodyStart, Stage, Start};
 
 /// The step whose Newton matrix is the metric in which a system is assembled, as a part of the shortest period.
 const ASSEMBLY: f64 = 1.0;
+/// Assemblies from where the last one has left the bodies, and the part of the size and the speed of bodies below which what is left
+/// open is rounding.
+const MAX_ASSEMBLIES: usize = 30;
+const CLOSED: f64 = 1e-10;
 
 /// The cost of a step and its estimated error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -298,7 +302,23 @@ impl SystemMotion {
     /// # Errors
     /// [`Failed`] where the inertia of a body is singular.
     pub fn assemble(&mut self) -> Result<[f64; 2], Failed> {
-        self.assemble_by(self.time)
+        let mut left = self.assemble_by(self.time)?;
+        for _ in 0..MAX_ASSEMBLIES {
+            if self.is_closed(left) {
+                break;
+            }
+            // After a large move, the matrices were those of where the bodies had been.
+            left = self.assemble_by(self.time)?;
+        }
+        Ok(left)
+    }
+
+    /// True if the residual and the rate that are left where the system has been put together are rounding.
+    fn is_closed(&self, [residual, rate]: [f64; 2]) -> bool {
+        let [.., last] = &self.stages;
+        let size = self.system.bodies.iter().map(ConservativeBody::radius_of_gyration).fold(0.0, f64::max);
+        let speed = last.velocities.iter().fold(0.0_f64, |most, velocity| most.max(velocity.abs()));
+        residual <= CLOSED * size && rate <= CLOSED * speed
     }
 
     /// The same with the branches of drives that hold at a time.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::conservative::part;
 use crate::equations::Equations;
+use crate::error::RateError;
 use crate::observation::moment::Moment;
 use crate::simulation::checkpoint::{CheckpointError, counts, expect, finite, fixed_room};
 use crate::state::State;
@@ -92,12 +93,14 @@ impl SystemMotion {
         Ok(())
     }
 
-    /// The name of the joint or coupling that is farthest from closed where the last step has ended, or where the bodies have been
-    /// put together.
-    pub(super) fn worst_joint(&self) -> Option<&str> {
-        let [.., last] = &self.stages;
-        let open = |row: usize| last.constraints.residuals[row].abs().max(last.constraint_rates[row].abs());
-        let worst = (0..self.system.rows()).max_by(|a, b| open(*a).total_cmp(&open(*b)))?;
-        self.system.connections.names().nth(worst)
+    /// The joint or coupling that is farthest from closed where the system is, with the residual of its row and the rate of that;
+    /// `None` without any.
+    pub(super) fn most_open(&mut self) -> Result<Option<(String, [f64; 2])>, RateError> {
+        let [residuals, rates] = self.residuals()?;
+        let open = |row: usize| [residuals[row].abs(), rates[row].abs()];
+        let largest = |row: &usize| open(*row).into_iter().fold(0.0, f64::max);
+        let worst = (0..residuals.len()).max_by(|a, b| largest(a).total_cmp(&largest(b)));
+        let worst = worst.map(|row| (row, open(row)));
+        Ok(worst.and_then(|(row, open)| Some((self.system.connections.names().nth(row)?.to_owned(), open))))
     }
 }

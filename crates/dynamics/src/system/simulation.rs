@@ -420,17 +420,21 @@ fn assemble(
     relaxed: bool,
     [size, end]: [f64; 2],
 ) -> Result<Vec<Assembled>, SetupError> {
+    let open = motion.most_open().map_err(|_| SINGULAR)?;
     let done = if relaxed { motion.relax() } else { motion.assemble() };
-    let [left, rates] = match done {
-        Ok(left) => left,
-        Err(Failed::Newton | Failed::Rates(_)) => {
-            return Err(SINGULAR);
+    let [left, rates] = match (done, open) {
+        (Ok(left), _) => left,
+        // Bodies that are too far from where they have to be.
+        (Err(_), Some((joint, [left, rate]))) => {
+            return Err(SetupError::NotAssembled { joint: joint.into(), left, rate });
         }
+        (Err(_), None) => return Err(SINGULAR),
     };
     let fastest = states.iter().map(|state| state.velocity_global.norm() + size * state.omega_body.norm());
     let is_open = |left: f64, scale: f64| left.is_nan() || left > CLOSED * scale;
     if is_open(left, size) || is_open(rates, size / end + fastest.fold(0.0, f64::max)) {
-        let joint = motion.worst_joint().map_or_else(Box::default, Into::into);
+        let open = motion.most_open().ok().flatten();
+        let joint = open.map_or_else(Box::default, |(joint, _)| joint.into());
         return Err(SetupError::NotAssembled { joint, left, rate: rates });
     }
     let changed = |(body, state): (usize, &MotionState)| {

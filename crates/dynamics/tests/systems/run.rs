@@ -143,3 +143,16 @@ fn what_does_not_fit_is_moved_or_refused_with_the_name_of_the_joint() {
     let refused = SystemSimulation::new(SystemSetup { system, ..pendulum(StepControl::Tolerance(1e-6), None) });
     assert!(matches!(refused, Err(SetupError::NotAssembled { .. })), "{refused:?}");
 }
+
+/// Conserved: the joints: a body that begins far from where it belongs, turned and at rest beside one that moves.
+#[test]
+fn bodies_far_from_where_they_belong_are_put_together() {
+    let mut setup = pendulum(StepControl::Tolerance(1e-6), None);
+    setup.states[0].omega_body = Vector3::new(0.0, 0.0, 3.0);
+    setup.states[0].velocity_global = Vector3::new(0.0, 1.5, 0.0);
+    setup.states[1].origin_global = Vector3::new(2.5, 1.0, 0.2);
+    let simulation = SystemSimulation::new(setup).unwrap();
+    let mut motion = simulation.motion().clone();
+    let open = motion.residuals().unwrap().map(|list| list.iter().fold(0.0_f64, |most, g| most.max(g.abs())));
+    assert!(open[0] < 1e-12 && open[1] < 1e-11, "{open:?}");
+}

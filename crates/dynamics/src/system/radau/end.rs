@@ -8,6 +8,8 @@ use crate::state::attitude_at;
 use crate::system::radau::{Failed, SystemMotion};
 use crate::system::stage::{about_global_origin, put, vector};
 
+/// The largest turn of a body, rad, for which the matrices of where it began are good. Only an assembly goes beyond.
+const FAR: f64 = 0.3;
 /// Passes of the projection of positions.
 const MAX_PROJECTIONS: usize = 20;
 
@@ -95,9 +97,18 @@ impl SystemMotion {
                 inverse.apply(&mut real.x[first..end]);
             }
             real.y.fill(0.0);
+            let bodies = system.first[..system.bodies.len()].iter();
+            let turned = bodies.map(|first| vector(&real.x, first + 3).norm()).fold(0.0, f64::max);
+            let is_far = turned > FAR;
+            if is_far {
+                real.x.iter_mut().for_each(|x| *x *= FAR / turned);
+            }
             last.add_in_body_axes(system, &mut real.x, &mut real.y);
             last.place(system, start);
             last.find_constraints(system, start, times);
+            if is_far {
+                break;
+            }
         }
         // Velocities.
         last.evaluate(system, start, times)?;
