@@ -652,9 +652,12 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                     animate_results(file, &output, settings, |p| bar.run(p))?
                 }
                 None => {
-                    let scenes: Vec<_> = read_bodies(scene)?.into_iter().map(Scene::without_rows).collect();
-                    outputs_of_scenes(&scenes, &builder, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
-                    animate(&scenes, &builder, &output, settings, |p| bar.run(p))?
+                    let mut system = scene.read_system()?;
+                    system.bodies.iter().for_each(tell_doubts);
+                    system.bodies = system.bodies.into_iter().map(Scene::without_rows).collect();
+                    outputs_of_scenes(&system.bodies, &builder, files.overwrite)
+                        .claim_as(&Written::ANIMATION, &output)?;
+                    animate(&system, &builder, &output, settings, |p| bar.run(p))?
                 }
             };
             drop(bar);

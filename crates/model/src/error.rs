@@ -70,6 +70,14 @@ pub enum StartError {
 const TIED_HELP: &str = "run the whole scene, or take what ties the body out of it";
 
 impl StartError {
+    /// Refuses a body that joints, springs or bushings hold, for who moves it alone.
+    ///
+    /// # Errors
+    /// [`StartError::Tied`].
+    pub fn refuse_tied(scene: &Scene) -> Result<(), Self> {
+        if scene.tied { Err(Self::Tied { at: scene.place("body").into() }) } else { Ok(()) }
+    }
+
     /// The message, which begins with the scene file.
     pub fn in_scene(&self, path: &Path) -> String {
         match self {

@@ -220,9 +220,7 @@ impl Model {
         control: StepControl,
         rows: Rows,
     ) -> Result<Simulation, StartError> {
-        if scene.tied {
-            return Err(StartError::Tied { at: scene.place("body").into() });
-        }
+        StartError::refuse_tied(scene)?;
         if let Some(refusal) = self.refusal.filter(|_| scene.effects.refuse) {
             return Err(refusal.into());
         }

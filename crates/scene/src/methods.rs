@@ -2,10 +2,7 @@
 
 use std::sync::LazyLock;
 
-use dynamics::Method;
-
-/// The scheme of bodies that joints, springs or bushings tie together.
-pub(crate) const RADAU: &str = "radau";
+use dynamics::{Method, SystemScheme};
 
 /// All schemes of a body alone, each with its formulation.
 pub const METHODS: [Method; 4] = [frames_rk4::PAPER, frames_rk4::LIMIT, Method::RKMK4, Method::EXPONENTIAL];
@@ -17,11 +14,16 @@ pub fn method_named(formulation: Option<&str>, scheme: &str) -> Option<Method> {
     METHODS.iter().filter(fits).max_by_key(|method| method.formulation == Method::EXPONENTIAL.formulation).copied()
 }
 
+/// The scheme of this name, of bodies that joints, springs or bushings tie together.
+pub(crate) fn system_scheme_named(name: &str) -> Option<SystemScheme> {
+    SystemScheme::ALL.into_iter().find(|scheme| scheme.name() == name)
+}
+
 /// The names of all schemes, each once.
 pub(crate) fn scheme_names() -> &'static [&'static str] {
     static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
         let mut names = once_each(|method| method.scheme);
-        names.push(RADAU);
+        names.extend(SystemScheme::ALL.map(SystemScheme::name));
         names
     });
     &NAMES

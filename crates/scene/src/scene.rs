@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use dynamics::{Effect, Method, Rows, StepControl};
+use dynamics::{Effect, Method, Rows, StepControl, SystemScheme};
 use fem_tet10::{Materials, PointMass};
 use matrix_import::MatrixFiles;
 use serde::Deserialize;
@@ -180,6 +180,8 @@ pub struct Time {
     pub control: StepControl,
     /// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`.
     pub method: Method,
+    /// The scheme of bodies that joints, springs or bushings tie together: key `scheme`.
+    pub system_scheme: SystemScheme,
 }
 
 /// The choice of outputs.

@@ -65,6 +65,38 @@ fn a_run_with_joints_goes_on_bit_for_bit() {
     assert!(read(&report.results) == read(&resumed.results));
 }
 
+/// Independent reference: the same as above, by the other scheme.
+#[test]
+fn gauss_leads_a_scene_to_the_same_end() {
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tied.toml"));
+    let system = System::parse(&SCENE.replace("[time]", "[time]\nscheme = \"gauss\""), file).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let settings = RunSettings { rows_alone: true, ..RunSettings::default() };
+    let (_, report) = run(&system, folder.path(), &settings, |_| ()).unwrap();
+    assert_eq!(report.scheme, "gauss");
+    let results = Results::open(&report.results, &COLUMNS).unwrap();
+    let slider = *results.vectors::<3>("bodies/slider/position").unwrap().last().unwrap();
+    assert!((slider[0] - 0.169_737_332_842_786).abs() < 1e-6, "{slider:?}");
+}
+
+#[test]
+fn a_scene_with_joints_is_drawn_and_what_moves_bodies_alone_refuses_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let flexframe = |arguments: &[&str]| {
+        let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tied.toml");
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_flexframe"));
+        command.arg(arguments[0]).arg(scene).args(&arguments[1..]).current_dir(folder.path()).output().unwrap()
+    };
+    let drawn = flexframe(&["animate", "-o", "tied.gif", "--frames", "5", "--to", "0.02"]);
+    assert!(drawn.status.success(), "{}", String::from_utf8_lossy(&drawn.stderr));
+    assert!(std::fs::read(folder.path().join("tied.gif")).unwrap().starts_with(b"GIF"));
+    for arguments in [&["cost"][..], &["fmu", "-o", "tied.fmu", "--set", "bodies.rod.modes.flexible=6"]] {
+        let refused = flexframe(arguments);
+        let words = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(!refused.status.success() && words.contains("joints, springs or bushings hold"), "{words}");
+    }
+}
+
 /// A bar of finite elements that swings about its left face, held by `hold`.
 const HUNG: &str = r#"
 title = "A bar on a hinge"

@@ -17,6 +17,19 @@ pub enum SystemScheme {
     Gauss,
 }
 
+impl SystemScheme {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Radau, Self::Gauss];
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Radau => "radau",
+            Self::Gauss => "gauss",
+        }
+    }
+}
+
 /// The constants of the scheme.
 #[derive(Debug, Clone)]
 pub(crate) struct Collocation {

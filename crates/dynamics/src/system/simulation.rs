@@ -17,6 +17,7 @@ use crate::simulation::checkpoint::{CheckpointError, counts, decode, encode, equ
 use crate::simulation::checkpoint::{fixed_room, from_words, to_words};
 use crate::simulation::plan::{EqualSteps, Plan, Progress, Rows, Segment, StepControl};
 use crate::simulation::{Reached, Stats};
+use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
 use crate::system::joint::observation::JointObservation;
 use crate::system::radau::{Failed, SystemMotion, Tried};
@@ -38,6 +39,8 @@ pub struct SystemSetup {
     pub states: Vec<MotionState>,
     /// True if the bodies begin deformed as the forces of their motion and their joints ask, so that nothing rings.
     pub relaxed: bool,
+    /// How it is stepped.
+    pub scheme: SystemScheme,
     /// How long the steps are. A tolerance is that of each step, relative to the size of the bodies.
     pub control: StepControl,
     /// When it ends.
@@ -119,15 +122,12 @@ struct Saved {
 }
 
 impl SystemSimulation {
-    /// Name of its scheme: Radau IIA of three stages.
-    pub const SCHEME: &str = "radau";
-
     /// Puts the bodies together, and begins a run.
     ///
     /// # Errors
     /// [`SetupError`]: numbers out of range, states that do not fit their bodies, and joints that cannot be closed.
     pub fn new(setup: SystemSetup) -> Result<Self, SetupError> {
-        let SystemSetup { system, states, relaxed, control, end, rows, points } = setup;
+        let SystemSetup { system, states, relaxed, scheme, control, end, rows, points } = setup;
         positive("the end", end)?;
         match control {
             StepControl::Fixed(step) => positive("the step", step)?,
@@ -137,7 +137,7 @@ impl SystemSimulation {
             Rows::EverySteps(_) => {}
             Rows::Interval(interval) => positive("the interval of the rows", interval)?,
         }
-        let mut motion = SystemMotion::new(system, &states)?;
+        let mut motion = SystemMotion::new(system, &states)?.with_scheme(scheme);
         let size = size(motion.system(), &states);
         let assembled = assemble(&mut motion, &states, relaxed, [size, end])?;
         let mut redundant: Vec<(String, usize)> = Vec::new();

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use dynamics::{
     ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MotionState, Observation, Physics,
-    PointForce, PointShapes, Reached, Rows, SetupError, SharedLoad, StepControl, System, SystemSetup, SystemSimulation,
-    Table,
+    PointForce, PointShapes, Reached, Rows, SetupError, SharedLoad, StepControl, System, SystemScheme, SystemSetup,
+    SystemSimulation, Table,
 };
 use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -41,6 +41,7 @@ fn pendulum(control: StepControl, drive: Option<JointDrive>) -> SystemSetup {
         system,
         states: vec![at(0.5), at(1.5)],
         relaxed: false,
+        scheme: SystemScheme::Radau,
         control,
         end: 2.0,
         rows: Rows::Interval(0.25),

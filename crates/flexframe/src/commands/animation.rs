@@ -9,11 +9,12 @@ use model::{BuildError, Builder};
 use nalgebra::Vector3;
 use results::{BodyResults, Shapes, Units};
 use rigid_kin::Attitude;
-use scene::Scene;
+use scene::{Rows, System};
+use whole_file::TemporaryFolder;
 
 use crate::commands::export::ExportError;
 use crate::commands::modes::require_surface;
-use crate::commands::run::{self, RunError, RunProgress};
+use crate::commands::run::{self, RunError, RunProgress, RunSettings};
 use crate::drawn::{Drawn, Part};
 use crate::report::quantity;
 use crate::surface::Surface;
@@ -78,17 +79,21 @@ pub enum AnimationError {
 /// # Errors
 /// [`AnimationError`].
 pub fn animate(
-    scenes: &[Scene],
+    system: &System,
     builder: &Builder,
     path: &Path,
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<Option<String>, AnimationError> {
     require_gif(path)?;
+    let scenes = &system.bodies[..];
     let scene = scenes.first().ok_or(RunError::NoBody)?;
     let surface_of = |scene| require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)));
     scenes.iter().try_for_each(surface_of)?;
     let [from, to] = settings.times(scene.time.end)?;
+    if system.has_ties() {
+        return animate_tied(system, builder, path, settings, progress);
+    }
     let mut bodies = Vec::new();
     let mut simulations = Vec::new();
     for scene in scenes {
@@ -118,6 +123,27 @@ pub fn animate(
         progress(RunProgress::Motion(due / to));
     }
     picture.save(path)
+}
+
+/// Draws bodies that are tied together, from the results of a run whose rows are the frames.
+fn animate_tied(
+    system: &System,
+    builder: &Builder,
+    path: &Path,
+    settings: AnimationSettings,
+    mut progress: impl FnMut(RunProgress),
+) -> Result<Option<String>, AnimationError> {
+    let mut system = system.clone();
+    for scene in &mut system.bodies {
+        let [from, to] = settings.times(scene.time.end)?;
+        let intervals = settings.frames.clamp(2, MAX_FRAMES) - 1;
+        (scene.time.end, scene.output.rows) = (to, Rows::Interval((to - from) / intervals as f64));
+    }
+    let temporary = TemporaryFolder::new();
+    let temporary = temporary.map_err(|source| RunError::Folder { folder: std::env::temp_dir(), source })?;
+    let run_settings = RunSettings { large: true, builder: builder.clone(), ..RunSettings::default() };
+    let (_, report) = run::run(&system, temporary.path(), &run_settings, &mut progress)?;
+    animate_results(&report.results, path, settings, progress)
 }
 
 /// Draws the rows of a results file, finished or not, as [`animate`] draws a scene. Each frame is a row: there are as many

@@ -25,7 +25,7 @@ use std::path::Path;
 
 use advice::Subject;
 use dynamics::{Method, StepControl};
-use model::{BuildError, BuildProgress, Builder, Model};
+use model::{BuildError, BuildProgress, Builder, Model, StartError};
 use scene::{Flexible, Scene};
 
 pub use answer::Answer;
@@ -79,6 +79,7 @@ pub fn price_list(
 ) -> Result<CostReport, CostError> {
     let scenes: Vec<Scene> = scenes.iter().map(|scene| scene.clone().without_rows()).collect();
     let scene = scenes.first().ok_or(CostError::NoBody)?;
+    scenes.iter().try_for_each(StartError::refuse_tied)?;
     let built = scenes.iter().map(|scene| Built::new(scene, builder, |p| progress(CostProgress::Build(p))));
     let built = built.collect::<Result<Vec<_>, _>>()?;
     let bodies = || scenes.iter().zip(&built).map(|(scene, built)| RunBody { scene, model: &built.model });

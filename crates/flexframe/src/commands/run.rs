@@ -238,6 +238,7 @@ fn start_tied(system: &System, tied: Tied, models: &[Model]) -> Result<SystemSim
         system: tied.system,
         states: tied.states,
         relaxed: system.relaxed,
+        scheme: scene.time.system_scheme,
         control: scene.time.control,
         end: scene.time.end,
         rows: Rows::Interval(RowTimes::new(scene).of(1)),

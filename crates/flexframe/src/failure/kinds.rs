@@ -436,7 +436,7 @@ impl Fault for CampbellError {
 impl Fault for CostError {
     fn known(&self) -> Known {
         match self {
-            Self::Build(_) | Self::Figure(_) | Self::Write(_) | Self::Output(_) => Known::default(),
+            Self::Build(_) | Self::Start(_) | Self::Figure(_) | Self::Write(_) | Self::Output(_) => Known::default(),
             Self::NoBody => Kind::Input.alone(),
             Self::Reference { scene, .. } => in_file(scene),
         }

@@ -1,11 +1,11 @@
 //! The rules on `[time]` and `[output]`.
 
-use dynamics::{Method, Rows, StepControl};
+use dynamics::{Method, Rows, StepControl, SystemScheme};
 
 use super::Check;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::methods::{METHODS, RADAU, method_named};
+use crate::methods::{METHODS, method_named, system_scheme_named};
 use crate::scene::{Body, Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 use crate::text::shorten::shorten;
@@ -24,9 +24,9 @@ impl Check<'_> {
         let &TimeSection { end, step, tolerance, formulation, scheme } = section;
         let help = "the run starts at 0 and makes at least one step, e.g. `end = 0.5`";
         self.positive("time.end", end, help)?;
-        let method = match is_tied {
-            true => self.method_of_ties(formulation, scheme)?,
-            false => self.method(formulation, scheme)?,
+        let (method, system_scheme) = match is_tied {
+            true => (Method::EXPONENTIAL, self.scheme_of_ties(formulation, scheme)?),
+            false => (self.method(formulation, scheme)?, SystemScheme::default()),
         };
         let expected = "exactly one of them";
         let help = "give `step`, the length of a step, e.g. `step = 1e-4`, or `tolerance`, \
@@ -52,22 +52,29 @@ impl Check<'_> {
                 StepControl::Tolerance(tolerance)
             }
         };
-        Ok(Time { end, control, method })
+        Ok(Time { end, control, method, system_scheme })
     }
 
-    /// Bodies in joints move by `radau`, which needs no name; those that nothing ties move by the scheme that is the default.
-    fn method_of_ties(&self, formulation: Option<Formulation>, scheme: Option<Scheme>) -> Result<Method, SceneError> {
+    /// Bodies in joints move by `radau`, which needs no name, or by `gauss`.
+    fn scheme_of_ties(
+        &self,
+        formulation: Option<Formulation>,
+        scheme: Option<Scheme>,
+    ) -> Result<SystemScheme, SceneError> {
         let refuse = |key: &str, found: &str, expected: &str| {
             let found = format!("the {key} `{found}` with joints, springs or bushings");
-            let help = format!("remove `{key}`: bodies in joints move by `{RADAU}`, the others by `exponential`");
+            let help = format!("remove `{key}`: bodies in joints move by `radau`, the others by `exponential`");
             Err(self.document.place(&join("time", key)).refuse(found, expected, help))
         };
         match (formulation, scheme) {
             (Some(Formulation(name)), _) if name != Method::EXPONENTIAL.formulation => {
                 refuse("formulation", name, "the conservative form: the paper's scheme has no joints")
             }
-            (_, Some(Scheme(name))) if name != RADAU => refuse("scheme", name, &format!("`{RADAU}`, or none")),
-            _ => Ok(Method::EXPONENTIAL),
+            (_, Some(Scheme(name))) => match system_scheme_named(name) {
+                Some(scheme) => Ok(scheme),
+                None => refuse("scheme", name, "`radau`, `gauss`, or none"),
+            },
+            _ => Ok(SystemScheme::default()),
         }
     }
 
@@ -80,9 +87,9 @@ impl Check<'_> {
                 Method::EXPONENTIAL
             });
         };
-        if name == RADAU {
+        if system_scheme_named(name).is_some() {
             return Err(self.document.place("time.scheme").refuse(
-                format!("the scheme `{RADAU}` without joints, springs and bushings"),
+                format!("the scheme `{name}` without joints, springs and bushings"),
                 "a scheme of a body alone",
                 "remove `scheme`, or tie bodies together by [[joints]]",
             ));

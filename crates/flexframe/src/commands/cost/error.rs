@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use figures::FigureError;
-use model::BuildError;
+use model::{BuildError, StartError};
 
 use crate::commands::run::RunFailure;
 use crate::files::outputs::OutputError;
@@ -16,6 +16,9 @@ pub enum CostError {
     /// The scene cannot be built.
     #[error("{0}")]
     Build(#[from] BuildError),
+    /// A body does not move alone.
+    #[error("{0}")]
+    Start(#[from] StartError),
     /// No body was given.
     #[error("there is no body to run")]
     NoBody,

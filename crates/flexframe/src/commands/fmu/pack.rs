@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use model::{BuildProgress, Builder};
+use model::{BuildProgress, Builder, StartError};
 use scene::{Body, Flexible, Scene};
 use sealed::{Format, SealedFile};
 use serde::Serialize;
@@ -131,6 +131,8 @@ pub fn pack(
 
 /// Refuses a body that cannot be packed.
 fn check(scene: &Scene) -> Result<(), FmuError> {
+    let tied = StartError::refuse_tied(scene);
+    tied.map_err(|source| FmuError::Start { scene: scene.path.clone(), source: Box::new(source) })?;
     if matches!(scene.body, Body::Matrices(_)) {
         let (found, expected) =
             ("a body of matrices, which no body file holds yet", "a body with a mesh, or a rigid one");

@@ -1,6 +1,6 @@
 //! The metadata of a results file.
 
-use dynamics::{DrivenMotion, SystemSimulation};
+use dynamics::DrivenMotion;
 use model::Builder;
 use results::{BodyMetadata, BodyProperties, JointMetadata, Metadata, Units};
 use scene::{Coordinate, Joint, Scene, StepControl, System};
@@ -58,7 +58,7 @@ pub fn metadata(bodies: &[RunBody<'_>]) -> Option<Metadata> {
 /// The scheme, or the two of bodies that are tied and bodies that are not.
 fn scheme(bodies: &[RunBody<'_>]) -> String {
     let of = |RunBody { scene, .. }: &RunBody<'_>| {
-        if scene.tied { SystemSimulation::SCHEME } else { scene.time.method.scheme }
+        if scene.tied { scene.time.system_scheme.name() } else { scene.time.method.scheme }
     };
     let mut schemes: Vec<&str> = bodies.iter().map(of).collect();
     schemes.sort_unstable();

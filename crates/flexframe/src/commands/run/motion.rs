@@ -35,7 +35,7 @@ impl Motion {
     pub fn scheme<'s>(&self, scene: &'s Scene) -> &'s str {
         match self {
             Self::Alone(_) => scene.time.method.scheme,
-            Self::Tied(_) => SystemSimulation::SCHEME,
+            Self::Tied(_) => scene.time.system_scheme.name(),
         }
     }
 
