@@ -95,6 +95,7 @@ fn run(text: &str) -> Result<usize, (usize, String)> {
             system: tied.system,
             states: tied.states,
             relaxed: system.relaxed,
+            scheme: dynamics::SystemScheme::Radau,
             control: time.control,
             end: time.end,
             rows: system.bodies[0].output.rows,

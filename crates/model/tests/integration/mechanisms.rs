@@ -22,6 +22,7 @@ fn mechanism(name: &str, rows: f64) -> SystemSimulation {
         system: tied.system,
         states: tied.states,
         relaxed: system.relaxed,
+        scheme: dynamics::SystemScheme::Radau,
         control: time.control,
         end: time.end,
         rows: Rows::Interval(rows),
