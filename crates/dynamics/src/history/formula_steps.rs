@@ -11,6 +11,8 @@ use crate::history::{Expression, History};
 const ACCURACY: f64 = 1e-4;
 /// The same of the shortest steps: at a jump that no discontinuity names they are short enough for no other reason.
 const ACCURACY_OF_SHORTEST: f64 = 1e-3;
+/// Part of the integral over the whole run that counts where that of a stretch is less: the tail of a peak needs no steps.
+const OF_RUN: f64 = 1e-6;
 /// Part of the error of the first moment that counts beside that of the integral: a whole period in a step has no integral.
 const OF_MOMENT: f64 = 0.01;
 /// Parts of the run that are looked at first, and the least of them between two discontinuities. What is narrower than a quarter of
@@ -75,14 +77,20 @@ fn collect<'a>(history: &'a History, out: &mut Vec<&'a Expression>) {
 fn stretches(formula: &Expression, end: f64) -> Result<Vec<Stretch>, SetupError> {
     let mut start = 0.0;
     let discontinuities = formula.discontinuities().iter().copied().filter(|t| *t > 0.0 && *t < end);
-    let stretch = |end_of_stretch: f64| {
+    let sampled = |end_of_stretch: f64| {
         let from = std::mem::replace(&mut start, end_of_stretch);
         let share = f64::from(FIRST) * ((end_of_stretch - from) / end);
         let first = (share.ceil() as u32).next_power_of_two().max(LEAST);
-        let count = Sampled { formula, start: from, end: end_of_stretch }.count_of_steps(first)?;
-        Ok(Stretch { end: end_of_stretch, longest_step: (end_of_stretch - from) / f64::from(count) })
+        let stretch = Sampled { formula, start: from, end: end_of_stretch };
+        (stretch.magnitude(first), stretch, first)
     };
-    discontinuities.chain([end]).map(stretch).collect()
+    let sampled: Vec<_> = discontinuities.chain([end]).map(sampled).collect();
+    let of_run: f64 = sampled.iter().map(|(magnitude, ..)| magnitude).sum();
+    let stretch = |(magnitude, stretch, first): (f64, Sampled<'_>, u32)| {
+        let count = stretch.count_of_steps(first, magnitude.max(OF_RUN * of_run))?;
+        Ok(Stretch { end: stretch.end, longest_step: (stretch.end - stretch.start) / f64::from(count) })
+    };
+    sampled.into_iter().map(stretch).collect()
 }
 
 /// A formula between two of its discontinuities.
@@ -93,10 +101,14 @@ struct Sampled<'a> {
 }
 
 impl Sampled<'_> {
-    /// The smallest power of two of equal steps that see the formula, where `first` parts are looked at first.
-    fn count_of_steps(&self, first: u32) -> Result<u32, SetupError> {
-        let magnitude: f64 =
-            (0..first).map(|part| self.rules(part, first).magnitude).filter(|part| !part.is_nan()).sum();
+    /// The integral of the formula's magnitude, in so many parts.
+    fn magnitude(&self, parts: u32) -> f64 {
+        (0..parts).map(|part| self.rules(part, parts).magnitude).filter(|part| !part.is_nan()).sum()
+    }
+
+    /// The smallest power of two of equal steps that see the formula, where `first` parts are looked at first; errors are parts of
+    /// `magnitude`.
+    fn count_of_steps(&self, first: u32, magnitude: f64) -> Result<u32, SetupError> {
         let is_seen = |count: u32, accuracy: f64| self.is_seen(count, accuracy * magnitude);
         if is_seen(first, ACCURACY) {
             let halves = std::iter::successors(Some(first), |count| Some(count / 2));
