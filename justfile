@@ -16,7 +16,9 @@ plate: build
 # Every test.
 test:
     cargo test --workspace --quiet
-    # A crate of somebody else, which sees only what is public.
+
+# A crate of somebody else, which sees only what is public: an own load, observer, scheme, force between bodies and joint.
+outside:
     cargo test --manifest-path tests/outside/Cargo.toml --target-dir target --locked --quiet
 
 # Formatting, clippy and rustdoc, with warnings as errors.
