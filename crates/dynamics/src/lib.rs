@@ -73,6 +73,7 @@ pub use system::joint::coordinate::{Coordinate, JointCoordinates};
 pub use system::joint::coupling::{CoupledCoordinate, Coupling};
 pub use system::joint::drive::JointDrive;
 pub use system::joint::force::{Friction, JointForce, Stops};
+pub use system::joint::law::{JointLaw, JointLawFn};
 pub use system::joint::observation::JointObservation;
 pub use system::joint::row::Row;
 pub use system::marker::Marker;

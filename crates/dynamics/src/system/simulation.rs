@@ -118,7 +118,11 @@ impl SystemSimulation {
         let is_within = matches!(rows, Rows::Interval(_));
         Ok(Self {
             // Rows do not end steps.
-            plan: Plan::new(end, longest_step.discontinuities(), Rows::EverySteps(1)),
+            plan: Plan::new(
+                end,
+                longest_step.discontinuities().chain(system.connections.discontinuities()),
+                Rows::EverySteps(1),
+            ),
             walk: Walk { segment: None, equal: EqualSteps::default(), next: FIRST * end, longest: f64::INFINITY },
             exchanged: vec![Exchanged::default(); system.bodies().len()],
             looked_at: SystemObservation::new(system, &points),
@@ -384,7 +388,15 @@ impl SystemSimulation {
         Ok((std::mem::take(&mut self.due.row) || is_row).then_some(Reached::Row))
     }
 
-    /// Goes on to the next row, event or stop, or as far as `max_steps` tries lead; `watch` sees the motion of each body once for each
+    /// Goes on to the next row, event or stop, or as far as `max_steps` tries lead.
+    ///
+    /// # Errors
+    /// As [`Self::advance_watched`].
+    pub fn advance(&mut self, max_steps: u64) -> Result<Reached, StepError> {
+        self.advance_watched(max_steps, |_, _| ())
+    }
+
+    /// The same; `watch` sees the motion of each body once for each
     /// step that is taken, rows or not.
     ///
     /// # Errors

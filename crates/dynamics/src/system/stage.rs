@@ -335,7 +335,7 @@ impl Stage {
             let mut rate = 0.0;
             let constraints = &mut self.constraints;
             constraints.compliant_ends()[number].iter().for_each(|end| end.add_rate(1.0, &self.velocities, &mut rate));
-            let [stiffness, damping] = force.stiffness_and_damping([constraints.coordinates[number], rate]);
+            let [stiffness, damping] = force.stiffness_and_damping([constraints.coordinates[number], rate], times);
             constraints.compliant[number] = Compliant { stiffness, damping };
             number += 1;
         }
