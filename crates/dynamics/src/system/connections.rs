@@ -56,6 +56,13 @@ impl Connections {
         numbered.flat_map(|(number, joint)| joint.forces().map(move |(coordinate, force)| (number, coordinate, force)))
     }
 
+    /// Times at which laws from outside jump.
+    pub fn discontinuities(&self) -> impl Iterator<Item = f64> {
+        let laws = self.joint_forces().flat_map(|(_, _, force)| &force.laws);
+        let of_elements = self.elements.iter().flat_map(|element| element.discontinuities());
+        laws.flat_map(|law| law.discontinuities()).chain(of_elements)
+    }
+
     /// The markers that each row has ends on: rows of joints, of couplings, of forces of joints, of elements.
     pub fn ends(&self) -> impl Iterator<Item = Vec<&Marker>> {
         let of_joints = self.joints.iter().flat_map(|joint| joint.rows.iter().map(|_| joint.markers.iter().collect()));

@@ -22,6 +22,11 @@ pub trait ForceElement: fmt::Debug + Send + Sync {
     /// `wrenches` are zero before.
     fn apply(&self, times: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]);
 
+    /// Times at which the law or one of its rates jumps, rising. Steps end there.
+    fn discontinuities(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
     /// Number of directions in which it may be stiff. Steps with a stiff law that has none are as short as its period asks.
     fn directions(&self) -> usize {
         0

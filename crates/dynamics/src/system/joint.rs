@@ -4,6 +4,7 @@ pub(crate) mod coordinate;
 pub(crate) mod coupling;
 pub(crate) mod drive;
 pub(crate) mod force;
+pub(crate) mod law;
 pub(crate) mod observation;
 pub(crate) mod row;
 pub(crate) mod wrench;

@@ -2,6 +2,7 @@
 
 mod andrews;
 mod coordinates;
+mod dense;
 mod elements;
 mod flexible;
 mod hard;
