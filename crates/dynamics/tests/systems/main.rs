@@ -5,6 +5,7 @@ mod coordinates;
 mod elements;
 mod flexible;
 mod hard;
+mod linear;
 mod mechanism;
 mod rigid;
 mod run;
