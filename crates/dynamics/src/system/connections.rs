@@ -7,6 +7,7 @@ use crate::system::joint::Joint;
 use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::coupling::Coupling;
 use crate::system::joint::force::JointForce;
+use crate::system::joint::row::Row;
 use crate::system::marker::Marker;
 
 /// Joints, couplings of them, and forces between markers.
@@ -48,6 +49,15 @@ impl Connections {
     pub fn names(&self) -> impl Iterator<Item = &str> {
         let of_joints = self.joints.iter().flat_map(|joint| joint.rows.iter().map(|_| joint.name.as_str()));
         of_joints.chain(self.couplings.iter().map(|coupling| coupling.name.as_str()))
+    }
+
+    /// For each row, true if a drive moves it.
+    pub fn is_driven(&self) -> impl Iterator<Item = bool> {
+        let is_driven = |row: &Row| matches!(row, Row::DrivenRotation | Row::DrivenPoint);
+        self.joints
+            .iter()
+            .flat_map(move |joint| joint.rows.iter().map(is_driven))
+            .chain(self.couplings.iter().map(|_| false))
     }
 
     /// The forces of joints, with the numbers of the joints.

@@ -1,5 +1,6 @@
 //! Joints: rows that hold two markers together, and forces along what they leave free.
 
+pub(crate) mod change;
 pub(crate) mod coordinate;
 pub(crate) mod coupling;
 pub(crate) mod drive;

@@ -83,7 +83,7 @@ pub struct SystemMotion {
     pub(super) patterns: Patterns,
     pub(super) time: f64,
     /// The list of each body, as in a [`State`] of it.
-    pub(super) bodies: Vec<State>,
+    pub(crate) bodies: Vec<State>,
     pub(super) start: Start,
     pub(super) first: Stage,
     pub(super) stages: [Stage; STAGES],

@@ -6,6 +6,7 @@ mod dense;
 mod elements;
 mod flexible;
 mod hard;
+mod linear;
 mod mechanism;
 mod rigid;
 mod run;

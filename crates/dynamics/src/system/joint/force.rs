@@ -122,6 +122,25 @@ impl JointForce {
     }
 }
 
+impl JointForce {
+    /// The slopes of the force over the coordinate and over its rate.
+    pub(crate) fn slopes(&self, [x, rate]: [f64; 2]) -> [f64; 2] {
+        let of_law = self.characteristic.as_ref().map_or(0.0, |of| of.at([x, x])[1]);
+        let mut slopes = [of_law - self.stiffness, -self.damping];
+        if let Some(Friction { force, rate_scale }) = self.friction {
+            slopes[1] -= force / rate_scale / (rate / rate_scale).cosh().powi(2);
+        }
+        if let Some(stops) = self.stops
+            && let Some(depth) = stops.depth(x)
+            && depth * (stops.stiffness * depth + stops.damping * rate) > 0.0
+        {
+            slopes[0] -= stops.stiffness;
+            slopes[1] -= stops.damping;
+        }
+        slopes
+    }
+}
+
 impl Stops {
     /// How far a coordinate is beyond an end: positive above the highest, negative below the lowest.
     fn depth(&self, x: f64) -> Option<f64> {
