@@ -43,7 +43,7 @@ impl SystemMotion {
         for ((stage, lambda), weight) in stages.iter_mut().zip(&*multipliers).zip(scheme.weights) {
             let mut of_rows = lambda.iter().zip(&stage.constraints.own_rates);
             for (joint, work) in system.connections.joints.iter().zip(&mut *joint_works) {
-                let power: f64 = of_rows.by_ref().take(joint.rows.len()).map(|(lambda, rate)| -lambda * rate).sum();
+                let power: f64 = of_rows.by_ref().take(joint.row_count()).map(|(lambda, rate)| -lambda * rate).sum();
                 work.drive += h * weight * power;
             }
             for ((joint, ..), power) in system.connections.joint_forces().zip(&stage.joint_powers) {
