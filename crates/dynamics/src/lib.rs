@@ -68,7 +68,7 @@ pub use system::collocation::SystemScheme;
 pub use system::description::System;
 pub use system::element::springs::{Bushing, PointSpring};
 pub use system::element::{ForceElement, SetDirection};
-pub use system::joint::Joint;
+pub use system::joint::{Joint, JointPart};
 pub use system::joint::coordinate::{Coordinate, JointCoordinates};
 pub use system::joint::coupling::{CoupledCoordinate, Coupling};
 pub use system::joint::drive::JointDrive;

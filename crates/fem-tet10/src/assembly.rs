@@ -6,4 +6,5 @@ pub(crate) mod matrices;
 pub(crate) mod mean_rotation;
 pub(crate) mod patch;
 pub(crate) mod point_mass;
+pub(crate) mod strips;
 pub(crate) mod surface;

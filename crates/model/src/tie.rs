@@ -5,4 +5,7 @@ pub(crate) mod body_marker;
 mod ends;
 mod islands;
 pub(crate) mod mesh_marker;
+mod pairs;
+mod patterns;
+mod place;
 pub(crate) mod tied;

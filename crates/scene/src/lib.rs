@@ -61,7 +61,7 @@ pub use joint::{
 };
 pub use loads::history::{DrivenSpeed, Formula, History, TablePoints};
 pub use loads::load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
-pub use marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace};
+pub use marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace, Tie};
 pub use matrix_import::MatrixFiles;
 pub use methods::{METHODS, method_named};
 pub use scene::{Body, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Time, Units};

@@ -9,8 +9,26 @@ pub struct Marker {
     pub name: String,
     /// The part of the body that carries it.
     pub place: MarkerPlace,
+    /// How a region carries it; [`Tie::Mean`] of a point.
+    pub tie: Tie,
     /// Its axes, mesh axes; `None` leaves them to the joint.
     pub axes: Option<MarkerAxes>,
+}
+
+/// How a region carries a marker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tie {
+    /// It moves and turns as the mean of the region does.
+    Mean,
+    /// Key `patches`: so many strips of its faces side by side, each as its own mean.
+    Patches {
+        /// Two or more.
+        count: usize,
+        /// Unit vector, mesh axes: the direction from strip to strip; `None` is that in which the faces extend the farthest.
+        along: Option<[f64; 3]>,
+    },
+    /// `tie = "nodes"`: each node by itself.
+    Nodes,
 }
 
 /// The part of a body that carries a marker.
@@ -18,7 +36,7 @@ pub struct Marker {
 pub enum MarkerPlace {
     /// Key `at` alone: a point of the body, length, mesh axes.
     Point([f64; 3]),
-    /// The mean of the faces in a part of the mesh.
+    /// Faces in a part of the mesh, or its nodes.
     Region(Region),
 }
 

@@ -34,8 +34,19 @@ pub(crate) struct MarkerSection {
     pub radius: Option<f64>,
     pub r#box: Option<[[f64; 3]; 2]>,
     pub group: Option<String>,
+    pub tie: Option<TieName>,
+    pub patches: Option<u32>,
+    pub along: Option<[f64; 3]>,
     pub z: Option<[f64; 3]>,
     pub x: Option<[f64; 3]>,
+}
+
+/// The values of `tie`.
+#[derive(Clone, Copy, PartialEq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum TieName {
+    Mean,
+    Nodes,
 }
 
 #[derive(Deserialize)]

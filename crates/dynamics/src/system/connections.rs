@@ -21,13 +21,13 @@ pub(crate) struct Connections {
 impl Connections {
     /// The markers of all of them.
     pub fn markers(&self) -> impl Iterator<Item = &Marker> {
-        let of_joints = self.joints.iter().flat_map(|joint| &joint.markers);
+        let of_joints = self.joints.iter().flat_map(|joint| joint.groups().flat_map(|(markers, _)| markers));
         of_joints.chain(self.elements.iter().flat_map(|element| element.markers()))
     }
 
     /// Numbers of rows of the joints, then of the couplings.
     pub fn groups(&self) -> impl Iterator<Item = usize> {
-        self.joints.iter().map(|joint| joint.rows.len()).chain(self.couplings.iter().map(|_| 1))
+        self.joints.iter().map(Joint::row_count).chain(self.couplings.iter().map(|_| 1))
     }
 
     /// Numbers of compliant rows of the forces of joints, then of the elements.
@@ -47,7 +47,7 @@ impl Connections {
 
     /// The name of the joint or coupling of each row.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        let of_joints = self.joints.iter().flat_map(|joint| joint.rows.iter().map(|_| joint.name.as_str()));
+        let of_joints = self.joints.iter().flat_map(|joint| (0..joint.row_count()).map(|_| joint.name.as_str()));
         of_joints.chain(self.couplings.iter().map(|coupling| coupling.name.as_str()))
     }
 
@@ -75,7 +75,8 @@ impl Connections {
 
     /// The markers that each row has ends on: rows of joints, of couplings, of forces of joints, of elements.
     pub fn ends(&self) -> impl Iterator<Item = Vec<&Marker>> {
-        let of_joints = self.joints.iter().flat_map(|joint| joint.rows.iter().map(|_| joint.markers.iter().collect()));
+        let groups = self.joints.iter().flat_map(Joint::groups);
+        let of_joints = groups.flat_map(|(markers, rows)| rows.iter().map(|_| markers.iter().collect()));
         let of_couplings = self
             .couplings
             .iter()

@@ -2,7 +2,6 @@
 
 use crate::system::connections::Connections;
 use crate::system::elimination::inverse::Number;
-use crate::system::joint::Joint;
 use crate::system::joint::wrench::RowWrench;
 use crate::system::marker::motion::MarkerWrench;
 use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
@@ -96,39 +95,42 @@ impl Constraints {
         place: impl Fn(usize) -> BodyPlace<'a>,
     ) {
         let Connections { joints, couplings, .. } = connections;
-        let places_of = |joint: &Joint| -> [MarkerPlace; 2] {
-            let [i, j] = &joint.markers;
+        let places_of = |[i, j]: &[Marker; 2]| -> [MarkerPlace; 2] {
             [i.place(i.body().map(&place).as_ref()), j.place(j.body().map(&place).as_ref())]
         };
         let mut row = 0;
         for joint in joints {
-            let places = places_of(joint);
-            joint.wrenches(places.each_ref(), times, |wrench| {
-                (self.residuals[row], self.own_rates[row]) = (wrench.residual, wrench.own_rate);
-                clear(&mut self.ends[row]);
-                add(&mut self.ends[row], joint, &places, &place, &wrench, 1.0);
-                row += 1;
-            });
+            let driven = joint.driven_at(times);
+            for (markers, rows) in joint.groups().filter(|(_, rows)| !rows.is_empty()) {
+                let places = places_of(markers);
+                for of_row in rows {
+                    let wrench = of_row.wrench(places.each_ref(), driven);
+                    (self.residuals[row], self.own_rates[row]) = (wrench.residual, wrench.own_rate);
+                    clear(&mut self.ends[row]);
+                    add(&mut self.ends[row], markers, &places, &place, &wrench, 1.0);
+                    row += 1;
+                }
+            }
         }
         for coupling in couplings {
             clear(&mut self.ends[row]);
             self.residuals[row] = -coupling.sum.unwrap_or_default();
             for term in &coupling.terms {
-                let joint = &joints[term.joint];
-                let places = places_of(joint);
+                let markers = &joints[term.joint].markers;
+                let places = places_of(markers);
                 let wrench = term.coordinate.wrench(places.each_ref(), expected_turn(term.joint));
                 self.residuals[row] += term.factor * wrench.residual;
-                add(&mut self.ends[row], joint, &places, &place, &wrench, term.factor);
+                add(&mut self.ends[row], markers, &places, &place, &wrench, term.factor);
             }
             row += 1;
         }
         for (k, (number, coordinate, _)) in connections.joint_forces().enumerate() {
-            let joint = &joints[number];
-            let places = places_of(joint);
+            let markers = &joints[number].markers;
+            let places = places_of(markers);
             let wrench = coordinate.wrench(places.each_ref(), expected_turn(number));
             self.coordinates[k] = wrench.residual;
             clear(&mut self.ends[row + k]);
-            add(&mut self.ends[row + k], joint, &places, &place, &wrench, 1.0);
+            add(&mut self.ends[row + k], markers, &places, &place, &wrench, 1.0);
         }
     }
 
@@ -194,16 +196,16 @@ fn clear(ends: &mut [End]) {
     ends.iter_mut().for_each(|end| end.entries.fill(0.0));
 }
 
-/// Adds the wrenches of a row on the markers of a joint, times a factor.
+/// Adds the wrenches of a row on two markers, times a factor.
 fn add<'a>(
     ends: &mut [End],
-    joint: &Joint,
+    markers: &[Marker; 2],
     places: &[MarkerPlace; 2],
     body: impl Fn(usize) -> BodyPlace<'a>,
     wrench: &RowWrench,
     factor: f64,
 ) {
-    for ((marker, place), wrench) in joint.markers.iter().zip(places).zip(wrench.on_both()) {
+    for ((marker, place), wrench) in markers.iter().zip(places).zip(wrench.on_both()) {
         let Some(end) = ends.iter_mut().find(|end| Some(end.body) == marker.body()) else { continue };
         let [force, moment] = wrench.map(|vector| vector * factor);
         marker.add_wrench(place, body(end.body).q, [&force, &moment], &mut end.entries);

@@ -15,8 +15,7 @@ use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::drive::JointDrive;
 use crate::system::joint::force::JointForce;
 use crate::system::joint::row::Row;
-use crate::system::joint::wrench::RowWrench;
-use crate::system::marker::{Marker, MarkerPlace};
+use crate::system::marker::Marker;
 
 /// A joint between two markers, i and j.
 #[derive(Debug, Clone)]
@@ -25,8 +24,10 @@ pub struct Joint {
     pub name: String,
     /// i and j.
     pub markers: [Marker; 2],
-    /// Its rows.
+    /// Rows on the two markers.
     pub rows: Vec<Row>,
+    /// Where its ends are several places each: rows on pairs of them. The two markers are then their means.
+    pub parts: Vec<JointPart>,
     /// Drive of its driven rows.
     pub drive: Option<JointDrive>,
     /// The moment about its z axis.
@@ -35,10 +36,27 @@ pub struct Joint {
     pub slide_force: Option<JointForce>,
 }
 
+/// A pair of places of a joint's ends, with rows of its own.
+#[derive(Debug, Clone)]
+pub struct JointPart {
+    /// On i and on j.
+    pub markers: [Marker; 2],
+    /// Its rows.
+    pub rows: Vec<Row>,
+}
+
+impl JointPart {
+    /// The rows of [`Joint::locked`] on two places.
+    pub fn locked(markers: [Marker; 2], displacements: [bool; 3], turns: [bool; 3]) -> Self {
+        let rows = locked_rows(&markers, displacements, turns);
+        Self { markers, rows }
+    }
+}
+
 impl Joint {
     /// A joint of these rows.
     pub fn new(name: &str, markers: [Marker; 2], rows: Vec<Row>) -> Self {
-        Self { name: name.to_owned(), markers, rows, drive: None, turn_force: None, slide_force: None }
+        Self { name: name.to_owned(), markers, rows, parts: Vec::new(), drive: None, turn_force: None, slide_force: None }
     }
 
     /// Displacements along and turns about axes of i that are not free. One turn alone that is not free is that of two axes, the
@@ -47,18 +65,14 @@ impl Joint {
     /// The axes of a whole point are those of a flexible body, if there is one: its stiff directions then hardly turn in them
     /// within a step.
     pub fn locked(name: &str, markers: [Marker; 2], displacements: [bool; 3], turns: [bool; 3]) -> Self {
-        let is_point = displacements == [true; 3];
-        let of = usize::from(is_point && markers[0].flexible() == 0 && markers[1].flexible() > 0);
-        let axes = |list: [bool; 3], is: bool| (0..3).filter(move |axis| list[*axis] == is);
-        let mut rows: Vec<Row> = axes(displacements, true).map(|axis| Row::Point { of, axis }).collect();
-        match axes(turns, true).count() {
-            3 => rows.extend([0, 1, 2].map(Row::Rotation)),
-            2 => rows.extend(
-                axes(turns, false).flat_map(|free| [1, 2].map(|next| Row::Perpendicular(free, (free + next) % 3))),
-            ),
-            _ => rows.extend(axes(turns, true).map(|axis| Row::Perpendicular((axis + 1) % 3, (axis + 2) % 3))),
-        }
+        let rows = locked_rows(&markers, displacements, turns);
         Self::new(name, markers, rows)
+    }
+
+    /// The same joint with rows on pairs of places beside its own.
+    #[must_use]
+    pub fn with_parts(self, parts: Vec<JointPart>) -> Self {
+        Self { parts, ..self }
     }
 
     /// No motion is left.
@@ -137,9 +151,35 @@ impl Joint {
         self.drive.iter().chain(motors).map(|drive| &drive.history)
     }
 
-    /// Calls `each` with the wrench of each row where the markers are, at a time by the branch of another.
-    pub(crate) fn wrenches(&self, places: [&MarkerPlace; 2], times: [f64; 2], mut each: impl FnMut(RowWrench)) {
-        let driven = self.drive.as_ref().map_or([0.0; 2], |drive| drive.at(times));
-        self.rows.iter().for_each(|row| each(row.wrench(places, driven)));
+    /// Number of its rows: on its markers, then on its parts.
+    pub fn row_count(&self) -> usize {
+        self.groups().map(|(_, rows)| rows.len()).sum()
     }
+
+    /// Its markers with their rows, then those of its parts.
+    pub(crate) fn groups(&self) -> impl Iterator<Item = (&[Marker; 2], &[Row])> {
+        let of_parts = self.parts.iter().map(|part| (&part.markers, &part.rows[..]));
+        std::iter::once((&self.markers, &self.rows[..])).chain(of_parts)
+    }
+
+    /// The value and the rate of its drive at a time by the branch of another; zero without one.
+    pub(crate) fn driven_at(&self, times: [f64; 2]) -> [f64; 2] {
+        self.drive.as_ref().map_or([0.0; 2], |drive| drive.at(times))
+    }
+}
+
+/// Rows for displacements and turns that are not free, see [`Joint::locked`].
+fn locked_rows(markers: &[Marker; 2], displacements: [bool; 3], turns: [bool; 3]) -> Vec<Row> {
+    let is_point = displacements == [true; 3];
+    let of = usize::from(is_point && markers[0].flexible() == 0 && markers[1].flexible() > 0);
+    let axes = |list: [bool; 3], is: bool| (0..3).filter(move |axis| list[*axis] == is);
+    let mut rows: Vec<Row> = axes(displacements, true).map(|axis| Row::Point { of, axis }).collect();
+    match axes(turns, true).count() {
+        3 => rows.extend([0, 1, 2].map(Row::Rotation)),
+        2 => rows.extend(
+            axes(turns, false).flat_map(|free| [1, 2].map(|next| Row::Perpendicular(free, (free + next) % 3))),
+        ),
+        _ => rows.extend(axes(turns, true).map(|axis| Row::Perpendicular((axis + 1) % 3, (axis + 2) % 3))),
+    }
+    rows
 }

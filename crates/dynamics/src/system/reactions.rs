@@ -13,6 +13,7 @@ use crate::conservative::{get, part};
 use crate::equations::Equations;
 use crate::error::RateError;
 use crate::observation::Observation;
+use crate::system::marker::Marker;
 use crate::system::marker::motion::MarkerWrench;
 use crate::system::radau::SystemMotion;
 use crate::system::stage::{put, vector};
@@ -81,19 +82,22 @@ impl SystemMotion {
     /// point.
     pub fn reaction(&self, joint: usize) -> MarkerWrench {
         let Self { system, first, .. } = self;
-        let before: usize = system.connections.joints[..joint].iter().map(|joint| joint.rows.len()).sum();
+        let before: usize = system.connections.joints[..joint].iter().map(|joint| joint.row_count()).sum();
         let joint = &system.connections.joints[joint];
-        let places = joint
-            .markers
-            .each_ref()
-            .map(|marker| marker.place(marker.body().map(|b| first.body_place(system, b)).as_ref()));
-        let mut sum = MarkerWrench::default();
-        let mut multipliers = self.reactions[before..].iter();
-        joint.wrenches(places.each_ref(), [self.time(); 2], |wrench| {
-            let multiplier = multipliers.next().copied().unwrap_or_default();
-            sum.force_global += wrench.force * multiplier;
-            sum.moment_global += wrench.moments[1] * multiplier;
-        });
+        let place = |marker: &Marker| marker.place(marker.body().map(|b| first.body_place(system, b)).as_ref());
+        let driven = joint.driven_at([self.time(); 2]);
+        let (mut sum, mut multipliers) = (MarkerWrench::default(), self.reactions[before..].iter());
+        let about = place(&joint.markers[1]).position;
+        for (markers, rows) in joint.groups().filter(|(_, rows)| !rows.is_empty()) {
+            let places = markers.each_ref().map(place);
+            let arm = places[1].position - about;
+            for row in rows {
+                let wrench = row.wrench(places.each_ref(), driven);
+                let multiplier = multipliers.next().copied().unwrap_or_default();
+                sum.force_global += wrench.force * multiplier;
+                sum.moment_global += (wrench.moments[1] + arm.cross(&wrench.force)) * multiplier;
+            }
+        }
         sum
     }
 
@@ -101,8 +105,8 @@ impl SystemMotion {
     pub fn drive_power(&self, joint: usize) -> f64 {
         let Self { system, first, .. } = self;
         let joints = &system.connections.joints;
-        let before: usize = joints[..joint].iter().map(|joint| joint.rows.len()).sum();
-        let rows = before..before + joints[joint].rows.len();
+        let before: usize = joints[..joint].iter().map(|joint| joint.row_count()).sum();
+        let rows = before..before + joints[joint].row_count();
         let of_row = |(multiplier, rate): (&f64, &f64)| -multiplier * rate;
         let of_drive: f64 =
             self.reactions[rows.clone()].iter().zip(&first.constraints.own_rates[rows]).map(of_row).sum();
@@ -114,7 +118,7 @@ impl SystemMotion {
     /// there.
     pub fn coupling_force(&self, coupling: usize) -> f64 {
         let joints = &self.system.connections.joints;
-        self.reactions[joints.iter().map(|joint| joint.rows.len()).sum::<usize>() + coupling]
+        self.reactions[joints.iter().map(|joint| joint.row_count()).sum::<usize>() + coupling]
     }
 
     /// out = Ġ v + ġ_t for these velocities, where the first stage is.

@@ -94,7 +94,7 @@ impl Mesh {
         }
     }
 
-    fn surface(&self, name: &str) -> Result<&Surface, MeshError> {
+    pub(crate) fn surface(&self, name: &str) -> Result<&Surface, MeshError> {
         self.surfaces().iter().find(|surface| surface.name == name).ok_or_else(|| {
             MeshFault::NoGroup {
                 kind: "surface",
@@ -147,15 +147,15 @@ trait Summand: Default + AddAssign + Mul<f64, Output = Self> + Copy {}
 impl<T: Default + AddAssign + Mul<f64, Output = T> + Copy> Summand for T {}
 
 /// Slopes of the six shape functions along L₁ and L₂.
-type Slopes = [[f64; 2]; 6];
+pub(crate) type Slopes = [[f64; 2]; 6];
 
 /// ∂x/∂s or ∂x/∂t of a field with these values at the nodes of a face.
-fn tangent(values: &[Vector3<f64>; 6], slopes: &Slopes, direction: usize) -> Vector3<f64> {
+pub(crate) fn tangent(values: &[Vector3<f64>; 6], slopes: &Slopes, direction: usize) -> Vector3<f64> {
     values.iter().zip(slopes).map(|(x, d)| x * d[direction]).sum()
 }
 
 /// Shape functions of the six-node triangle at barycentric coordinates, and their slopes along L₁ and L₂.
-fn shapes(l: [f64; 3]) -> ([f64; 6], Slopes) {
+pub(crate) fn shapes(l: [f64; 3]) -> ([f64; 6], Slopes) {
     const SLOPES: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
     let (mut n, mut dn) = ([0.0; 6], [[0.0; 2]; 6]);
     for a in 0..3 {

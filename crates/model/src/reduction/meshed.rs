@@ -68,7 +68,7 @@ pub(crate) fn reduce(
         Some(large) => points(scene, mesh, large.modes(), large.manifold.body())?,
         None => points(scene, mesh, &modes, &reduced.body)?,
     };
-    let markers = mesh_marker::reduced(&model.markers, scene, mesh, &reduced.body, &modes, &of_markers)?;
+    let markers = mesh_marker::reduced(&model.markers, scene, mesh, (&reduced.body, &modes), &of_markers)?;
     let reference_points = reference_points(scene, mesh, &reduced.body);
     let extended = large.as_ref().map(|large| (&large.manifold, large.modes()));
     let has_gravity = decision.effects[Effect::Gravity];

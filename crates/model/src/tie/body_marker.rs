@@ -17,10 +17,23 @@ pub struct BodyMarker {
     pub point: PointShapes,
     /// How the modes turn it.
     pub turning: RotationShapes,
+    /// Where the ends of its joints are several places: these. The marker is then their mean.
+    pub parts: Vec<MarkerPart>,
+    /// True if each part is a node, which has no turn.
+    pub by_nodes: bool,
     /// Its axes as columns, body axes: those of the body where it names none.
     pub axes: Matrix3<f64>,
     /// Turns of the material there that the modes do not know.
     pub unknown_turns: UnknownTurns,
+}
+
+/// One of the places of a marker.
+#[derive(Debug, Clone)]
+pub struct MarkerPart {
+    /// How the modes move it.
+    pub point: PointShapes,
+    /// How the modes turn it; not at all where it is a node.
+    pub turning: RotationShapes,
 }
 
 /// Turns at a marker that its nodes do not tell.
@@ -62,6 +75,8 @@ pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<BodyMark
             name: marker.name.clone(),
             point: PointShapes::new(body, &point),
             turning: RotationShapes::new(body, Mat::zeros(3, 0).as_ref()),
+            parts: Vec::new(),
+            by_nodes: false,
             axes: axes(marker.axes.as_ref()),
             unknown_turns: UnknownTurns::None,
         })

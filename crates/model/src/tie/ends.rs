@@ -1,11 +1,11 @@
 //! Where the ends of joints are at the start.
 
-use dynamics::{Marker, MotionState};
+use dynamics::{Marker, MotionState, PointShapes};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::transformation_matrix;
 use scene::{End, GroundMarker, MarkerAxes};
 
-use crate::tie::body_marker::{BodyMarker, UnknownTurns};
+use crate::tie::body_marker::{BodyMarker, MarkerPart, UnknownTurns};
 
 /// An end of a joint, a spring or a bushing, at the start.
 pub(crate) struct EndAtStart<'a> {
@@ -16,6 +16,10 @@ pub(crate) struct EndAtStart<'a> {
     pub carrier_axes: Matrix3<f64>,
     /// Its own axis z and x, global.
     pub own_axes: Option<(Vector3<f64>, Option<Vector3<f64>>)>,
+    /// Columns are the axes of the body, global.
+    global_from_body: Matrix3<f64>,
+    /// Modal displacements of the body.
+    q: Vec<f64>,
 }
 
 /// The carrier of an end.
@@ -40,6 +44,8 @@ impl<'a> EndAtStart<'a> {
             position: state.origin_global + state.attitude.to_global(&arm),
             carrier_axes,
             own_axes: axes.map(|MarkerAxes { z, x }| (to_global(*z), x.map(to_global))),
+            global_from_body,
+            q: q.clone(),
         }
     }
 
@@ -51,7 +57,9 @@ impl<'a> EndAtStart<'a> {
 
     /// On the ground, at a place.
     pub fn on_ground_at(position: Vector3<f64>) -> Self {
-        Self { on: Carrier::Ground, position, carrier_axes: Matrix3::identity(), own_axes: None }
+        let axes = Matrix3::identity();
+        let (own_axes, q) = (None, Vec::new());
+        Self { on: Carrier::Ground, position, carrier_axes: axes, own_axes, global_from_body: axes, q }
     }
 
     /// True on a body.
@@ -67,6 +75,44 @@ impl<'a> EndAtStart<'a> {
                 Marker::on_flexible(number, &marker.point, &marker.turning, self.carrier_axes.transpose() * axes)
             }
         }
+    }
+
+    /// The places of its parts, global; none where it is one place.
+    pub fn part_positions(&self) -> Vec<Vector3<f64>> {
+        let Carrier::Body(_, marker) = self.on else { return Vec::new() };
+        let here = self.arm_of(&marker.point);
+        let of_part = |part: &MarkerPart| self.position + self.global_from_body * (self.arm_of(&part.point) - here);
+        marker.parts.iter().map(of_part).collect()
+    }
+
+    /// The marker of a part, with these axes, global at the start.
+    pub fn part_marker(&self, part: usize, axes: Matrix3<f64>) -> Option<Marker> {
+        let Carrier::Body(number, marker) = self.on else { return None };
+        let MarkerPart { point, turning } = marker.parts.get(part)?;
+        let turned: Vector3<f64> = turning.columns()[6..].iter().zip(&self.q).map(|(turn, q)| turn * *q).sum();
+        let axes_there = self.global_from_body * transformation_matrix(&-turned);
+        Some(Marker::on_flexible(number, point, turning, axes_there.transpose() * axes))
+    }
+
+    /// The marker with these axes at another place, both global at the start, of the ground or a body that does not deform.
+    pub fn rigid_marker(&self, at: Vector3<f64>, axes: Matrix3<f64>) -> Option<Marker> {
+        match self.on {
+            Carrier::Ground => Some(Marker::on_ground(at, axes)),
+            Carrier::Body(number, marker) if self.q.is_empty() => {
+                let arm = marker.point.position_body() + self.global_from_body.tr_mul(&(at - self.position));
+                Some(Marker::on_rigid(number, arm, self.global_from_body.transpose() * axes))
+            }
+            Carrier::Body(..) => None,
+        }
+    }
+
+    /// True if its parts are nodes.
+    pub fn is_by_nodes(&self) -> bool {
+        matches!(self.on, Carrier::Body(_, marker) if marker.by_nodes)
+    }
+
+    fn arm_of(&self, point: &PointShapes) -> Vector3<f64> {
+        point.position_body() + point.deformation(&self.q)
     }
 
     /// Turns that the modes do not know, with a line in global axes.

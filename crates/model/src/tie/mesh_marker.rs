@@ -1,30 +1,36 @@
 //! Places with axes on a mesh: the nodes that carry them, the forces of their unit wrenches, and how modes move them.
 
-use dynamics::{PointShapes, RotationShapes, SecondOrder};
-use faer::Mat;
-use fem_tet10::{Location, MeanRotation, Mesh, Patch};
-use modal::{BodyPoint, Modes, ReducedBody};
+use faer::prelude::ReborrowMut;
+use faer::{Mat, Scale};
+use fem_tet10::{Location, Mesh, Patch, Strip};
+use modal::{Modes, ReducedBody};
 use nalgebra::{Matrix3, Vector3};
-use scene::{Marker, MarkerPlace, Region, Scene, key_path};
+use scene::{Marker, MarkerPlace, Region, Scene, Tie, key_path};
 
-use crate::error::{BuildError, modal, refuse, refuse_mesh};
+use crate::error::{BuildError, refuse, refuse_mesh};
 use crate::load::rotation::Rotation;
 use crate::support::region_nodes;
-use crate::tie::body_marker::{BodyMarker, UnknownTurns, axes};
+use crate::tie::body_marker::{BodyMarker, MarkerPart, UnknownTurns, axes};
+use crate::tie::patterns::patterns;
+use crate::tie::place::Place;
 
 /// A face on the boundary of a region is in it whatever rounding did to it: relative to the size of the mesh.
 const ON: f64 = 1e-6;
+/// A patch has no faces below this part of the area of all.
+const LEAST_PART: f64 = 1e-9;
+
+/// Most nodes that are tied one by one.
+const MOST_NODES: usize = 100;
 
 /// A place with axes on a mesh.
 pub(crate) struct MeshMarker {
     name: String,
-    nodes: Vec<u32>,
-    /// The part of each node in the mean; the sum is 1.
-    weights: Vec<f64>,
-    /// How the material there is turned, where the mesh tells.
-    rotation: Option<Rotation>,
     axes: Matrix3<f64>,
-    unknown_turns: UnknownTurns,
+    whole: Place,
+    /// Where the ends of its joints are several places: these, each with its part in the whole.
+    parts: Vec<(f64, Place)>,
+    /// Forces on the parts that are put on together (parts × patterns); none where each part has its own.
+    patterns: Option<Mat<f64>>,
     /// Degrees of freedom of a node.
     dofs: usize,
 }
@@ -36,17 +42,12 @@ pub(crate) fn on_mesh(scene: &Scene, mesh: &Mesh, dofs: usize) -> Result<Vec<Mes
 
 /// Forces (N×k) of unit forces and moments on each of the markers, side by side.
 pub(crate) fn unit_forces(markers: &[MeshMarker], unknowns: usize) -> Mat<f64> {
-    let wrenches: Vec<_> =
-        markers.iter().flat_map(|marker| marker.wrenches().map(move |wrench| (marker, wrench))).collect();
-    let mut forces = Mat::zeros(unknowns, wrenches.len());
-    for ((marker, [force, moment]), mut column) in wrenches.iter().zip(forces.as_mut().col_iter_mut()) {
-        for (node, weight) in marker.nodes.iter().zip(&marker.weights) {
-            for axis in 0..3 {
-                column[marker.dofs * *node as usize + axis] += force[axis] * weight;
-            }
-        }
-        if let Some(rotation) = &marker.rotation {
-            rotation.add_unit_nodal_forces(marker.dofs, moment, column);
+    let loads: Vec<_> = markers.iter().flat_map(|marker| marker.loads().into_iter().map(move |load| (marker, load))).collect();
+    let mut forces = Mat::zeros(unknowns, loads.len());
+    for ((marker, load), mut column) in loads.iter().zip(forces.as_mut().col_iter_mut()) {
+        for Share { place, wrench, factor } in load {
+            let place = marker.places()[*place];
+            place.add_forces(marker.dofs, &place.wrenches()[*wrench], *factor, column.rb_mut());
         }
     }
     forces
@@ -58,23 +59,30 @@ pub(crate) fn reduced(
     markers: &[MeshMarker],
     scene: &Scene,
     mesh: &Mesh,
-    body: &ReducedBody,
-    modes: &Modes,
+    body: (&ReducedBody, &Modes),
     stiffness: &[Mat<f64>],
 ) -> Result<Vec<BodyMarker>, BuildError> {
     let mut rest = stiffness;
     let on_body = |marker: &MeshMarker| {
-        let (own, others) = rest.split_at(rest.len().min(marker.wrenches().count()));
+        let (own, others) = rest.split_at(rest.len().min(marker.loads().len()));
         rest = others;
-        marker.reduced(scene, mesh, body, modes, own)
+        marker.reduced(scene, mesh, body, own)
     };
     markers.iter().map(on_body).collect()
+}
+
+/// A wrench of a place as a part of a load.
+struct Share {
+    place: usize,
+    wrench: usize,
+    factor: f64,
 }
 
 impl MeshMarker {
     fn new(scene: &Scene, mesh: &Mesh, dofs: usize, marker: &Marker) -> Result<Self, BuildError> {
         let key = key_path("body.markers", &marker.name);
         let (name, axes) = (marker.name.clone(), axes(marker.axes.as_ref()));
+        let alone = |whole: Place| Self { name, axes, whole, parts: Vec::new(), patterns: None, dofs };
         let region = match &marker.place {
             MarkerPlace::Point(at) => {
                 let key = key_path(&key, "at");
@@ -83,68 +91,110 @@ impl MeshMarker {
                     true => Some(Rotation::at(scene, mesh, dofs, &key, *at)?),
                     false => None,
                 };
-                let unknown_turns = if rotation.is_some() { UnknownTurns::None } else { UnknownTurns::All };
-                return Ok(Self { name, nodes, weights, rotation, axes, unknown_turns, dofs });
+                return Ok(alone(Place::of_point(nodes, weights, rotation, mesh)));
             }
             MarkerPlace::Region(region) => region,
         };
-        let patch = patch(scene, mesh, region, &key)?;
-        let unknown_turns = match line(&patch, mesh) {
-            _ if !patch.is_line => UnknownTurns::None,
-            Some(line) => UnknownTurns::About(line),
-            None => UnknownTurns::All,
-        };
-        let Patch { nodes, weights, rotation_per_displacement, .. } = patch;
-        let mean = MeanRotation { nodes: nodes.clone(), rotation_per_displacement };
-        let rotation = (unknown_turns != UnknownTurns::All).then_some(Rotation::Mean(mean));
-        Ok(Self { name, nodes, weights, rotation, axes, unknown_turns, dofs })
-    }
-
-    /// Unit forces and moments that it can bear: those about turns that are not known are left out.
-    fn wrenches(&self) -> impl Iterator<Item = [Vector3<f64>; 2]> {
-        let forces = [0, 1, 2].map(|axis| [Vector3::ith(axis, 1.0), Vector3::zeros()]);
-        let moments = match (&self.rotation, self.unknown_turns) {
-            (None, _) | (_, UnknownTurns::All) => Vec::new(),
-            (_, UnknownTurns::None) => [0, 1, 2].map(|axis| Vector3::ith(axis, 1.0)).to_vec(),
-            (_, UnknownTurns::About(line)) => {
-                let across = crate::tie::body_marker::perpendicular(&line);
-                vec![across, line.cross(&across)]
+        match marker.tie {
+            Tie::Mean => Ok(alone(Place::of_patch(patch(scene, mesh, region, &key)?, mesh))),
+            Tie::Patches { count, along } => {
+                let whole = Place::of_patch(patch(scene, mesh, region, &key)?, mesh);
+                let strips = strips(scene, mesh, region, &key, count, along)?;
+                let parts = strips.into_iter().map(|strip| (strip.part, Place::of_patch(strip.patch, mesh))).collect();
+                Ok(Self { parts, ..alone(whole) })
             }
-        };
-        forces.into_iter().chain(moments.into_iter().map(|moment| [Vector3::zeros(), moment]))
+            Tie::Nodes => {
+                let nodes = nodes(scene, mesh, region, &key)?;
+                let part = 1.0 / nodes.len() as f64;
+                let of_node = |node: &u32| (part, Place::of_point(vec![*node], vec![1.0], None, mesh));
+                let parts: Vec<_> = nodes.iter().map(of_node).collect();
+                let positions: Vec<_> = parts.iter().map(|(_, place)| place.position).collect();
+                let weights = vec![part; nodes.len()];
+                let whole = Place::of_patch(Patch::new(nodes, weights, mesh.positions()), mesh);
+                Ok(Self { parts, patterns: Some(patterns(&positions)), ..alone(whole) })
+            }
+        }
     }
 
-    /// The marker on a body in some modes, which its unit forces and moments stiffen so (nf×nf each).
+    /// The places that forces act on.
+    fn places(&self) -> Vec<&Place> {
+        match self.parts.is_empty() {
+            true => vec![&self.whole],
+            false => self.parts.iter().map(|(_, place)| place).collect(),
+        }
+    }
+
+    /// Unit forces and moments on its places.
+    fn loads(&self) -> Vec<Vec<Share>> {
+        if let Some(patterns) = &self.patterns {
+            let of = |pattern: usize, wrench: usize| {
+                (0..patterns.nrows()).map(|place| Share { place, wrench, factor: patterns[(place, pattern)] }).collect()
+            };
+            return (0..patterns.ncols()).flat_map(|pattern| (0..3).map(move |axis| of(pattern, axis))).collect();
+        }
+        let of_place = |(place, at): (usize, &Place)| {
+            let count = at.wrenches().len();
+            (0..count).map(move |wrench| vec![Share { place, wrench, factor: 1.0 }])
+        };
+        self.places().into_iter().enumerate().flat_map(of_place).collect()
+    }
+
+    /// The marker on a body in some modes, which its loads stiffen so (nf×nf each).
     fn reduced(
         &self,
         scene: &Scene,
         mesh: &Mesh,
-        body: &ReducedBody,
-        modes: &Modes,
+        body: (&ReducedBody, &Modes),
         stiffness: &[Mat<f64>],
     ) -> Result<BodyMarker, BuildError> {
-        let point = BodyPoint::new(modes, mesh.positions(), &self.nodes, &self.weights).map_err(modal(scene))?;
-        let mut point = PointShapes::new(body, &point);
-        let mut turning = match &self.rotation {
-            Some(rotation) => rotation.shapes(self.dofs, body, modes),
-            None => RotationShapes::new(body, Mat::zeros(3, body.flexible()).as_ref()),
-        };
-        let (mut by_forces, mut by_moments) = (Vec::new(), Vec::new());
-        for ([force, moment], stiffness) in self.wrenches().zip(stiffness) {
-            match force.norm() > 0.0 {
-                true => by_forces.push((force, stiffness.clone())),
-                false => by_moments.push((moment, stiffness.clone())),
+        // Patterns are orthonormal: the parts are combined of them as they are of the parts.
+        let of_places: Vec<Vec<Mat<f64>>> = if stiffness.is_empty() {
+            vec![Vec::new(); self.places().len()]
+        } else {
+            let flexible = body.0.flexible();
+            let none = |place: &Place| vec![Mat::zeros(flexible, flexible); place.wrenches().len()];
+            let mut sums: Vec<Vec<Mat<f64>>> = self.places().into_iter().map(none).collect();
+            for (load, stiffness) in self.loads().iter().zip(stiffness) {
+                for Share { place, wrench, factor } in load {
+                    sums[*place][*wrench] += stiffness * Scale(*factor);
+                }
             }
-        }
-        if !by_forces.is_empty() {
-            point = point.with_second_order(SecondOrder::new(by_forces)?);
-        }
-        if !by_moments.is_empty() {
-            turning = turning.with_second_order(SecondOrder::new(by_moments)?);
-        }
+            sums
+        };
+        let of_whole = match self.parts.is_empty() {
+            true => of_places[0].clone(),
+            false => self.of_whole(&of_places),
+        };
+        let (point, turning) = self.whole.shapes(scene, mesh, self.dofs, body, of_whole)?;
+        let of_part = |((_, place), stiffness): (&(f64, Place), Vec<Mat<f64>>)| {
+            let (point, turning) = place.shapes(scene, mesh, self.dofs, body, stiffness)?;
+            Ok(MarkerPart { point, turning })
+        };
+        let parts = self.parts.iter().zip(of_places).map(of_part).collect::<Result<_, BuildError>>()?;
         // What does not deform is turned as the body is.
-        let unknown_turns = if body.flexible() == 0 { UnknownTurns::None } else { self.unknown_turns };
-        Ok(BodyMarker { name: self.name.clone(), point, turning, axes: self.axes, unknown_turns })
+        let unknown_turns = if body.0.flexible() == 0 { UnknownTurns::None } else { self.whole.unknown_turns };
+        let by_nodes = self.patterns.is_some();
+        Ok(BodyMarker { name: self.name.clone(), point, turning, parts, by_nodes, axes: self.axes, unknown_turns })
+    }
+
+    /// The stiffness by wrenches on the whole, from that by those on the parts: a force is spread by their parts in the whole, a
+    /// moment as forces and moments.
+    fn of_whole(&self, of_parts: &[Vec<Mat<f64>>]) -> Vec<Mat<f64>> {
+        let inverse = self.whole.inverse_inertia();
+        let of_wrench = |[force, moment]: [Vector3<f64>; 2]| {
+            let turn = inverse * moment;
+            let mut sum: Option<Mat<f64>> = None;
+            for ((part, place), of_part) in self.parts.iter().zip(of_parts) {
+                let arm = place.position - self.whole.position;
+                let (force, moment) = ((force + turn.cross(&arm)) * *part, place.inertia * turn * *part);
+                for ([along, about], stiffness) in place.wrenches().iter().zip(of_part) {
+                    let term = stiffness * Scale(along.dot(&force) + about.dot(&moment));
+                    sum = Some(sum.map_or_else(|| term.clone(), |sum| sum + &term));
+                }
+            }
+            sum
+        };
+        self.whole.wrenches().into_iter().filter_map(of_wrench).collect()
     }
 }
 
@@ -180,9 +230,61 @@ fn patch(scene: &Scene, mesh: &Mesh, region: &Region, key: &str) -> Result<Patch
     })
 }
 
-/// The direction of the line that the nodes of a patch are on; `None` of one point.
-fn line(patch: &Patch, mesh: &Mesh) -> Option<Vector3<f64>> {
-    let arm = |node: &u32| Vector3::from(mesh.positions()[*node as usize]) - patch.position;
-    let farthest = patch.nodes.iter().map(arm).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
-    farthest.try_normalize(ON * mesh.diagonal())
+/// The faces in a part of the mesh in strips.
+fn strips(
+    scene: &Scene,
+    mesh: &Mesh,
+    region: &Region,
+    key: &str,
+    count: usize,
+    along: Option<[f64; 3]>,
+) -> Result<Vec<Strip>, BuildError> {
+    let key_of = key_path(key, "patches");
+    let faces = faces(mesh, region).filter(|faces| !faces.is_empty());
+    let help = "remove `patches`, or name a physical surface, a `box` or a `radius` with faces of the body in it";
+    let faces = faces.ok_or_else(|| scene.refuse(&key_of, "patches of a marker without faces", "faces of the body", help))?;
+    let along = match along {
+        Some(along) => Vector3::from(along),
+        None => mesh.longest(&faces).ok_or_else(|| {
+            let found = "patches of faces that extend as far in two directions";
+            let help = "add `along = [x, y, z]`, the direction from patch to patch";
+            scene.refuse(&key_of, found, "a direction to cut them along", help)
+        })?,
+    };
+    let strips = mesh.strips(&faces, &along, count);
+    match strips.iter().all(|strip| strip.part > LEAST_PART) {
+        true => Ok(strips),
+        false => {
+            let help = "give fewer patches, or another direction `along`";
+            Err(scene.refuse(&key_of, format!("{count} patches, one of them without faces"), "faces in each", help).into())
+        }
+    }
+}
+
+/// The faces in a part of the mesh, where it has some.
+pub(crate) fn faces(mesh: &Mesh, region: &Region) -> Option<Vec<[u32; 6]>> {
+    let slack = ON * mesh.diagonal();
+    let within = |holds: &dyn Fn(&Vector3<f64>) -> bool| {
+        let is_in = |node: &u32| holds(&mesh.positions()[*node as usize].into());
+        mesh.outer_faces().into_iter().filter(|nodes| nodes.iter().all(is_in)).collect()
+    };
+    match region {
+        _ if !mesh.has_elements() => None,
+        Region::Group(name) => mesh.surface_faces(name).ok(),
+        Region::Ball { at, radius } => Some(within(&|x| (x - Vector3::from(*at)).norm() <= radius + slack)),
+        Region::Box { low, high } => {
+            Some(within(&|x| (0..3).all(|i| low[i] - slack <= x[i] && x[i] <= high[i] + slack)))
+        }
+    }
+}
+
+/// The nodes in a part of the mesh, few enough to be tied one by one.
+fn nodes(scene: &Scene, mesh: &Mesh, region: &Region, key: &str) -> Result<Vec<u32>, BuildError> {
+    let nodes = region_nodes(scene, mesh, region, key, 1)?;
+    if nodes.len() <= MOST_NODES {
+        return Ok(nodes);
+    }
+    let found = format!("{} nodes to be tied one by one", nodes.len());
+    let help = "each adds three static shapes: take fewer nodes, or faces as `patches`";
+    Err(scene.refuse(&key_path(key, "tie"), found, format!("{MOST_NODES} nodes or fewer"), help).into())
 }

@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
-use dynamics::{ConservativeBody, Coordinate, ForceElement, JointForce, Marker, MotionState, PointSpring};
-use nalgebra::Vector3;
-use scene::{AlongAndAbout, Bushing, CouplingKind, End, Joint, JointDrive, JointSpring, Locked, Spring, System};
+use dynamics::{
+    ConservativeBody, Coordinate, ForceElement, JointForce, JointPart, Marker, MotionState, PointSpring,
+};
+use nalgebra::{Matrix3, Vector3};
+use scene::{AlongAndAbout, Bushing, CouplingKind, End, Joint, JointDrive, JointKind, JointSpring, Locked, Spring, System};
 
 use crate::error::BuildError;
 use crate::load::history::history;
@@ -13,6 +15,7 @@ use crate::tie::axes::axes;
 use crate::tie::body_marker::UnknownTurns;
 use crate::tie::ends::{EndAtStart, both};
 use crate::tie::islands::islands;
+use crate::tie::pairs::{Unpaired, pairs};
 
 /// Sine or cosine of the angle between an axis and a line below which they are parallel or at right angles.
 const ALONG: f64 = 1e-6;
@@ -141,9 +144,19 @@ impl<'a> Island<'a> {
         let turns = [drive.as_ref().map(|drive| drive.along), spring.map(|spring| spring.along)];
         let acts_on_turn = turns.contains(&Some(scene::Coordinate::Turn));
         self.knows_turns(key, joint, acts_on_turn)?;
-        let markers = self.markers(*between, *axis);
+        let ends = self.ends(*between);
+        let axes = axes(&ends, axis.map(Vector3::from));
+        let markers = [ends[0].marker(axes[0]), ends[1].marker(axes[1])];
         let Locked { displacements, turns } = kind.locked();
-        let mut made = dynamics::Joint::locked(name, markers, displacements, turns);
+        let mut made = match self.pairs(key, *kind, &ends, &axes)? {
+            pairs if pairs.is_empty() => dynamics::Joint::locked(name, markers, displacements, turns),
+            pairs => {
+                // A node has no turn.
+                let turns = if ends.iter().any(EndAtStart::is_by_nodes) { [false; 3] } else { turns };
+                let part = |markers| JointPart::locked(markers, displacements, turns);
+                dynamics::Joint::new(name, markers, Vec::new()).with_parts(pairs.into_iter().map(part).collect())
+            }
+        };
         if let Some(drive) = drive {
             let given = self.drive(&format!("{key}.drive"), drive)?;
             made = match drive.along {
@@ -168,6 +181,60 @@ impl<'a> Island<'a> {
         Ok(made)
     }
 
+    /// Pairs of places of the two ends, where these are several; refused where they do not fit each other or the joint.
+    fn pairs(
+        &self,
+        key: &str,
+        kind: JointKind,
+        ends: &[EndAtStart<'_>; 2],
+        axes: &[Matrix3<f64>; 2],
+    ) -> Result<Vec<[Marker; 2]>, BuildError> {
+        let refuse = |key: &str, found: String, expected: String, help: &str| {
+            BuildError::from(self.scene.place(key).refuse(found, expected, help))
+        };
+        let pairs = pairs(ends, axes).map_err(|unpaired| match unpaired {
+            Unpaired::Count([first, second]) => refuse(
+                &format!("{key}.between"),
+                format!("markers of {first} and {second} places"),
+                "as many places on both".to_owned(),
+                "give both markers the same nodes or as many `patches`, or let both be means of faces",
+            ),
+            Unpaired::OnePlace(end) => refuse(
+                &format!("{key}.between[{end}]"),
+                "a marker of one place on a flexible body, against one of several".to_owned(),
+                "as many places on both".to_owned(),
+                "give it the same nodes or as many `patches`; the ground and bodies with `flexible = 0` need none",
+            ),
+            Unpaired::Apart(distance) => refuse(
+                &format!("{key}.between"),
+                format!("markers with places that are {distance:.3e} apart when their middles are not"),
+                "places that fit each other".to_owned(),
+                "place the bodies so that the markers lie on each other, with nodes at the same places or patches of the same surface",
+            ),
+        })?;
+        let Some(places) = ends.iter().map(EndAtStart::part_positions).find(|places| !places.is_empty()) else {
+            return Ok(pairs);
+        };
+        let by_nodes = ends.iter().any(EndAtStart::is_by_nodes);
+        let (what, expected, fits) = match (by_nodes, line(&places)) {
+            (true, None) if places.len() == 1 => ("a node", "spherical", kind == JointKind::Spherical),
+            (true, None) => ("nodes that are not on a line, one by one", "fixed", kind == JointKind::Fixed),
+            (true, Some(_)) => ("nodes on a line, one by one", "revolute", kind == JointKind::Revolute),
+            (false, line) => {
+                let along = line.is_some_and(|line| line.dot(&axes[0].column(2)).abs() > 1.0 - ALONG);
+                let fits = kind == JointKind::Fixed || kind == JointKind::Revolute && along;
+                ("patches", "fixed, or revolute about the line on which the patches follow each other", fits)
+            }
+        };
+        if fits {
+            return Ok(pairs);
+        }
+        let key = format!("{key}.{}", if matches!(kind, JointKind::Other(_)) { "locked" } else { "kind" });
+        let found = format!("a {} joint of a marker of {what}", kind.name());
+        let help = "change `kind`, or let the marker be the mean of its region: remove `tie` or `patches`";
+        Err(refuse(&key, found, format!("a joint that is {expected}"), help))
+    }
+
     /// Refuses a joint that holds turns of a marker which its nodes do not tell.
     fn knows_turns(&self, key: &str, joint: &Joint, acts_on_turn: bool) -> Result<(), BuildError> {
         let ends = self.ends(joint.between);
@@ -190,8 +257,8 @@ impl<'a> Island<'a> {
 
     fn refuse(&self, key: &str, found: &str, kind: &str) -> BuildError {
         let found = format!("a marker of {found}, in a {kind} joint, which holds that turn");
-        let help =
-            "let the marker take faces (`group`, `box`, `at` with `radius`), or use a joint that leaves the turn free";
+        let help = "let the marker take faces (`group`, `box`, `at` with `radius`), or use a joint that leaves the turn free: \
+                    a line of nodes is hinged by `tie = \"nodes\"` and a revolute joint along it";
         self.scene.place(key).refuse(found, "a marker whose turns are known", help).into()
     }
 
@@ -228,6 +295,15 @@ impl<'a> Island<'a> {
             damping: lists(bushing.damping),
         })
     }
+}
+
+/// The direction of the line that places are on; none where they are not, or are one.
+fn line(places: &[Vector3<f64>]) -> Option<Vector3<f64>> {
+    let middle = places.iter().sum::<Vector3<f64>>() / places.len() as f64;
+    let farthest = places.iter().map(|x| x - middle).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+    let along = farthest.try_normalize(f64::MIN_POSITIVE)?;
+    let is_on = |x: &Vector3<f64>| (x - middle).cross(&along).norm() <= ALONG * farthest.norm();
+    places.iter().all(is_on).then_some(along)
 }
 
 /// A coupling of two joints by their numbers in the system.

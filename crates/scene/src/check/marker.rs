@@ -7,13 +7,15 @@ use super::constraint::RegionKeys;
 use crate::document::join;
 use crate::error::SceneError;
 use crate::loads::unit_vector::unit;
-use crate::marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace};
+use crate::marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace, Tie};
 use crate::name::check_key;
 use crate::scene::Body;
-use crate::tie_section::{GroundMarkerSection, InOrder, MarkerSection};
+use crate::tie_section::{GroundMarkerSection, InOrder, MarkerSection, TieName};
 
 /// Sine of the angle between z and x below which they have one direction.
 const PARALLEL: f64 = 1e-6;
+/// Most patches of a marker.
+const MOST_PATCHES: u32 = 32;
 
 impl Check<'_> {
     pub fn markers(&self, InOrder(sections): InOrder<MarkerSection>, body: &Body) -> Result<Vec<Marker>, SceneError> {
@@ -36,7 +38,7 @@ impl Check<'_> {
     }
 
     fn marker(&self, name: String, section: MarkerSection, body: &Body) -> Result<Marker, SceneError> {
-        let MarkerSection { at, radius, r#box, group, z, x } = section;
+        let MarkerSection { at, radius, r#box, group, tie, patches, along, z, x } = section;
         let key = self.marker_key("body.markers", &name)?;
         let help = "keep one way to say where the marker is";
         self.at_most_one(&key, &["at", "box", "group"], help)?;
@@ -52,7 +54,46 @@ impl Check<'_> {
                 ));
             }
         };
-        Ok(Marker { axes: self.axes(&key, z, x)?, name, place })
+        let tie = self.tie(&key, &place, tie, patches, along)?;
+        Ok(Marker { axes: self.axes(&key, z, x)?, name, place, tie })
+    }
+
+    /// How a region carries a marker.
+    fn tie(
+        &self,
+        key: &str,
+        place: &MarkerPlace,
+        tie: Option<TieName>,
+        patches: Option<u32>,
+        along: Option<[f64; 3]>,
+    ) -> Result<Tie, SceneError> {
+        let refuse = |name: &str, found: &str, expected: &str, help: &str| {
+            Err(self.document.place(&join(key, name)).refuse(found, expected, help))
+        };
+        let given = if patches.is_some() { "patches" } else { "tie" };
+        if matches!(place, MarkerPlace::Point(_)) && (patches.is_some() || tie.is_some_and(|tie| tie != TieName::Mean)) {
+            let help = "add `radius`, or give a `box` or a `group` in the place of `at`";
+            return refuse(given, "a marker at a point", "a marker on a part of the mesh", help);
+        }
+        let Some(count) = patches else {
+            if along.is_some() {
+                let help = "add `patches`, or remove `along`: it says how patches follow each other";
+                return refuse("along", "`along` without `patches`", "both or none", help);
+            }
+            return Ok(if tie == Some(TieName::Nodes) { Tie::Nodes } else { Tie::Mean });
+        };
+        if tie == Some(TieName::Nodes) {
+            let help = "keep `patches`, or `tie = \"nodes\"`, which ties each node by itself";
+            return refuse("tie", "`tie = \"nodes\"` beside `patches`", "one of them", help);
+        }
+        let help = "a patch adds six static shapes; remove `patches` for one, or tie `\"nodes\"`";
+        let key_of = join(key, "patches");
+        self.require((2..=MOST_PATCHES).contains(&count), &key_of, &format!("from 2 to {MOST_PATCHES}"), help)?;
+        let along = along.map(|mut along| {
+            let help = "give the direction from patch to patch; its length does not matter";
+            self.normalise(&join(key, "along"), &mut along, help).map(|()| along)
+        });
+        Ok(Tie::Patches { count: count as usize, along: along.transpose()? })
     }
 
     /// The key path of a marker, whose name it checks.

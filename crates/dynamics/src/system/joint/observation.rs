@@ -46,7 +46,7 @@ impl SystemMotion {
         let Self { system, first, .. } = self;
         let times = [self.time(); 2];
         let connections = &system.connections;
-        let before: usize = connections.joints[..number].iter().map(|joint| joint.rows.len()).sum();
+        let before: usize = connections.joints[..number].iter().map(|joint| joint.row_count()).sum();
         let joint = &connections.joints[number];
         let marker = &joint.markers[0];
         let place = marker.place(marker.body().map(|b| first.body_place(system, b)).as_ref());
@@ -58,7 +58,7 @@ impl SystemMotion {
             work: self.joint_work(number),
             ..JointObservation::default()
         };
-        let rows = before..before + joint.rows.len();
+        let rows = before..before + joint.row_count();
         let of_rows = self.reactions[rows.clone()].iter().zip(&first.constraints.own_rates[rows]);
         out.drive_power = of_rows.map(|(lambda, rate)| -lambda * rate).sum();
         for (coordinate, force) in joint.forces() {

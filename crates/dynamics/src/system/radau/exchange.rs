@@ -58,7 +58,7 @@ impl SystemMotion {
             stage.find_y_rates(system, lambda, &mut rates.y);
             let mut of_rows = lambda.iter().zip(&stage.constraints.own_rates);
             for (joint, powers) in system.connections.joints.iter().zip(&mut rates.joints) {
-                let drive = of_rows.by_ref().take(joint.rows.len()).map(|(lambda, rate)| -lambda * rate).sum();
+                let drive = of_rows.by_ref().take(joint.row_count()).map(|(lambda, rate)| -lambda * rate).sum();
                 *powers = JointWork { drive, ..JointWork::default() };
             }
             for ((joint, ..), power) in system.connections.joint_forces().zip(&stage.joint_powers) {

@@ -68,7 +68,7 @@ impl TiedReport {
         };
         Self {
             joints: system.joints().iter().map(|joint| joint.name.clone()).collect(),
-            rows: system.joints().iter().map(|joint| joint.rows.len()).sum(),
+            rows: system.joints().iter().map(|joint| joint.row_count()).sum(),
             rigid_dofs: simulation.rigid_dofs(),
             redundant: simulation.redundant().to_vec(),
             assembled: assembled.filter(is_told).collect(),
