@@ -56,7 +56,8 @@ impl Connections {
         let is_driven = |row: &Row| matches!(row, Row::DrivenRotation | Row::DrivenPoint);
         self.joints
             .iter()
-            .flat_map(move |joint| joint.rows.iter().map(is_driven))
+            .flat_map(Joint::groups)
+            .flat_map(move |(_, rows)| rows.iter().map(is_driven))
             .chain(self.couplings.iter().map(|_| false))
     }
 

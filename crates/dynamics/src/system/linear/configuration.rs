@@ -5,8 +5,7 @@ use rigid_kin::Attitude;
 
 use crate::conservative::{get, part};
 use crate::system::description::System;
-use crate::system::joint::Joint;
-use crate::system::marker::{BodyPlace, MarkerPlace};
+use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
 use crate::system::radau::SystemMotion;
 
 /// The bodies of a system at one time, in steady motion: modes do not move.
@@ -100,8 +99,8 @@ impl Configuration {
         BodyPlace { origin: *origin, body_from_global: *body_from_global, q }
     }
 
-    /// Where the markers of a joint are.
-    pub fn places(&self, joint: &Joint) -> [MarkerPlace; 2] {
-        joint.markers.each_ref().map(|marker| marker.place(marker.body().map(|b| self.place(b)).as_ref()))
+    /// Where the two markers of a joint, or of a part of it, are.
+    pub fn places(&self, markers: &[Marker; 2]) -> [MarkerPlace; 2] {
+        markers.each_ref().map(|marker| marker.place(marker.body().map(|b| self.place(b)).as_ref()))
     }
 }

@@ -179,7 +179,7 @@ fn force_ties<'a>(system: &'a System, at: &'a Configuration) -> impl Iterator<It
     let of_joints = system.connections.joint_forces().map(move |(number, coordinate, force)| {
         let joint = &system.joints()[number];
         let mut tie = Tie::new(system, at, joint.markers.iter());
-        tie.add_joint_force((coordinate, force), &at.places(joint), at.turns[number], at.time);
+        tie.add_joint_force((coordinate, force), &at.places(&joint.markers), at.turns[number], at.time);
         tie
     });
     let of_elements = system.connections.elements.iter().map(move |element| {
@@ -195,18 +195,23 @@ fn row_ties(system: &System, at: &Configuration, multipliers: &[f64]) -> Vec<Tie
     let mut ties = Vec::new();
     let mut left = multipliers;
     for joint in system.joints() {
-        let (own, rest) = left.split_at(joint.rows.len());
-        left = rest;
-        let mut tie = Tie::new(system, at, joint.markers.iter());
-        tie.add_rows(joint, &at.places(joint), at.time, own);
-        ties.push(tie);
+        let driven = joint.driven_at([at.time; 2]);
+        for (markers, rows) in joint.groups() {
+            let (own, rest) = left.split_at(rows.len());
+            left = rest;
+            let mut tie = Tie::new(system, at, markers.iter());
+            tie.add_rows(rows, &at.places(markers), driven, own);
+            ties.push(tie);
+        }
     }
     for (coupling, multiplier) in system.couplings().iter().zip(left) {
         for term in &coupling.terms {
             let joint = &system.joints()[term.joint];
             let mut tie = Tie::new(system, at, joint.markers.iter());
             let force = multiplier * term.factor;
-            tie.add_coordinate(term.coordinate, &at.places(joint), at.turns[term.joint], |_| (force, [0.0; 2]));
+            tie.add_coordinate(term.coordinate, &at.places(&joint.markers), at.turns[term.joint], |_| {
+                (force, [0.0; 2])
+            });
             ties.push(tie);
         }
     }
@@ -232,7 +237,9 @@ pub(crate) fn springs(system: &System, at: &Configuration) -> Vec<(Spring, Tie)>
     let of_joints = system.connections.joint_forces().map(|(number, coordinate, force)| {
         let joint = &system.joints()[number];
         let mut tie = Tie::new(system, at, joint.markers.iter());
-        tie.add_coordinate(coordinate, &at.places(joint), at.turns[number], |at| (0.0, [force.slopes(at)[0], 0.0]));
+        tie.add_coordinate(coordinate, &at.places(&joint.markers), at.turns[number], |at| {
+            (0.0, [force.slopes(at)[0], 0.0])
+        });
         (Spring::Joint(number), tie)
     });
     let of_elements = system.connections.elements.iter().enumerate().map(|(number, element)| {

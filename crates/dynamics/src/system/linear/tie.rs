@@ -6,10 +6,10 @@ use nalgebra::Vector3;
 use crate::conservative::ConservativeBody;
 use crate::system::description::System;
 use crate::system::element::ForceElement;
-use crate::system::joint::Joint;
 use crate::system::joint::change::{FrameChange, WrenchChange};
 use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::force::JointForce;
+use crate::system::joint::row::Row;
 use crate::system::joint::wrench::RowWrench;
 use crate::system::linear::configuration::Configuration;
 use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
@@ -111,10 +111,9 @@ impl Tie {
         }
     }
 
-    /// Rows of a joint with these multipliers.
-    pub fn add_rows(&mut self, joint: &Joint, places: &[MarkerPlace; 2], time: f64, multipliers: &[f64]) {
-        let driven = joint.drive.as_ref().map_or([0.0; 2], |drive| drive.at([time; 2]));
-        for (row, multiplier) in joint.rows.iter().zip(multipliers) {
+    /// Rows of a joint, driven to this value with this rate, with these multipliers.
+    pub fn add_rows(&mut self, rows: &[Row], places: &[MarkerPlace; 2], driven: [f64; 2], multipliers: &[f64]) {
+        for (row, multiplier) in rows.iter().zip(multipliers) {
             let wrench = row.wrench(places.each_ref(), driven);
             let change = |changes: [&FrameChange; 2]| row.wrench_change(places.each_ref(), driven[0], changes);
             self.add_scalar(&wrench, change, *multiplier, [0.0; 2]);
