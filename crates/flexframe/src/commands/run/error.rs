@@ -11,6 +11,7 @@ use scene::SceneError;
 use super::estimate::Estimate;
 use crate::files::outputs::OutputError;
 use crate::files::write_error::help_of_writing;
+use crate::motion::BeginError;
 
 /// A run that could not be done.
 #[derive(Debug, thiserror::Error)]
@@ -69,6 +70,15 @@ pub enum RunError {
     Folder { folder: PathBuf, source: std::io::Error },
 }
 
+impl From<BeginError> for RunError {
+    fn from(error: BeginError) -> Self {
+        match error {
+            BeginError::Build(source) => Self::Build(source),
+            BeginError::Start { scene, source, .. } => Self::Setup { scene, source },
+        }
+    }
+}
+
 impl RunError {
     /// The error without the files of the run, for those who do not keep them.
     pub(crate) fn without_files(&self) -> String {
@@ -91,6 +101,9 @@ fn prefix(body: Option<&str>) -> String {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum RunFailure {
+    /// Its bodies could not be tied together.
+    #[error("{0}")]
+    Tie(String),
     /// It could not start.
     #[error("{0}")]
     Start(#[from] StartError),
@@ -104,4 +117,13 @@ pub enum RunFailure {
         100.0 * reached
     )]
     OutOfPatience { patience: f64, reached: f64 },
+}
+
+impl From<BeginError> for RunFailure {
+    fn from(error: BeginError) -> Self {
+        match error {
+            BeginError::Build(source) => Self::Tie(source.to_string()),
+            BeginError::Start { source, .. } => Self::Start(*source),
+        }
+    }
 }
