@@ -1,0 +1,70 @@
+//! A system at several tolerances, timed: what `just exudyn` holds against Exudyn.
+//!
+//! `systems SCENE BODY POINT ROWS TOLERANCE...` prints a line of JSON for each tolerance: processor seconds of the motion
+//! alone, steps, evaluations, and the position of a point of a body at equal times.
+
+use std::error::Error;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use dynamics::{Observation, Reached, StepControl};
+use verification::systems::run::built;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [scene, body, point, rows, tolerances @ ..] = arguments.as_slice() else {
+        eprintln!("usage: systems SCENE BODY POINT ROWS TOLERANCE...");
+        return ExitCode::FAILURE;
+    };
+    match ladder(Path::new(scene), [body, point], rows, tolerances) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("systems: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn ladder(scene: &Path, [body, point]: [&str; 2], rows: &str, tolerances: &[String]) -> Result<(), Box<dyn Error>> {
+    let text = std::fs::read_to_string(scene)?;
+    let system = scene::System::parse(&text, scene)?;
+    let built = built(scene.parent().unwrap_or(Path::new(".")), &text)?;
+    let number = system.bodies.iter().position(|other| other.name.as_deref() == Some(body)).ok_or("no such body")?;
+    let of_system = built.tied.bodies.iter().position(|other| *other == number).ok_or("a body that is not tied")?;
+    let seen = built.models[number].points.iter().position(|(name, _)| name == point).ok_or("no such point")?;
+    let end = system.bodies[0].time.end;
+    for tolerance in tolerances {
+        let interval = end / rows.parse::<f64>()?;
+        let mut simulation = built.start(StepControl::Tolerance(tolerance.parse()?), end, interval, false)?;
+        let mut row: Vec<Observation> = (0..built.models.len()).map(|body| simulation.room(body)).collect();
+        let mut positions = Vec::new();
+        let (_, shapes) = &built.models[number].points[seen];
+        let place = |row: &[Observation]| {
+            let body = &row[of_system];
+            let arm = shapes.position_body() + body.points[seen].elastic_displacement_body;
+            body.origin_global + body.attitude.to_global(&arm)
+        };
+        // One thread, nothing else: the time that goes by is that of the processor on a quiet machine.
+        let begin = Instant::now();
+        loop {
+            simulation.observe(&mut row)?;
+            positions.push(place(&row));
+            while simulation.advance_watched(1000, |_, _| ())? == Reached::Between {}
+            if positions.len() as f64 * interval > end * (1.0 - 1e-9) {
+                break;
+            }
+        }
+        simulation.observe(&mut row)?;
+        positions.push(place(&row));
+        let seconds = begin.elapsed().as_secs_f64();
+        let stats = simulation.stats();
+        let positions: Vec<String> = positions.iter().map(|x| format!("[{:?}, {:?}, {:?}]", x.x, x.y, x.z)).collect();
+        println!(
+            "{{\"tolerance\": {tolerance}, \"seconds\": {seconds}, \"steps\": {}, \"positions\": [{}]}}",
+            stats.accepted,
+            positions.join(", ")
+        );
+    }
+    Ok(())
+}
