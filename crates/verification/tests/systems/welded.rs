@@ -7,16 +7,17 @@ use verification::systems::welded::frequencies;
 
 use nalgebra::Vector3;
 
+const MATERIAL: &str = "material = { young_modulus = 7e10, poisson_ratio = 0.33, density = 2700.0 }\n";
+
 /// Largest and smallest relative error of eight frequencies of two welded halves, each of this size and in so many cells, with these
 /// keys of the markers.
 fn errors(size: [f64; 3], cells: [usize; 3], keys: &str) -> [f64; 2] {
     let directory = tempfile::tempdir().unwrap();
     write(directory.path(), "half", &box_mesh(size, cells)).unwrap();
     write(directory.path(), "whole", &box_mesh([2.0 * size[0], size[1], size[2]], [2 * cells[0], cells[1], cells[2]])).unwrap();
-    let body = |name: &str, mesh: &str, modes: usize, marker: String| {
+    let body = |name: &str, marker: String| {
         format!(
-            "[bodies.{name}]\nmesh = '{mesh}.msh'\nmaterial = {{ young_modulus = 7e10, poisson_ratio = 0.33, density = 2700.0 }}\n\
-             modes = {{ flexible = {modes}, static_correction = false }}\n{marker}"
+            "[bodies.{name}]\nmesh = 'half.msh'\n{MATERIAL}modes = {{ flexible = 6, static_correction = false }}\n{marker}"
         )
     };
     let marker = |x: f64| {
@@ -25,16 +26,16 @@ fn errors(size: [f64; 3], cells: [usize; 3], keys: &str) -> [f64; 2] {
     let text = format!(
         "title = 'weld'\nunits = {{ length = 'm', mass = 'kg', time = 's' }}\n{}{}initial = {{ position = [{}, 0, 0] }}\n\
          [[joints]]\nkind = 'fixed'\nbetween = ['a.face', 'b.face']\n[time]\nend = 1.0\ntolerance = 1e-4\n",
-        body("a", "half", 6, marker(size[0])),
-        body("b", "half", 6, marker(0.0)),
+        body("a", marker(size[0])),
+        body("b", marker(0.0)),
         size[0]
     );
     let halves = built(directory.path(), &text).unwrap();
     let center = 0.5 * Vector3::from(size);
     let found = frequencies(&halves, [center, center + Vector3::x() * size[0]]).unwrap();
     let text = format!(
-        "title = 'whole'\nunits = {{ length = 'm', mass = 'kg', time = 's' }}\n{}[time]\nend = 1.0\nstep = 1e-4\n",
-        body("whole", "whole", 8, String::new()).replace("bodies.whole", "body")
+        "title = 'whole'\nunits = {{ length = 'm', mass = 'kg', time = 's' }}\n[body]\nmesh = 'whole.msh'\n{MATERIAL}\
+         [modes]\nflexible = 8\n[time]\nend = 1.0\nstep = 1e-4\n"
     );
     let scene = scene::Scene::parse(&text, directory.path().join("whole.toml")).unwrap();
     let whole = model::Model::build(&scene, |_| ()).unwrap();
