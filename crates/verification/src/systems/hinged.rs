@@ -12,7 +12,7 @@ use crate::nonlinear::{Motion, NodalState, NonlinearError, Solid, mean_axes};
 use crate::systems::meshes::{Bar, Frame, write};
 use crate::systems::run::{built, rows};
 
-/// A hinge in a scene: keys of a marker on a line of nodes or on the faces beside it.
+/// A hinge on a line of nodes in a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hinge {
     /// A ball at each node.
@@ -189,7 +189,8 @@ fn compare(body: &Observation, seen: &Seen, off: &mut Off) {
 fn scene(directory: &Path, frame: &Frame, motions: &Motions, hinge: Hinge, keys: &str) -> Result<String, NonlinearError> {
     let failed = |error: std::io::Error| NonlinearError::Mesh(error.to_string());
     for (name, upright) in [("lying", false), ("upright", true)] {
-        write(directory, name, &frame.bar(upright)).map_err(failed)?;
+        let mesh = frame.bar(upright);
+        write(directory, name, &mesh, &frame.lines(upright, &mesh)).map_err(failed)?;
     }
     let Material { young_modulus, poisson_ratio, density } = motions.material;
     let lines = lines(frame, motions.hung);
@@ -202,11 +203,11 @@ fn scene(directory: &Path, frame: &Frame, motions: &Motions, hinge: Hinge, keys:
             .enumerate()
             .filter(|(_, (bars, _))| bars.contains(&Some(number)))
             .map(|(line, (_, at))| {
-                let [x, z] = [at[0] - bar.at[0], at[1] - bar.at[2]];
-                let slack = 1e-3 * frame.size[2];
-                let [low, high] = [[x - slack, -1.0, z - slack], [x + slack, 1e3, z + slack]];
+                let edges = frame.edges(bar.upright);
+                let is_here = |[x, z]: &[f64; 2]| near(bar.at[0] + x, at[0]) && near(bar.at[2] + z, at[1]);
+                let edge = edges.iter().position(is_here).unwrap_or_default();
                 let tie = if hinge == Hinge::Balls { "nodes" } else { "mean" };
-                format!("[bodies.b{number}.markers.l{line}]\nbox = [{low:?}, {high:?}]\ntie = '{tie}'\n")
+                format!("[bodies.b{number}.markers.l{line}]\ngroup = 'edge{edge}'\ntie = '{tie}'\n")
             })
             .collect();
         text += &format!(
@@ -231,11 +232,8 @@ fn scene(directory: &Path, frame: &Frame, motions: &Motions, hinge: Hinge, keys:
 
 /// Lines (x, z) that two bars share, or one and the ground.
 fn lines(frame: &Frame, hung: bool) -> Vec<([Option<usize>; 2], [f64; 2])> {
-    let [l, _, h] = frame.size;
-    let corners = |bar: &Bar| {
-        let [length, height] = if bar.upright { [h, l] } else { [l, h] };
-        [[0.0, 0.0], [length, 0.0], [0.0, height], [length, height]].map(|[x, z]| [bar.at[0] + x, bar.at[2] + z])
-    };
+    let h = frame.size[2];
+    let corners = |bar: &Bar| frame.edges(bar.upright).map(|[x, z]| [bar.at[0] + x, bar.at[2] + z]);
     let mut lines = Vec::new();
     if hung {
         lines.push(([None, Some(0)], [frame.bars[0].at[0], frame.bars[0].at[2] + h]));

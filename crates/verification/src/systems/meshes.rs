@@ -97,30 +97,79 @@ impl Frame {
     }
 }
 
-/// Writes a mesh as MSH 4.1 into a directory; returns its path.
+/// A straight line of nodes with a name: the ends of its edges and their middles, in turn.
+#[derive(Debug, Clone)]
+pub struct Line {
+    /// Name of the physical curve.
+    pub name: String,
+    /// Tags of the nodes.
+    pub nodes: Vec<u64>,
+}
+
+impl Frame {
+    /// Places (x, z) of the four edges along y of a bar with its lowest corner at the origin.
+    pub fn edges(&self, upright: bool) -> [[f64; 2]; 4] {
+        let [l, _, h] = self.size;
+        let [length, height] = if upright { [h, l] } else { [l, h] };
+        [[0.0, 0.0], [length, 0.0], [0.0, height], [length, height]]
+    }
+
+    /// The same as lines `edge0` to `edge3` of its mesh.
+    pub fn lines(&self, upright: bool, mesh: &MeshParts) -> Vec<Line> {
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+        let line = |(number, [x, z]): (usize, [f64; 2])| {
+            let on = mesh.positions.iter().zip(1..).filter(|(at, _)| near(at[0], x) && near(at[2], z));
+            let mut nodes: Vec<(f64, u64)> = on.map(|(at, tag)| (at[1], tag)).collect();
+            nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
+            Line { name: format!("edge{number}"), nodes: nodes.into_iter().map(|(_, tag)| tag).collect() }
+        };
+        self.edges(upright).into_iter().enumerate().map(line).collect()
+    }
+}
+
+/// Writes a mesh as MSH 4.1 into a directory, with lines as physical curves; returns its path.
 ///
 /// # Errors
 /// Errors of the file.
-pub fn write(directory: &Path, name: &str, parts: &MeshParts) -> std::io::Result<PathBuf> {
+pub fn write(directory: &Path, name: &str, parts: &MeshParts, lines: &[Line]) -> std::io::Result<PathBuf> {
     let (nodes, elements) = (parts.positions.len(), parts.elements.len());
-    let mut text = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 0 0\n$EndEntities\n");
-    let mut line = |words: String| {
+    let edges: usize = lines.iter().map(|line| line.nodes.len() / 2).sum();
+    let mut text = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
+    let mut put = |words: String| {
         text.push_str(&words);
         text.push('\n');
     };
-    line(format!("$Nodes\n1 {nodes} 1 {nodes}\n3 1 0 {nodes}"));
-    (1..=nodes).for_each(|tag| line(tag.to_string()));
-    parts.positions.iter().for_each(|[x, y, z]| line(format!("{x} {y} {z}")));
-    line(format!("$EndNodes\n$Elements\n1 {elements} 1 {elements}\n3 1 11 {elements}"));
-    for (tag, nodes) in (1..).zip(&parts.elements) {
+    if !lines.is_empty() {
+        put(format!("$PhysicalNames\n{}", lines.len() + 1));
+        (1..).zip(lines).for_each(|(tag, line)| put(format!("1 {tag} \"{}\"", line.name)));
+        put(format!("3 {} \"body\"\n$EndPhysicalNames", lines.len() + 1));
+    }
+    put(format!("$Entities\n0 {} 0 1", lines.len()));
+    (1..=lines.len()).for_each(|tag| put(format!("{tag} 0 0 0 1 1 1 1 {tag} 0")));
+    let of_body = if lines.is_empty() { "0".to_owned() } else { format!("1 {}", lines.len() + 1) };
+    put(format!("1 0 0 0 1 1 1 {of_body} 0\n$EndEntities"));
+    put(format!("$Nodes\n1 {nodes} 1 {nodes}\n3 1 0 {nodes}"));
+    (1..=nodes).for_each(|tag| put(tag.to_string()));
+    parts.positions.iter().for_each(|[x, y, z]| put(format!("{x} {y} {z}")));
+    put(format!("$EndNodes\n$Elements\n{} {} 1 {}", lines.len() + 1, edges + elements, edges + elements));
+    let mut element = 0;
+    for (tag, line) in (1..).zip(lines) {
+        put(format!("1 {tag} 8 {}", line.nodes.len() / 2));
+        for first in (0..line.nodes.len() - 1).step_by(2) {
+            element += 1;
+            put(format!("{element} {} {} {}", line.nodes[first], line.nodes[first + 2], line.nodes[first + 1]));
+        }
+    }
+    put(format!("3 1 11 {elements}"));
+    for (tag, nodes) in (element + 1..).zip(&parts.elements) {
         let mut words = format!("{tag}");
         nodes.iter().for_each(|node| {
             // Writing to a string does not fail.
             let _ = write!(words, " {node}");
         });
-        line(words);
+        put(words);
     }
-    line("$EndElements".to_owned());
+    put("$EndElements".to_owned());
     let path = directory.join(format!("{name}.msh"));
     std::fs::write(&path, text)?;
     Ok(path)
