@@ -45,7 +45,7 @@ pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes, BuildWork};
 pub use stress::shapes::{BodyStress, StressPeak};
 pub use support::reactions::SupportRows;
-pub use tie::warp::Warp;
 pub use tie::body_marker::{BodyMarker, MarkerPart, UnknownTurns};
 pub use tie::tied::{Tied, tie};
+pub use tie::warp::Warp;
 pub use variants::Variants;

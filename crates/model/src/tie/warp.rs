@@ -32,9 +32,8 @@ impl Warp {
     /// Of faces in responses of the mesh to forces on them (N×k). None where the faces extend as far in two directions.
     pub fn new(mesh: &Mesh, faces: &[[u32; 6]], dofs: usize, responses: MatRef<'_, f64>) -> Option<Self> {
         let along = mesh.longest(faces)?;
-        let field = |column: usize, node: u32| {
-            Vector3::from_fn(|axis, _| responses[(dofs * node as usize + axis, column)])
-        };
+        let field =
+            |column: usize, node: u32| Vector3::from_fn(|axis, _| responses[(dofs * node as usize + axis, column)]);
         // Means of the squares of all displacements, and of what is left of them.
         let squares = |patch: &Patch, column: usize| {
             let at = |node: u32| Vector3::from(mesh.positions()[node as usize]) - patch.position;
@@ -47,7 +46,8 @@ impl Warp {
                 .map(|(node, rotation)| rotation * field(column, *node))
                 .sum();
             let left = |node: u32| field(column, node) - mean - turn.cross(&at(node));
-            let sum = |of: &dyn Fn(u32) -> Vector3<f64>| nodes().map(|(node, w)| w * of(node).norm_squared()).sum::<f64>();
+            let sum =
+                |of: &dyn Fn(u32) -> Vector3<f64>| nodes().map(|(node, w)| w * of(node).norm_squared()).sum::<f64>();
             [sum(&|node| field(column, node)), sum(&left)]
         };
         let left_out = (1..=MOST).map(|count| {

@@ -188,7 +188,8 @@ fn start(
 
 /// Potential energy of bodies of these masses.
 fn potential(motion: &SystemMotion, masses: &[f64]) -> Result<f64, String> {
-    let of = |(number, mass): (usize, &f64)| Ok(mass * GRAVITY * motion.state(number).map_err(of_rates)?.origin_global.z);
+    let of =
+        |(number, mass): (usize, &f64)| Ok(mass * GRAVITY * motion.state(number).map_err(of_rates)?.origin_global.z);
     masses.iter().enumerate().map(of).sum()
 }
 
@@ -206,7 +207,8 @@ fn loose_panel(scheme: SystemScheme, extent: Extent) -> Result<f64, String> {
     let omega = Vector3::new(3.0, 0.0, 300.0);
     let states = [0.0, 0.11].map(|x| turning(Vector3::new(x, 0.0, 0.1), Vector3::zeros(), omega));
     let mut motion = start(scheme, bodies, joints, &states)?;
-    let energy = |motion: &SystemMotion| Ok::<f64, String>(motion.energy().map_err(of_rates)? + potential(motion, &masses)?);
+    let energy =
+        |motion: &SystemMotion| Ok::<f64, String>(motion.energy().map_err(of_rates)? + potential(motion, &masses)?);
     let (before, spin) = (energy(&motion)?, motion.momenta()[1].z);
     let end = if extent == Extent::Test { 0.2 } else { 5.0 };
     motion.advance(end, TOLERANCE, &mut 1e-4).map_err(words)?;
@@ -221,8 +223,8 @@ fn stiff_panels(scheme: SystemScheme, extent: Extent) -> Result<f64, String> {
     let hinge = |body: usize, x: f64, stiffness: f64| {
         Joint::revolute("hinge", [ground(0.0), on(body, x)]).with_force(Coordinate::Turn, spring(stiffness))
     };
-    let middle = Joint::revolute("middle", [on(0, 0.5), on(1, -0.5)])
-        .with_force(Coordinate::Turn, spring(0.5 / 24.0 * 1e12));
+    let middle =
+        Joint::revolute("middle", [on(0, 0.5), on(1, -0.5)]).with_force(Coordinate::Turn, spring(0.5 / 24.0 * 1e12));
     let halves = vec![bar(0.5, 1.0, 0.0)?, bar(0.5, 1.0, 0.0)?];
     let states = [0.5, 1.5].map(|x| turning(Vector3::x() * x, Vector3::zeros(), omega));
     let mut motion = start(scheme, halves, vec![hinge(0, -0.5, soft), middle], &states)?;
@@ -273,10 +275,8 @@ fn at_center(scheme: SystemScheme, extent: Extent) -> Result<f64, String> {
 
 fn massless_rod(scheme: SystemScheme, mass: f64) -> Result<f64, String> {
     let bodies = vec![body(mass, [0.1 * mass; 3], GRAVITY)?, body(1.0, [1e-2; 3], GRAVITY)?];
-    let joints = vec![
-        Joint::revolute("above", [ground(0.0), on(0, -0.5)]),
-        Joint::revolute("below", [on(0, 0.5), on(1, 0.0)]),
-    ];
+    let joints =
+        vec![Joint::revolute("above", [ground(0.0), on(0, -0.5)]), Joint::revolute("below", [on(0, 0.5), on(1, 0.0)])];
     let states = [0.5, 1.0].map(|x| state(Vector3::x() * x, Vector3::zeros(), Vector3::zeros()));
     let mut motion = start(scheme, bodies, joints, &states)?;
     // The period from the horizontal, by the arithmetic-geometric mean.
@@ -326,7 +326,8 @@ fn million(scheme: SystemScheme, extent: Extent) -> Result<f64, String> {
     let bodies = vec![body(2.0, [0.2, 0.3, 0.4], 0.0)?, body(1.0, [0.1, 0.2, 0.15], 0.0)?];
     let ball = Joint::spherical("ball", [on(0, 0.5), on(1, -0.5)]);
     let omega = Vector3::new(0.3, 2.0, 0.5);
-    let states = [turning(Vector3::zeros(), Vector3::x() * 0.5, omega), turning(Vector3::x(), Vector3::x() * 0.5, -omega)];
+    let states =
+        [turning(Vector3::zeros(), Vector3::x() * 0.5, omega), turning(Vector3::x(), Vector3::x() * 0.5, -omega)];
     let mut motion = start(scheme, bodies, vec![ball], &states)?;
     let [linear, angular] = motion.momenta();
     let steps: u32 = if extent == Extent::Test { 10_000 } else { 1_000_000 };
@@ -351,10 +352,7 @@ fn locked_arm(scheme: SystemScheme, _: Extent) -> Result<f64, String> {
         Joint::revolute("wrist", [on(1, 0.5), on(2, 0.0)]),
         Joint::prismatic(
             "rail",
-            [
-                Marker::on_ground(Vector3::x() * 1.8, along_x),
-                Marker::on_rigid(2, Vector3::zeros(), along_x),
-            ],
+            [Marker::on_ground(Vector3::x() * 1.8, along_x), Marker::on_rigid(2, Vector3::zeros(), along_x)],
         )
         .moved_by(path),
     ];

@@ -84,18 +84,25 @@ pub fn reference(frame: &Frame, motions: &Motions) -> Result<Reference, Nonlinea
     let is_held = |x: Vector3<f64>| hung && near(x.x, first[0]) && near(x.z, first[2] + height);
     let solid = Solid::new(mesh, material, is_held)?;
     let key = |x: [f64; 3]| x.map(|s| (s * 1e6).round() as i64);
-    let numbers: HashMap<[i64; 3], usize> = solid.mesh().positions().iter().zip(0..).map(|(x, i)| (key(*x), i)).collect();
+    let numbers: HashMap<[i64; 3], usize> =
+        solid.mesh().positions().iter().zip(0..).map(|(x, i)| (key(*x), i)).collect();
     // Each bar as a solid of its own, with the numbers of its nodes in the joined mesh.
-    let parts: Result<Vec<(Solid, Vec<usize>, Vec<usize>)>, NonlinearError> = frame.bars.iter().map(|bar| {
-        let mesh = Mesh::new(frame.bar(bar.upright))?;
-        let moved = |x: &[f64; 3]| [0, 1, 2].map(|k| x[k] + bar.at[k]);
-        let find = |x: [f64; 3]| numbers.get(&key(x)).copied().ok_or_else(|| NonlinearError::Mesh("meshes that differ".to_owned()));
-        let own: Result<Vec<usize>, _> = mesh.positions().iter().map(|x| find(moved(x))).collect();
-        let place = |x: &Vector3<f64>| mesh.positions().iter().position(|y| (Vector3::from(*y) - x).norm() < 1e-9);
-        let seen: Option<Vec<usize>> = places(frame, bar.upright).iter().map(place).collect();
-        let seen = seen.ok_or_else(|| NonlinearError::Mesh("no node at a place that is compared".to_owned()))?;
-        Ok((Solid::new(mesh, material, |_| false)?, own?, seen))
-    }).collect();
+    let parts: Result<Vec<(Solid, Vec<usize>, Vec<usize>)>, NonlinearError> = frame
+        .bars
+        .iter()
+        .map(|bar| {
+            let mesh = Mesh::new(frame.bar(bar.upright))?;
+            let moved = |x: &[f64; 3]| [0, 1, 2].map(|k| x[k] + bar.at[k]);
+            let find = |x: [f64; 3]| {
+                numbers.get(&key(x)).copied().ok_or_else(|| NonlinearError::Mesh("meshes that differ".to_owned()))
+            };
+            let own: Result<Vec<usize>, _> = mesh.positions().iter().map(|x| find(moved(x))).collect();
+            let place = |x: &Vector3<f64>| mesh.positions().iter().position(|y| (Vector3::from(*y) - x).norm() < 1e-9);
+            let seen: Option<Vec<usize>> = places(frame, bar.upright).iter().map(place).collect();
+            let seen = seen.ok_or_else(|| NonlinearError::Mesh("no node at a place that is compared".to_owned()))?;
+            Ok((Solid::new(mesh, material, |_| false)?, own?, seen))
+        })
+        .collect();
     let parts = parts?;
     let mut v = vec![0.0; solid.dofs()];
     for ((part, own, _), [velocity, omega]) in parts.iter().zip(&motions.velocities) {
@@ -125,8 +132,13 @@ pub fn reference(frame: &Frame, motions: &Motions) -> Result<Reference, Nonlinea
             let dof = |k: usize| (4.0 * fine[k] - coarse[k]) / 3.0;
             let u: Vec<f64> = own.iter().flat_map(|node| [0, 1, 2].map(|axis| dof(3 * node + axis))).collect();
             let axes = mean_axes(part, &u);
-            let elastic = seen.iter().map(|node| Vector3::from_column_slice(&axes.displacement[3 * node..3 * node + 3]));
-            Seen { rotation: axes.rotation, center: Vector3::from(bar.at) + center(part, &u), elastic: elastic.collect() }
+            let elastic =
+                seen.iter().map(|node| Vector3::from_column_slice(&axes.displacement[3 * node..3 * node + 3]));
+            Seen {
+                rotation: axes.rotation,
+                center: Vector3::from(bar.at) + center(part, &u),
+                elastic: elastic.collect(),
+            }
         };
         frame.bars.iter().zip(&parts).map(of_bar).collect()
     };
@@ -177,7 +189,12 @@ pub fn off(
 fn compare(body: &Observation, seen: &Seen, off: &mut Off) {
     let global_from_body = Matrix3::from_columns(&[0, 1, 2].map(|k| body.attitude.to_global(&Vector3::ith(k, 1.0))));
     let turned = global_from_body * seen.rotation.transpose();
-    let turn = 0.5 * Vector3::new(turned[(2, 1)] - turned[(1, 2)], turned[(0, 2)] - turned[(2, 0)], turned[(1, 0)] - turned[(0, 1)]);
+    let turn = 0.5
+        * Vector3::new(
+            turned[(2, 1)] - turned[(1, 2)],
+            turned[(0, 2)] - turned[(2, 0)],
+            turned[(1, 0)] - turned[(0, 1)],
+        );
     off.attitude = off.attitude.max(turn.norm());
     off.center = off.center.max((body.origin_global - seen.center).norm());
     for (point, expected) in body.points.iter().zip(&seen.elastic) {
@@ -186,7 +203,13 @@ fn compare(body: &Observation, seen: &Seen, off: &mut Off) {
 }
 
 /// The scene of a frame.
-fn scene(directory: &Path, frame: &Frame, motions: &Motions, hinge: Hinge, keys: &str) -> Result<String, NonlinearError> {
+fn scene(
+    directory: &Path,
+    frame: &Frame,
+    motions: &Motions,
+    hinge: Hinge,
+    keys: &str,
+) -> Result<String, NonlinearError> {
     let failed = |error: std::io::Error| NonlinearError::Mesh(error.to_string());
     for (name, upright) in [("lying", false), ("upright", true)] {
         let mesh = frame.bar(upright);

@@ -38,11 +38,7 @@ impl Frame {
     pub fn rhombus(size: [f64; 3], cells: [usize; 2]) -> Self {
         let [l, _, h] = size;
         let bar = |x: f64, z: f64, upright| Bar { at: [x, 0.0, z], upright };
-        Self {
-            size,
-            cells,
-            bars: vec![bar(0.0, -h, false), bar(l, 0.0, true), bar(0.0, l, false), bar(-h, 0.0, true)],
-        }
+        Self { size, cells, bars: vec![bar(0.0, -h, false), bar(l, 0.0, true), bar(0.0, l, false), bar(-h, 0.0, true)] }
     }
 
     /// The mesh of one bar, with its lowest corner at the origin.

@@ -37,7 +37,13 @@ impl Built {
     ///
     /// # Errors
     /// Errors of the start.
-    pub fn start(&self, control: StepControl, end: f64, interval: f64, relaxed: bool) -> Result<SystemSimulation, NonlinearError> {
+    pub fn start(
+        &self,
+        control: StepControl,
+        end: f64,
+        interval: f64,
+        relaxed: bool,
+    ) -> Result<SystemSimulation, NonlinearError> {
         let points = |body: &usize| self.models[*body].points.iter().map(|(_, point)| point.clone()).collect();
         SystemSimulation::new(SystemSetup {
             system: self.tied.system.clone(),

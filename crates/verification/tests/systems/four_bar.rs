@@ -74,9 +74,7 @@ fn a_hinge_out_of_line_locks_rigid_bars_and_lets_flexible_ones_turn() {
     let found = rows(&mut simulation, 3).unwrap();
     println!("{} steps", simulation.stats().accepted);
     // At 2 s and at 3 s.
-    for (row, expected) in
-        [(4, [-0.111_838, -0.076_604, 0.000_913_8]), (6, [-0.118_240, -0.129_219, 0.001_021_7])]
-    {
+    for (row, expected) in [(4, [-0.111_838, -0.076_604, 0.000_913_8]), (6, [-0.118_240, -0.129_219, 0.001_021_7])] {
         let (moved, expected) = (found[row][1].points[0].displacement, Vector3::from(expected));
         println!("{} s: {moved:?} {expected:?}", found[row][1].time);
         assert!((moved - expected).norm() < 1e-3 * expected.norm(), "{moved} {expected}");

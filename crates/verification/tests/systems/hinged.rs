@@ -29,7 +29,10 @@ fn found(frame: &Frame, motions: &Motions, hinges: &[(Hinge, &str)]) -> Vec<Off>
     let found = hinges.iter().map(|(hinge, keys)| {
         let found = off(directory.path(), frame, motions, *hinge, keys, &expected).unwrap();
         let Off { attitude, center, elastic, peak } = found;
-        println!("{hinge:?} {keys:?}: {attitude:.1e} rad, {center:.1e} m, {:.2} % of a peak of {peak:.2e} m", 100.0 * elastic);
+        println!(
+            "{hinge:?} {keys:?}: {attitude:.1e} rad, {center:.1e} m, {:.2} % of a peak of {peak:.2e} m",
+            100.0 * elastic
+        );
         found
     });
     found.collect()
@@ -52,8 +55,9 @@ const BOTH: [(Hinge, &str); 2] = [(Hinge::Balls, MODES), (Hinge::Mean, MODES)];
 #[test]
 #[ignore = "minutes: just nonlinear"]
 fn a_pair_tumbles_as_the_joined_mesh() {
-    let (frame, motions) = tumbling(1.0, 1000, 50);
-    let [balls, mean] = found(&frame, &motions, &BOTH).try_into().unwrap();
+    let (frame, motions) = tumbling(1.0, 2000, 50);
+    let hinges = [BOTH[0], BOTH[1], (Hinge::Balls, "modes = { flexible = 12 }")];
+    let [balls, mean, _] = found(&frame, &motions, &hinges).try_into().unwrap();
     assert!(balls.attitude < 1e-3 && balls.center < 1e-4 && balls.elastic < 0.02, "{balls:?}");
     assert!(mean.attitude > balls.attitude, "{mean:?}");
 }
@@ -74,7 +78,7 @@ fn a_hung_pair_falls_as_the_joined_mesh() {
         rows: 40,
     };
     let [balls, mean] = found(&frame, &motions, &BOTH).try_into().unwrap();
-    assert!(mean.elastic > balls.elastic, "{mean:?}");
+    assert!(mean.attitude > balls.attitude, "{mean:?}");
     assert!(balls.attitude < 1e-3 && balls.center < 1e-3 && balls.elastic < 0.02, "{balls:?}");
 }
 
@@ -110,6 +114,6 @@ fn a_rhombus_moves_as_the_joined_mesh() {
         rows: 25,
     };
     let [balls, mean] = found(&frame, &motions, &BOTH).try_into().unwrap();
-    assert!(mean.elastic > balls.elastic, "{mean:?}");
+    assert!(mean.attitude > balls.attitude, "{mean:?}");
     assert!(balls.attitude < 1e-3 && balls.center < 1e-4 && balls.elastic < 0.02, "{balls:?}");
 }

@@ -3,4 +3,5 @@
 mod four_bar;
 mod hinged;
 mod princeton;
+mod shaft;
 mod welded;

@@ -14,15 +14,20 @@ const MATERIAL: &str = "material = { young_modulus = 7e10, poisson_ratio = 0.33,
 fn errors(size: [f64; 3], cells: [usize; 3], keys: &str) -> ([f64; 2], Option<usize>) {
     let directory = tempfile::tempdir().unwrap();
     write(directory.path(), "half", &box_mesh(size, cells), &[]).unwrap();
-    write(directory.path(), "whole", &box_mesh([2.0 * size[0], size[1], size[2]], [2 * cells[0], cells[1], cells[2]]), &[]).unwrap();
+    write(
+        directory.path(),
+        "whole",
+        &box_mesh([2.0 * size[0], size[1], size[2]], [2 * cells[0], cells[1], cells[2]]),
+        &[],
+    )
+    .unwrap();
     let body = |name: &str, marker: String| {
         format!(
             "[bodies.{name}]\nmesh = 'half.msh'\n{MATERIAL}modes = {{ flexible = 6, static_correction = false }}\n{marker}"
         )
     };
-    let marker = |x: f64| {
-        format!("markers = {{ face = {{ box = [[{}, -1, -1], [{}, 1, 1]], {keys} }} }}\n", x - 1e-6, x + 1e-6)
-    };
+    let marker =
+        |x: f64| format!("markers = {{ face = {{ box = [[{}, -1, -1], [{}, 1, 1]], {keys} }} }}\n", x - 1e-6, x + 1e-6);
     let text = format!(
         "title = 'weld'\nunits = {{ length = 'm', mass = 'kg', time = 's' }}\n{}{}initial = {{ position = [{}, 0, 0] }}\n\
          [[joints]]\nkind = 'fixed'\nbetween = ['a.face', 'b.face']\n[time]\nend = 1.0\ntolerance = 1e-4\n",
