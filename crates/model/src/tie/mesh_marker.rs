@@ -208,7 +208,7 @@ impl MeshMarker {
     }
 
     /// The stiffness by wrenches on the whole, from that by those on the parts: a force is spread by their parts in the whole, a
-    /// moment as forces and moments.
+    /// moment as forces and moments. Eqs. (J16) of `docs/method/systems.md`.
     fn of_whole(&self, of_parts: &[Vec<Mat<f64>>]) -> Vec<Mat<f64>> {
         let inverse = self.whole.inverse_inertia();
         let of_wrench = |[force, moment]: [Vector3<f64>; 2]| {

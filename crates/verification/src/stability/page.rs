@@ -37,12 +37,14 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
             let _ = writeln!(page, "\n{title} {}: {refusal}", number + 1);
         }
     }
-    of_systems(&mut page, extent, &mut broken, &mut progress);
-    (page, broken)
+    let (systems, of_systems) = of_systems(extent, &mut progress);
+    broken.extend(of_systems);
+    (page + &systems, broken)
 }
 
-/// The table of systems, which have schemes of their own.
-fn of_systems(page: &mut String, extent: Extent, broken: &mut Vec<String>, progress: &mut impl FnMut(&str)) {
+/// The section of systems, which have schemes of their own, and their outcomes that are not what is asked for.
+pub fn of_systems(extent: Extent, progress: &mut impl FnMut(&str)) -> (String, Vec<String>) {
+    let (mut page, mut broken) = (String::new(), Vec::new());
     let mut refusals: Vec<String> = Vec::new();
     let _ = writeln!(
         page,
@@ -67,6 +69,7 @@ fn of_systems(page: &mut String, extent: Extent, broken: &mut Vec<String>, progr
     for (number, refusal) in refusals.iter().enumerate() {
         let _ = writeln!(page, "\nSystems {}: {refusal}", number + 1);
     }
+    (page, broken)
 }
 
 fn row(
