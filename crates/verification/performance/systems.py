@@ -22,7 +22,7 @@ HERE = Path(__file__).parent
 ROWS = 20
 TOLERANCES = ["1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10"]
 TARGETS = [1e-3, 1e-5, 1e-7]
-SECONDS = 20.0  # of Exudyn's longest run
+SECONDS = 12.0  # of Exudyn's longest run
 RADIUS = "0.9"
 # Scene, flexible bodies, the body and the point that are followed, the size of the system, Exudyn's fewest steps.
 CASES = {

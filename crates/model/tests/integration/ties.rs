@@ -336,7 +336,7 @@ fn stress_at_rest(text: &str) -> Vec<f64> {
     models[0].stress.as_ref().unwrap().at_points(&q).map(|stress| stress[0]).collect()
 }
 
-const SEEN: &str = "points = { near = [20, 0, 5], middle = [60, 0, 5] }\nstress = true\n";
+const SEEN: &str = "points = { a = [60, 0, 5], b = [20, 0, 5] }\nstress = true\n";
 /// Light beside the bar, so that it comes to rest with it.
 const LIGHT: &str =
     "rigid = { mass = 1e-7, center_of_mass = [0, 0, 0], inertia = [[1e-5, 0, 0], [0, 1e-5, 0], [0, 0, 1e-5]] }\n";
@@ -353,7 +353,7 @@ fn the_force_of_a_joint_stresses_a_body_as_beams_say() {
          [[joints]]\nkind = 'fixed'\nbetween = ['ground', 'bar.root']\n\
          [[joints]]\nkind = 'spherical'\nbetween = ['bar.tip', 'block.m']\n{TIME}"
     ));
-    for (found, x) in found.iter().zip([20.0, 60.0]) {
+    for (found, x) in found.iter().zip([60.0, 20.0]) {
         let expected = force * (200.0 - x) * 5.0 / (1e4 / 12.0);
         println!("{x}: {found} {expected}");
         assert!((found / expected - 1.0).abs() < 0.01, "{x}: {found} {expected}");

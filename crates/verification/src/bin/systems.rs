@@ -11,6 +11,9 @@ use std::time::Instant;
 use dynamics::{Observation, Reached, StepControl};
 use verification::systems::run::built;
 
+/// Time of all runs of one tolerance together, at least.
+const LEAST_SECONDS: f64 = 0.2;
+
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [scene, body, point, rows, tolerances @ ..] = arguments.as_slice() else {
@@ -45,8 +48,9 @@ impl Clock {
     }
 }
 
-/// Nanoseconds of this thread on a processor, of Linux.
+/// Nanoseconds of this thread on a processor, of Linux, which counts them where threads take turns.
 fn nanoseconds() -> Option<u64> {
+    std::thread::yield_now();
     std::fs::read_to_string("/proc/thread-self/schedstat").ok()?.split(' ').next()?.parse().ok()
 }
 
@@ -60,27 +64,32 @@ fn ladder(scene: &Path, [body, point]: [&str; 2], rows: &str, tolerances: &[Stri
     let end = system.bodies[0].time.end;
     for tolerance in tolerances {
         let interval = end / rows.parse::<f64>()?;
-        let mut simulation = built.start(StepControl::Tolerance(tolerance.parse()?), end, interval, false)?;
-        let mut row: Vec<Observation> = (0..built.models.len()).map(|body| simulation.room(body)).collect();
-        let mut positions = Vec::new();
+        let control = StepControl::Tolerance(tolerance.parse()?);
         let (_, shapes) = &built.models[number].points[seen];
         let place = |row: &[Observation]| {
             let body = &row[of_system];
             let arm = shapes.position_body() + body.points[seen].elastic_displacement_body;
             body.origin_global + body.attitude.to_global(&arm)
         };
-        let begin = Clock::new();
-        loop {
+        // Short runs are repeated: clocks are coarse.
+        let (mut seconds, mut runs) = (0.0, 0.0);
+        let (positions, simulation) = loop {
+            let mut simulation = built.start(control, end, interval, false)?;
+            let mut row: Vec<Observation> = (0..built.models.len()).map(|body| simulation.room(body)).collect();
+            let begin = Clock::new();
             simulation.observe(&mut row)?;
-            positions.push(place(&row));
-            while simulation.advance_watched(1000, |_, _| ())? == Reached::Between {}
-            if positions.len() as f64 * interval > end * (1.0 - 1e-9) {
-                break;
+            let mut positions = vec![place(&row)];
+            while positions.len() as f64 * interval < end * (1.0 + 1e-9) {
+                while simulation.advance_watched(1000, |_, _| ())? == Reached::Between {}
+                simulation.observe(&mut row)?;
+                positions.push(place(&row));
             }
-        }
-        simulation.observe(&mut row)?;
-        positions.push(place(&row));
-        let seconds = begin.seconds();
+            (seconds, runs) = (seconds + begin.seconds(), runs + 1.0);
+            if seconds > LEAST_SECONDS {
+                break (positions, simulation);
+            }
+        };
+        let seconds = seconds / runs;
         let stats = simulation.stats();
         let positions: Vec<String> = positions.iter().map(|x| format!("[{:?}, {:?}, {:?}]", x.x, x.y, x.z)).collect();
         println!(
