@@ -37,7 +37,7 @@ use crate::{output, threads};
 /// keep, the loads, and the time. Start with `flexframe run examples/plate.toml`.
 #[derive(Debug, Parser)]
 #[command(name = "flexframe", version, max_term_width = 100, after_long_help = exit_codes(), after_help = "--help says more, exit codes too.")]
-struct Cli {
+pub struct Cli {
     /// Threads for meshes and modes; all cores if not given. The results are the same for any number.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: Option<u16>,

@@ -2,6 +2,8 @@
 
 mod cli;
 mod cli_error;
+#[cfg(test)]
+mod documentation;
 mod out_of_memory;
 mod output;
 mod progress;

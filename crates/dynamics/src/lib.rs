@@ -72,13 +72,19 @@ pub use system::joint::coordinate::{Coordinate, JointCoordinates};
 pub use system::joint::coupling::{CoupledCoordinate, Coupling};
 pub use system::joint::drive::JointDrive;
 pub use system::joint::force::{Friction, JointForce, Stops};
+pub use system::joint::law::{JointLaw, JointLawFn};
 pub use system::joint::observation::JointObservation;
 pub use system::joint::row::Row;
 pub use system::joint::{Joint, JointPart};
+pub use system::linear::{
+    CommonSpin, Linearization, Spring, SteadyError, SteadyState, SystemMode, Unbalance, Vibrations,
+};
 pub use system::marker::Marker;
-pub use system::marker::motion::{MarkerMotion, MarkerWrench};
+pub use system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 pub use system::radau::{Failed, JointWork, SystemMotion, Tried};
-pub use system::simulation::{Assembled, SystemSetup, SystemSimulation};
+pub use system::simulation::SystemSimulation;
+pub use system::simulation::observation::SystemObservation;
+pub use system::simulation::setup::{Assembled, SystemSetup};
 pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 

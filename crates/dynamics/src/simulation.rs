@@ -6,6 +6,8 @@ pub(crate) mod builder;
 pub mod checkpoint;
 pub(crate) mod events;
 pub(crate) mod fingerprint;
+pub(crate) mod last_step;
+pub(crate) mod longest_step;
 pub(crate) mod plan;
 pub(crate) mod setup;
 
@@ -16,9 +18,6 @@ use serde::{Deserialize, Serialize};
 use crate::body::motion_state::MotionState;
 use crate::body::shapes::PointShapes;
 use crate::error::{SetupError, StepError};
-use crate::history::History;
-use crate::history::formula_steps::FormulaSteps;
-use crate::load::SharedLoad;
 use crate::motion::{ErrorEstimate, Motion};
 use crate::observation::Observation;
 use crate::observation::moment::Moment;
@@ -29,8 +28,10 @@ use crate::simulation::allowance::Allowance;
 use crate::simulation::checkpoint::{
     CheckpointError, counts, decode, encode, equal_room, expect, from_words, to_words,
 };
-use crate::simulation::events::{Event, Events, LastStep};
+use crate::simulation::events::{Event, Events};
 use crate::simulation::fingerprint::Fingerprint;
+use crate::simulation::last_step::LastStep;
+use crate::simulation::longest_step::LongestStep;
 use crate::simulation::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, Segment, StepControl};
 use crate::simulation::setup::{Beginning, Setup};
 
@@ -71,10 +72,7 @@ pub enum Reached {
 pub struct Simulation {
     fingerprint: Fingerprint,
     motion: Box<dyn Motion>,
-    loads: Vec<SharedLoad>,
-    /// History of the drive.
-    drive: Option<History>,
-    formula_steps: FormulaSteps,
+    longest_step: LongestStep,
     plan: Plan,
     walk: Walk,
     rows: Rows,
@@ -193,12 +191,8 @@ impl Simulation {
                 Walk::Halved { tolerance, allowance: Allowance::default(), longest_try: f64::INFINITY, steps: None }
             }
         };
-        let drive = setup.physics.drive.as_ref().map(|drive| drive.speed.history.clone());
-        let of_loads = setup.loads.iter().filter_map(|load| load.history());
-        let histories: Vec<History> = of_loads.chain(&drive).cloned().collect();
-        let formula_steps = FormulaSteps::new(&histories, setup.end)?;
-        let of_loads = setup.loads.iter().flat_map(|load| load.discontinuities());
-        let discontinuities = of_loads.chain(drive.iter().flat_map(History::discontinuities));
+        let drive = setup.physics.drive.as_ref().map(|drive| &drive.speed.history);
+        let longest_step = LongestStep::new(setup.loads, drive, setup.end)?;
         let looked_at = Observation::new(motion.flexible(), setup.points.len());
         let account = EnergyAccount::new(motion.energies(), energy_of_loads);
         Ok(Self {
@@ -209,10 +203,8 @@ impl Simulation {
             last_step: None,
             looked_at,
             observers: Observers::new(account),
-            plan: Plan::new(setup.end, discontinuities, setup.rows),
-            loads: setup.loads.to_vec(),
-            drive,
-            formula_steps,
+            plan: Plan::new(setup.end, longest_step.discontinuities(), setup.rows),
+            longest_step,
             walk,
             rows: setup.rows,
             end: setup.end,
@@ -347,7 +339,8 @@ impl Simulation {
         let Self { motion, events, last_step, looked_at, points, plan, .. } = self;
         let Some(step) = last_step.as_mut().filter(|_| !events.is_empty()) else { return Ok(None) };
         motion.observe(points, looked_at)?;
-        let Some(passed) = events.first_passed(step, looked_at, points, plan.same())? else { return Ok(None) };
+        let passed = events.first_passed(&mut step.with_points(points), looked_at, plan.same())?;
+        let Some(passed) = passed else { return Ok(None) };
         // At the end the motion is there already, and beyond the discontinuity that may be there.
         if !passed.at_end {
             motion.copy_state(step.probe());
@@ -537,11 +530,7 @@ impl Simulation {
                 return next;
             }
             let segment = self.plan.next_segment()?;
-            // Step control does not see what swings within a step either, where all its stages fall on like phases.
-            let branch_time = segment.start + 0.5 * segment.length;
-            let of_loads = self.loads.iter().map(|load| load.longest_step(branch_time));
-            let of_drive = self.drive.iter().map(|history| history.longest_step(branch_time));
-            let longest = of_loads.chain(of_drive).fold(self.formula_steps.longest_step(branch_time), f64::min);
+            let longest = self.longest_step.in_segment(&segment);
             match &mut self.walk {
                 Walk::Equal { step, steps } => {
                     *steps = Some(EqualSteps::new(segment, step.min(longest)));

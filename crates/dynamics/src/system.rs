@@ -11,6 +11,7 @@ pub(crate) mod element;
 mod elimination;
 mod invariants;
 pub(crate) mod joint;
+pub(crate) mod linear;
 pub(crate) mod marker;
 pub(crate) mod radau;
 mod reactions;

@@ -75,7 +75,7 @@ def theirs(flexframe, case):
 
 
 def seconds_for(pairs, target):
-    """Seconds at an error, by a line between logarithms; beyond the ends, "at most" or by the slope of the last two, marked."""
+    """Seconds at an error, by a line between logarithms; beyond the ends, "at most", or by an order of two, marked."""
     pairs = [(seconds, error) for seconds, error, _ in pairs]
     within = [i for i in range(len(pairs)) if all(error <= target for _, error in pairs[i:])]
     if within and within[0] == 0:
@@ -84,9 +84,8 @@ def seconds_for(pairs, target):
         (s0, e0), (s1, e1) = pairs[within[0] - 1], pairs[within[0]]
         part = math.log(e0 / target) / math.log(e0 / e1)
         return s0 * (s1 / s0) ** part, ""
-    (s0, e0), (s1, e1) = pairs[-2:]
-    slope = math.log(s1 / s0) / math.log(e0 / e1) if e0 > e1 else 0.5
-    return s1 * (e1 / target) ** slope, "extrapolated"
+    seconds, error = pairs[-1]
+    return seconds * (error / target) ** 0.5, "extrapolated"
 
 
 def main():
@@ -101,7 +100,7 @@ def main():
         for target in TARGETS:
             (a, how_a), (b, how_b) = seconds_for(mine, target), seconds_for(others, target)
             cell = lambda seconds, how: f"{1e3 * seconds:.3g} ms" + (f" ({how})" if how else "")
-            rows.append(f"| {name} | {target:.0e} | {cell(a, how_a)} | {cell(b, how_b)} | {b / a:.1f} |")
+            rows.append(f"| {name} | {target:.0e} | {cell(a, how_a)} | {cell(b, how_b)} | {b / a:.3g} |")
         for who, pairs in (("flexframe", mine), ("Exudyn", others)):
             axis.loglog([s for s, _, _ in pairs], [e for _, e, _ in pairs], "o-", label=who)
             ladders += [f"| {name} | {who} | {n} | {1e3 * s:.3g} ms | {e:.1e} |" for s, e, n in pairs]

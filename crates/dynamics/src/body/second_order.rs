@@ -78,6 +78,27 @@ impl SecondOrder {
         Self { terms: self.terms.iter().map(leading).collect(), modes }
     }
 
+    /// Adds factor × Σ_d (d · vector) K_d, the stiffness against a load along `vector`, to the leading entries of a matrix.
+    pub(crate) fn add_stiffness(&self, factor: f64, vector: &Vector3<f64>, mut to: faer::MatMut<'_, f64>) {
+        let modes = to.nrows().min(self.modes);
+        for Term { direction, stiffness, .. } in self.terms.iter() {
+            let along = factor * direction.dot(vector);
+            for (i, j) in (0..modes).flat_map(|j| (0..modes).map(move |i| (i, j))) {
+                to[(i, j)] += along * stiffness[(i, j)];
+            }
+        }
+    }
+
+    /// The columns of ∂u₂/∂q, added to those of a displacement.
+    pub(crate) fn add_slopes(&self, q: &[f64], columns: &mut [Vector3<f64>]) {
+        for Term { direction, stiffness, .. } in self.terms.iter() {
+            for (i, column) in columns.iter_mut().enumerate().take(self.modes) {
+                let k_q: f64 = q.iter().enumerate().map(|(j, q)| stiffness[(i, j)] * q).sum();
+                *column -= direction * k_q;
+            }
+        }
+    }
+
     /// u₂.
     pub(crate) fn displacement(&self, q: &[f64]) -> Vector3<f64> {
         self.of(q, q) * 0.5

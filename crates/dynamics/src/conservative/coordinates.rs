@@ -5,7 +5,10 @@ use modal::ReducedBody;
 use nalgebra::Vector3;
 
 use crate::body::spin_stiffness::SpinStiffness;
+use crate::conservative::body::ConservativeBody;
 use crate::conservative::manifold::Manifold;
+use crate::matrix::four::Padded;
+use crate::matrix::side_by_side::Lists;
 
 /// The body whose shapes ξ counts, and what leads from z to ξ.
 pub(crate) struct InCoordinates<'a> {
@@ -76,4 +79,45 @@ pub(crate) fn pair_weights([a, b]: [&Vector3<f64>; 2]) -> [f64; 6] {
 
 fn weighted(matrices: &[Mat<f64>; 6], weights: &[f64; 6], i: usize, j: usize) -> f64 {
     matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
+}
+
+/// c_ij, N_ij − K_ij and G_i of a body that turns freely, each zero where its effect is off.
+pub(crate) struct InertiaConstants {
+    /// c_ij of the pairs.
+    pub first: [Vec<f64>; 6],
+    /// N_ij of the pairs.
+    pub second: [Mat<f64>; 6],
+    /// G_i.
+    pub gyroscopic: [Mat<f64>; 3],
+}
+
+impl ConservativeBody {
+    /// Its constants of inertia; it turns freely about three axes and has no large modes.
+    pub(crate) fn inertia_constants(&self) -> InertiaConstants {
+        let nf = self.flexible();
+        let zeros = || Mat::zeros(nf, nf);
+        let gyroscopic: [Mat<f64>; 3] =
+            std::array::from_fn(|k| if k < self.g_count { self.matrices.matrix(k) } else { zeros() });
+        let undeformed = Lists { groups: &self.undeformed, width: self.lists_of_undeformed(), first: self.s_count };
+        let first = std::array::from_fn(|k| {
+            let mut list = Padded::zeros(nf);
+            if k < self.pairs.len() {
+                undeformed.copy(k, list.groups_mut());
+            }
+            list.to_vec()
+        });
+        let second = std::array::from_fn(|k| {
+            if k >= self.pairs.len() {
+                return zeros();
+            }
+            let matrix = self.matrices.matrix(self.g_count + k);
+            if !self.locked {
+                return matrix;
+            }
+            let (i, j) = self.pairs[k];
+            let product = &gyroscopic[i] * &gyroscopic[j];
+            matrix - (&product + product.transpose()) * faer::Scale(0.5)
+        });
+        InertiaConstants { first, second, gyroscopic }
+    }
 }

@@ -59,6 +59,13 @@ impl Stack {
         self.count * self.size * self.size
     }
 
+    /// Matrix k.
+    pub(crate) fn matrix(&self, k: usize) -> Mat<f64> {
+        let groups = self.groups();
+        let entry = |i: usize, j: usize| groups[(i / WIDTH * self.columns + j) * self.count + k][i % WIDTH];
+        Mat::from_fn(self.size, self.size, entry)
+    }
+
     fn groups(&self) -> &[Group] {
         if self.entries.ncols() > 0 { self.entries.col_as_slice(0).as_chunks().0 } else { &[] }
     }
@@ -207,6 +214,7 @@ mod tests {
             let matrices: Vec<_> = (0..count).map(|k| Mat::from_fn(size, size, |i, j| entry(k, i, j))).collect();
             let stack = Stack::new(&matrices);
             assert_eq!(stack.len(), count * size * size);
+            (0..count).for_each(|k| assert_eq!(stack.matrix(k), matrices[k]));
             let list = |phase: f64| -> Vec<f64> { (0..size).map(|j| (j as f64 + phase).cos()).collect() };
             let (x, y) = (list(0.1), list(0.7));
             let [x_groups, y_groups] = [&x, &y].map(|list| Padded::from_slice(list));

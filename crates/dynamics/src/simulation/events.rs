@@ -3,9 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::body::shapes::PointShapes;
 use crate::error::StepError;
-use crate::motion::Motion;
 use crate::observation::Observation;
 
 /// Which way an event function passes through zero.
@@ -20,28 +18,51 @@ pub enum Crossing {
     Any,
 }
 
-/// A function of the motion; a run stops where it passes through zero.
-#[derive(Clone)]
-pub struct Event {
+/// A function of the motion, of a body or of a [system](crate::SystemObservation); a run stops where it passes through zero.
+pub struct Event<O = Observation> {
     name: String,
     crossing: Crossing,
-    function: Arc<dyn Fn(&Observation) -> f64 + Send + Sync>,
+    function: Arc<dyn Fn(&O) -> f64 + Send + Sync>,
 }
 
-impl Event {
+/// A motion that events look at.
+pub(crate) trait Seen {
+    /// Its time.
+    fn time(&self) -> f64;
+}
+
+impl Seen for Observation {
+    fn time(&self) -> f64 {
+        self.time
+    }
+}
+
+/// A step that has been done, inside of which events are looked for.
+pub(crate) trait Inside<O> {
+    /// Start and end of the step.
+    fn span(&self) -> [f64; 2];
+
+    /// The motion at a time inside the step.
+    fn at(&mut self, time: f64) -> Result<&O, StepError>;
+}
+
+impl<O> Event<O> {
     /// An event with a name for messages. The function sees the motion and that of the points of the run.
     pub fn new(
         name: impl Into<String>,
         crossing: Crossing,
-        function: impl Fn(&Observation) -> f64 + Send + Sync + 'static,
+        function: impl Fn(&O) -> f64 + Send + Sync + 'static,
     ) -> Self {
         Self { name: name.into(), crossing, function: Arc::new(function) }
     }
 
     /// Value of its function at a motion.
-    fn value(&self, now: &Observation) -> Result<f64, StepError> {
+    fn value(&self, now: &O) -> Result<f64, StepError>
+    where
+        O: Seen,
+    {
         let value = (self.function)(now);
-        if value.is_finite() { Ok(value) } else { Err(StepError::EventFunction { time: now.time, found: value }) }
+        if value.is_finite() { Ok(value) } else { Err(StepError::EventFunction { time: now.time(), found: value }) }
     }
 
     /// Its name.
@@ -61,66 +82,15 @@ impl Event {
     }
 }
 
-impl fmt::Debug for Event {
+impl<O> Clone for Event<O> {
+    fn clone(&self) -> Self {
+        Self { name: self.name.clone(), crossing: self.crossing, function: Arc::clone(&self.function) }
+    }
+}
+
+impl<O> fmt::Debug for Event<O> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Event").field("name", &self.name).field("crossing", &self.crossing).finish_non_exhaustive()
-    }
-}
-
-/// The last step: where it began, and how it was taken.
-#[derive(Debug, Clone)]
-pub(crate) struct LastStep {
-    /// The scheme at the start of the step.
-    before: Box<dyn Motion>,
-    /// Where times inside the step are tried.
-    probe: Box<dyn Motion>,
-    observation: Observation,
-    /// Time at its end, to the last bit that of the scheme there.
-    end: f64,
-    /// True if it was taken in two halves, as under step control.
-    halved: bool,
-}
-
-impl LastStep {
-    pub(crate) fn new(motion: &dyn Motion, points: usize) -> Self {
-        let observation = Observation::new(motion.flexible(), points);
-        let (before, probe) = (motion.boxed_clone(), motion.boxed_clone());
-        Self { before, probe, observation, end: motion.time(), halved: false }
-    }
-
-    /// Keeps the state before a step that ends at a time.
-    pub(crate) fn begin(&mut self, motion: &dyn Motion, end: f64, halved: bool) {
-        self.before.copy_state(motion);
-        self.end = end;
-        self.halved = halved;
-    }
-
-    /// Start and end of the step.
-    pub(crate) fn span(&self) -> [f64; 2] {
-        [self.before.time(), self.end]
-    }
-
-    /// The motion at a time inside the step: by a shorter step from its start, so that it is as accurate as the scheme.
-    pub(crate) fn at(&mut self, time: f64, points: &[PointShapes]) -> Result<&Observation, StepError> {
-        let Self { before, probe, observation, halved, .. } = self;
-        probe.copy_state(&**before);
-        let start = before.time();
-        let h = time - start;
-        if h > 0.0 {
-            if *halved {
-                probe.step(0.5 * h, start + 0.5 * h)?;
-                probe.step(0.5 * h, time)?;
-            } else {
-                probe.step(h, time)?;
-            }
-        }
-        probe.observe(points, observation)?;
-        Ok(observation)
-    }
-
-    /// The scheme at the time that was looked at last.
-    pub(crate) fn probe(&self) -> &dyn Motion {
-        &*self.probe
     }
 }
 
@@ -128,14 +98,14 @@ impl LastStep {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Passed {
     pub number: usize,
-    /// True if it is at the end of the step but for rounding; if not, the probe of the step is there.
+    /// True if it is at the end of the step but for rounding; if not, the step was last looked at there.
     pub at_end: bool,
 }
 
 /// The events of a run, with their values at the start of the step.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Events {
-    list: Vec<Event>,
+#[derive(Debug, Clone)]
+pub(crate) struct Events<O = Observation> {
+    list: Vec<Event<O>>,
     values: Vec<f64>,
     after: Vec<f64>,
     /// True if the values are those of another state.
@@ -145,20 +115,26 @@ pub(crate) struct Events {
 /// Halvings of a step are enough of these to reach rounding, and the secants come sooner.
 const MAX_TRIES: usize = 100;
 
-impl Events {
+impl<O> Default for Events<O> {
+    fn default() -> Self {
+        Self { list: Vec::new(), values: Vec::new(), after: Vec::new(), stale: false }
+    }
+}
+
+impl<O: Seen> Events<O> {
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
     /// Adds an event, and returns its number.
-    pub(crate) fn add(&mut self, event: Event, now: &Observation) -> Result<usize, StepError> {
+    pub(crate) fn add(&mut self, event: Event<O>, now: &O) -> Result<usize, StepError> {
         self.values.push(event.value(now)?);
         self.after.push(0.0);
         self.list.push(event);
         Ok(self.list.len() - 1)
     }
 
-    pub(crate) fn get(&self, number: usize) -> Option<&Event> {
+    pub(crate) fn get(&self, number: usize) -> Option<&Event<O>> {
         self.list.get(number)
     }
 
@@ -173,7 +149,7 @@ impl Events {
     }
 
     /// Finds the values of the events at a motion.
-    pub(crate) fn reset(&mut self, now: &Observation) -> Result<(), StepError> {
+    pub(crate) fn reset(&mut self, now: &O) -> Result<(), StepError> {
         for (value, event) in self.values.iter_mut().zip(&self.list) {
             *value = event.value(now)?;
         }
@@ -185,9 +161,8 @@ impl Events {
     /// rounding. Times closer than `same` are one.
     pub(crate) fn first_passed(
         &mut self,
-        step: &mut LastStep,
-        now: &Observation,
-        points: &[PointShapes],
+        step: &mut impl Inside<O>,
+        now: &O,
         same: f64,
     ) -> Result<Option<Passed>, StepError> {
         let [start, end] = step.span();
@@ -197,7 +172,7 @@ impl Events {
             if !event.is_passed(self.values[k], self.after[k]) {
                 continue;
             }
-            let time = locate(event, [start, end], [self.values[k], self.after[k]], step, points)?;
+            let time = locate(event, [start, end], [self.values[k], self.after[k]], step)?;
             if first.is_none_or(|(_, earliest)| time < earliest) {
                 first = Some((k, time));
             }
@@ -208,7 +183,7 @@ impl Events {
         };
         let at_end = end - time <= same;
         if !at_end {
-            let there = step.at(time, points)?;
+            let there = step.at(time)?;
             for (after, event) in self.after.iter_mut().zip(&self.list) {
                 *after = event.value(there)?;
             }
@@ -225,15 +200,14 @@ impl Events {
 
 /// The time, to rounding, at which an event function has passed through zero between two times: regula falsi in the
 /// Illinois form, which halves the value at an end that stays.
-fn locate(
-    event: &Event,
+fn locate<O: Seen>(
+    event: &Event<O>,
     [mut from, mut to]: [f64; 2],
     [mut before, mut after]: [f64; 2],
-    step: &mut LastStep,
-    points: &[PointShapes],
+    step: &mut impl Inside<O>,
 ) -> Result<f64, StepError> {
     // At the start of the step is what has waited for another event there.
-    if event.is_passed(before, event.value(step.at(from, points)?)?) {
+    if event.is_passed(before, event.value(step.at(from)?)?) {
         return Ok(from);
     }
     let mut stayed = 0;
@@ -244,7 +218,7 @@ fn locate(
         }
         let secant = to - (to - from) * (after / (after - before));
         let time = secant.clamp(from + 0.5 * spacing, to - 0.5 * spacing);
-        let value = event.value(step.at(time, points)?)?;
+        let value = event.value(step.at(time)?)?;
         if event.is_passed(before, value) {
             (to, after) = (time, value);
             if stayed == 1 {

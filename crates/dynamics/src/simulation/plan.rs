@@ -105,6 +105,11 @@ impl Plan {
         self.stop = time;
     }
 
+    /// The time to stop at.
+    pub(crate) fn stop(&self) -> Option<f64> {
+        self.stop
+    }
+
     /// True if a time is the stop time, or beyond it.
     pub(crate) fn is_at_stop(&self, time: f64) -> bool {
         self.stop.is_some_and(|stop| stop <= time + self.same())

@@ -122,11 +122,31 @@ impl Collocation {
     }
 
     /// Factors of the increments at the stages in that at a time, counted in steps.
-    fn at(&self, time: f64) -> [f64; STAGES] {
+    pub fn at(&self, time: f64) -> [f64; STAGES] {
         std::array::from_fn(|i| {
             let others = (0..STAGES).filter(|j| *j != i);
             time / self.times[i]
                 * others.map(|j| (time - self.times[j]) / (self.times[i] - self.times[j])).product::<f64>()
+        })
+    }
+
+    /// The polynomial of fourth degree whose rate, counted in steps, is 1 at the start and 0 at the stages. It is 0 at both ends.
+    pub fn bend(&self, time: f64) -> f64 {
+        let rate = |time: f64| -> f64 { self.times.iter().map(|stage| 1.0 - time / stage).product() };
+        // The rate is of third degree, and Simpson's rule is exact.
+        time / 6.0 * (rate(0.0) + 4.0 * rate(0.5 * time) + rate(time))
+    }
+
+    /// Weights of the rates at the stages in an integral from the start to a time, counted in steps.
+    pub fn weights_to(&self, time: f64) -> [f64; STAGES] {
+        // The polynomials that are 1 at one stage and 0 at the others are of second degree, and Simpson's rule is exact.
+        let half = 0.5 * time;
+        std::array::from_fn(|i| {
+            let at = |time: f64| -> f64 {
+                let others = (0..STAGES).filter(|j| *j != i);
+                others.map(|j| (time - self.times[j]) / (self.times[i] - self.times[j])).product()
+            };
+            time / 6.0 * (at(0.0) + 4.0 * at(half) + at(time))
         })
     }
 
@@ -181,6 +201,36 @@ mod tests {
                 from_real[i] * real * to_real[j] + 2.0 * (from_complex[i] * complex * to_complex[j]).re
             });
             assert!((made - inverse).norm() < 1e-12);
+        }
+    }
+
+    /// Closed form: integrals of 1, t and t².
+    #[test]
+    fn rates_are_summed_up_to_any_time() {
+        for scheme in [Collocation::radau(), Collocation::gauss()] {
+            for time in [0.0, 0.3, 0.8, 1.0] {
+                let weights = scheme.weights_to(time);
+                for power in 0..3 {
+                    let sum: f64 = weights.iter().zip(scheme.times).map(|(b, c)| b * c.powi(power)).sum();
+                    assert!((sum - time.powi(power + 1) / f64::from(power + 1)).abs() < 1e-14);
+                }
+            }
+            assert!(scheme.weights_to(1.0).iter().zip(scheme.weights).all(|(b, whole)| (b - whole).abs() < 1e-14));
+        }
+    }
+
+    /// Closed form: with its rate at the start, a polynomial of degree 4 is found from its rates at the stages.
+    #[test]
+    fn a_bend_makes_a_step_one_order_better() {
+        for scheme in [Collocation::radau(), Collocation::gauss()] {
+            let (x, rate) = (|t: f64| t - 0.3 * t.powi(2) + 2.0 * t.powi(4), |t: f64| 1.0 - 0.6 * t + 8.0 * t.powi(3));
+            let missing = rate(0.0) - scheme.at_start.iter().zip(scheme.times).map(|(l, c)| l * rate(c)).sum::<f64>();
+            for time in [0.0, 0.2, 0.7, 1.0] {
+                let weights = scheme.weights_to(time);
+                let of_stages: f64 = weights.iter().zip(scheme.times).map(|(b, c)| b * rate(c)).sum();
+                assert!((of_stages + missing * scheme.bend(time) - x(time)).abs() < 1e-14);
+            }
+            assert!(scheme.bend(1.0).abs() < 1e-15);
         }
     }
 

@@ -7,6 +7,7 @@ use crate::system::joint::Joint;
 use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::coupling::Coupling;
 use crate::system::joint::force::JointForce;
+use crate::system::joint::row::Row;
 use crate::system::marker::Marker;
 
 /// Joints, couplings of them, and forces between markers.
@@ -50,10 +51,27 @@ impl Connections {
         of_joints.chain(self.couplings.iter().map(|coupling| coupling.name.as_str()))
     }
 
+    /// For each row, true if a drive moves it.
+    pub fn is_driven(&self) -> impl Iterator<Item = bool> {
+        let is_driven = |row: &Row| matches!(row, Row::DrivenRotation | Row::DrivenPoint);
+        self.joints
+            .iter()
+            .flat_map(Joint::groups)
+            .flat_map(move |(_, rows)| rows.iter().map(is_driven))
+            .chain(self.couplings.iter().map(|_| false))
+    }
+
     /// The forces of joints, with the numbers of the joints.
     pub fn joint_forces(&self) -> impl Iterator<Item = (usize, Coordinate, &JointForce)> {
         let numbered = self.joints.iter().enumerate();
         numbered.flat_map(|(number, joint)| joint.forces().map(move |(coordinate, force)| (number, coordinate, force)))
+    }
+
+    /// Times at which laws from outside jump.
+    pub fn discontinuities(&self) -> impl Iterator<Item = f64> {
+        let laws = self.joint_forces().flat_map(|(_, _, force)| &force.laws);
+        let of_elements = self.elements.iter().flat_map(|element| element.discontinuities());
+        laws.flat_map(|law| law.discontinuities()).chain(of_elements)
     }
 
     /// The markers that each row has ends on: rows of joints, of couplings, of forces of joints, of elements.

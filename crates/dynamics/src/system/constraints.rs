@@ -11,7 +11,7 @@ use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
 pub(crate) struct End {
     pub body: usize,
     /// First coordinate of the body.
-    first: usize,
+    pub first: usize,
     /// Entries: force and moment about the origin, both in body axes, and modal forces.
     pub entries: Vec<f64>,
 }

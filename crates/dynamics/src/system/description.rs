@@ -10,7 +10,9 @@ use crate::system::connections::Connections;
 use crate::system::description::groups::free_groups;
 use crate::system::element::ForceElement;
 use crate::system::joint::Joint;
+use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::coupling::Coupling;
+use crate::system::joint::law::JointLaw;
 use crate::system::marker::Marker;
 
 /// Bodies and what connects them.
@@ -68,6 +70,36 @@ impl System {
     pub fn with_elements(mut self, elements: Vec<Arc<dyn ForceElement>>) -> Result<Self, SetupError> {
         self.connections.elements = elements;
         self.connections.markers().try_for_each(|marker| check(marker, &self.bodies))?;
+        Ok(self)
+    }
+
+    /// The same with other bodies in the place of these, such as the same ones under more loads.
+    ///
+    /// # Errors
+    /// [`SetupError`] for another number of bodies, and as [`System::new`].
+    pub fn with_bodies(self, bodies: Vec<ConservativeBody>) -> Result<Self, SetupError> {
+        let (expected, found) = (self.bodies.len(), bodies.len());
+        if found != expected {
+            return Err(SetupError::Length { what: "the list of bodies", expected, found });
+        }
+        let Connections { joints, couplings, elements } = self.connections;
+        Self::new(bodies, joints)?.with_couplings(couplings)?.with_elements(elements)
+    }
+
+    /// The same with one more law for the force along a coordinate of a joint.
+    ///
+    /// # Errors
+    /// [`SetupError`] for a joint that is not there.
+    pub fn with_law(mut self, joint: usize, along: Coordinate, law: Arc<dyn JointLaw>) -> Result<Self, SetupError> {
+        let Some(joint) = self.connections.joints.get_mut(joint) else {
+            let what = "the number of the joint of a law";
+            return Err(SetupError::Value { what, found: joint as f64, expected: "that of a joint, from 0" });
+        };
+        let force = match along {
+            Coordinate::Turn => &mut joint.turn_force,
+            Coordinate::Slide => &mut joint.slide_force,
+        };
+        force.get_or_insert_default().laws.push(law);
         Ok(self)
     }
 

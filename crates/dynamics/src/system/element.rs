@@ -5,7 +5,7 @@ pub(crate) mod springs;
 use std::fmt;
 
 use crate::system::marker::Marker;
-use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
+use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 
 /// Takes a direction of an element: its number, its stiffness and damping, and the wrenches of one unit of force along it.
 pub type SetDirection<'a> = dyn FnMut(usize, [f64; 2], &[MarkerWrench]) + 'a;
@@ -22,6 +22,11 @@ pub trait ForceElement: fmt::Debug + Send + Sync {
     /// `wrenches` are zero before.
     fn apply(&self, times: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]);
 
+    /// Times at which the law or one of its rates jumps, rising. Steps end there.
+    fn discontinuities(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
     /// Number of directions in which it may be stiff. Steps with a stiff law that has none are as short as its period asks.
     fn directions(&self) -> usize {
         0
@@ -31,4 +36,30 @@ pub trait ForceElement: fmt::Debug + Send + Sync {
     /// one unit of force along it. Where the markers move along it, by a path that is the work of those wrenches, the wrenches
     /// fall by (stiffness × path + damping × rate of the path) times them. It need not be exact: it is for Newton's method.
     fn linearize(&self, _times: [f64; 2], _motions: &[MarkerMotion], _set: &mut SetDirection<'_>) {}
+
+    /// Finds the change of the wrench on each of its markers by small changes of their motions, for the linearised equations.
+    /// `changes` are zero before.
+    ///
+    /// Without a method of its own a law is differentiated by central differences.
+    fn differentiate(
+        &self,
+        times: [f64; 2],
+        motions: &[MarkerMotion],
+        by: &[MarkerChange],
+        changes: &mut [MarkerWrench],
+    ) {
+        for sign in [1.0, -1.0] {
+            let moved: Vec<MarkerMotion> =
+                motions.iter().zip(by).map(|(motion, change)| motion.changed(change, sign * DIFFERENCE)).collect();
+            let mut wrenches = vec![MarkerWrench::default(); motions.len()];
+            self.apply(times, &moved, &mut wrenches);
+            for (change, wrench) in changes.iter_mut().zip(&wrenches) {
+                change.force_global += wrench.force_global * (0.5 * sign / DIFFERENCE);
+                change.moment_global += wrench.moment_global * (0.5 * sign / DIFFERENCE);
+            }
+        }
+    }
 }
+
+/// Part of a unit change that central differences take.
+const DIFFERENCE: f64 = 1e-6;

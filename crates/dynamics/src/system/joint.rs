@@ -1,9 +1,11 @@
 //! Joints: rows that hold two markers together, and forces along what they leave free.
 
+pub(crate) mod change;
 pub(crate) mod coordinate;
 pub(crate) mod coupling;
 pub(crate) mod drive;
 pub(crate) mod force;
+pub(crate) mod law;
 pub(crate) mod observation;
 pub(crate) mod row;
 pub(crate) mod wrench;

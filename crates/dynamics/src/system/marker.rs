@@ -3,6 +3,7 @@
 //! Eqs. (J1)–(J3) and (J15) of `docs/method/systems.md`.
 
 pub(crate) mod motion;
+pub(crate) mod tangent;
 
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{cross_matrix, transformation_matrix};
@@ -107,7 +108,7 @@ impl Marker {
             axes: global_from_body * transformation_matrix(&-theta) * self.axes,
             arm,
             body_from_global: *body_from_global,
-            tangent: tangent(&theta),
+            tangent: tangent_of(&theta),
         }
     }
 
@@ -185,7 +186,7 @@ pub(crate) struct MarkerPlace {
 }
 
 /// T(θ) = 1 + (1 − cos t)/t² [θ×] + (t − sin t)/t³ [θ×]², t = |θ|.
-fn tangent(theta: &Vector3<f64>) -> Matrix3<f64> {
+pub(crate) fn tangent_of(theta: &Vector3<f64>) -> Matrix3<f64> {
     let t = theta.norm();
     let (first, second) = if t < 1e-2 {
         let square = t * t;

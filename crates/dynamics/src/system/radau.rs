@@ -8,8 +8,12 @@
 //! ```
 
 mod end;
+pub(in crate::system) mod exchange;
 mod newton;
 mod stepping;
+mod within;
+
+pub(in crate::system) use stepping::EXACTNESS;
 
 use nalgebra::{Complex, Vector3};
 use serde::{Deserialize, Serialize};
@@ -26,6 +30,7 @@ use crate::system::elimination::newton::Solution;
 use crate::system::elimination::patterns::Patterns;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::coupling::CoupledCoordinate;
+use crate::system::radau::exchange::StageRates;
 use crate::system::stage::{BodyStart, Stage, Start};
 
 /// The step whose Newton matrix is the metric in which a system is assembled, as a part of the shortest period.
@@ -78,7 +83,7 @@ pub struct SystemMotion {
     pub(super) patterns: Patterns,
     pub(super) time: f64,
     /// The list of each body, as in a [`State`] of it.
-    pub(super) bodies: Vec<State>,
+    pub(crate) bodies: Vec<State>,
     pub(super) start: Start,
     pub(super) first: Stage,
     pub(super) stages: [Stage; STAGES],
@@ -88,6 +93,10 @@ pub struct SystemMotion {
     /// Increments of the stages of the last step, and its length; zero before the first.
     pub(super) last: [[Vec<f64>; 2]; STAGES],
     pub(super) last_length: f64,
+    /// Factors of the bend of the last step, by which its polynomials begin with the rates at the start.
+    pub(super) bend: [Vec<f64>; 2],
+    /// Rates at the stages of the last step of what steps sum up.
+    pub(super) stage_rates: [StageRates; STAGES],
     pub(super) matrices: Matrices,
     room: Room,
     /// The largest energy so far.
@@ -154,6 +163,8 @@ impl SystemMotion {
             multipliers,
             last: std::array::from_fn(|_| [zeros(), zeros()]),
             last_length: 0.0,
+            bend: [zeros(), zeros()],
+            stage_rates: std::array::from_fn(|_| StageRates::new(&flexible, joints)),
             matrices: Matrices::new(&flexible, &patterns),
             room: Room {
                 real: Solution::new(coordinates, &patterns),
@@ -350,9 +361,11 @@ impl SystemMotion {
                 last[1].copy_from_slice(&stage.y);
             }
             self.last_length = h;
-            self.add_work(h);
-            self.reach_end(h);
-            self.end([end, branch_time], h)?;
+            self.find_bend();
+            self.find_stage_rates();
+            self.reach_end();
+            let weights = self.scheme.weights.map(|weight| h * weight);
+            self.land([end, branch_time], h, weights)?;
         }
         Ok(Tried { error, passes })
     }

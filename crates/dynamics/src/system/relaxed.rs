@@ -10,11 +10,10 @@
 //! Eqs. (J9) of `docs/method/systems.md`.
 
 use crate::conservative::{get, part};
-use crate::system::description::System;
 use crate::system::elimination::inverse::{Inertia, Inverse};
 use crate::system::elimination::joint_matrix::JointMatrix;
 use crate::system::radau::{Failed, SystemMotion};
-use crate::system::stage::{Stage, put, vector};
+use crate::system::stage::{put, vector};
 
 /// Passes: the deformation changes the forces a little.
 const PASSES: usize = 6;
@@ -45,7 +44,7 @@ impl SystemMotion {
         self.find_row_accelerations(&velocities, &mut change);
         let Self { first, system, patterns, matrices, .. } = self;
         let mut acceleration = vec![0.0; system.coordinates()];
-        let inverses = rigid_inverses(first, system).ok_or(Failed::Newton)?;
+        let inverses = rigid_inverses(&first.inertia).ok_or(Failed::Newton)?;
         for (b, inverse) in inverses.iter().enumerate() {
             let own = system.first[b]..system.first[b + 1];
             let rates = &first.evaluations[b].rates;
@@ -75,7 +74,7 @@ impl SystemMotion {
     pub(super) fn implied_rows(&self) -> Vec<bool> {
         let Self { first, system, patterns, .. } = self;
         let mut is_implied = vec![false; system.rows()];
-        if let Some(inverses) = rigid_inverses(first, system) {
+        if let Some(inverses) = rigid_inverses(&first.inertia) {
             let mut of_rigid = JointMatrix::new(&patterns.rows, system.coordinates());
             of_rigid.assemble(&patterns.rows, &first.constraints, &inverses);
             of_rigid.factor(&patterns.rows, &mut is_implied, true);
@@ -104,9 +103,9 @@ impl SystemMotion {
 }
 
 /// Inverses of the inertia of bodies without their modes, where the system is; `None` where one is singular.
-fn rigid_inverses(first: &Stage, system: &System) -> Option<Vec<Inverse<f64>>> {
-    let of_body = |(b, inertia): (usize, &Inertia)| {
-        let flexible = system.first[b + 1] - system.first[b] - 6;
+pub(crate) fn rigid_inverses(inertias: &[Inertia]) -> Option<Vec<Inverse<f64>>> {
+    let of_body = |inertia: &Inertia| {
+        let flexible = inertia.coupling[0].len();
         let mut rigid = inertia.clone();
         // J of the body as it is deformed, without its modes.
         for (i, a) in inertia.coupling.iter().enumerate() {
@@ -118,5 +117,5 @@ fn rigid_inverses(first: &Stage, system: &System) -> Option<Vec<Inverse<f64>>> {
         let mut inverse = Inverse::new(flexible);
         inverse.find(1.0, &rigid, std::iter::repeat_n([f64::INFINITY, 0.0], flexible)).then_some(inverse)
     };
-    first.inertia.iter().enumerate().map(of_body).collect()
+    inertias.iter().map(of_body).collect()
 }

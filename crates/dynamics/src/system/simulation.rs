@@ -1,70 +1,36 @@
-//! A run of bodies with joints: steps to rows and discontinuities, observation, checkpoints.
+//! A run of bodies with joints: steps to discontinuities and stops, rows and events within them.
 
-use nalgebra::Vector3;
+mod last_step;
+pub(crate) mod observation;
+mod saved;
+pub(crate) mod setup;
+
 use serde::{Deserialize, Serialize};
 
 use crate::body::motion_state::MotionState;
 use crate::body::shapes::PointShapes;
 use crate::error::{SetupError, StepError};
-use crate::history::History;
-use crate::history::formula_steps::FormulaSteps;
-use crate::history::positive;
+use crate::load::SharedLoad;
 use crate::observation::Observation;
 use crate::observation::energies::Energies;
 use crate::observation::moment::Moment;
 use crate::simulation::account::EnergyAccount;
-use crate::simulation::checkpoint::{CheckpointError, counts, decode, encode, equal_room, expect, finite};
-use crate::simulation::checkpoint::{fixed_room, from_words, to_words};
-use crate::simulation::plan::{EqualSteps, Plan, Progress, Rows, Segment, StepControl};
+use crate::simulation::checkpoint::{equal_room, fixed_room};
+use crate::simulation::events::{Event, Events};
+use crate::simulation::longest_step::LongestStep;
+use crate::simulation::plan::{EqualSteps, Plan, Rows, Segment, StepControl};
 use crate::simulation::{Reached, Stats};
-use crate::system::collocation::SystemScheme;
-use crate::system::description::System;
 use crate::system::joint::observation::JointObservation;
-use crate::system::radau::{Failed, SystemMotion, Tried};
-use crate::system::saved::SavedMotion;
+use crate::system::radau::{EXACTNESS, SystemMotion};
+use crate::system::simulation::last_step::{EXACT, LastStep, of_step};
+use crate::system::simulation::observation::SystemObservation;
+use crate::system::simulation::setup::{Assembled, SystemSetup, assemble, size};
 
-/// Exactness of Newton's method in fixed steps, whose error nobody bounds.
-const EXACT: f64 = 1e-10;
 /// First step that is tried under step control, as a part of the run.
 const FIRST: f64 = 1e-3;
-/// Residuals of positions beyond this part of the size of the system are not closed.
-const CLOSED: f64 = 1e-9;
 
-/// Everything that a run of bodies with joints needs.
-#[derive(Debug, Clone)]
-pub struct SystemSetup {
-    /// The bodies and the joints.
-    pub system: System,
-    /// The motion of each body at the beginning, as far as the joints let it be.
-    pub states: Vec<MotionState>,
-    /// True if the bodies begin deformed as the forces of their motion and their joints ask, so that nothing rings.
-    pub relaxed: bool,
-    /// How it is stepped.
-    pub scheme: SystemScheme,
-    /// How long the steps are. A tolerance is that of each step, relative to the size of the bodies.
-    pub control: StepControl,
-    /// When it ends.
-    pub end: f64,
-    /// When it is observed.
-    pub rows: Rows,
-    /// Points of each body whose motion is observed.
-    pub points: Vec<Vec<PointShapes>>,
-}
-
-/// Change of a body by which the joints close at the beginning.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Assembled {
-    /// Distance that its origin was moved by.
-    pub moved: f64,
-    /// Angle that it was turned by, rad.
-    pub turned: f64,
-    /// Change of the velocity of its origin.
-    pub velocity: f64,
-    /// Change of its angular velocity.
-    pub angular_velocity: f64,
-}
-
-/// A run of bodies with joints in progress.
+/// A run of bodies with joints in progress. Its steps end where they like, and at discontinuities and stops: a row within a step is
+/// that of the step's polynomials.
 #[derive(Debug, Clone)]
 pub struct SystemSimulation {
     motion: SystemMotion,
@@ -74,8 +40,7 @@ pub struct SystemSimulation {
     rows: Rows,
     end: f64,
     steps_since_row: u64,
-    formula_steps: FormulaSteps,
-    histories: Vec<History>,
+    longest_step: LongestStep,
     points: Vec<Vec<PointShapes>>,
     size: f64,
     assembled: Vec<Assembled>,
@@ -83,6 +48,14 @@ pub struct SystemSimulation {
     stats: Stats,
     account: EnergyAccount,
     exchanged: Vec<Exchanged>,
+    events: Events<SystemObservation>,
+    /// Where events look at the motion.
+    looked_at: SystemObservation,
+    /// Kept where there may be rows or events within steps.
+    last_step: Option<Box<LastStep>>,
+    due: Due,
+    /// An event that is still to be told; the motion is there.
+    pending_event: Option<usize>,
 }
 
 /// The way through the present segment.
@@ -97,28 +70,26 @@ struct Walk {
     longest: f64,
 }
 
+/// Rows and stops that have come with the last step.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Due {
+    /// The time of the row within the last step that has been reached.
+    #[serde(with = "equal_room")]
+    within: Option<f64>,
+    /// Number of the next row at an interval.
+    #[serde(with = "fixed_room")]
+    rows: u64,
+    /// True if the stop has been reached, and is still to be told.
+    stop: bool,
+    /// The same of a row after so many steps.
+    row: bool,
+}
+
 /// Energy that has come and gone in a body.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 struct Exchanged {
     sum: f64,
     done: [f64; 2],
-}
-
-/// State of a run in a checkpoint.
-#[derive(Serialize, Deserialize)]
-struct Saved {
-    motion: SavedMotion,
-    plan: Progress,
-    walk: Walk,
-    #[serde(with = "fixed_room")]
-    steps_since_row: u64,
-    account: EnergyAccount,
-    exchanged: Vec<Exchanged>,
-    #[serde(with = "fixed_room")]
-    accepted: u64,
-    #[serde(with = "fixed_room")]
-    rejected: u64,
-    lengths: [f64; 2],
 }
 
 impl SystemSimulation {
@@ -127,16 +98,8 @@ impl SystemSimulation {
     /// # Errors
     /// [`SetupError`]: numbers out of range, states that do not fit their bodies, and joints that cannot be closed.
     pub fn new(setup: SystemSetup) -> Result<Self, SetupError> {
+        setup.check()?;
         let SystemSetup { system, states, relaxed, scheme, control, end, rows, points } = setup;
-        positive("the end", end)?;
-        match control {
-            StepControl::Fixed(step) => positive("the step", step)?,
-            StepControl::Tolerance(tolerance) => positive("the tolerance", tolerance)?,
-        }
-        match rows {
-            Rows::EverySteps(_) => {}
-            Rows::Interval(interval) => positive("the interval of the rows", interval)?,
-        }
         let mut motion = SystemMotion::new(system, &states)?.with_scheme(scheme);
         let size = size(motion.system(), &states);
         let assembled = assemble(&mut motion, &states, relaxed, [size, end])?;
@@ -149,39 +112,42 @@ impl SystemSimulation {
                 _ => redundant.push((name.to_owned(), 1)),
             }
         }
-        let bodies = motion.system().bodies();
-        let loads = || bodies.iter().flat_map(|body| body.loads());
-        let of_joints = || motion.system().joints().iter().flat_map(|joint| joint.histories());
-        let histories: Vec<History> = loads().filter_map(|load| load.history()).chain(of_joints()).cloned().collect();
-        let formula_steps = FormulaSteps::new(&histories, end)?;
-        let discontinuities: Vec<f64> = loads()
-            .flat_map(|load| load.discontinuities())
-            .chain(of_joints().flat_map(History::discontinuities))
-            .collect();
-        let count = bodies.len();
+        let system = motion.system();
+        let loads: Vec<SharedLoad> = system.bodies().iter().flat_map(|body| body.loads()).cloned().collect();
+        let longest_step = LongestStep::new(&loads, system.joints().iter().flat_map(|joint| joint.histories()), end)?;
+        let is_within = matches!(rows, Rows::Interval(_));
         Ok(Self {
-            plan: Plan::new(end, discontinuities.into_iter(), rows),
+            // Rows do not end steps.
+            plan: Plan::new(
+                end,
+                longest_step.discontinuities().chain(system.connections.discontinuities()),
+                Rows::EverySteps(1),
+            ),
             walk: Walk { segment: None, equal: EqualSteps::default(), next: FIRST * end, longest: f64::INFINITY },
+            exchanged: vec![Exchanged::default(); system.bodies().len()],
+            looked_at: SystemObservation::new(system, &points),
+            last_step: is_within.then(|| Box::new(LastStep::new(&motion, &points))),
             motion,
             control,
             rows,
             end,
             steps_since_row: 0,
-            formula_steps,
-            histories,
+            longest_step,
             points,
             size,
             assembled,
             redundant,
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
             account: EnergyAccount::default(),
-            exchanged: vec![Exchanged::default(); count],
+            events: Events::default(),
+            due: Due::NOTHING,
+            pending_event: None,
         })
     }
 
     /// Time that has been reached.
     pub fn time(&self) -> f64 {
-        self.motion.time()
+        self.motion().time()
     }
 
     /// Time at which the run ends.
@@ -189,9 +155,19 @@ impl SystemSimulation {
         self.end
     }
 
-    /// The motion.
+    /// The motion at that time.
     pub fn motion(&self) -> &SystemMotion {
-        &self.motion
+        match &self.last_step {
+            Some(step) if self.due.within.is_some() => &step.probe,
+            _ => &self.motion,
+        }
+    }
+
+    /// True if neither a step nor a row is to come.
+    pub fn is_over(&self) -> bool {
+        let Due { within, stop, row, .. } = self.due;
+        let is_told = !stop && !row && within.is_none() && self.pending_event.is_none();
+        is_told && self.plan.is_over(self.motion.time()) && self.next_row().is_none()
     }
 
     /// Changes of each body by which the joints closed at the beginning.
@@ -240,10 +216,14 @@ impl SystemSimulation {
     pub fn observe<'o>(&mut self, out: impl IntoIterator<Item = &'o mut Observation>) -> Result<(), StepError> {
         let (time, step) = (self.time(), self.stats.longest);
         let in_step = |error: crate::RateError| error.in_step(time, step);
-        self.motion.find_reactions().map_err(in_step)?;
+        let motion = match &mut self.last_step {
+            Some(step) if self.due.within.is_some() => &mut step.probe,
+            _ => &mut self.motion,
+        };
+        motion.find_reactions().map_err(in_step)?;
         let mut sum = Energies { time, internal: 0.0, translation: 0.0, work: 0.0, dissipation: 0.0 };
         for (body, out) in out.into_iter().enumerate() {
-            self.motion.observe(body, &self.points[body], out).map_err(in_step)?;
+            motion.observe(body, &self.points[body], out).map_err(in_step)?;
             if !out.is_finite() {
                 return Err(StepError::NotFinite { time, what: "a quantity of the motion" });
             }
@@ -254,44 +234,260 @@ impl SystemSimulation {
         self.account.check(&sum, 0.0, step)
     }
 
-    /// Observes a joint, after [`Self::observe`].
-    pub fn observe_joint(&self, joint: usize) -> JointObservation {
-        self.motion.observe_joint(joint)
-    }
-
-    /// Goes on to the next row, or as far as `max_steps` tries lead; `watch` sees the motion of each body once for each step
-    /// that is taken, rows or not.
+    /// The bodies and joints at the time that has been reached.
     ///
     /// # Errors
-    /// [`StepError`]; the motion stays where it was before the step that failed.
+    /// As [`Self::observe`].
+    pub fn observation(&mut self) -> Result<SystemObservation, StepError> {
+        let mut out = SystemObservation::new(self.motion.system(), &self.points);
+        self.observe(&mut out.bodies)?;
+        out.time = self.time();
+        for (joint, out) in out.joints.iter_mut().enumerate() {
+            *out = self.observe_joint(joint);
+        }
+        Ok(out)
+    }
+
+    /// Observes a joint, after [`Self::observe`].
+    pub fn observe_joint(&self, joint: usize) -> JointObservation {
+        self.motion().observe_joint(joint)
+    }
+
+    /// Goes on from other states of the bodies, at the time of the first of them. They are moved so that the joints close. Works,
+    /// impulses and balances are counted from there.
+    ///
+    /// # Errors
+    /// [`SetupError`] for lists of the wrong length, numbers that are not finite, and joints that cannot be closed; the motion then
+    /// stays.
+    pub fn set_states(&mut self, states: &[MotionState]) -> Result<(), SetupError> {
+        let mut motion = self.motion().clone();
+        motion.set_states(states)?;
+        self.assembled = assemble(&mut motion, states, false, [self.size, self.end])?;
+        let stays = self.plan.are_same(motion.time(), self.time());
+        self.motion = motion;
+        self.account = EnergyAccount::default();
+        self.exchanged.fill(Exchanged::default());
+        if let Some(step) = &mut self.last_step {
+            step.keep(&self.motion);
+        }
+        if !stays {
+            self.due = Due { rows: self.row_after(self.motion.time()), ..Due::NOTHING };
+        }
+        (self.due.within, self.pending_event) = (None, None);
+        self.events.forget();
+        self.go_on_from_here();
+        Ok(())
+    }
+
+    /// Ends a step at this time and stops there with [`Reached::Stop`], once; rows and events before it come first. `None` takes it
+    /// back.
+    pub fn set_stop_time(&mut self, time: Option<f64>) {
+        self.plan.set_stop(time);
+        self.due.stop = false;
+        self.go_on_from_here();
+    }
+
+    /// Call this after a [`Signal`](crate::Signal), or anything that a load of one's own reads, was changed: the motion goes on from
+    /// the time that has been reached with the loads as they are.
+    pub fn loads_have_changed(&mut self) {
+        self.stay_here();
+        self.motion.forget_last_step();
+        self.events.forget();
+    }
+
+    /// Stops with [`Reached::Event`] where the event's function passes through zero, to rounding on the far side. The time is found
+    /// by shorter steps, so it is as accurate as the scheme. Returns the event's number.
+    ///
+    /// # Errors
+    /// [`StepError`] where the motion cannot be observed, and where the event's function gives no finite number.
+    pub fn add_event(&mut self, event: Event<SystemObservation>) -> Result<usize, StepError> {
+        self.stay_here();
+        let (time, step) = (self.motion.time(), self.stats.longest);
+        self.looked_at.fill(&mut self.motion, &self.points).map_err(|error| error.in_step(time, step))?;
+        let number = self.events.add(event, &self.looked_at)?;
+        self.last_step.get_or_insert_with(|| Box::new(LastStep::new(&self.motion, &self.points)));
+        Ok(number)
+    }
+
+    /// An event by its number.
+    pub fn event(&self, number: usize) -> Option<&Event<SystemObservation>> {
+        self.events.get(number)
+    }
+
+    /// Leaves what the last step has done beyond the row within it that has been reached.
+    fn stay_here(&mut self) {
+        if let (Some(_), Some(step)) = (self.due.within.take(), &mut self.last_step) {
+            self.motion.copy_from(&step.probe);
+            self.motion.forget_last_step();
+            step.keep(&self.motion);
+            (self.pending_event, self.due.stop) = (None, false);
+            self.events.forget();
+            self.go_on_from_here();
+        }
+    }
+
+    /// The steps to come start at the time that the motion has reached, wherever the plan was.
+    fn go_on_from_here(&mut self) {
+        self.plan.go_to(self.motion.time());
+        self.walk.segment = None;
+    }
+
+    /// Goes back to a time within the last step, to where a shorter step leads.
+    fn go_back_to(&mut self, time: f64) -> Result<(), StepError> {
+        let exactness = self.exactness();
+        let Some(step) = &mut self.last_step else { return Ok(()) };
+        step.go_to(time, exactness)?;
+        self.motion.copy_from(&step.probe);
+        step.end = time;
+        self.go_on_from_here();
+        Ok(())
+    }
+
+    /// Error that Newton's method may leave.
+    fn exactness(&self) -> f64 {
+        match self.control {
+            StepControl::Fixed(_) => EXACT,
+            StepControl::Tolerance(tolerance) => EXACTNESS * tolerance,
+        }
+    }
+
+    /// Number of the first row at an interval after a time.
+    fn row_after(&self, time: f64) -> u64 {
+        match self.rows {
+            Rows::Interval(interval) => ((time + self.plan.same()) / interval).floor().max(0.0) as u64 + 1,
+            Rows::EverySteps(_) => 1,
+        }
+    }
+
+    /// Time of the next row at an interval; `None` after the last, which is at the end.
+    fn next_row(&self) -> Option<f64> {
+        let Rows::Interval(interval) = self.rows else { return None };
+        let time = |row: u64| row as f64 * interval;
+        let (next, last) = (time(self.due.rows), time(self.due.rows - 1));
+        if self.plan.is_over(next) { (!self.plan.is_over(last)).then_some(self.end) } else { Some(next) }
+    }
+
+    /// What has come within the step that has been done, or at its end, and is still to be told.
+    fn next_due(&mut self) -> Result<Option<Reached>, StepError> {
+        let (now, same) = (self.motion.time(), self.plan.same());
+        self.due.within = None;
+        let row = self.next_row();
+        if let (Some(time), Some(step)) = (row.filter(|row| *row < now - same), &mut self.last_step) {
+            step.interpolate(&self.motion, time)?;
+            (self.due.within, self.due.rows) = (Some(time), self.due.rows + 1);
+            return Ok(Some(Reached::Row));
+        }
+        if let Some(event) = self.pending_event.take() {
+            return Ok(Some(Reached::Event(event)));
+        }
+        if std::mem::take(&mut self.due.stop) {
+            return Ok(Some(Reached::Stop));
+        }
+        let is_row = row.is_some_and(|row| row <= now + same);
+        self.due.rows += u64::from(is_row);
+        Ok((std::mem::take(&mut self.due.row) || is_row).then_some(Reached::Row))
+    }
+
+    /// Goes on to the next row, event or stop, or as far as `max_steps` tries lead.
+    ///
+    /// # Errors
+    /// As [`Self::advance_watched`].
+    pub fn advance(&mut self, max_steps: u64) -> Result<Reached, StepError> {
+        self.advance_watched(max_steps, |_, _| ())
+    }
+
+    /// The same; `watch` sees the motion of each body once for each
+    /// step that is taken, rows or not.
+    ///
+    /// # Errors
+    /// [`StepError`]; the motion stays where it was before the step that failed, or at its end where the function of an event has
+    /// failed.
     pub fn advance_watched(
         &mut self,
         max_steps: u64,
         mut watch: impl FnMut(usize, &Moment),
     ) -> Result<Reached, StepError> {
+        self.stop_within_last_step()?;
+        if let Some(reached) = self.next_due()? {
+            return Ok(reached);
+        }
+        if self.events.is_stale() {
+            let (time, step) = (self.motion.time(), self.stats.longest);
+            self.looked_at.fill(&mut self.motion, &self.points).map_err(|error| error.in_step(time, step))?;
+            self.events.reset(&self.looked_at)?;
+        }
         for _ in 0..max_steps {
             let Some(segment) = self.segment() else { return Ok(Reached::End) };
+            if let Some(step) = &mut self.last_step {
+                step.begin(&self.motion);
+            }
             let Some(length) = self.try_step(&segment)? else { continue };
+            if let Some(step) = &mut self.last_step {
+                step.end = self.motion.time();
+            }
             (0..self.exchanged.len()).for_each(|body| watch(body, &self.motion.moment(body)));
-            self.count(length);
-            let is_done = self.motion.time() >= segment.end;
-            if is_done {
+            if self.motion.time() >= segment.end {
                 self.walk.segment = None;
                 if segment.discontinuity {
                     let (time, longest) = (self.time(), self.stats.longest);
                     self.motion.pass_discontinuity().map_err(|error| error.in_step(time, longest))?;
                 }
             }
-            let is_row = match self.rows {
-                Rows::EverySteps(steps) => self.steps_since_row >= steps || self.plan.is_over(self.time()),
-                Rows::Interval(_) => is_done && segment.row,
-            };
-            if is_row {
-                self.steps_since_row = 0;
-                return Ok(Reached::Row);
+            let event = self.go_to_event();
+            self.count(length);
+            if let Rows::EverySteps(steps) = self.rows
+                && (self.steps_since_row >= steps || self.plan.is_over(self.motion.time()))
+            {
+                (self.due.row, self.steps_since_row) = (true, 0);
+            }
+            self.tell_stop();
+            self.pending_event = event?;
+            if let Some(reached) = self.next_due()? {
+                return Ok(reached);
             }
         }
         Ok(Reached::Between)
+    }
+
+    /// Goes back to a stop that has been set within the step that has been done, beyond the row there that has been reached.
+    fn stop_within_last_step(&mut self) -> Result<(), StepError> {
+        let Some(stop) = self.plan.stop().filter(|stop| self.due.within.is_some_and(|row| row < *stop)) else {
+            return Ok(());
+        };
+        if stop < self.motion.time() - self.plan.same() {
+            self.go_back_to(stop)?;
+            self.pending_event = None;
+            self.events.forget();
+        }
+        self.tell_stop();
+        Ok(())
+    }
+
+    /// Notes that the stop has been reached, if it has.
+    fn tell_stop(&mut self) {
+        if self.plan.is_at_stop(self.motion.time()) {
+            self.plan.set_stop(None);
+            self.due.stop = true;
+        }
+    }
+
+    /// Finds the first event in the step that has been done, and goes back there.
+    fn go_to_event(&mut self) -> Result<Option<usize>, StepError> {
+        if self.events.is_empty() {
+            return Ok(None);
+        }
+        let (time, exactness) = (self.motion.time(), self.exactness());
+        let Self { motion, events, last_step: Some(step), looked_at, points, plan, .. } = self else { return Ok(None) };
+        looked_at.fill(motion, points).map_err(|error| error.in_step(time, time - step.before.time()))?;
+        let passed = events.first_passed(&mut step.with_points(points, exactness), looked_at, plan.same())?;
+        let Some(passed) = passed else { return Ok(None) };
+        // At the end the motion is there already, and beyond the discontinuity that may be there.
+        if !passed.at_end {
+            self.motion.copy_from(&step.probe);
+            step.end = self.motion.time();
+            self.go_on_from_here();
+        }
+        Ok(Some(passed.number))
     }
 
     /// The segment that the next step is in; `None` at the end.
@@ -300,12 +496,7 @@ impl SystemSimulation {
             return Some(segment);
         }
         let segment = self.plan.next_segment()?;
-        // Step control does not see what swings within a step, where all its stages fall on like phases.
-        let branch_time = segment.start + 0.5 * segment.length;
-        let loads = self.motion.system().bodies().iter().flat_map(|body| body.loads());
-        let of_loads = loads.map(|load| load.longest_step(branch_time));
-        let of_histories = self.histories.iter().map(|history| history.longest_step(branch_time));
-        let longest = of_loads.chain(of_histories).fold(self.formula_steps.longest_step(branch_time), f64::min);
+        let longest = self.longest_step.in_segment(&segment);
         if let StepControl::Fixed(step) = self.control {
             self.walk.equal = EqualSteps::new(segment, step.min(longest));
         }
@@ -315,15 +506,12 @@ impl SystemSimulation {
 
     /// Tries a step. Returns its length where it was taken.
     fn try_step(&mut self, segment: &Segment) -> Result<Option<f64>, StepError> {
-        let time = self.time();
         match self.control {
             StepControl::Fixed(_) => {
                 let Some((h, end)) = self.walk.equal.next_step() else { return Ok(None) };
-                match self.motion.try_step(h, end, EXACT, f64::INFINITY) {
-                    Ok(Tried { .. }) => Ok(Some(h)),
-                    Err(Failed::Newton) => Err(StepError::Newton { time, step: h }),
-                    Err(Failed::Rates(error)) => Err(error.in_step(time, h)),
-                }
+                let time = self.motion.time();
+                let tried = self.motion.try_step(h, end, EXACT, f64::INFINITY);
+                tried.map_err(|failed| of_step(failed, time, h)).map(|_| Some(h))
             }
             StepControl::Tolerance(tolerance) => {
                 let mut h = self.walk.next.min(self.walk.longest);
@@ -357,94 +545,9 @@ impl SystemSimulation {
         }
         self.account.exchange(total);
     }
-
-    /// The state that has been reached, as words; they are equally many for all states of a run.
-    ///
-    /// # Errors
-    /// [`CheckpointError::Encoding`].
-    pub fn checkpoint(&self) -> Result<Vec<u64>, CheckpointError> {
-        let Stats { accepted, rejected, shortest, longest, .. } = self.stats;
-        Ok(to_words(&encode(&encode(&Saved {
-            motion: self.motion.saved(),
-            plan: self.plan.progress(),
-            walk: self.walk,
-            steps_since_row: self.steps_since_row,
-            account: self.account,
-            exchanged: self.exchanged.clone(),
-            accepted,
-            rejected,
-            lengths: [shortest, longest],
-        })?)?))
-    }
-
-    /// Takes up the state of a [`Self::checkpoint`] of a run with the same set-up: what follows is what would have followed
-    /// there, bit for bit.
-    ///
-    /// # Errors
-    /// [`CheckpointError`] for a checkpoint of another run.
-    pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, CheckpointError> {
-        let saved: Vec<u8> = from_words(checkpoint)?;
-        let saved: Saved = decode(&saved)?;
-        let Saved { motion, plan, walk, steps_since_row, account, exchanged, accepted, rejected, lengths } = saved;
-        counts(&[accepted, rejected, steps_since_row])?;
-        expect("the length of a step", lengths[0] > 0.0 && lengths[1] >= 0.0)?;
-        expect("the number of bodies", exchanged.len() == self.exchanged.len())?;
-        finite("the energy exchanged", exchanged.iter().flat_map(|of| [&of.sum, &of.done[0], &of.done[1]]))?;
-        walk.equal.check()?;
-        expect("the next step", walk.next > 0.0 && walk.longest > 0.0)?;
-        account.check_saved()?;
-        self.motion.take_up(motion)?;
-        self.plan.set_progress(&plan)?;
-        self.stats = Stats { accepted, rejected, shortest: lengths[0], longest: lengths[1], ..self.stats };
-        (self.walk, self.account, self.exchanged) = (walk, account, exchanged);
-        self.steps_since_row = steps_since_row;
-        Ok(self)
-    }
 }
 
-/// Largest distance of bodies from the first, or the largest radius of gyration.
-fn size(system: &System, states: &[MotionState]) -> f64 {
-    let first = states.first().map_or_else(Vector3::zeros, |state| state.origin_global);
-    let spread = states.iter().map(|state| (state.origin_global - first).norm());
-    let radii = system.bodies().iter().map(|body| body.radius_of_gyration());
-    spread.chain(radii).fold(f64::MIN_POSITIVE, f64::max)
-}
-
-/// A body that does not resist a motion.
-const SINGULAR: SetupError = SetupError::Value { what: "the inertia of a body", found: 0.0, expected: "above 0" };
-
-/// Moves the bodies so that the joints close, and finds by how much.
-fn assemble(
-    motion: &mut SystemMotion,
-    states: &[MotionState],
-    relaxed: bool,
-    [size, end]: [f64; 2],
-) -> Result<Vec<Assembled>, SetupError> {
-    let open = motion.most_open().map_err(|_| SINGULAR)?;
-    let done = if relaxed { motion.relax() } else { motion.assemble() };
-    let [left, rates] = match (done, open) {
-        (Ok(left), _) => left,
-        // Bodies that are too far from where they have to be.
-        (Err(_), Some((joint, [left, rate]))) => {
-            return Err(SetupError::NotAssembled { joint: joint.into(), left, rate });
-        }
-        (Err(_), None) => return Err(SINGULAR),
-    };
-    let fastest = states.iter().map(|state| state.velocity_global.norm() + size * state.omega_body.norm());
-    let is_open = |left: f64, scale: f64| left.is_nan() || left > CLOSED * scale;
-    if is_open(left, size) || is_open(rates, size / end + fastest.fold(0.0, f64::max)) {
-        let open = motion.most_open().ok().flatten();
-        let joint = open.map_or_else(Box::default, |(joint, _)| joint.into());
-        return Err(SetupError::NotAssembled { joint, left, rate: rates });
-    }
-    let changed = |(body, state): (usize, &MotionState)| {
-        let now = motion.state(body).map_err(|_| SINGULAR)?;
-        Ok(Assembled {
-            moved: (now.origin_global - state.origin_global).norm(),
-            turned: now.attitude.angle_to(&state.attitude),
-            velocity: (now.velocity_global - state.velocity_global).norm(),
-            angular_velocity: (now.omega_body - state.omega_body).norm(),
-        })
-    };
-    states.iter().enumerate().map(changed).collect()
+impl Due {
+    /// Before the first step.
+    const NOTHING: Self = Self { within: None, rows: 1, stop: false, row: false };
 }

@@ -214,14 +214,19 @@ impl Stage {
         }
     }
 
-    /// Adds changes in the axes and about the origins of the bodies to x and y.
-    pub fn add_in_body_axes(&mut self, system: &System, dx: &mut [f64], dy: &mut [f64]) {
+    /// The inverse of [`Self::to_body_axes`].
+    pub fn to_global_axes(&self, system: &System, x: &mut [f64], y: &mut [f64]) {
         for (b, (position, attitude)) in self.positions.iter().zip(&self.attitudes).enumerate() {
             let first = system.first[b];
-            let moved = attitude.tr_mul(&vector(dx, first));
-            put(dx, first, &moved);
-            about_global_origin(&mut dy[first..first + 6], position, attitude);
+            let moved = attitude.tr_mul(&vector(x, first));
+            put(x, first, &moved);
+            about_global_origin(&mut y[first..first + 6], position, attitude);
         }
+    }
+
+    /// Adds changes in the axes and about the origins of the bodies to x and y.
+    pub fn add_in_body_axes(&mut self, system: &System, dx: &mut [f64], dy: &mut [f64]) {
+        self.to_global_axes(system, dx, dy);
         self.x.iter_mut().zip(dx).for_each(|(x, change)| *x += *change);
         self.y.iter_mut().zip(dy).for_each(|(y, change)| *y += *change);
     }
@@ -330,7 +335,7 @@ impl Stage {
             let mut rate = 0.0;
             let constraints = &mut self.constraints;
             constraints.compliant_ends()[number].iter().for_each(|end| end.add_rate(1.0, &self.velocities, &mut rate));
-            let [stiffness, damping] = force.stiffness_and_damping([constraints.coordinates[number], rate]);
+            let [stiffness, damping] = force.stiffness_and_damping([constraints.coordinates[number], rate], times);
             constraints.compliant[number] = Compliant { stiffness, damping };
             number += 1;
         }

@@ -1,10 +1,11 @@
 //! Coordinates of joints, the forces along them, and couplings.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use dynamics::{
-    ConservativeBody, Coordinate, Coupling, Expression, Friction, History, Joint, JointDrive, JointForce, Marker,
-    MotionState, Physics, Stops, System, SystemMotion,
+    ConservativeBody, Coordinate, Coupling, Expression, Friction, History, Joint, JointDrive, JointForce, JointLawFn,
+    Marker, MotionState, Physics, Stops, System, SystemMotion,
 };
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -274,4 +275,28 @@ fn a_joint_locks_what_it_is_told() {
     let now = motion.state(0).unwrap();
     assert!((now.origin_global - Vector3::new(0.0, 2.0, 1.0)).norm() < 1e-12, "{now:?}");
     assert!((now.omega_body - Vector3::new(0.0, 0.0, 0.9)).norm() < 1e-9, "{now:?}");
+}
+
+/// Closed form: a PD controller from a closure is a spring and a damper about the angle that it holds, however stiff; the work of the
+/// controller closes the balance.
+#[test]
+fn a_controller_from_outside_moves_a_joint_in_closed_form() {
+    for (k, c) in [(3.0, 0.4), (3e5, 40.0)] {
+        let bodies = bodies(1);
+        let system = System::new(bodies, vec![Joint::revolute("hinge", [ground(0.0), on(0, 0.0)])]).unwrap();
+        let law = JointLawFn::new("PD", move |_, angle, rate| k * (0.5 - angle) - c * rate);
+        assert!(
+            system.clone().with_law(1, Coordinate::Turn, Arc::new(JointLawFn::new("none", |_, _, _| 0.0))).is_err()
+        );
+        let system = system.with_law(0, Coordinate::Turn, Arc::new(law)).unwrap();
+        let mut motion = SystemMotion::new(system, &[at(0.0, 0.0, 0.0)]).unwrap();
+        let delta = 0.5 * c / INERTIA;
+        let omega = f64::sqrt(k / INERTIA - delta * delta);
+        let end = 5.0 / omega;
+        let steps = motion.advance(end, 1e-8, &mut 1e-4).unwrap();
+        let expected = 0.5 * (1.0 - (-delta * end).exp() * ((omega * end).cos() + delta / omega * (omega * end).sin()));
+        let found = motion.joint_coordinates(0).turn;
+        assert!((found - expected).abs() < 1e-6 && steps < 200, "{found} {expected} in {steps} steps");
+        assert!(motion.joint_work(0).drive > 0.0 && imbalance(&motion, 0.0) < 1e-6 * k);
+    }
 }

@@ -74,10 +74,14 @@ impl Jointed {
 
     /// The marker of a patch whose forces stiffen the body.
     pub fn stiffening_marker(&self, number: usize, patch: usize) -> Marker {
+        self.turned_stiffening_marker(number, patch, Matrix3::identity())
+    }
+
+    pub fn turned_stiffening_marker(&self, number: usize, patch: usize, axes: Matrix3<f64>) -> Marker {
         let ((point, turning), [of_point, of_turning]) = (&self.patches[patch], &self.second_orders[patch]);
         let point = point.clone().with_second_order(of_point.clone());
         let turning = turning.clone().with_second_order(of_turning.clone());
-        Marker::on_flexible(number, &point, &turning, Matrix3::identity())
+        Marker::on_flexible(number, &point, &turning, axes)
     }
 
     pub fn conservative(&self) -> ConservativeBody {

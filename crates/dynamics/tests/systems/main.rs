@@ -2,9 +2,11 @@
 
 mod andrews;
 mod coordinates;
+mod dense;
 mod elements;
 mod flexible;
 mod hard;
+mod linear;
 mod mechanism;
 mod rigid;
 mod run;

@@ -1,11 +1,11 @@
 //! Springs, dampers and bushings between markers.
 
 use nalgebra::Vector3;
-use rigid_kin::rotation_vector;
+use rigid_kin::{cross_matrix, rotation_vector};
 
 use crate::system::element::{ForceElement, SetDirection};
-use crate::system::marker::Marker;
-use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
+use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
+use crate::system::marker::{Marker, tangent_of};
 
 /// A spring and a damper along the line between two markers.
 #[derive(Debug, Clone)]
@@ -48,6 +48,24 @@ impl ForceElement for PointSpring {
         let Some(along) = line.try_normalize(0.0) else { return };
         let [on_i, on_j] = [-along, along].map(|force_global| MarkerWrench { force_global, ..MarkerWrench::default() });
         set(0, [self.stiffness, self.damping], &[on_i, on_j]);
+    }
+
+    fn differentiate(&self, _: [f64; 2], motions: &[MarkerMotion], by: &[MarkerChange], changes: &mut [MarkerWrench]) {
+        let ([i, j], [by_i, by_j], [on_i, on_j]) = (motions, by, changes) else { return };
+        let line = j.position_global - i.position_global;
+        let length = line.norm();
+        if length == 0.0 {
+            return;
+        }
+        let along = line / length;
+        let velocity = j.velocity_global - i.velocity_global;
+        let moved = by_j.displacement_global - by_i.displacement_global;
+        let longer = along.dot(&moved);
+        let turned = (moved - along * longer) / length;
+        let faster = along.dot(&(by_j.velocity_global - by_i.velocity_global)) + turned.dot(&velocity);
+        let tension = self.stiffness * (length - self.free_length) + self.damping * along.dot(&velocity);
+        let force = along * (self.stiffness * longer + self.damping * faster) + turned * tension;
+        (on_i.force_global, on_j.force_global) = (force, -force);
     }
 }
 
@@ -102,5 +120,38 @@ impl ForceElement for Bushing {
             let [on_i, on_j] = [-along, along].map(|moment_global| MarkerWrench { force_global: zero, moment_global });
             set(3 + k, of(1), &[on_i, on_j]);
         }
+    }
+
+    fn differentiate(&self, _: [f64; 2], motions: &[MarkerMotion], by: &[MarkerChange], changes: &mut [MarkerWrench]) {
+        let ([i, j], [by_i, by_j], [on_i, on_j]) = (motions, by, changes) else { return };
+        let axes = &i.axes_global;
+        // In the axes of i, which turn.
+        let change_in_i =
+            |vector: &Vector3<f64>, change: Vector3<f64>| axes.tr_mul(&(change - by_i.turn_global.cross(vector)));
+        let line = j.position_global - i.position_global;
+        let d_line = by_j.displacement_global - by_i.displacement_global;
+        let velocity = j.velocity_global - i.velocity_global - i.omega_global.cross(&line);
+        let d_velocity = by_j.velocity_global
+            - by_i.velocity_global
+            - by_i.omega_global.cross(&line)
+            - i.omega_global.cross(&d_line);
+        let spin = j.omega_global - i.omega_global;
+        let (moved, d_moved) = (axes.tr_mul(&line), change_in_i(&line, d_line));
+        let (rate, d_rate) = (axes.tr_mul(&velocity), change_in_i(&velocity, d_velocity));
+        let (turning, d_turning) = (axes.tr_mul(&spin), change_in_i(&spin, by_j.omega_global - by_i.omega_global));
+        // exp[φ×] = C_iᵀ C_j turns by T(φ) δφ.
+        let turned = rotation_vector(&(j.axes_global.transpose() * axes)).unwrap_or_default();
+        let d_turn = axes.tr_mul(&(by_j.turn_global - by_i.turn_global));
+        let d_turned = tangent_of(&turned).try_inverse().map_or_else(Vector3::zeros, |inverse| inverse * d_turn);
+        let law = |which: usize, by: &Vector3<f64>, rate: &Vector3<f64>| {
+            axes * (self.stiffness[which].component_mul(by) + self.damping[which].component_mul(rate))
+        };
+        let turn_of_i = cross_matrix(&by_i.turn_global);
+        let force = law(0, &moved, &rate);
+        let d_force = law(0, &d_moved, &d_rate) + turn_of_i * force;
+        let d_moment = law(1, &d_turned, &d_turning) + turn_of_i * law(1, &turned, &turning);
+        (on_j.force_global, on_j.moment_global) = (-d_force, -d_moment);
+        on_i.force_global = d_force;
+        on_i.moment_global = d_moment + d_line.cross(&force) + line.cross(&d_force);
     }
 }

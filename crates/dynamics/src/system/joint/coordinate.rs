@@ -63,4 +63,4 @@ impl Coordinate {
 }
 
 /// The square of the x axis of j across the z axis of i below which there is no angle.
-const SHORT: f64 = 1e-20;
+pub(crate) const SHORT: f64 = 1e-20;

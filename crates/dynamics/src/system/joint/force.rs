@@ -2,7 +2,10 @@
 //!
 //! Eq. (J12) of `docs/method/systems.md`.
 
+use std::sync::Arc;
+
 use crate::system::joint::drive::JointDrive;
+use crate::system::joint::law::JointLaw;
 
 /// A force along the slide of a joint, or a moment about its turn; positive on the second marker along the coordinate.
 #[derive(Debug, Clone, Default)]
@@ -23,6 +26,8 @@ pub struct JointForce {
     pub friction: Option<Friction>,
     /// A force or moment over time.
     pub motor: Option<JointDrive>,
+    /// Laws from outside.
+    pub laws: Vec<Arc<dyn JointLaw>>,
 }
 
 /// Ends of a coordinate: stiff springs on one side, which push and do not pull.
@@ -52,7 +57,7 @@ pub(crate) struct Forces {
     pub spring: f64,
     /// Of dampers and friction.
     pub friction: f64,
-    /// Of a motor.
+    /// Of a motor and of laws from outside.
     pub motor: f64,
 }
 
@@ -75,7 +80,7 @@ impl JointForce {
         let mut forces = Forces {
             spring: self.preload - self.stiffness * (x - self.free) + of(&self.characteristic, [x, x]),
             friction: -self.damping * rate,
-            motor: of(&self.motor, times),
+            motor: of(&self.motor, times) + self.laws.iter().map(|law| law.force(times, [x, rate])).sum::<f64>(),
         };
         if let Some(Friction { force, rate_scale }) = self.friction {
             forces.friction -= force * (rate / rate_scale).tanh();
@@ -95,7 +100,7 @@ impl JointForce {
 
 impl JointForce {
     /// How much the force falls by the coordinate and by its rate; nothing where it rises.
-    pub(crate) fn stiffness_and_damping(&self, [x, rate]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn stiffness_and_damping(&self, [x, rate]: [f64; 2], times: [f64; 2]) -> [f64; 2] {
         let slope = self.characteristic.as_ref().map_or(0.0, |of| of.at([x, x])[1]);
         let (mut stiffness, mut damping) = (self.stiffness - slope, self.damping);
         if let Some(Friction { force, rate_scale }) = self.friction {
@@ -109,7 +114,30 @@ impl JointForce {
             stiffness += stops.stiffness;
             damping += stops.damping;
         }
+        for law in &self.laws {
+            let [of_coordinate, of_rate] = law.stiffness_and_damping(times, [x, rate]);
+            (stiffness, damping) = (stiffness + of_coordinate, damping + of_rate);
+        }
         [stiffness, damping].map(|slope| slope.max(0.0))
+    }
+}
+
+impl JointForce {
+    /// The slopes of the force over the coordinate and over its rate.
+    pub(crate) fn slopes(&self, [x, rate]: [f64; 2]) -> [f64; 2] {
+        let of_law = self.characteristic.as_ref().map_or(0.0, |of| of.at([x, x])[1]);
+        let mut slopes = [of_law - self.stiffness, -self.damping];
+        if let Some(Friction { force, rate_scale }) = self.friction {
+            slopes[1] -= force / rate_scale / (rate / rate_scale).cosh().powi(2);
+        }
+        if let Some(stops) = self.stops
+            && let Some(depth) = stops.depth(x)
+            && depth * (stops.stiffness * depth + stops.damping * rate) > 0.0
+        {
+            slopes[0] -= stops.stiffness;
+            slopes[1] -= stops.damping;
+        }
+        slopes
     }
 }
 

@@ -1,10 +1,11 @@
-//! The end of a step: momenta, works, and the projections.
+//! The end of a step: momenta and the projections.
 
 use nalgebra::Vector3;
 
 use crate::conservative::{get, part};
 use crate::error::RateError;
 use crate::state::attitude_at;
+use crate::system::collocation::STAGES;
 use crate::system::radau::{Failed, SystemMotion};
 use crate::system::stage::{about_global_origin, put, vector};
 
@@ -14,57 +15,26 @@ const FAR: f64 = 0.3;
 const MAX_PROJECTIONS: usize = 20;
 
 impl SystemMotion {
-    /// Takes the increments to the end of the step, and gives what flies freely the momenta that the loads have given it.
-    pub(super) fn reach_end(&mut self, h: f64) {
-        let Self { stages, system, multipliers, scheme, room, .. } = self;
-        for (i, stage) in stages.iter_mut().enumerate() {
-            stage.find_y_rates(system, &multipliers[i], &mut room.y_rates[i]);
+    /// Takes the increments to the end of the step.
+    pub(super) fn reach_end(&mut self) {
+        let Self { stages: [first, middle, last], scheme, .. } = self;
+        let Some([a, b, c]) = scheme.at_end else { return };
+        for (last, [first, middle]) in [(&mut last.x, [&first.x, &middle.x]), (&mut last.y, [&first.y, &middle.y])] {
+            let others = first.iter().zip(middle);
+            last.iter_mut().zip(others).for_each(|(last, (first, middle))| *last = a * first + b * middle + c * *last);
         }
-        let [first, middle, last] = stages;
-        if let Some([a, b, c]) = scheme.at_end {
-            for (last, [first, middle]) in [(&mut last.x, [&first.x, &middle.x]), (&mut last.y, [&first.y, &middle.y])]
-            {
-                let others = first.iter().zip(middle);
-                last.iter_mut()
-                    .zip(others)
-                    .for_each(|(last, (first, middle))| *last = a * first + b * middle + c * *last);
-            }
-        }
-        let rates = &room.y_rates;
-        last.correct_momenta(system, |k| {
-            h * rates.iter().zip(scheme.weights).map(|(rates, weight)| weight * rates[k]).sum::<f64>()
-        });
     }
 
-    /// Adds the integrals over a step: works, impulses, dissipation. What joints and elements do to a body counts as its loads do,
-    /// so that its balances close.
-    pub(super) fn add_work(&mut self, h: f64) {
-        let Self { stages, multipliers, scheme, bodies, system, joint_works, .. } = self;
-        for ((stage, lambda), weight) in stages.iter_mut().zip(&*multipliers).zip(scheme.weights) {
-            let mut of_rows = lambda.iter().zip(&stage.constraints.own_rates);
-            for (joint, work) in system.connections.joints.iter().zip(&mut *joint_works) {
-                let power: f64 = of_rows.by_ref().take(joint.row_count()).map(|(lambda, rate)| -lambda * rate).sum();
-                work.drive += h * weight * power;
-            }
-            for ((joint, ..), power) in system.connections.joint_forces().zip(&stage.joint_powers) {
-                let work = &mut joint_works[joint];
-                work.drive += h * weight * power.motor;
-                work.spring += h * weight * power.spring;
-                work.loss -= h * weight * power.friction;
-            }
-            self.element_work += h * weight * stage.element_power;
-            stage.find_joint_forces(lambda);
-            for (b, state) in bodies.iter_mut().enumerate() {
-                let mut list = system.bodies[b].list_mut(state);
-                let mut slow = *list.slow();
-                let mut rates = *stage.evaluations[b].rates.slow();
-                stage.add_joint_exchange(system, b, &mut rates);
-                for k in part::WORK..slow.len() {
-                    slow[k] += h * weight * rates[k];
-                }
-                list.set_slow(&slow);
-            }
-        }
+    /// Takes the last stage, which has been brought to the end of a step, for the state, with what the step sums up by the weights of
+    /// its stages; what flies freely gets the momenta that the loads have given it.
+    pub(super) fn land(&mut self, times: [f64; 2], h: f64, weights: [f64; STAGES]) -> Result<(), Failed> {
+        let Self { stages: [.., last], system, stage_rates, .. } = self;
+        last.correct_momenta(system, |k| {
+            stage_rates.iter().zip(weights).map(|(rates, weight)| weight * rates.y[k]).sum::<f64>()
+        });
+        self.end(times, h)?;
+        self.add_exchange(weights);
+        Ok(())
     }
 
     /// Projects the end of a step, and takes it for the state. Returns the largest residual and rate that are left.
@@ -79,14 +49,16 @@ impl SystemMotion {
             return Err(Failed::Rates(RateError::Inertia));
         }
         // Positions.
+        let is_rigid = system.coordinates() == 6 * system.bodies.len();
         let (mut left, real) = (f64::INFINITY, &mut room.real);
-        for _ in 0..MAX_PROJECTIONS {
+        for pass in 0..MAX_PROJECTIONS {
             let largest = last.constraints.residuals.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
-            if largest >= 0.5 * left || largest == 0.0 {
-                left = largest.min(left);
+            let is_slow = largest >= 0.5 * left;
+            left = largest.min(left);
+            // The first may be slow where flexible bodies have far to go; later ones are where rounding is all that is left.
+            if is_slow && (pass > 1 || is_rigid) || largest == 0.0 {
                 break;
             }
-            left = largest;
             real.lambda.fill(0.0);
             real.lambda.iter_mut().zip(&last.constraints.residuals).for_each(|(lambda, g)| *lambda = -g);
             matrices.real.rows.solve(&patterns.newton, &mut real.lambda);

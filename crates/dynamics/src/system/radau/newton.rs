@@ -198,4 +198,13 @@ impl SystemMotion {
         frozen.solve(real, &matrices.real);
         sizes(system, &real.x, h)[0]
     }
+
+    /// Keeps the bend of the step, after [`Self::error`], which has found it: what is stiff has none.
+    pub(super) fn find_bend(&mut self) {
+        let Self { stages, system, room, scheme, bend: [x, y], .. } = self;
+        for (bend, change) in [(&mut *x, &room.real.x), (&mut *y, &room.real.y)] {
+            bend.iter_mut().zip(change).for_each(|(bend, change)| *bend = scheme.real * change);
+        }
+        stages[1].to_global_axes(system, x, y);
+    }
 }

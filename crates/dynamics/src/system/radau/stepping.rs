@@ -6,7 +6,7 @@ use crate::system::radau::{Failed, SystemMotion, Tried};
 
 /// Error of Newton's method over the tolerance: of positions relative to the bodies, and in the norm of the energy. Ten times as
 /// much costs a fifth less work, but the multipliers of stiff bodies, and the work of drives, are then off by per cents.
-const EXACTNESS: f64 = 1e-3;
+pub(in crate::system) const EXACTNESS: f64 = 1e-3;
 
 impl SystemMotion {
     /// Goes to `end` with steps whose estimated error is at most `tolerance`; `h` is the first try, and the next one after.

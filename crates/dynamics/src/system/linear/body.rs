@@ -1,0 +1,185 @@
+//! One body in the linearised equations: Eqs. (L1) and (L2) of `docs/method/systems.md`.
+
+use faer::Mat;
+use modal::ReducedBody;
+use nalgebra::{Matrix3, Vector3};
+use rigid_kin::cross_matrix;
+
+use crate::conservative::ConservativeBody;
+use crate::system::linear::configuration::BodyConfiguration;
+use crate::system::linear::load::load_forces;
+
+/// The terms of one body: M ξ̈ + C ξ̇ + K ξ, and the forces that steady motion leaves.
+#[derive(Debug, Clone)]
+pub(crate) struct BodyTerms {
+    /// M.
+    pub mass: Mat<f64>,
+    /// C.
+    pub damping: Mat<f64>,
+    /// K, without the stiffness Λ of the modes.
+    pub stiffness: Mat<f64>,
+    /// L: δv = ξ̇ + L ξ.
+    pub convection: Mat<f64>,
+    /// Forces of inertia, modes and loads in steady motion.
+    pub forces: Vec<f64>,
+}
+
+impl BodyTerms {
+    /// At a time, in steady motion.
+    pub fn new(body: &ConservativeBody, at: &BodyConfiguration, time: f64) -> Self {
+        let nf = at.q.len();
+        let n = 6 + nf;
+        let (q, omega) = (&at.q, &at.omega);
+        let inertia = body.inertia_where(q);
+        let cross = cross_matrix(omega);
+        let mass = Mat::from_fn(n, n, |i, j| match (i, j) {
+            (0..3, _) | (_, 0..3) => {
+                if i == j {
+                    body.mass()
+                } else {
+                    0.0
+                }
+            }
+            (3..6, 3..6) => inertia.whole[(i - 3, j - 3)],
+            (3..6, _) => inertia.coupling[i - 3][j - 6],
+            (_, 3..6) => inertia.coupling[j - 3][i - 6],
+            _ => f64::from(u8::from(i == j)),
+        });
+        // Changes of momenta by those of q at the same velocities.
+        let mut by_modes = Mat::zeros(n, nf);
+        for k in 0..nf {
+            let turned = 2.0 * inertia.slope(k) * omega;
+            (0..3).for_each(|i| by_modes[(3 + i, k)] = turned[i]);
+            for i in 0..nf {
+                by_modes[(6 + i, k)] = (0..3).map(|axis| omega[axis] * inertia.gyroscopic[axis][(i, k)]).sum();
+            }
+        }
+        let mut convection = Mat::zeros(n, n);
+        put(&mut convection, [0, 0], &cross);
+        put(&mut convection, [0, 3], &cross_matrix(&at.velocity));
+        put(&mut convection, [3, 3], &cross);
+        // Forces on the modes by changes of velocities and of q.
+        let (mut by_velocity, mut by_q) = (Mat::zeros(n, n), Mat::zeros(n, nf));
+        let damping = body.circular_frequencies.iter().zip(&body.damping_ratios).map(|(w, zeta)| 2.0 * zeta * w);
+        for (k, damping) in damping.enumerate() {
+            let turned = 2.0 * inertia.slope(k) * omega;
+            (0..3).for_each(|i| by_velocity[(6 + k, 3 + i)] = turned[i]);
+            for j in 0..nf {
+                by_velocity[(6 + k, 6 + j)] = -by_modes[(6 + k, j)];
+                by_q[(6 + k, j)] = omega.dot(&(inertia.curvature(k, j) * omega));
+            }
+            by_velocity[(6 + k, 6 + k)] -= damping;
+        }
+        // y' + ω×y = forces, with momenta y of the rigid motion.
+        let momentum = at.velocity * body.mass();
+        let angular_momentum = inertia.whole * omega;
+        let turning = |x: &Mat<f64>| {
+            let columns = x.ncols();
+            let mut out = Mat::zeros(n, columns);
+            for column in 0..columns {
+                for first in [0, 3] {
+                    let part = omega.cross(&Vector3::from_fn(|i, _| x[(first + i, column)]));
+                    (0..3).for_each(|i| out[(first + i, column)] = part[i]);
+                }
+            }
+            out
+        };
+        let mut of_velocity = turning(&mass) - by_velocity;
+        put_less(&mut of_velocity, [0, 3], &cross_matrix(&momentum));
+        put_less(&mut of_velocity, [3, 3], &cross_matrix(&angular_momentum));
+        let mut damping = &mass * &convection + &of_velocity;
+        let mut stiffness = &of_velocity * &convection;
+        let by_place = turning(&by_modes) - by_q;
+        for (i, k) in (0..nf).flat_map(|k| (0..n).map(move |i| (i, k))) {
+            damping[(i, 6 + k)] += by_modes[(i, k)];
+            stiffness[(i, 6 + k)] += by_place[(i, k)];
+        }
+        let mut forces = vec![0.0; n];
+        let [force, moment] = [omega.cross(&momentum), omega.cross(&angular_momentum)];
+        for i in 0..3 {
+            (forces[i], forces[3 + i]) = (-force[i], -moment[i]);
+        }
+        for k in 0..nf {
+            let strain = body.circular_frequencies[k] * body.circular_frequencies[k] * q[k];
+            forces[6 + k] = omega.dot(&(inertia.slope(k) * omega)) - strain;
+        }
+        let mut terms = Self { mass, damping, stiffness, convection, forces };
+        terms.add_loads(body, at, time);
+        terms
+    }
+
+    /// Adds the loads of the body.
+    fn add_loads(&mut self, body: &ConservativeBody, at: &BodyConfiguration, time: f64) {
+        if body.loads().is_empty() {
+            return;
+        }
+        let loads = load_forces(body, at, time);
+        self.forces.iter_mut().zip(&loads.forces).for_each(|(sum, force)| *sum += force);
+        self.stiffness -= &loads.by_place + &loads.by_velocity * &self.convection;
+        self.damping -= &loads.by_velocity;
+    }
+}
+
+/// The inertia of a body with some modal displacements.
+struct InertiaWhere {
+    /// J.
+    whole: Matrix3<f64>,
+    /// S, a list (nf) for each axis.
+    coupling: [Vec<f64>; 3],
+    /// G_i.
+    gyroscopic: [Mat<f64>; 3],
+    /// c_ij + N_ij q of the pairs, and N_ij.
+    first: [Vec<f64>; 6],
+    second: [Mat<f64>; 6],
+}
+
+impl InertiaWhere {
+    /// ½ ∂J/∂q_k
+    fn slope(&self, k: usize) -> Matrix3<f64> {
+        symmetric(|pair| self.first[pair][k])
+    }
+
+    /// ½ ∂²J/∂q_k∂q_j
+    fn curvature(&self, k: usize, j: usize) -> Matrix3<f64> {
+        symmetric(|pair| self.second[pair][(k, j)])
+    }
+}
+
+fn symmetric(of_pair: impl Fn(usize) -> f64) -> Matrix3<f64> {
+    let mut sum = Matrix3::zeros();
+    for (pair, (i, j)) in ReducedBody::PAIRS.into_iter().enumerate() {
+        sum[(i, j)] = of_pair(pair);
+        sum[(j, i)] = sum[(i, j)];
+    }
+    sum
+}
+
+impl ConservativeBody {
+    fn inertia_where(&self, q: &[f64]) -> InertiaWhere {
+        let constants = self.inertia_constants();
+        let product = |matrix: &Mat<f64>, i: usize| q.iter().enumerate().map(|(j, q)| matrix[(i, j)] * q).sum::<f64>();
+        let of_modes = |matrix: &Mat<f64>| (0..q.len()).map(|i| product(matrix, i)).collect::<Vec<f64>>();
+        let mut whole = *self.undeformed_inertia();
+        let mut first = constants.first;
+        whole += symmetric(|pair| {
+            let bent = of_modes(&constants.second[pair]);
+            let terms = q.iter().zip(first[pair].iter().zip(&bent));
+            terms.map(|(q, (c, n_q))| q * (2.0 * c + n_q)).sum()
+        });
+        for (first, second) in first.iter_mut().zip(&constants.second) {
+            first.iter_mut().zip(of_modes(second)).for_each(|(c, n_q)| *c += n_q);
+        }
+        let coupling = constants.gyroscopic.each_ref().map(of_modes);
+        InertiaWhere { whole, coupling, gyroscopic: constants.gyroscopic, first, second: constants.second }
+    }
+}
+
+fn put(to: &mut Mat<f64>, [row, column]: [usize; 2], block: &Matrix3<f64>) {
+    for (i, j) in (0..3).flat_map(|j| (0..3).map(move |i| (i, j))) {
+        to[(row + i, column + j)] += block[(i, j)];
+    }
+}
+
+fn put_less(to: &mut Mat<f64>, at: [usize; 2], block: &Matrix3<f64>) {
+    put(to, at, &-block);
+}

@@ -1,0 +1,112 @@
+//! Where the bodies of a system are, and how they move, where its equations are made linear.
+
+use nalgebra::{Matrix3, Vector3};
+use rigid_kin::Attitude;
+
+use crate::conservative::{get, part};
+use crate::system::description::System;
+use crate::system::joint::Joint;
+use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
+use crate::system::radau::SystemMotion;
+
+/// The bodies of a system at one time, in steady motion: modes do not move.
+#[derive(Debug, Clone)]
+pub(crate) struct Configuration {
+    pub time: f64,
+    pub bodies: Vec<BodyConfiguration>,
+    /// Turns of the joints.
+    pub turns: Vec<f64>,
+}
+
+/// One body.
+#[derive(Debug, Clone)]
+pub(crate) struct BodyConfiguration {
+    pub origin: Vector3<f64>,
+    pub attitude: Attitude,
+    pub body_from_global: Matrix3<f64>,
+    pub q: Vec<f64>,
+    /// V and ω in body axes.
+    pub velocity: Vector3<f64>,
+    pub omega: Vector3<f64>,
+}
+
+/// A turn about an axis that does not move, at a steady speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CommonSpin {
+    /// Angular velocity, global.
+    pub omega_global: Vector3<f64>,
+    /// A point of the axis.
+    pub point_global: Vector3<f64>,
+}
+
+impl CommonSpin {
+    /// Rest.
+    pub const REST: Self =
+        Self { omega_global: Vector3::new(0.0, 0.0, 0.0), point_global: Vector3::new(0.0, 0.0, 0.0) };
+
+    /// Velocity of a place that turns with it.
+    pub fn velocity_at(&self, position_global: &Vector3<f64>) -> Vector3<f64> {
+        self.omega_global.cross(&(position_global - self.point_global))
+    }
+}
+
+impl Configuration {
+    /// Where a motion is, in a common spin.
+    pub fn of(motion: &SystemMotion, spin: &CommonSpin) -> Self {
+        let system = motion.system();
+        let of_body = |(body, state): (&crate::ConservativeBody, &crate::state::State)| {
+            let list = body.list(state);
+            BodyConfiguration {
+                origin: get(list.slow(), part::POSITION),
+                attitude: list.attitude(),
+                body_from_global: list.attitude().global_to_body(),
+                q: list.q().to_vec(),
+                velocity: Vector3::zeros(),
+                omega: Vector3::zeros(),
+            }
+        };
+        let mut configuration = Self {
+            time: motion.time(),
+            bodies: system.bodies.iter().zip(&motion.bodies).map(of_body).collect(),
+            turns: (0..system.joints().len()).map(|joint| motion.joint_coordinates(joint).turn).collect(),
+        };
+        configuration.spin(spin);
+        configuration
+    }
+
+    /// Gives the bodies the velocities of a common spin.
+    fn spin(&mut self, spin: &CommonSpin) {
+        for body in &mut self.bodies {
+            body.velocity = body.body_from_global * spin.velocity_at(&body.origin);
+            body.omega = body.body_from_global * spin.omega_global;
+        }
+    }
+
+    /// Moves the bodies by ρ and φ in body axes, and δq, and gives them the velocities of a common spin.
+    pub fn change(&mut self, system: &System, by: &[f64], spin: &CommonSpin) {
+        for (body, first) in self.bodies.iter_mut().zip(&system.first) {
+            let [moved, turned] = [0, 3].map(|part| crate::system::stage::vector(by, first + part));
+            body.origin += body.body_from_global.tr_mul(&moved);
+            body.attitude = body.attitude.advanced_by(&turned);
+            body.body_from_global = body.attitude.global_to_body();
+            body.q.iter_mut().zip(&by[first + 6..]).for_each(|(q, change)| *q += change);
+        }
+        self.spin(spin);
+    }
+
+    /// The place of a body.
+    pub fn place(&self, body: usize) -> BodyPlace<'_> {
+        let BodyConfiguration { origin, body_from_global, q, .. } = &self.bodies[body];
+        BodyPlace { origin: *origin, body_from_global: *body_from_global, q }
+    }
+
+    /// Where the markers of a joint are.
+    pub fn places(&self, joint: &Joint) -> [MarkerPlace; 2] {
+        self.places_of(&joint.markers)
+    }
+
+    /// Where two markers are.
+    pub fn places_of(&self, markers: &[Marker; 2]) -> [MarkerPlace; 2] {
+        markers.each_ref().map(|marker| marker.place(marker.body().map(|b| self.place(b)).as_ref()))
+    }
+}

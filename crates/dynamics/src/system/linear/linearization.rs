@@ -1,0 +1,141 @@
+//! The reduction of the linearised equations to independent coordinates.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+
+use crate::system::description::System;
+use crate::system::linear::steady::SteadyError;
+use crate::system::linear::terms::{Spring, Terms};
+use crate::system::linear::tie::{Tie, stiffnesses};
+
+/// The linearised equations over independent coordinates η: η̈ + C η̇ + K η = 0, changes of place ξ = N η.
+///
+/// The first coordinates are those that deform no body.
+#[derive(Debug, Clone)]
+pub struct Linearization {
+    /// N (n×nη), n the coordinates of all bodies: ρ and φ in body axes, and δq, of each.
+    pub basis: Mat<f64>,
+    /// K (nη×nη).
+    pub stiffness: Mat<f64>,
+    /// C (nη×nη).
+    pub damping: Mat<f64>,
+    /// Number of coordinates that deform no body.
+    pub rigid: usize,
+    /// Roots of the strain stiffness of the coordinates, zero of the first ones.
+    pub(crate) strain_rates: Vec<f64>,
+    /// The magnitude of the terms of K and C in the coordinates that deform no body, to which their rounding is in proportion.
+    pub(crate) magnitudes: [f64; 2],
+    /// First coordinate of each body, and their number.
+    pub(crate) first: Vec<usize>,
+    /// Λ of all coordinates; zero of the rigid ones.
+    pub(crate) strain: Vec<f64>,
+    pub(crate) masses: Vec<Mat<f64>>,
+    pub(crate) convections: Vec<Mat<f64>>,
+    pub(crate) springs: Vec<(Spring, Tie)>,
+}
+
+impl Linearization {
+    pub(crate) fn new(system: &System, terms: &Terms, springs: Vec<(Spring, Tie)>) -> Result<Self, SteadyError> {
+        let n = system.coordinates();
+        let basis = null_space(system, terms)?;
+        let strain: Vec<f64> =
+            system.bodies.iter().flat_map(|body| std::iter::repeat_n(0.0, 6).chain(stiffnesses(body))).collect();
+        let size = basis.ncols();
+        let strained: Vec<usize> = (0..n).filter(|k| strain[*k] > 0.0).collect();
+        let roots = Mat::from_fn(strained.len(), size, |i, j| strain[strained[i]].sqrt() * basis[(strained[i], j)]);
+        // Right singular vectors by falling strain; those of motions that deform nothing are the last.
+        let svd = roots.svd().map_err(|_| SteadyError::Numbers)?;
+        let rigid = terms.rigid_motions.min(size).max(size.saturating_sub(strained.len()));
+        let order: Vec<usize> = (0..size).rev().collect();
+        let turned = Mat::from_fn(size, size, |i, j| svd.V()[(i, order[j])]);
+        let mut basis = basis * turned;
+        let values = svd.S().column_vector();
+        let strain_rates: Vec<f64> = order
+            .iter()
+            .enumerate()
+            .map(|(k, of)| if k < rigid || *of >= values.nrows() { 0.0 } else { values[*of] })
+            .collect();
+        for (k, j) in (0..rigid).flat_map(|j| strained.iter().map(move |k| (*k, j))) {
+            basis[(k, j)] = 0.0;
+        }
+        let reduce = |matrix: &Mat<f64>| basis.transpose() * (matrix * &basis);
+        let magnitude = |matrix: &Mat<f64>| {
+            let absolute =
+                |matrix: &Mat<f64>| Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].abs());
+            let columns = absolute(&basis.get(.., ..rigid).to_owned());
+            let product = columns.transpose() * (absolute(matrix) * &columns);
+            (0..rigid).map(|k| product[(k, k)]).fold(0.0, f64::max)
+        };
+        let magnitudes = [magnitude(&terms.stiffness), magnitude(&terms.damping)];
+        let (mut stiffness, damping) = (reduce(&terms.stiffness), reduce(&terms.damping));
+        strain_rates.iter().enumerate().for_each(|(k, rate)| stiffness[(k, k)] += rate * rate);
+        Ok(Self {
+            basis,
+            stiffness,
+            damping,
+            rigid,
+            strain_rates,
+            magnitudes,
+            first: system.first.clone(),
+            strain,
+            masses: terms.masses.clone(),
+            convections: terms.convections.clone(),
+            springs,
+        })
+    }
+
+    /// Number of independent coordinates.
+    pub fn size(&self) -> usize {
+        self.basis.ncols()
+    }
+
+    /// Nᵀ x
+    pub(crate) fn project(&self, x: &[f64]) -> Vec<f64> {
+        (0..self.size()).map(|j| x.iter().enumerate().map(|(i, x)| self.basis[(i, j)] * x).sum()).collect()
+    }
+
+    /// N x
+    pub(crate) fn expand(&self, x: &[f64]) -> Vec<f64> {
+        (0..self.basis.nrows()).map(|i| x.iter().enumerate().map(|(j, x)| self.basis[(i, j)] * x).sum()).collect()
+    }
+
+    /// The changes of the coordinates that deform bodies by these forces on all coordinates (nη).
+    pub(crate) fn deflection(&self, forces: &[f64]) -> Vec<f64> {
+        let (first, count) = (self.rigid, self.size() - self.rigid);
+        let mut change = vec![0.0; self.size()];
+        if count > 0 {
+            let right = Mat::from_fn(count, 1, |i, _| forces[first + i]);
+            let solved = self.stiffness.get(first.., first..).to_owned().partial_piv_lu().solve(&right);
+            (0..count).for_each(|i| change[first + i] = solved[(i, 0)]);
+        }
+        change
+    }
+}
+
+/// An M-orthonormal basis of the motions that the rows leave.
+fn null_space(system: &System, terms: &Terms) -> Result<Mat<f64>, SteadyError> {
+    let n = system.coordinates();
+    let kept: Vec<usize> = (0..terms.rows.nrows()).filter(|row| !terms.is_implied[*row]).collect();
+    // M = Lᵐ Lᵐᵀ of each body; of z = Lᵐᵀ ξ all that is orthogonal to the columns of Lᵐ⁻¹ Gᵀ.
+    let factors = terms.masses.iter().map(|mass| mass.llt(Side::Lower).map(|llt| llt.L().to_owned()));
+    let factors: Vec<Mat<f64>> = factors.collect::<Result<_, _>>().map_err(|_| SteadyError::Numbers)?;
+    let mut columns = Mat::from_fn(n, kept.len(), |k, j| terms.rows[(kept[j], k)]);
+    for (factor, first) in factors.iter().zip(&system.first) {
+        let block = columns.submatrix_mut(*first, 0, factor.nrows(), kept.len());
+        faer::linalg::triangular_solve::solve_lower_triangular_in_place(factor.as_ref(), block, faer::Par::Seq);
+    }
+    for j in 0..kept.len() {
+        let norm = columns.col(j).norm_l2();
+        if norm > 0.0 {
+            columns.col_mut(j).iter_mut().for_each(|x| *x /= norm);
+        }
+    }
+    let left = n - kept.len();
+    let mut basis =
+        if kept.is_empty() { Mat::identity(n, n) } else { columns.qr().compute_Q().get(.., kept.len()..).to_owned() };
+    for (factor, first) in factors.iter().zip(&system.first) {
+        let block = basis.submatrix_mut(*first, 0, factor.nrows(), left);
+        faer::linalg::triangular_solve::solve_upper_triangular_in_place(factor.transpose(), block, faer::Par::Seq);
+    }
+    Ok(basis)
+}

@@ -1,0 +1,100 @@
+//! The loads of a body in steady motion, with their first order.
+//!
+//! A load is a law of the motion, which may come from outside, so its first order is found by central differences. Of a law of
+//! second degree they are exact: so are all of this crate in the attitude and in the modes, but for forces that turn with the
+//! material, for which the error is the square of the step. The attitude is not turned but changed along its tangent.
+
+use faer::Mat;
+use nalgebra::{Matrix3, Vector3};
+use rigid_kin::cross_matrix;
+
+use crate::conservative::ConservativeBody;
+use crate::load::{Applied, Coordinates, Kinematics};
+use crate::system::linear::configuration::BodyConfiguration;
+
+/// Step of the differences: of turns in rad, and of displacements and velocities relative to their scales.
+const STEP: f64 = 1e-4;
+
+/// Generalised forces of loads, and their first order.
+pub(crate) struct LoadForces {
+    pub forces: Vec<f64>,
+    /// By ρ, φ and δq (n×n).
+    pub by_place: Mat<f64>,
+    /// By V, ω and q̇ (n×n).
+    pub by_velocity: Mat<f64>,
+}
+
+/// A place and a motion that loads see, the attitude as a matrix that need not be a rotation.
+#[derive(Clone)]
+struct Seen {
+    body_from_global: Matrix3<f64>,
+    origin: Vector3<f64>,
+    velocity_global: Vector3<f64>,
+    omega_body: Vector3<f64>,
+    q: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+/// The loads at a time.
+pub(crate) fn load_forces(body: &ConservativeBody, at: &BodyConfiguration, time: f64) -> LoadForces {
+    let nf = at.q.len();
+    let n = 6 + nf;
+    let here = Seen {
+        body_from_global: at.body_from_global,
+        origin: at.origin,
+        velocity_global: at.body_from_global.tr_mul(&at.velocity),
+        omega_body: at.omega,
+        q: at.q.clone(),
+        rate: vec![0.0; nf],
+    };
+    let length = body.radius_of_gyration();
+    let amplitude = body.mass().sqrt() * length;
+    let axes: [Vector3<f64>; 3] = std::array::from_fn(|k| here.body_from_global.row(k).transpose());
+    let difference = |scale: f64, change: &dyn Fn(&mut Seen, f64)| {
+        let step = STEP * scale;
+        let [mut ahead, mut back] = [here.clone(), here.clone()];
+        change(&mut ahead, step);
+        change(&mut back, -step);
+        let [ahead, back] = [ahead, back].map(|seen| forces(body, &seen, time));
+        ahead.iter().zip(&back).map(|(a, b)| (a - b) / (2.0 * step)).collect::<Vec<f64>>()
+    };
+    let column = |k: usize, of_velocity: bool| match (k, of_velocity) {
+        (0..3, false) => difference(length, &|seen, step| seen.origin += axes[k] * step),
+        (3..6, false) => difference(1.0, &|seen, step| {
+            let turn = cross_matrix(&(Vector3::ith(k - 3, 1.0) * step));
+            seen.body_from_global -= turn * at.body_from_global;
+            seen.velocity_global = seen.body_from_global.tr_mul(&at.velocity);
+        }),
+        (_, false) => difference(amplitude, &|seen, step| seen.q[k - 6] += step),
+        (0..3, true) => difference(length, &|seen, step| seen.velocity_global += axes[k] * step),
+        (3..6, true) => difference(1.0, &|seen, step| seen.omega_body[k - 3] += step),
+        (_, true) => difference(amplitude, &|seen, step| seen.rate[k - 6] += step),
+    };
+    let [by_place, by_velocity] = [false, true].map(|of_velocity| {
+        let columns: Vec<Vec<f64>> = (0..n).map(|k| column(k, of_velocity)).collect();
+        Mat::from_fn(n, n, |i, k| columns[k][i])
+    });
+    LoadForces { forces: forces(body, &here, time), by_place, by_velocity }
+}
+
+fn forces(body: &ConservativeBody, seen: &Seen, time: f64) -> Vec<f64> {
+    let mut forces = vec![0.0; 6 + seen.q.len()];
+    let coordinates = Coordinates { first: 6, displacement: &seen.q, velocity: &seen.rate, on_manifold: None };
+    let motion = Kinematics {
+        time,
+        branch_time: time,
+        body_from_global: &seen.body_from_global,
+        origin_global: seen.origin,
+        frame_origin_global: seen.origin,
+        origin_velocity_global: seen.velocity_global,
+        omega_body: seen.omega_body,
+        coordinates,
+        unit: false,
+    };
+    let (rigid, modal) = forces.split_at_mut(6);
+    let mut applied = Applied::new(coordinates, Vector3::zeros(), modal);
+    body.loads().iter().for_each(|load| load.apply(&motion, &mut applied));
+    rigid[..3].copy_from_slice(applied.force_body.as_slice());
+    rigid[3..].copy_from_slice(applied.moment_body.as_slice());
+    forces
+}

@@ -1,0 +1,184 @@
+//! Vibrations of a linearised system: frequencies, damping, shapes, and who has their energy.
+
+use faer::{Mat, c64};
+
+use crate::system::linear::linearization::Linearization;
+use crate::system::linear::steady::SteadyError;
+
+/// A part of the terms of an equation that is more than their rounding.
+const ROUNDING: f64 = 1e-10;
+
+/// Small motions of a system that go on by themselves.
+#[derive(Debug, Clone)]
+pub struct Vibrations {
+    /// Motions as a whole that nothing resists: without stiffness, damping or gyroscopic forces, or with an eigenvalue of zero.
+    pub rigid: Mat<f64>,
+    /// Eigenvalues that are zero beside those, each of them half a motion.
+    pub zeros: usize,
+    /// All others, slowest first.
+    pub modes: Vec<SystemMode>,
+}
+
+/// A small motion as `exp(eigenvalue t)`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SystemMode {
+    /// Growth and circular frequency; the latter is not negative.
+    pub eigenvalue: c64,
+    /// Changes of place of all bodies: ρ and φ in body axes, and δq, of each.
+    pub motion: Vec<c64>,
+    /// The coordinates η.
+    pub coordinates: Vec<c64>,
+    /// Parts of the kinetic energy that the bodies have.
+    pub kinetic: Vec<f64>,
+    /// Parts of the elastic energy that the bodies have, then springs of joints and force elements; all zero where there is none.
+    pub elastic: Vec<f64>,
+}
+
+impl SystemMode {
+    /// Circular frequency of the motion, rad per time; zero where it only decays or grows.
+    pub fn circular_frequency(&self) -> f64 {
+        self.eigenvalue.im
+    }
+
+    /// Growth rate; negative where it decays.
+    pub fn growth(&self) -> f64 {
+        self.eigenvalue.re
+    }
+
+    /// Damping ratio: −growth over the magnitude of the eigenvalue.
+    pub fn damping_ratio(&self) -> f64 {
+        -self.eigenvalue.re / self.eigenvalue.re.hypot(self.eigenvalue.im)
+    }
+}
+
+impl Linearization {
+    /// Its vibrations.
+    ///
+    /// # Errors
+    /// [`SteadyError::Numbers`] where the eigenvalue problem has no answer.
+    pub fn vibrations(&self) -> Result<Vibrations, SteadyError> {
+        let kept = self.without_rigid()?;
+        let (rest, rigid) = kept;
+        let size = rest.ncols();
+        let [stiffness, damping] = [&self.stiffness, &self.damping].map(|matrix| rest.transpose() * (matrix * &rest));
+        // With x = s η and y = η̇ all entries are frequencies.
+        let scales: Vec<f64> = (0..size).map(|k| scale(&stiffness, &damping, k)).collect();
+        let matrix = Mat::from_fn(2 * size, 2 * size, |row, column| match (row < size, column < size) {
+            (true, true) => 0.0,
+            (true, false) => {
+                if row == column - size {
+                    scales[row]
+                } else {
+                    0.0
+                }
+            }
+            (false, true) => -stiffness[(row - size, column)] / scales[column],
+            (false, false) => -damping[(row - size, column - size)],
+        });
+        if size == 0 {
+            return Ok(Vibrations { rigid, zeros: 0, modes: Vec::new() });
+        }
+        let eigen = matrix.eigen().map_err(|_| SteadyError::Numbers)?;
+        let largest = scales.iter().copied().fold(0.0, f64::max);
+        let slow = scales[..self.rigid.saturating_sub(rigid.ncols())].iter().copied().fold(0.0, f64::max);
+        let zero = (10.0 * (f64::EPSILON * largest * slow).sqrt()).max(1e-13 * largest);
+        let (mut modes, mut zeros) = (Vec::new(), 0);
+        for (k, eigenvalue) in eigen.S().column_vector().iter().enumerate() {
+            let mut eigenvalue = *eigenvalue;
+            if eigenvalue.norm() <= zero {
+                zeros += 1;
+                continue;
+            }
+            // Of each conjugate pair the one that turns forwards in time.
+            let is_real = eigenvalue.im.abs() <= 1e-9 * eigenvalue.norm() && eigenvalue.re.abs() > zero;
+            if eigenvalue.im < 0.0 && !is_real {
+                continue;
+            }
+            if is_real {
+                eigenvalue.im = 0.0;
+            }
+            if eigenvalue.re.abs() <= zero.max(1e-12 * largest) {
+                eigenvalue.re = 0.0;
+            }
+            let state = eigen.U().col(k);
+            let of_rest: Vec<c64> = (0..size).map(|i| state[i] / scales[i]).collect();
+            let coordinates =
+                (0..self.size()).map(|i| of_rest.iter().enumerate().map(|(j, x)| *x * rest[(i, j)]).sum()).collect();
+            modes.push(self.mode(eigenvalue, coordinates));
+        }
+        modes.sort_by(|a, b| {
+            (a.eigenvalue.im, a.eigenvalue.norm())
+                .partial_cmp(&(b.eigenvalue.im, b.eigenvalue.norm()))
+                .unwrap_or(std::cmp::Ordering::Equal)
+        });
+        Ok(Vibrations { rigid: &self.basis * rigid, zeros, modes })
+    }
+
+    /// Orthonormal bases of the coordinates that are not rigid motions without forces, and of those that are.
+    fn without_rigid(&self) -> Result<(Mat<f64>, Mat<f64>), SteadyError> {
+        let (size, count) = (self.size(), self.rigid);
+        if count == 0 {
+            return Ok((Mat::identity(size, size), Mat::zeros(size, 0)));
+        }
+        let all = [&self.stiffness, &self.damping];
+        let weights = self.magnitudes.map(|magnitude| if magnitude > 0.0 { 1.0 / magnitude } else { 0.0 });
+        let forces = Mat::from_fn(4 * size, count, |row, k| {
+            let (which, i) = (row / (2 * size), row % (2 * size));
+            let matrix = all[which];
+            weights[which] * if i < size { matrix[(i, k)] } else { matrix[(k, i - size)] }
+        });
+        let svd = forces.svd().map_err(|_| SteadyError::Numbers)?;
+        let values = svd.S().column_vector();
+        let loose = (0..count).filter(|k| *k >= values.nrows() || values[*k] <= ROUNDING).count();
+        let tied = count - loose;
+        let v = svd.V();
+        let rest = Mat::from_fn(size, size - loose, |i, j| match (i < count, j < tied) {
+            (true, true) => v[(i, j)],
+            (false, false) => f64::from(u8::from(i - count == j - tied)),
+            _ => 0.0,
+        });
+        let rigid = Mat::from_fn(size, loose, |i, j| if i < count { v[(i, tied + j)] } else { 0.0 });
+        Ok((rest, rigid))
+    }
+
+    /// A mode with the energies of its bodies and springs, its largest velocity at unit kinetic energy.
+    fn mode(&self, eigenvalue: c64, coordinates: Vec<c64>) -> SystemMode {
+        let motion: Vec<c64> = (0..self.basis.nrows())
+            .map(|i| coordinates.iter().enumerate().map(|(j, x)| *x * self.basis[(i, j)]).sum())
+            .collect();
+        let [real, imaginary]: [Vec<f64>; 2] =
+            [motion.iter().map(|x| x.re).collect(), motion.iter().map(|x| x.im).collect()];
+        let mut kinetic: Vec<f64> = Vec::new();
+        let mut elastic: Vec<f64> = Vec::new();
+        for (b, mass) in self.masses.iter().enumerate() {
+            let own = self.first[b]..self.first[b + 1];
+            let twice = |x: &[f64]| {
+                let n = x.len();
+                (0..n).map(|i| x[i] * (0..n).map(|j| mass[(i, j)] * x[j]).sum::<f64>()).sum::<f64>()
+            };
+            kinetic.push(twice(&real[own.clone()]) + twice(&imaginary[own.clone()]));
+            elastic.push(own.map(|k| self.strain[k] * motion[k].norm_sqr()).sum());
+        }
+        let of_springs = self.springs.iter().map(|(_, tie)| tie.twice_energy(&real) + tie.twice_energy(&imaginary));
+        elastic.extend(of_springs);
+        for energies in [&mut kinetic, &mut elastic] {
+            let sum: f64 = energies.iter().map(|energy| energy.abs()).sum();
+            if sum > 0.0 {
+                energies.iter_mut().for_each(|energy| *energy /= sum);
+            }
+        }
+        SystemMode { eigenvalue, motion, coordinates, kinetic, elastic }
+    }
+}
+
+/// A frequency that a coordinate is measured by.
+fn scale(stiffness: &Mat<f64>, damping: &Mat<f64>, k: usize) -> f64 {
+    let own = stiffness[(k, k)].abs().sqrt().max(damping[(k, k)].abs());
+    if own > 0.0 {
+        return own;
+    }
+    let n = stiffness.nrows();
+    let of = |j: usize| stiffness[(j, k)].abs().sqrt().max(damping[(j, k)].abs()).max(damping[(k, j)].abs());
+    let largest = (0..n).map(of).fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}

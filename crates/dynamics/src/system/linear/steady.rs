@@ -1,0 +1,203 @@
+//! The steady state of a system: its bodies deformed as their loads, joints and spin ask.
+//!
+//! Newton's method with the exact stiffness, over the motions that deform bodies: those that deform none stay where the system has
+//! been put.
+
+use nalgebra::Vector3;
+
+use crate::body::motion_state::MotionState;
+use crate::system::linear::configuration::{BodyConfiguration, CommonSpin, Configuration};
+use crate::system::linear::linearization::Linearization;
+use crate::system::linear::terms::{Terms, springs};
+use crate::system::radau::SystemMotion;
+
+/// Most passes of Newton's method, and the change relative to the size of bodies at which it has converged.
+const PASSES: usize = 40;
+const STILL: f64 = 1e-12;
+/// Largest turn and bending, as a part of the size of bodies, of one pass.
+const STRIDE: f64 = 0.2;
+/// Rate of a row in a common spin, relative to the speed of the bodies, above which its joint does not allow the spin.
+const AGAINST: f64 = 1e-6;
+
+/// Errors of steady states.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SteadyError {
+    /// The inertia of a body is singular.
+    #[error("the inertia of a body is singular; check masses and mesh")]
+    Inertia,
+    /// Numbers are not finite, or the linear algebra does not converge.
+    #[error(
+        "the linearised equations of the system have no answer: numbers are not finite or far apart; check materials, units and masses"
+    )]
+    Numbers,
+    /// The spin turns bodies that a joint holds.
+    #[error(
+        "the spin is not one that joint {joint:?} allows: it would move at a rate of {rate:.3e}; the axis of the spin is to be that of \
+         the joints that tie the system to the ground"
+    )]
+    Against {
+        /// Name of the joint or coupling.
+        joint: String,
+        /// Rate of its row.
+        rate: f64,
+    },
+    /// Newton's method does not converge.
+    #[error(
+        "the bodies find no shape in which they are at rest in this state after {passes} passes; forces or spin may buckle them: try less"
+    )]
+    NoRest {
+        /// Passes that were made.
+        passes: usize,
+    },
+}
+
+/// How far a steady state is from balance: the accelerations that are left, along motions that deform no body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unbalance {
+    /// Of the origin of each body, in its axes.
+    pub accelerations: Vec<Vector3<f64>>,
+    /// Angular, in its axes.
+    pub angular_accelerations: Vec<Vector3<f64>>,
+}
+
+/// A steady state and its linearised equations.
+#[derive(Debug, Clone)]
+pub struct SteadyState {
+    pub(crate) configuration: Configuration,
+    pub(crate) terms: Terms,
+    /// The linearised equations.
+    pub linear: Linearization,
+    /// What is left of balance.
+    pub unbalance: Unbalance,
+    spin: CommonSpin,
+}
+
+impl SystemMotion {
+    /// The steady state in a common spin of all bodies near where they are, with its linearised equations. Velocities of the motion
+    /// do not count, nor do the rates of drives: their values do.
+    ///
+    /// # Errors
+    /// [`SteadyError`].
+    pub fn steady_state(&self, spin: &CommonSpin) -> Result<SteadyState, SteadyError> {
+        SteadyState::near(self, Configuration::of(self, spin), spin)
+    }
+}
+
+impl SteadyState {
+    /// The common spin.
+    pub fn spin(&self) -> &CommonSpin {
+        &self.spin
+    }
+
+    /// Modal displacements of a body.
+    pub fn modal_displacement(&self, body: usize) -> &[f64] {
+        &self.configuration.bodies[body].q
+    }
+
+    /// Multipliers of the rows of all joints and couplings.
+    pub fn multipliers(&self) -> &[f64] {
+        &self.terms.multipliers
+    }
+
+    /// Number of rows that others imply.
+    pub fn implied_rows(&self) -> usize {
+        self.terms.is_implied.iter().filter(|is_implied| **is_implied).count()
+    }
+
+    fn near(motion: &SystemMotion, mut at: Configuration, spin: &CommonSpin) -> Result<Self, SteadyError> {
+        let system = motion.system();
+        let sizes: Vec<f64> = system.bodies.iter().map(crate::ConservativeBody::radius_of_gyration).collect();
+        for pass in 0.. {
+            let terms = Terms::new(system, &at)?;
+            check_spin(motion, &terms, &at, &sizes)?;
+            let linear = Linearization::new(system, &terms, Vec::new())?;
+            let mut change = terms.closing(system, &terms.residuals);
+            let mut forces = linear.project(&terms.forces);
+            let by_closing = linear.project(&product(&terms, &linear, &change));
+            forces.iter_mut().zip(&by_closing).for_each(|(force, less)| *force -= less);
+            let deflection = linear.expand(&linear.deflection(&forces));
+            change.iter_mut().zip(&deflection).for_each(|(sum, more)| *sum += more);
+            let size = size_of(motion, &change, &sizes);
+            if !size.is_finite() {
+                return Err(SteadyError::Numbers);
+            }
+            if size <= STILL {
+                let springs = springs(system, &at);
+                let linear = Linearization { springs, ..linear };
+                let unbalance = unbalance(motion, &linear, &terms);
+                return Ok(Self { configuration: at, terms, linear, unbalance, spin: *spin });
+            }
+            if pass == PASSES {
+                break;
+            }
+            let part = (STRIDE / size).min(1.0);
+            change.iter_mut().for_each(|change| *change *= part);
+            at.change(system, &change, spin);
+        }
+        Err(SteadyError::NoRest { passes: PASSES })
+    }
+}
+
+/// (K + Λ) x over all coordinates.
+fn product(terms: &Terms, linear: &Linearization, x: &[f64]) -> Vec<f64> {
+    let n = x.len();
+    (0..n).map(|i| linear.strain[i] * x[i] + (0..n).map(|j| terms.stiffness[(i, j)] * x[j]).sum::<f64>()).collect()
+}
+
+/// The largest turn, displacement or bending of a body, relative to its size.
+fn size_of(motion: &SystemMotion, change: &[f64], sizes: &[f64]) -> f64 {
+    let system = motion.system();
+    let mut largest = 0.0_f64;
+    for (b, size) in sizes.iter().enumerate() {
+        let own = &change[system.first[b]..system.first[b + 1]];
+        let norm = |list: &[f64]| list.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let bent = norm(&own[6..]) / system.bodies[b].mass().sqrt();
+        let parts = [norm(&own[..3]) / size, norm(&own[3..6]), bent / size];
+        largest = parts.into_iter().fold(largest, |most, part| if part.is_nan() { part } else { most.max(part) });
+    }
+    largest
+}
+
+/// Refuses a spin that a row forbids.
+fn check_spin(motion: &SystemMotion, terms: &Terms, at: &Configuration, sizes: &[f64]) -> Result<(), SteadyError> {
+    let system = motion.system();
+    let speeds = at.bodies.iter().zip(sizes).map(|(body, size)| body.velocity.norm() + body.omega.norm() * size);
+    let scale = speeds.fold(0.0, f64::max);
+    let is_driven = system.connections.is_driven();
+    for ((rate, name), driven) in terms.row_rates.iter().zip(system.connections.names()).zip(is_driven) {
+        if !driven && rate.abs() > AGAINST * scale {
+            return Err(SteadyError::Against { joint: name.to_owned(), rate: *rate });
+        }
+    }
+    Ok(())
+}
+
+fn unbalance(motion: &SystemMotion, linear: &Linearization, terms: &Terms) -> Unbalance {
+    let mut forces = linear.project(&terms.forces);
+    forces[linear.rigid..].fill(0.0);
+    let accelerations = linear.expand(&forces);
+    let of = |part: usize| {
+        let first = &motion.system().first;
+        first[..first.len() - 1]
+            .iter()
+            .map(|first| crate::system::stage::vector(&accelerations, first + part))
+            .collect()
+    };
+    Unbalance { accelerations: of(0), angular_accelerations: of(3) }
+}
+
+impl SteadyState {
+    /// The state of each body.
+    pub fn states(&self) -> Vec<MotionState> {
+        let of_body = |body: &BodyConfiguration| MotionState {
+            time: self.configuration.time,
+            attitude: body.attitude,
+            origin_global: body.origin,
+            velocity_global: body.body_from_global.tr_mul(&body.velocity),
+            omega_body: body.omega,
+            modal_displacement: body.q.clone(),
+            modal_velocity: vec![0.0; body.q.len()],
+        };
+        self.configuration.bodies.iter().map(of_body).collect()
+    }
+}

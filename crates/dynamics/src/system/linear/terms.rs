@@ -1,0 +1,256 @@
+//! The linearised equations of all bodies, before the rows of joints reduce them: Eqs. (L1) to (L6) of `docs/method/systems.md`.
+
+use faer::Mat;
+
+use crate::system::constraints::Constraints;
+use crate::system::description::System;
+use crate::system::elimination::inverse::{Inertia, Inverse};
+use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
+use crate::system::linear::body::BodyTerms;
+use crate::system::linear::configuration::Configuration;
+use crate::system::linear::steady::SteadyError;
+use crate::system::linear::tie::{Sums, Tie, add_block};
+use crate::system::relaxed::rigid_inverses;
+
+/// M ξ̈ + C ξ̇ + K ξ = Gᵀ δλ with G ξ = 0, over the changes of place ξ of all bodies.
+#[derive(Debug, Clone)]
+pub(crate) struct Terms {
+    /// M of each body.
+    pub masses: Vec<Mat<f64>>,
+    /// L of each body: δv = ξ̇ + L ξ.
+    pub convections: Vec<Mat<f64>>,
+    /// C.
+    pub damping: Mat<f64>,
+    /// K without Λ.
+    pub stiffness: Mat<f64>,
+    /// G, and g.
+    pub rows: Mat<f64>,
+    pub residuals: Vec<f64>,
+    /// λ of steady motion; zero for rows that others imply.
+    pub multipliers: Vec<f64>,
+    /// True for rows that others imply.
+    pub is_implied: Vec<bool>,
+    /// Generalised forces of steady motion, but for those of the multipliers.
+    pub forces: Vec<f64>,
+    /// G v: rates of the rows in the steady motion, but for those of drives.
+    pub row_rates: Vec<f64>,
+    /// Number of motions that deform no body.
+    pub rigid_motions: usize,
+    mass_inverses: Vec<Inverse<f64>>,
+    of_mass: JointMatrix<f64>,
+    pattern: Pattern,
+}
+
+impl Terms {
+    /// Where the bodies are, in their steady motion.
+    pub fn new(system: &System, at: &Configuration) -> Result<Self, SteadyError> {
+        let n = system.coordinates();
+        let bodies: Vec<BodyTerms> =
+            system.bodies.iter().zip(&at.bodies).map(|(body, of)| BodyTerms::new(body, of, at.time)).collect();
+        let constraints = constraints_at(system, at);
+        let m = system.rows();
+        let mut rows = Mat::zeros(m, n);
+        for (row, ends) in constraints.ends[..m].iter().enumerate() {
+            for end in ends {
+                end.entries.iter().enumerate().for_each(|(k, entry)| rows[(row, end.first + k)] += entry);
+            }
+        }
+        let velocities: Vec<f64> = at
+            .bodies
+            .iter()
+            .flat_map(|body| body.velocity.iter().chain(&body.omega).copied().chain(body.q.iter().map(|_| 0.0)))
+            .collect();
+        let row_rates =
+            (0..m).map(|row| velocities.iter().enumerate().map(|(k, v)| rows[(row, k)] * v).sum()).collect();
+        let (mut damping, mut stiffness) = (Mat::zeros(n, n), Mat::zeros(n, n));
+        for (terms, first) in bodies.iter().zip(&system.first) {
+            add_block(&mut damping, [*first; 2], &terms.damping);
+            add_block(&mut stiffness, [*first; 2], &terms.stiffness);
+        }
+        let mut terms = Self {
+            damping,
+            stiffness,
+            rows,
+            residuals: constraints.residuals.clone(),
+            multipliers: vec![0.0; m],
+            is_implied: vec![false; m],
+            forces: bodies.iter().flat_map(|terms| terms.forces.iter().copied()).collect(),
+            row_rates,
+            rigid_motions: 0,
+            mass_inverses: Vec::new(),
+            pattern: Pattern::new(
+                &system.connections.groups().collect::<Vec<_>>(),
+                &constraints.ends,
+                system.bodies.len(),
+            ),
+            of_mass: JointMatrix::new(&Pattern::new(&[], &[], 0), 0),
+            masses: Vec::new(),
+            convections: Vec::new(),
+        };
+        let sources: Vec<Tie> = force_ties(system, at).collect();
+        terms.factor(system, &constraints, &bodies)?;
+        (terms.masses, terms.convections) = bodies.into_iter().map(|terms| (terms.mass, terms.convection)).unzip();
+        sources.iter().for_each(|tie| terms.add(system, tie));
+        terms.find_multipliers(system);
+        let held: Vec<Tie> = row_ties(system, at, &terms.multipliers);
+        let forces = terms.forces.clone();
+        held.iter().for_each(|tie| terms.add(system, tie));
+        // The forces of the multipliers stay apart.
+        terms.forces = forces;
+        Ok(terms)
+    }
+
+    /// Adds a tie to the forces, K and C.
+    fn add(&mut self, system: &System, tie: &Tie) {
+        let n = system.coordinates();
+        let (mut by_place, mut by_velocity) = (Mat::zeros(n, n), Mat::zeros(n, n));
+        tie.add_to(&mut Sums { forces: &mut self.forces, by_place: &mut by_place, by_velocity: &mut by_velocity });
+        self.stiffness -= by_place;
+        for (convection, first) in self.convections.iter().zip(&system.first) {
+            let columns = convection.ncols();
+            let changed = by_velocity.get(.., *first..first + columns) * convection;
+            for (i, j) in (0..columns).flat_map(|j| (0..n).map(move |i| (i, j))) {
+                self.stiffness[(i, first + j)] -= changed[(i, j)];
+            }
+        }
+        self.damping -= by_velocity;
+    }
+
+    /// Finds the factor of G M⁻¹ Gᵀ, the rows that others imply, and how many motions deform nothing.
+    fn factor(&mut self, system: &System, constraints: &Constraints, bodies: &[BodyTerms]) -> Result<(), SteadyError> {
+        let inertias: Vec<Inertia> = bodies.iter().map(|terms| inertia_of(&terms.mass)).collect();
+        for (b, inertia) in inertias.iter().enumerate() {
+            let flexible = system.first[b + 1] - system.first[b] - 6;
+            let mut inverse = Inverse::new(flexible);
+            if !inverse.find(1.0, inertia, std::iter::repeat_n([0.0; 2], flexible)) {
+                return Err(SteadyError::Inertia);
+            }
+            self.mass_inverses.push(inverse);
+        }
+        self.of_mass = JointMatrix::new(&self.pattern, system.coordinates());
+        self.of_mass.assemble(&self.pattern, constraints, &self.mass_inverses);
+        self.of_mass.factor(&self.pattern, &mut self.is_implied, true);
+        let rigid = rigid_inverses(&inertias).ok_or(SteadyError::Inertia)?;
+        let mut is_implied = self.is_implied.clone();
+        let mut of_rigid = JointMatrix::new(&self.pattern, system.coordinates());
+        of_rigid.assemble(&self.pattern, constraints, &rigid);
+        of_rigid.factor(&self.pattern, &mut is_implied, true);
+        let rank = is_implied.iter().filter(|is_implied| !**is_implied).count();
+        self.rigid_motions = (6 * system.bodies.len()).saturating_sub(rank);
+        Ok(())
+    }
+
+    /// λ that leaves the least of the forces.
+    fn find_multipliers(&mut self, system: &System) {
+        let mut accelerations = self.forces.clone();
+        for (inverse, range) in self.mass_inverses.iter().zip(system.first.windows(2)) {
+            inverse.apply(&mut accelerations[range[0]..range[1]]);
+        }
+        let mut multipliers = (0..self.rows.nrows())
+            .map(|row| -accelerations.iter().enumerate().map(|(k, a)| self.rows[(row, k)] * a).sum::<f64>())
+            .collect::<Vec<f64>>();
+        self.of_mass.solve(&self.pattern, &mut multipliers);
+        self.multipliers = multipliers;
+    }
+
+    /// The change of place that closes gaps of the rows, in the metric of M.
+    pub fn closing(&self, system: &System, gaps: &[f64]) -> Vec<f64> {
+        let mut multipliers: Vec<f64> = gaps.iter().map(|gap| -gap).collect();
+        self.of_mass.solve(&self.pattern, &mut multipliers);
+        let mut change: Vec<f64> = (0..system.coordinates())
+            .map(|k| multipliers.iter().enumerate().map(|(row, multiplier)| self.rows[(row, k)] * multiplier).sum())
+            .collect();
+        for (inverse, range) in self.mass_inverses.iter().zip(system.first.windows(2)) {
+            inverse.apply(&mut change[range[0]..range[1]]);
+        }
+        change
+    }
+}
+
+/// g and G where the bodies are.
+fn constraints_at(system: &System, at: &Configuration) -> Constraints {
+    let mut constraints = Constraints::new(&system.connections, &system.first);
+    constraints.find(&system.connections, |joint| at.turns[joint], [at.time; 2], |body| at.place(body));
+    constraints
+}
+
+/// Forces of joints along their coordinates, and force elements.
+fn force_ties<'a>(system: &'a System, at: &'a Configuration) -> impl Iterator<Item = Tie> + 'a {
+    let of_joints = system.connections.joint_forces().map(move |(number, coordinate, force)| {
+        let joint = &system.joints()[number];
+        let mut tie = Tie::new(system, at, joint.markers.iter());
+        tie.add_joint_force((coordinate, force), &at.places(joint), at.turns[number], at.time);
+        tie
+    });
+    let of_elements = system.connections.elements.iter().map(move |element| {
+        let mut tie = Tie::new(system, at, element.markers().iter());
+        tie.add_element(&**element, at);
+        tie
+    });
+    of_joints.chain(of_elements)
+}
+
+/// The rows of joints and couplings with their multipliers.
+fn row_ties(system: &System, at: &Configuration, multipliers: &[f64]) -> Vec<Tie> {
+    let mut ties = Vec::new();
+    let mut left = multipliers;
+    for joint in system.joints() {
+        let driven = joint.driven_at([at.time; 2]);
+        for (markers, rows) in joint.groups().filter(|(_, rows)| !rows.is_empty()) {
+            let (own, rest) = left.split_at(rows.len());
+            left = rest;
+            let mut tie = Tie::new(system, at, markers.iter());
+            tie.add_rows(rows, &at.places_of(markers), driven, own);
+            ties.push(tie);
+        }
+    }
+    for (coupling, multiplier) in system.couplings().iter().zip(left) {
+        for term in &coupling.terms {
+            let joint = &system.joints()[term.joint];
+            let mut tie = Tie::new(system, at, joint.markers.iter());
+            let force = multiplier * term.factor;
+            tie.add_coordinate(term.coordinate, &at.places(joint), at.turns[term.joint], |_| (force, [0.0; 2]));
+            ties.push(tie);
+        }
+    }
+    ties
+}
+
+/// The inertia of a body by its mass matrix.
+fn inertia_of(mass: &Mat<f64>) -> Inertia {
+    let nf = mass.nrows() - 6;
+    let mut inertia = Inertia::new(nf);
+    inertia.mass = mass[(0, 0)];
+    for (axis, list) in inertia.coupling.iter_mut().enumerate() {
+        list.iter_mut().enumerate().for_each(|(k, s)| *s = mass[(6 + k, 3 + axis)]);
+    }
+    let of_modes = |i: usize, j: usize| (0..nf).map(|k| mass[(6 + k, 3 + i)] * mass[(6 + k, 3 + j)]).sum::<f64>();
+    inertia.locked = nalgebra::Matrix3::from_fn(|i, j| mass[(3 + i, 3 + j)] - of_modes(i, j));
+    inertia.locked_inverse = inertia.locked.try_inverse().unwrap_or_else(nalgebra::Matrix3::zeros);
+    inertia
+}
+
+/// What holds elastic energy beside the bodies: springs of joints, then force elements, by their numbers.
+pub(crate) fn springs(system: &System, at: &Configuration) -> Vec<(Spring, Tie)> {
+    let of_joints = system.connections.joint_forces().map(|(number, coordinate, force)| {
+        let joint = &system.joints()[number];
+        let mut tie = Tie::new(system, at, joint.markers.iter());
+        tie.add_coordinate(coordinate, &at.places(joint), at.turns[number], |at| (0.0, [force.slopes(at)[0], 0.0]));
+        (Spring::Joint(number), tie)
+    });
+    let of_elements = system.connections.elements.iter().enumerate().map(|(number, element)| {
+        let mut tie = Tie::new(system, at, element.markers().iter());
+        tie.add_element(&**element, at);
+        (Spring::Element(number), tie)
+    });
+    of_joints.chain(of_elements).collect()
+}
+
+/// A spring by the number of its joint or its element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Spring {
+    /// Of a joint.
+    Joint(usize),
+    /// A force element.
+    Element(usize),
+}

@@ -1,0 +1,257 @@
+//! Joints and force elements in the linearised equations: Eqs. (L3) to (L5) of `docs/method/systems.md`.
+
+use faer::Mat;
+use nalgebra::Vector3;
+
+use crate::conservative::ConservativeBody;
+use crate::system::description::System;
+use crate::system::element::ForceElement;
+use crate::system::joint::change::{FrameChange, WrenchChange};
+use crate::system::joint::coordinate::Coordinate;
+use crate::system::joint::force::JointForce;
+use crate::system::joint::row::Row;
+use crate::system::joint::wrench::RowWrench;
+use crate::system::linear::configuration::Configuration;
+use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
+use crate::system::marker::tangent::MarkerTangent;
+use crate::system::marker::{Marker, MarkerPlace};
+
+/// Some markers with the forces between them, to first order. Entries of lists and matrices are those of the markers one after
+/// another, six each: displacement and turn, or force and moment, global.
+#[derive(Debug, Clone)]
+pub(crate) struct Tie {
+    ends: Vec<Option<TieEnd>>,
+    wrenches: Vec<[Vector3<f64>; 2]>,
+    /// Velocities and angular velocities of the markers.
+    velocities: Vec<f64>,
+    /// Changes of the wrenches by displacements and turns, at the same velocities.
+    by_motion: Mat<f64>,
+    /// Changes of the wrenches by velocities and angular velocities.
+    by_velocity: Mat<f64>,
+}
+
+/// A marker that is not on the ground.
+#[derive(Debug, Clone)]
+struct TieEnd {
+    first: usize,
+    tangent: MarkerTangent,
+}
+
+/// Matrices over all coordinates that ties add to.
+pub(crate) struct Sums<'a> {
+    /// Generalised forces.
+    pub forces: &'a mut Vec<f64>,
+    /// Their changes by place, at the same velocities, and by velocities.
+    pub by_place: &'a mut Mat<f64>,
+    pub by_velocity: &'a mut Mat<f64>,
+}
+
+impl Tie {
+    /// No forces yet.
+    pub fn new<'m>(system: &System, at: &Configuration, markers: impl Iterator<Item = &'m Marker>) -> Self {
+        let end = |marker: &Marker| {
+            let body = marker.body()?;
+            let of = &at.bodies[body];
+            let tangent = marker.tangent(&at.place(body), of.q.len(), [&of.velocity, &of.omega]);
+            Some((TieEnd { first: system.first[body], tangent }, &of.velocity, &of.omega))
+        };
+        let mut ends = Vec::new();
+        let mut velocities = Vec::new();
+        for marker in markers {
+            let end = end(marker);
+            velocities.extend((0..6).map(|i| {
+                end.as_ref().map_or(0.0, |(end, velocity, omega)| {
+                    (0..3)
+                        .map(|k| end.tangent.motion[(i, k)] * velocity[k] + end.tangent.motion[(i, 3 + k)] * omega[k])
+                        .sum()
+                })
+            }));
+            ends.push(end.map(|(end, ..)| end));
+        }
+        let size = 6 * ends.len();
+        Self {
+            wrenches: vec![[Vector3::zeros(); 2]; ends.len()],
+            velocities,
+            by_motion: Mat::zeros(size, size),
+            by_velocity: Mat::zeros(size, size),
+            ends,
+        }
+    }
+
+    /// Adds a force along a scalar: its wrench and its change, times the force, and the slopes of the force over the scalar and over
+    /// its rate.
+    fn add_scalar(
+        &mut self,
+        wrench: &RowWrench,
+        change: impl Fn([&FrameChange; 2]) -> WrenchChange,
+        force: f64,
+        slopes: [f64; 2],
+    ) {
+        let on = list(wrench.on_both());
+        for (sum, [force_on, moment_on]) in self.wrenches.iter_mut().zip(wrench.on_both()) {
+            sum[0] += force_on * force;
+            sum[1] += moment_on * force;
+        }
+        for column in 0..12 {
+            let mut frames = [FrameChange::default(); 2];
+            let frame = &mut frames[column / 6];
+            let unit = Vector3::ith(column % 3, 1.0);
+            if column % 6 < 3 {
+                frame.displacement = unit
+            } else {
+                frame.turn = unit
+            }
+            let changed = list(change(frames.each_ref()).on_both());
+            let faster: f64 = changed.iter().zip(&self.velocities).map(|(change, velocity)| change * velocity).sum();
+            let scalar = slopes[0] * on[column] + slopes[1] * faster;
+            for row in 0..12 {
+                self.by_motion[(row, column)] += force * changed[row] + scalar * on[row];
+                self.by_velocity[(row, column)] += slopes[1] * on[column] * on[row];
+            }
+        }
+    }
+
+    /// Rows with these multipliers, where the drive of their joint has this value and this rate.
+    pub fn add_rows(&mut self, rows: &[Row], places: &[MarkerPlace; 2], driven: [f64; 2], multipliers: &[f64]) {
+        for (row, multiplier) in rows.iter().zip(multipliers) {
+            let wrench = row.wrench(places.each_ref(), driven);
+            let change = |changes: [&FrameChange; 2]| row.wrench_change(places.each_ref(), driven[0], changes);
+            self.add_scalar(&wrench, change, *multiplier, [0.0; 2]);
+        }
+    }
+
+    /// A force along a coordinate of a joint, with its slopes over the coordinate and its rate.
+    pub fn add_coordinate(
+        &mut self,
+        coordinate: Coordinate,
+        places: &[MarkerPlace; 2],
+        turn: f64,
+        law: impl FnOnce([f64; 2]) -> (f64, [f64; 2]),
+    ) {
+        let wrench = coordinate.wrench(places.each_ref(), turn);
+        let rate = list(wrench.on_both()).iter().zip(&self.velocities).map(|(on, velocity)| on * velocity).sum();
+        let (force, slopes) = law([wrench.residual, rate]);
+        let change = |changes: [&FrameChange; 2]| coordinate.wrench_change(places.each_ref(), changes);
+        self.add_scalar(&wrench, change, force, slopes);
+    }
+
+    /// A force of a joint along its coordinate.
+    pub fn add_joint_force(
+        &mut self,
+        (coordinate, force): (Coordinate, &JointForce),
+        places: &[MarkerPlace; 2],
+        turn: f64,
+        time: f64,
+    ) {
+        self.add_coordinate(coordinate, places, turn, |at| (force.at(at, [time; 2]).sum(), force.slopes(at)));
+    }
+
+    /// A force element.
+    pub fn add_element(&mut self, element: &dyn ForceElement, at: &Configuration) {
+        let markers = element.markers();
+        let times = [at.time; 2];
+        let motions: Vec<MarkerMotion> = markers
+            .iter()
+            .enumerate()
+            .map(|(k, marker)| {
+                let place = marker.place(marker.body().map(|b| at.place(b)).as_ref());
+                let velocity = |first: usize| Vector3::from_fn(|i, _| self.velocities[6 * k + first + i]);
+                MarkerMotion {
+                    position_global: place.position,
+                    axes_global: place.axes,
+                    velocity_global: velocity(0),
+                    omega_global: velocity(3),
+                }
+            })
+            .collect();
+        let mut wrenches = vec![MarkerWrench::default(); markers.len()];
+        element.apply(times, &motions, &mut wrenches);
+        for (sum, wrench) in self.wrenches.iter_mut().zip(&wrenches) {
+            sum[0] += wrench.force_global;
+            sum[1] += wrench.moment_global;
+        }
+        for column in 0..12 * markers.len() {
+            let (marker, part) = (column / 12, column % 12);
+            let mut by = vec![MarkerChange::default(); markers.len()];
+            let unit = Vector3::ith(part % 3, 1.0);
+            match part / 3 {
+                0 => by[marker].displacement_global = unit,
+                1 => by[marker].turn_global = unit,
+                2 => by[marker].velocity_global = unit,
+                _ => by[marker].omega_global = unit,
+            }
+            let mut changes = vec![MarkerWrench::default(); markers.len()];
+            element.differentiate(times, &motions, &by, &mut changes);
+            let (to, at) = match part {
+                0..6 => (&mut self.by_motion, 6 * marker + part),
+                _ => (&mut self.by_velocity, 6 * marker + part - 6),
+            };
+            for (k, change) in changes.iter().enumerate() {
+                for i in 0..3 {
+                    to[(6 * k + i, at)] += change.force_global[i];
+                    to[(6 * k + 3 + i, at)] += change.moment_global[i];
+                }
+            }
+        }
+    }
+
+    /// Adds its generalised forces and their changes to the sums over all coordinates.
+    pub fn add_to(&self, sums: &mut Sums<'_>) {
+        let ends = || self.ends.iter().enumerate().filter_map(|(k, end)| Some((k, end.as_ref()?)));
+        for (k, end) in ends() {
+            let motion = &end.tangent.motion;
+            let n = motion.ncols();
+            let [force, moment] = &self.wrenches[k];
+            for j in 0..n {
+                let work: f64 = (0..3).map(|i| motion[(i, j)] * force[i] + motion[(3 + i, j)] * moment[i]).sum();
+                sums.forces[end.first + j] += work;
+            }
+            let mut own = Mat::zeros(n, n);
+            end.tangent.add_force_change([force, moment], &mut own);
+            add_block(sums.by_place, [end.first; 2], &own);
+            for (l, other) in ends() {
+                let block = |matrix: &Mat<f64>| motion.transpose() * matrix.get(6 * k..6 * k + 6, 6 * l..6 * l + 6);
+                let (by_motion, by_velocity) = (block(&self.by_motion), block(&self.by_velocity));
+                let by_place = by_motion * &other.tangent.motion + &by_velocity * &other.tangent.velocity;
+                add_block(sums.by_place, [end.first, other.first], &by_place);
+                add_block(sums.by_velocity, [end.first, other.first], &(by_velocity * &other.tangent.motion));
+            }
+        }
+    }
+
+    /// Displacements and turns of the markers by changes of place of all bodies, real or imaginary parts.
+    pub fn motions(&self, changes: &[f64]) -> Vec<f64> {
+        let mut motions = vec![0.0; 6 * self.ends.len()];
+        for (k, end) in self.ends.iter().enumerate() {
+            let Some(TieEnd { first, tangent }) = end else { continue };
+            for j in 0..tangent.motion.ncols() {
+                (0..6).for_each(|i| motions[6 * k + i] += tangent.motion[(i, j)] * changes[first + j]);
+            }
+        }
+        motions
+    }
+
+    /// Twice the energy that small changes of place put into it: −zᵀ (change of the wrenches by z), z the motions of the markers.
+    pub fn twice_energy(&self, changes: &[f64]) -> f64 {
+        let z = self.motions(changes);
+        -(0..z.len()).map(|j| (0..z.len()).map(|i| z[i] * self.by_motion[(i, j)] * z[j]).sum::<f64>()).sum::<f64>()
+    }
+}
+
+/// Adds a block to a matrix.
+pub(crate) fn add_block(to: &mut Mat<f64>, [row, column]: [usize; 2], block: &Mat<f64>) {
+    for j in 0..block.ncols() {
+        for i in 0..block.nrows() {
+            to[(row + i, column + j)] += block[(i, j)];
+        }
+    }
+}
+
+fn list(on_both: [[Vector3<f64>; 2]; 2]) -> [f64; 12] {
+    std::array::from_fn(|k| on_both[k / 6][k % 6 / 3][k % 3])
+}
+
+/// Λ_k of the modes of a body.
+pub(crate) fn stiffnesses(body: &ConservativeBody) -> impl Iterator<Item = f64> {
+    body.circular_frequencies.iter().map(|omega| omega * omega)
+}

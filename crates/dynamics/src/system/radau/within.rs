@@ -1,0 +1,97 @@
+//! The motion within a step that has been done: Eqs. (J16) of `docs/method/systems.md`.
+
+use crate::body::motion_state::MotionState;
+use crate::conservative::{get, part, set};
+use crate::equations::Equations;
+use crate::error::SetupError;
+use crate::system::radau::{Failed, JointWork, SystemMotion};
+use crate::system::stage::vector;
+
+impl SystemMotion {
+    /// Takes over the motion of another with the same system, but for the count of its evaluations, without allocating.
+    pub(in crate::system) fn copy_from(&mut self, other: &Self) {
+        self.time = other.time;
+        self.bodies.iter_mut().zip(&other.bodies).for_each(|(own, other)| own.copy_from(other));
+        let lists = |of: &Self| -> [f64; 4] { [of.last_length, of.largest_energy, of.jump_work, of.element_work] };
+        [self.last_length, self.largest_energy, self.jump_work, self.element_work] = lists(other);
+        for (own, other) in self.last.iter_mut().flatten().zip(other.last.iter().flatten()) {
+            own.copy_from_slice(other);
+        }
+        for (own, other) in self.multipliers.iter_mut().zip(&other.multipliers) {
+            own.copy_from_slice(other);
+        }
+        for (own, other) in self.bend.iter_mut().zip(&other.bend) {
+            own.copy_from_slice(other);
+        }
+        self.stage_rates.iter_mut().zip(&other.stage_rates).for_each(|(own, other)| own.copy_from(other));
+        self.start.joints.copy_from_slice(&other.start.joints);
+        self.joint_works.copy_from_slice(&other.joint_works);
+    }
+
+    /// The next step begins without the polynomials of the last.
+    pub(in crate::system) fn forget_last_step(&mut self) {
+        self.last_length = 0.0;
+    }
+
+    /// Takes other states of the bodies, at the time of the first. Works and impulses are counted from there; full turns of joints go
+    /// on.
+    pub(in crate::system) fn set_states(&mut self, states: &[MotionState]) -> Result<(), SetupError> {
+        let (expected, found) = (self.bodies.len(), states.len());
+        if found != expected {
+            return Err(SetupError::Length { what: "the list of states", expected, found });
+        }
+        let bodies = self.system.bodies.iter().zip(states);
+        self.bodies = bodies.map(|(body, state)| body.state_of(state)).collect::<Result<_, _>>()?;
+        if let Some(first) = states.first() {
+            self.time = first.time;
+        }
+        self.bodies.iter_mut().for_each(|body| body.time = self.time);
+        self.joint_works.fill(JointWork::default());
+        [self.jump_work, self.element_work, self.last_length] = [0.0; 3];
+        Ok(())
+    }
+
+    /// Goes to a time within a step, from the motion `before` it, by the polynomials of the step, at whose end `after` has been at
+    /// the time `end`. The joints then hold as at the end of a step, and what flies freely has the momenta that the loads give it.
+    pub(in crate::system) fn go_within(
+        &mut self,
+        before: &Self,
+        (after, end): (&Self, f64),
+        time: f64,
+    ) -> Result<(), Failed> {
+        self.copy_from(before);
+        self.stage_rates.iter_mut().zip(&after.stage_rates).for_each(|(own, other)| own.copy_from(other));
+        self.begin();
+        let h = end - before.time;
+        let fraction = (time - before.time) / h;
+        let times = [time, before.time + 0.5 * h];
+        let factors = self.scheme.at(fraction);
+        let [.., stage] = &mut self.stages;
+        let bend = self.scheme.bend(fraction);
+        for (which, list) in [&mut stage.x, &mut stage.y].into_iter().enumerate() {
+            for (k, value) in list.iter_mut().enumerate() {
+                let of_stages: f64 =
+                    factors.iter().zip(&after.last).map(|(factor, last)| factor * last[which][k]).sum();
+                *value = of_stages + bend * after.bend[which][k];
+            }
+        }
+        stage.evaluate(&self.system, &self.start, times)?;
+        self.evaluations += 1;
+        let weights = self.scheme.weights_to(fraction).map(|weight| h * weight);
+        self.land(times, h, weights)?;
+        // Momenta that bend have impulses that do.
+        for (b, (body, state)) in self.system.bodies.iter().zip(&mut self.bodies).enumerate() {
+            let first = self.system.first[b];
+            let [impulse, about_global] = [0, 3].map(|part| bend * vector(&after.bend[1], first + part));
+            let mut list = body.list_mut(state);
+            let mut slow = *list.slow();
+            let moment = about_global - get(&slow, part::POSITION).cross(&impulse);
+            for (which, more) in [(part::IMPULSE, impulse), (part::ANGULAR_IMPULSE, moment)] {
+                let sum = get(&slow, which) + more;
+                set(&mut slow, which, &sum);
+            }
+            list.set_slow(&slow);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,51 @@
+//! Bodies and joints at one time, as events and rows see them.
+
+use crate::body::shapes::PointShapes;
+use crate::error::RateError;
+use crate::observation::Observation;
+use crate::simulation::events::Seen;
+use crate::system::description::System;
+use crate::system::joint::observation::JointObservation;
+use crate::system::radau::SystemMotion;
+
+/// The motion of a system at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SystemObservation {
+    /// Time.
+    pub time: f64,
+    /// The bodies, in their order in the system.
+    pub bodies: Vec<Observation>,
+    /// The joints, in their order in the system.
+    pub joints: Vec<JointObservation>,
+}
+
+impl SystemObservation {
+    /// Room for a system, and for the motion of points of each body.
+    pub(crate) fn new(system: &System, points: &[Vec<PointShapes>]) -> Self {
+        let of_bodies = system.bodies().iter().zip(points);
+        Self {
+            time: 0.0,
+            bodies: of_bodies.map(|(body, points)| Observation::new(body.flexible(), points.len())).collect(),
+            joints: vec![JointObservation::default(); system.joints().len()],
+        }
+    }
+
+    /// Takes in the motion where it is.
+    pub(crate) fn fill(&mut self, motion: &mut SystemMotion, points: &[Vec<PointShapes>]) -> Result<(), RateError> {
+        motion.find_reactions()?;
+        self.time = motion.time();
+        for (body, (out, points)) in self.bodies.iter_mut().zip(points).enumerate() {
+            motion.observe(body, points, out)?;
+        }
+        for (joint, out) in self.joints.iter_mut().enumerate() {
+            *out = motion.observe_joint(joint);
+        }
+        Ok(())
+    }
+}
+
+impl Seen for SystemObservation {
+    fn time(&self) -> f64 {
+        self.time
+    }
+}

@@ -1,0 +1,111 @@
+//! The beginning of a run of bodies with joints: its settings, and how the joints are closed.
+
+use nalgebra::Vector3;
+
+use crate::body::motion_state::MotionState;
+use crate::body::shapes::PointShapes;
+use crate::error::SetupError;
+use crate::history::positive;
+use crate::simulation::plan::{Rows, StepControl};
+use crate::system::collocation::SystemScheme;
+use crate::system::description::System;
+use crate::system::radau::SystemMotion;
+
+/// Residuals of positions beyond this part of the size of the system are not closed.
+const CLOSED: f64 = 1e-9;
+
+/// Everything that a run of bodies with joints needs.
+#[derive(Debug, Clone)]
+pub struct SystemSetup {
+    /// The bodies and the joints.
+    pub system: System,
+    /// The motion of each body at the beginning, as far as the joints let it be.
+    pub states: Vec<MotionState>,
+    /// True if the bodies begin deformed as the forces of their motion and their joints ask, so that nothing rings.
+    pub relaxed: bool,
+    /// How it is stepped.
+    pub scheme: SystemScheme,
+    /// How long the steps are. A tolerance is that of each step, relative to the size of the bodies.
+    pub control: StepControl,
+    /// When it ends.
+    pub end: f64,
+    /// When it is observed.
+    pub rows: Rows,
+    /// Points of each body whose motion is observed.
+    pub points: Vec<Vec<PointShapes>>,
+}
+
+/// Change of a body by which the joints close at the beginning.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Assembled {
+    /// Distance that its origin was moved by.
+    pub moved: f64,
+    /// Angle that it was turned by, rad.
+    pub turned: f64,
+    /// Change of the velocity of its origin.
+    pub velocity: f64,
+    /// Change of its angular velocity.
+    pub angular_velocity: f64,
+}
+
+impl SystemSetup {
+    /// Refuses times and steps that are out of range.
+    pub(super) fn check(&self) -> Result<(), SetupError> {
+        positive("the end", self.end)?;
+        match self.control {
+            StepControl::Fixed(step) => positive("the step", step)?,
+            StepControl::Tolerance(tolerance) => positive("the tolerance", tolerance)?,
+        }
+        match self.rows {
+            Rows::EverySteps(_) => Ok(()),
+            Rows::Interval(interval) => positive("the interval of the rows", interval),
+        }
+    }
+}
+
+/// Largest distance of bodies from the first, or the largest radius of gyration.
+pub(super) fn size(system: &System, states: &[MotionState]) -> f64 {
+    let first = states.first().map_or_else(Vector3::zeros, |state| state.origin_global);
+    let spread = states.iter().map(|state| (state.origin_global - first).norm());
+    let radii = system.bodies().iter().map(|body| body.radius_of_gyration());
+    spread.chain(radii).fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// A body that does not resist a motion.
+const SINGULAR: SetupError = SetupError::Value { what: "the inertia of a body", found: 0.0, expected: "above 0" };
+
+/// Moves the bodies so that the joints close, and finds by how much.
+pub(super) fn assemble(
+    motion: &mut SystemMotion,
+    states: &[MotionState],
+    relaxed: bool,
+    [size, end]: [f64; 2],
+) -> Result<Vec<Assembled>, SetupError> {
+    let open = motion.most_open().map_err(|_| SINGULAR)?;
+    let done = if relaxed { motion.relax() } else { motion.assemble() };
+    let [left, rates] = match (done, open) {
+        (Ok(left), _) => left,
+        // Bodies that are too far from where they have to be.
+        (Err(_), Some((joint, [left, rate]))) => {
+            return Err(SetupError::NotAssembled { joint: joint.into(), left, rate });
+        }
+        (Err(_), None) => return Err(SINGULAR),
+    };
+    let fastest = states.iter().map(|state| state.velocity_global.norm() + size * state.omega_body.norm());
+    let is_open = |left: f64, scale: f64| left.is_nan() || left > CLOSED * scale;
+    if is_open(left, size) || is_open(rates, size / end + fastest.fold(0.0, f64::max)) {
+        let open = motion.most_open().ok().flatten();
+        let joint = open.map_or_else(Box::default, |(joint, _)| joint.into());
+        return Err(SetupError::NotAssembled { joint, left, rate: rates });
+    }
+    let changed = |(body, state): (usize, &MotionState)| {
+        let now = motion.state(body).map_err(|_| SINGULAR)?;
+        Ok(Assembled {
+            moved: (now.origin_global - state.origin_global).norm(),
+            turned: now.attitude.angle_to(&state.attitude),
+            velocity: (now.velocity_global - state.velocity_global).norm(),
+            angular_velocity: (now.omega_body - state.omega_body).norm(),
+        })
+    };
+    states.iter().enumerate().map(changed).collect()
+}
