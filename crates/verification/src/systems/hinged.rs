@@ -63,6 +63,35 @@ struct Seen {
 /// The bars of a frame in the joined mesh at equal times, from rows + 1.
 pub struct Reference(Vec<Vec<Seen>>);
 
+/// A bar of the joined mesh.
+struct Part {
+    /// As a solid of its own.
+    alone: Solid,
+    /// Numbers of its nodes in the joined mesh.
+    nodes: Vec<usize>,
+    /// Its own numbers of the nodes that are compared.
+    seen: Vec<usize>,
+}
+
+impl Part {
+    /// With what finds the number of a node of the joined mesh by its place.
+    fn new(
+        frame: &Frame,
+        bar: &Bar,
+        material: Material,
+        find: impl Fn([f64; 3]) -> Option<usize>,
+    ) -> Result<Self, NonlinearError> {
+        let mesh = Mesh::new(frame.bar(bar.upright))?;
+        let moved = |x: &[f64; 3]| [0, 1, 2].map(|k| x[k] + bar.at[k]);
+        let nodes: Option<Vec<usize>> = mesh.positions().iter().map(|x| find(moved(x))).collect();
+        let nodes = nodes.ok_or_else(|| NonlinearError::Mesh("meshes that differ".to_owned()))?;
+        let place = |x: &Vector3<f64>| mesh.positions().iter().position(|y| (Vector3::from(*y) - x).norm() < 1e-9);
+        let seen: Option<Vec<usize>> = places(frame, bar.upright).iter().map(place).collect();
+        let seen = seen.ok_or_else(|| NonlinearError::Mesh("no node at a place that is compared".to_owned()))?;
+        Ok(Self { alone: Solid::new(mesh, material, |_| false)?, nodes, seen })
+    }
+}
+
 /// Places on a bar that are compared: both ends and its middle.
 fn places(frame: &Frame, upright: bool) -> [Vector3<f64>; 3] {
     let [l, b, h] = frame.size;
@@ -86,28 +115,12 @@ pub fn reference(frame: &Frame, motions: &Motions) -> Result<Reference, Nonlinea
     let key = |x: [f64; 3]| x.map(|s| (s * 1e6).round() as i64);
     let numbers: HashMap<[i64; 3], usize> =
         solid.mesh().positions().iter().zip(0..).map(|(x, i)| (key(*x), i)).collect();
-    // Each bar as a solid of its own, with the numbers of its nodes in the joined mesh.
-    let parts: Result<Vec<(Solid, Vec<usize>, Vec<usize>)>, NonlinearError> = frame
-        .bars
-        .iter()
-        .map(|bar| {
-            let mesh = Mesh::new(frame.bar(bar.upright))?;
-            let moved = |x: &[f64; 3]| [0, 1, 2].map(|k| x[k] + bar.at[k]);
-            let find = |x: [f64; 3]| {
-                numbers.get(&key(x)).copied().ok_or_else(|| NonlinearError::Mesh("meshes that differ".to_owned()))
-            };
-            let own: Result<Vec<usize>, _> = mesh.positions().iter().map(|x| find(moved(x))).collect();
-            let place = |x: &Vector3<f64>| mesh.positions().iter().position(|y| (Vector3::from(*y) - x).norm() < 1e-9);
-            let seen: Option<Vec<usize>> = places(frame, bar.upright).iter().map(place).collect();
-            let seen = seen.ok_or_else(|| NonlinearError::Mesh("no node at a place that is compared".to_owned()))?;
-            Ok((Solid::new(mesh, material, |_| false)?, own?, seen))
-        })
-        .collect();
-    let parts = parts?;
+    let parts = frame.bars.iter().map(|bar| Part::new(frame, bar, material, |x| numbers.get(&key(x)).copied()));
+    let parts = parts.collect::<Result<Vec<Part>, NonlinearError>>()?;
     let mut v = vec![0.0; solid.dofs()];
-    for ((part, own, _), [velocity, omega]) in parts.iter().zip(&motions.velocities) {
-        let middle = center(part, &vec![0.0; part.dofs()]);
-        for (x, number) in part.mesh().positions().iter().zip(own) {
+    for (Part { alone, nodes, .. }, [velocity, omega]) in parts.iter().zip(&motions.velocities) {
+        let middle = center(alone, &vec![0.0; alone.dofs()]);
+        for (x, number) in alone.mesh().positions().iter().zip(nodes) {
             let of_node = velocity + omega.cross(&(Vector3::from(*x) - middle));
             v[3 * number..3 * number + 3].copy_from_slice(of_node.as_slice());
         }
@@ -128,15 +141,15 @@ pub fn reference(frame: &Frame, motions: &Motions) -> Result<Reference, Nonlinea
     };
     let [coarse, fine] = [run(steps)?, run(2 * steps)?];
     let at_time = |(coarse, fine): (&Vec<f64>, &Vec<f64>)| {
-        let of_bar = |(bar, (part, own, seen)): (&Bar, &(Solid, Vec<usize>, Vec<usize>))| {
+        let of_bar = |(bar, Part { alone, nodes, seen }): (&Bar, &Part)| {
             let dof = |k: usize| (4.0 * fine[k] - coarse[k]) / 3.0;
-            let u: Vec<f64> = own.iter().flat_map(|node| [0, 1, 2].map(|axis| dof(3 * node + axis))).collect();
-            let axes = mean_axes(part, &u);
+            let u: Vec<f64> = nodes.iter().flat_map(|node| [0, 1, 2].map(|axis| dof(3 * node + axis))).collect();
+            let axes = mean_axes(alone, &u);
             let elastic =
                 seen.iter().map(|node| Vector3::from_column_slice(&axes.displacement[3 * node..3 * node + 3]));
             Seen {
                 rotation: axes.rotation,
-                center: Vector3::from(bar.at) + center(part, &u),
+                center: Vector3::from(bar.at) + center(alone, &u),
                 elastic: elastic.collect(),
             }
         };
