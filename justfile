@@ -93,7 +93,7 @@ stability:
 
 # Large deflection and stress against a nonlinear finite-element body, and the curves of docs/evidence/nonlinear.md (some minutes).
 nonlinear:
-    cargo test --release --quiet --package verification --test nonlinear -- --include-ignored --nocapture
+    cargo test --release --quiet --package verification --test nonlinear --test systems -- --include-ignored --nocapture
     mkdir -p docs/evidence/nonlinear
     cargo run --release --quiet --package verification --bin nonlinear -- docs/evidence/nonlinear --overwrite
 
@@ -121,6 +121,14 @@ factor:
 # docs/evidence/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: twenty minutes, `full`: hours, with all peers to their ends; parts: `modes`, `size`, `loop`, `page`).
 performance *what: build
     .tools/performance/bin/python crates/verification/performance/performance.py {{what}}
+
+# docs/evidence/systems.md: time against error of three systems, in flexframe and in Exudyn, in turn on one core (Python packages; some minutes).
+exudyn: build
+    cargo build --quiet --package verification --bin systems
+    python3 -m venv --upgrade-deps .tools/exudyn >/dev/null
+    .tools/exudyn/bin/pip install -q exudyn==1.13.6 meshio==5.3.5 h5py==3.16.0 numpy==2.4.6 scipy==1.17.1 matplotlib==3.11.2
+    RAYON_NUM_THREADS=1 .tools/exudyn/bin/python crates/verification/performance/systems.py \
+        {{flexframe}} target/debug/systems docs/evidence/systems.md
 
 # The Python package: its wheel, with HDF5 inside, into target/wheels, and its tests in a fresh installation (Python packages).
 python profile="release":

@@ -7,7 +7,7 @@
 use dynamics::Effect;
 use fem_tet10::{Material, Materials};
 use modal::NoCycles;
-use model::{Doubt, Meshed, Model};
+use model::{BodyMarker, Doubt, Meshed, Model};
 use scene::{Body, Choice, Load, Scene, Units};
 
 use crate::rows::units::UnitLabels;
@@ -67,6 +67,7 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     if let Some(reason) = model.meshed.as_ref().and_then(|meshed| meshed.no_cycles.as_ref()) {
         doubts.push(without_cycles(reason));
     }
+    doubts.extend(model.markers.iter().filter_map(warping));
     let ratios = &model.damping_ratios()[..model.body.flexible() - model.static_shapes()];
     let over: Vec<f64> = ratios.iter().copied().filter(|ratio| *ratio > 1.0).collect();
     if let Some(largest) = over.iter().copied().reduce(f64::max) {
@@ -85,6 +86,19 @@ fn without_cycles(reason: &NoCycles) -> String {
     format!(
         "the stiffness matrix was factored, which takes long: multigrid cycles did not take the place of the factor; {reason}"
     )
+}
+
+/// A marker whose faces warp.
+fn warping(marker: &BodyMarker) -> Option<String> {
+    let warp = marker.warp.as_ref()?;
+    let count = warp.patches()?;
+    Some(format!(
+        "the marker {:?}: its faces warp by {:.0} % of their displacements under the forces of a joint, which their mean does not see, \
+         so that the joint is too soft; `patches = {count}` leaves out {:.0} %",
+        marker.name,
+        100.0 * warp.left_out[0],
+        100.0 * warp.left_out[count - 1]
+    ))
 }
 
 /// Parts of a motion that a body of matrices may lack.

@@ -9,3 +9,4 @@ mod pairs;
 mod patterns;
 mod place;
 pub(crate) mod tied;
+pub(crate) mod warp;

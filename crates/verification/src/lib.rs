@@ -4,3 +4,4 @@
 pub mod accuracy;
 pub mod nonlinear;
 pub mod stability;
+pub mod systems;

@@ -10,6 +10,7 @@ pub mod meshes;
 pub mod motion;
 pub mod page;
 pub mod structure;
+pub mod systems;
 pub mod time;
 pub mod trial;
 

@@ -1,5 +1,6 @@
 //! Every hard case, with every scheme, held to its bound; the longest runs shortened.
 
+use verification::stability::systems::SCHEMES;
 use verification::stability::{BOUNDED, Extent, sections};
 
 fn hold(section: &str) {
@@ -48,4 +49,21 @@ fn structure() {
 #[test]
 fn mesh_and_material() {
     hold("Mesh and material");
+}
+
+/// Conserved: energy and momenta, in the bounds of each case; besides, closed forms.
+#[test]
+fn systems() {
+    let mut broken = Vec::new();
+    for case in verification::stability::systems::cases() {
+        for (number, (scheme, _)) in SCHEMES.iter().enumerate() {
+            let begin = std::time::Instant::now();
+            let (outcome, expected) = (case.outcome(number, Extent::Test), &case.expected[number]);
+            println!("{}: {scheme} {outcome:?} {:.2?}", case.name, begin.elapsed());
+            if !expected.holds(&outcome) {
+                broken.push(format!("{}, {scheme}: {outcome:?}, but {expected}", case.name));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
 }

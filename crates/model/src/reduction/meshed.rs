@@ -57,7 +57,7 @@ pub(crate) fn reduce(
     let survey = Survey::new(&model, modes, on_all_modes, progress)?;
     let has_statics = survey.statics.any() || survey.of_markers.is_some();
     let decision = Decision::new(scene, &survey);
-    let Reduction { modes, modal: reduced, large, backbones, stress, of_markers, advice } =
+    let Reduction { modes, modal: reduced, large, backbones, stress, of_markers, warps, advice } =
         Reduction::new(&model, survey, &decision)?;
     if has_statics {
         times.statics = started.elapsed();
@@ -68,7 +68,7 @@ pub(crate) fn reduce(
         Some(large) => points(scene, mesh, large.modes(), large.manifold.body())?,
         None => points(scene, mesh, &modes, &reduced.body)?,
     };
-    let markers = mesh_marker::reduced(&model.markers, scene, mesh, (&reduced.body, &modes), &of_markers)?;
+    let markers = mesh_marker::reduced(&model.markers, scene, mesh, (&reduced.body, &modes), &of_markers, &warps)?;
     let reference_points = reference_points(scene, mesh, &reduced.body);
     let extended = large.as_ref().map(|large| (&large.manifold, large.modes()));
     let has_gravity = decision.effects[Effect::Gravity];

@@ -16,6 +16,8 @@ use crate::reduction::physics;
 use crate::reduction::survey::Survey;
 use crate::stress::Stress;
 use crate::structure::kept::Basis;
+use crate::tie::mesh_marker::warps;
+use crate::tie::warp::Warp;
 
 /// Sentence about effects that may matter but need elements.
 const WITHOUT_ELEMENTS: &str =
@@ -30,6 +32,8 @@ pub(crate) struct Reduction {
     pub stress: Stress,
     /// Stiffness by the stress of unit forces and moments on the markers (nf×nf each); none where it is left out.
     pub of_markers: Vec<Mat<f64>>,
+    /// How the faces of the markers warp; none where the body does not deform.
+    pub warps: Vec<Option<Warp>>,
     /// The manifold of the large modes, if any are.
     pub large: Option<LargeDeflection>,
     /// With what only this body tells.
@@ -40,6 +44,7 @@ impl Reduction {
     pub fn new(model: &MeshModel<'_, '_>, survey: Survey, decision: &Decision) -> Result<Self, BuildError> {
         let Survey { modes, modal, spin, statics, of_markers, backbones, advice } = survey;
         let of_markers = of_markers.filter(|_| decision.keep > 0);
+        let warps = of_markers.as_ref().map_or_else(Vec::new, |of| warps(&model.markers, model.mesh, of.as_ref()));
         let Backbones { of_modes: mut backbones, derivatives } = backbones;
         let tolerance = model.scene.effects.tolerance;
         backbones.truncate(decision.keep);
@@ -91,6 +96,6 @@ impl Reduction {
                 }
             }
         }
-        Ok(Self { modes, modal, large, backbones, stress, of_markers, advice })
+        Ok(Self { modes, modal, large, backbones, stress, of_markers, warps, advice })
     }
 }

@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use scene::{Marker, MarkerAxes, MarkerPlace, Scene};
 
 use crate::error::BuildError;
+use crate::tie::warp::Warp;
 
 /// A place with axes on a reduced body.
 #[derive(Debug, Clone)]
@@ -21,6 +22,8 @@ pub struct BodyMarker {
     pub parts: Vec<MarkerPart>,
     /// True if each part is a node, which has no turn.
     pub by_nodes: bool,
+    /// How its faces warp, where it is their mean on a body that deforms.
+    pub warp: Option<Warp>,
     /// Its axes as columns, body axes: those of the body where it names none.
     pub axes: Matrix3<f64>,
     /// Turns of the material there that the modes do not know.
@@ -77,6 +80,7 @@ pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<BodyMark
             turning: RotationShapes::new(body, Mat::zeros(3, 0).as_ref()),
             parts: Vec::new(),
             by_nodes: false,
+            warp: None,
             axes: axes(marker.axes.as_ref()),
             unknown_turns: UnknownTurns::None,
         })

@@ -1,7 +1,7 @@
 //! Places with axes on a mesh: the nodes that carry them, the forces of their unit wrenches, and how modes move them.
 
 use faer::prelude::ReborrowMut;
-use faer::{Mat, Scale};
+use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Location, Mesh, Patch, Strip};
 use modal::{Modes, ReducedBody};
 use nalgebra::{Matrix3, Vector3};
@@ -13,6 +13,7 @@ use crate::support::region_nodes;
 use crate::tie::body_marker::{BodyMarker, MarkerPart, UnknownTurns, axes};
 use crate::tie::patterns::patterns;
 use crate::tie::place::Place;
+use crate::tie::warp::Warp;
 
 /// A face on the boundary of a region is in it whatever rounding did to it: relative to the size of the mesh.
 const ON: f64 = 1e-6;
@@ -31,6 +32,8 @@ pub(crate) struct MeshMarker {
     parts: Vec<(f64, Place)>,
     /// Forces on the parts that are put on together (parts × patterns); none where each part has its own.
     patterns: Option<Mat<f64>>,
+    /// Its faces, where it is their mean.
+    faces: Option<Vec<[u32; 6]>>,
     /// Degrees of freedom of a node.
     dofs: usize,
 }
@@ -54,6 +57,18 @@ pub(crate) fn unit_forces(markers: &[MeshMarker], unknowns: usize) -> Mat<f64> {
     forces
 }
 
+/// How the faces of each of the markers warp in the responses to [`unit_forces`]; none where it is no mean of faces.
+pub(crate) fn warps(markers: &[MeshMarker], mesh: &Mesh, responses: MatRef<'_, f64>) -> Vec<Option<Warp>> {
+    let mut first = 0;
+    let of_marker = |marker: &MeshMarker| {
+        let count = marker.loads().len();
+        let own = responses.subcols(first, count);
+        first += count;
+        Warp::new(mesh, marker.faces.as_ref()?, marker.dofs, own)
+    };
+    markers.iter().map(of_marker).collect()
+}
+
 /// Markers on a body in some modes. `stiffness` is that (nf×nf each) by the stress of the forces of
 /// [`unit_forces`]; none where it is left out.
 pub(crate) fn reduced(
@@ -62,14 +77,16 @@ pub(crate) fn reduced(
     mesh: &Mesh,
     body: (&ReducedBody, &Modes),
     stiffness: &[Mat<f64>],
+    warps: &[Option<Warp>],
 ) -> Result<Vec<BodyMarker>, BuildError> {
     let mut rest = stiffness;
-    let on_body = |marker: &MeshMarker| {
+    let on_body = |(number, marker): (usize, &MeshMarker)| {
         let (own, others) = rest.split_at(rest.len().min(marker.loads().len()));
         rest = others;
-        marker.reduced(scene, mesh, body, own)
+        let warp = warps.get(number).cloned().flatten();
+        Ok(BodyMarker { warp, ..marker.reduced(scene, mesh, body, own)? })
     };
-    markers.iter().map(on_body).collect()
+    markers.iter().enumerate().map(on_body).collect()
 }
 
 /// A wrench of a place as a part of a load.
@@ -83,7 +100,7 @@ impl MeshMarker {
     fn new(scene: &Scene, mesh: &Mesh, dofs: usize, marker: &Marker) -> Result<Self, BuildError> {
         let key = key_path("body.markers", &marker.name);
         let (name, axes) = (marker.name.clone(), axes(marker.axes.as_ref()));
-        let alone = |whole: Place| Self { name, axes, whole, parts: Vec::new(), patterns: None, dofs };
+        let alone = |whole: Place| Self { name, axes, whole, parts: Vec::new(), patterns: None, faces: None, dofs };
         let region = match &marker.place {
             MarkerPlace::Point(at) => {
                 let key = key_path(&key, "at");
@@ -97,7 +114,10 @@ impl MeshMarker {
             MarkerPlace::Region(region) => region,
         };
         match marker.tie {
-            Tie::Mean => Ok(alone(Place::of_patch(patch(scene, mesh, region, &key)?, mesh))),
+            Tie::Mean => {
+                let whole = Place::of_patch(patch(scene, mesh, region, &key)?, mesh);
+                Ok(Self { faces: faces(mesh, region), ..alone(whole) })
+            }
             Tie::Patches { count, along } => {
                 let whole = Place::of_patch(patch(scene, mesh, region, &key)?, mesh);
                 let strips = strips(scene, mesh, region, &key, count, along)?;
@@ -175,11 +195,20 @@ impl MeshMarker {
         // What does not deform is turned as the body is.
         let unknown_turns = if body.0.flexible() == 0 { UnknownTurns::None } else { self.whole.unknown_turns };
         let by_nodes = self.patterns.is_some();
-        Ok(BodyMarker { name: self.name.clone(), point, turning, parts, by_nodes, axes: self.axes, unknown_turns })
+        Ok(BodyMarker {
+            name: self.name.clone(),
+            point,
+            turning,
+            parts,
+            by_nodes,
+            warp: None,
+            axes: self.axes,
+            unknown_turns,
+        })
     }
 
     /// The stiffness by wrenches on the whole, from that by those on the parts: a force is spread by their parts in the whole, a
-    /// moment as forces and moments.
+    /// moment as forces and moments. Eqs. (J16) of `docs/method/systems.md`.
     fn of_whole(&self, of_parts: &[Vec<Mat<f64>>]) -> Vec<Mat<f64>> {
         let inverse = self.whole.inverse_inertia();
         let of_wrench = |[force, moment]: [Vector3<f64>; 2]| {

@@ -217,3 +217,168 @@ fn joints_of_markers_that_do_not_tell_their_turns_and_regions_without_faces_are_
     assert_eq!(models[0].markers[0].unknown_turns, UnknownTurns::None);
     assert_eq!(tie(&system, &models).unwrap().len(), 1);
 }
+
+/// Conserved: forces on nodes and on patches add up to that on their mean, which moves as their mean does.
+#[test]
+fn a_marker_of_several_places_is_their_mean() {
+    let of = |marker: &str| {
+        build(&parse(&format!(
+            "{HEAD}[body]\n{BAR}markers = {{ tip = {{ box = [[200, -9, -9], [200, 9, 9]], {marker} }} }}\n\
+             [modes]\nflexible = 2\nstatic_correction = false\n{TIME}"
+        )))
+    };
+    let (patches, nodes) = (of("patches = 3, along = [0, 1, 0]"), of("tie = 'nodes'"));
+    assert_eq!(patches.static_shapes(), 18);
+    let count = nodes.markers[0].parts.len();
+    assert!(count > 5 && nodes.static_shapes() == 3 * count, "{count} {}", nodes.static_shapes());
+    for model in [&patches, &nodes] {
+        let marker = &model.markers[0];
+        let parts = &marker.parts;
+        let middle: Vector3<f64> =
+            parts.iter().map(|part| part.point.position_body()).sum::<Vector3<f64>>() / parts.len() as f64;
+        assert!((middle - marker.point.position_body()).norm() < 1e-9, "{middle}");
+        let size = marker.point.columns()[6..].iter().map(|shape| shape.norm()).fold(0.0, f64::max);
+        for (k, shape) in marker.point.columns()[6..].iter().enumerate() {
+            let mean: Vector3<f64> =
+                parts.iter().map(|part| part.point.columns()[6 + k]).sum::<Vector3<f64>>() / parts.len() as f64;
+            assert!((mean - shape).norm() < 1e-9 * size, "{k}: {mean} {shape}");
+        }
+        // u₂ is the mean of those of the places, also where the force is on the mean.
+        let q: Vec<f64> = (0..model.body.flexible()).map(|k| 1e-3 / (1.0 + k as f64)).collect();
+        let moved = |point: &dynamics::PointShapes| -> Vector3<f64> { point.deformation(&q) };
+        let mean: Vector3<f64> = parts.iter().map(|part| moved(&part.point)).sum::<Vector3<f64>>() / parts.len() as f64;
+        assert!((mean - moved(&marker.point)).norm() < 1e-9 * mean.norm(), "{mean}");
+    }
+}
+
+#[test]
+fn places_that_do_not_fit_each_other_or_their_joint_are_refused() {
+    let two = |first: &str, second: &str, joint: &str| {
+        format!(
+            "{HEAD}[bodies.a]\n{BAR}modes = {{ flexible = 2 }}\nmarkers = {{ m = {{ {first} }} }}\n\
+             [bodies.b]\n{BAR}modes = {{ flexible = 2 }}\ninitial = {{ position = [200, 0, 0] }}\nmarkers = {{ m = {{ {second} }} }}\n\
+             [[joints]]\nbetween = ['a.m', 'b.m']\n{joint}\n{TIME}"
+        )
+    };
+    let (tip, root) = ("box = [[200, -9, -9], [200, 9, 9]]", "box = [[0, -9, -9], [0, 9, 9]]");
+    let line = |x: f64| format!("box = [[{x}, -9, -5.001], [{}, 9, -4.999]], tie = 'nodes'", x + 1e-6);
+    let patches = |of: &str, count: usize| format!("{of}, patches = {count}, along = [0, 1, 0]");
+    let hinge = "kind = 'revolute'\naxis = [0, 1, 0]";
+    for (first, second, joint, key, words) in [
+        (patches(tip, 2), patches(root, 3), "kind = 'fixed'", "joints[0].between", "of 2 and 3 places"),
+        (patches(tip, 2), root.to_owned(), "kind = 'fixed'", "joints[0].between[1]", "of one place"),
+        (patches(tip, 2), patches(root, 2), "kind = 'spherical'", "joints[0].kind", "of patches"),
+        (
+            patches(tip, 2),
+            patches(root, 2),
+            "kind = 'revolute'\naxis = [0, 0, 1]",
+            "joints[0].kind",
+            "revolute about the line",
+        ),
+        (line(200.0), line(0.0), "kind = 'fixed'", "joints[0]", "which holds that turn"),
+        (line(200.0), line(0.0), "kind = 'revolute'\naxis = [0, 0, 1]", "joints[0]", "which holds that turn"),
+        (
+            line(200.0),
+            line(0.0),
+            &format!("{hinge}\nspring = {{ stiffness = 1.0 }}"),
+            "joints[0]",
+            "which holds that turn",
+        ),
+        (
+            line(200.0),
+            line(0.0),
+            &format!("{hinge}\ndrive = {{ amplitude = 1.0 }}"),
+            "joints[0]",
+            "which holds that turn",
+        ),
+        (line(200.0), line(0.0), "kind = 'spherical'", "joints[0].kind", "a joint that is revolute"),
+        (
+            format!("{tip}, tie = 'nodes'"),
+            format!("{root}, tie = 'nodes'"),
+            hinge,
+            "joints[0].kind",
+            "a joint that is fixed",
+        ),
+        (
+            line(200.0),
+            line(0.0).replace("-5.001", "4.999").replace("-4.999", "5.001"),
+            "kind = 'revolute'\naxis = [0, 0, 1]",
+            "joints[0]",
+            "turn",
+        ),
+    ] {
+        let (system, models) = system(&two(&first, &second, joint));
+        let error = tie(&system, &models).expect_err(joint).to_string();
+        assert!(error.contains(key) && error.contains(words), "{key}, {words}: {error}");
+    }
+    let alone =
+        |marker: &str| format!("{HEAD}[body]\n{BAR}markers = {{ m = {{ {marker} }} }}\n[modes]\nflexible = 2\n{TIME}");
+    for (marker, words) in [
+        (format!("{tip}, patches = 2"), "as far in two directions"),
+        ("box = [[-1, -9, -9], [201, 9, 9]], tie = 'nodes'".to_owned(), "100 nodes or fewer"),
+    ] {
+        let error = Model::build(&parse(&alone(&marker)), |_| ()).expect_err(&marker).to_string();
+        assert!(error.contains("body.markers.m.") && error.contains(words), "{words}: {error}");
+    }
+    // What fits is tied: one joint with rows on each place.
+    let (system, models) = system(&two(&line(200.0), &line(0.0), hinge));
+    let joint = &tie(&system, &models).unwrap()[0].system.joints()[0].clone();
+    assert_eq!((joint.rows.len(), joint.row_count()), (0, 3 * models[0].markers[0].parts.len()));
+}
+
+/// Stress along a bar at points on its upper side, at rest under a load, by its end.
+fn stress_at_rest(text: &str) -> Vec<f64> {
+    let (system, models) = system(text);
+    let tied = tie(&system, &models).unwrap().remove(0);
+    let mut simulation = start(&tied, StepControl::Tolerance(1e-6), 0.1);
+    while simulation.advance_watched(1000, |_, _| ()).unwrap() != Reached::End {}
+    let q = simulation.motion().state(0).unwrap().modal_displacement;
+    models[0].stress.as_ref().unwrap().at_points(&q).map(|stress| stress[0]).collect()
+}
+
+const SEEN: &str = "points = { a = [60, 0, 5], b = [20, 0, 5] }\nstress = true\n";
+/// Light beside the bar, so that it comes to rest with it.
+const LIGHT: &str =
+    "rigid = { mass = 1e-7, center_of_mass = [0, 0, 0], inertia = [[1e-5, 0, 0], [0, 1e-5, 0], [0, 0, 1e-5]] }\n";
+const DAMPED: &str = "modes = { flexible = 4, damping_ratio = 1.0 }\neffects = { geometric_stiffening = false }\n";
+
+/// Closed form: a beam on a weld, pushed at its end by another body through a ball, has the stress F (L − x) c/I.
+#[test]
+fn the_force_of_a_joint_stresses_a_body_as_beams_say() {
+    let force = 3.0;
+    let found = stress_at_rest(&format!(
+        "{HEAD}[bodies.bar]\n{BAR}{DAMPED}{SEEN}markers = {{ root = {{ group = 'root' }}, tip = {{ group = 'tip' }} }}\n\
+         [bodies.block]\n{LIGHT}initial = {{ position = [200, 0, 0] }}\nmarkers = {{ m = {{ at = [0, 0, 0] }} }}\n\
+         loads = [{{ kind = 'force', at = [0, 0, 0], direction = [0, 0, -1], amplitude = {force} }}]\n\
+         [[joints]]\nkind = 'fixed'\nbetween = ['ground', 'bar.root']\n\
+         [[joints]]\nkind = 'spherical'\nbetween = ['bar.tip', 'block.m']\n{TIME}"
+    ));
+    for (found, x) in found.iter().zip([60.0, 20.0]) {
+        let expected = force * (200.0 - x) * 5.0 / (1e4 / 12.0);
+        println!("{x}: {found} {expected}");
+        assert!((found / expected - 1.0).abs() < 0.01, "{x}: {found} {expected}");
+    }
+}
+
+/// Independent reference: the same bar held by a constraint of the reduction.
+#[test]
+fn a_weld_stresses_a_bar_as_a_clamp_does() {
+    let body = |rest: &str| {
+        format!(
+            "{HEAD}[body]\n{BAR}{rest}[[loads]]\nkind = 'force'\nat = [200, 0, 0]\ndirection = [0, 1, -2]\namplitude = 2.0\n\
+             [modes]\nflexible = 4\ndamping_ratio = 1.0\n[effects]\ngeometric_stiffening = false\n[output]\n{SEEN}interval = 0.1\n\
+             [time]\nend = 0.1\ntolerance = 1e-6\n"
+        )
+    };
+    let clamped = parse(&body("[[constraints]]\nkind = 'clamp'\ngroup = 'root'\n"));
+    let (model, end) = last(&clamped);
+    let expected: Vec<f64> =
+        model.stress.as_ref().unwrap().at_points(&end.modal_displacement).map(|stress| stress[0]).collect();
+    let weld =
+        "markers = { root = { group = 'root' } }\n[[joints]]\nkind = 'fixed'\nbetween = ['body.root', 'ground']\n";
+    let found = stress_at_rest(&body(weld));
+    println!("{found:?} {expected:?}");
+    for (found, expected) in found.iter().zip(&expected) {
+        assert!((found / expected - 1.0).abs() < 2e-3, "{found} {expected}");
+    }
+}

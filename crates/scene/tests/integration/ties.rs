@@ -2,7 +2,7 @@
 
 use scene::{
     Coordinate, CouplingKind, End, JointKind, Locked, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError,
-    System,
+    System, Tie,
 };
 
 const HEAD: &str = "title = 'three'\nunits = { length = 'm', mass = 'kg', time = 's' }\n";
@@ -169,6 +169,29 @@ fn refusals_name_the_place_and_the_way_out() {
         ("z = [0, 0, 5]", "z = [0, 0, 0]", "bodies.arm.markers.tip.z", "a vector that is not zero"),
         ("'arm.root', 'ground']", "'arm.tip', 'ground.wall']", "joints[0].axis", "whose markers both have axes"),
         // Markers.
+        ("group = 'tip face'", "group = 'tip face'\npatches = 1", "bodies.arm.markers.tip.patches", "from 2 to 32"),
+        ("group = 'tip face'", "group = 'tip face'\npatches = 33", "bodies.arm.markers.tip.patches", "from 2 to 32"),
+        ("group = 'tip face'", "group = 'tip face'\ntie = 'node'", "bodies.arm.markers.tip.tie", "`nodes`"),
+        (
+            "group = 'tip face'",
+            "group = 'tip face'\npatches = 2\ntie = 'nodes'",
+            "bodies.arm.markers.tip.tie",
+            "beside `patches`",
+        ),
+        (
+            "group = 'tip face'",
+            "group = 'tip face'\nalong = [0, 1, 0]",
+            "bodies.arm.markers.tip.along",
+            "without `patches`",
+        ),
+        (
+            "group = 'tip face'",
+            "group = 'tip face'\npatches = 2\nalong = [0, 0, 0]",
+            "bodies.arm.markers.tip.along",
+            "a vector that is not zero",
+        ),
+        ("group = 'tip face'", "at = [0, 0, 0]\npatches = 2", "bodies.arm.markers.tip.patches", "a marker at a point"),
+        ("group = 'tip face'", "at = [0, 0, 0]\ntie = 'nodes'", "bodies.arm.markers.tip.tie", "a marker at a point"),
         (
             "group = 'tip face'",
             "group = 'tip face'\nat = [0, 0, 0]",

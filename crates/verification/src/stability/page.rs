@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::time::Instant;
 
+use crate::stability::systems::{self, SCHEMES, SystemCase};
 use crate::stability::{BOUNDED, Expected, Extent, HardCase, Outcome, sections};
 
 /// The page, and the outcomes that are not what is asked for.
@@ -35,6 +36,38 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
         for (number, refusal) in refusals.iter().enumerate() {
             let _ = writeln!(page, "\n{title} {}: {refusal}", number + 1);
         }
+    }
+    let (systems, of_systems) = of_systems(extent, &mut progress);
+    broken.extend(of_systems);
+    (page + &systems, broken)
+}
+
+/// The section of systems, which have schemes of their own, and their outcomes that are not what is asked for.
+pub fn of_systems(extent: Extent, progress: &mut impl FnMut(&str)) -> (String, Vec<String>) {
+    let (mut page, mut broken) = (String::new(), Vec::new());
+    let mut refusals: Vec<String> = Vec::new();
+    let _ = writeln!(
+        page,
+        "\n## Systems of bodies\n\nBy the schemes of systems with step control, at tolerance 1e-7 where nothing else is said.\n\n\
+         | case | measured | {} | {} |\n|---|---|---|---|",
+        SCHEMES[0].0, SCHEMES[1].0
+    );
+    for case in systems::cases() {
+        let SystemCase { name, why, measure, expected, .. } = &case;
+        let _ = write!(page, "| **{name}**: {why} | {measure} |");
+        for (number, ((scheme, _), expected)) in SCHEMES.iter().zip(expected).enumerate() {
+            let begin = Instant::now();
+            let outcome = case.outcome(number, extent);
+            progress(&format!("{name}, {scheme}: {outcome:?} in {:.1} s", begin.elapsed().as_secs_f64()));
+            if !expected.holds(&outcome) {
+                broken.push(format!("{name}, {scheme}: {outcome:?} is not {expected}"));
+            }
+            let _ = write!(page, " {} |", cell(&outcome, Some(expected), &mut refusals));
+        }
+        let _ = writeln!(page);
+    }
+    for (number, refusal) in refusals.iter().enumerate() {
+        let _ = writeln!(page, "\nSystems {}: {refusal}", number + 1);
     }
     (page, broken)
 }

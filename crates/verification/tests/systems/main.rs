@@ -1,0 +1,7 @@
+//! Systems of bodies in joints against joined meshes. One program, so that it is linked once.
+
+mod four_bar;
+mod hinged;
+mod princeton;
+mod shaft;
+mod welded;
