@@ -19,6 +19,7 @@ use flexframe::outputs::{OutputError, Written, outputs_of_results, outputs_of_sc
 use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::{Shard, SweepSettings};
+use flexframe::system_modes::{self, ModesOfSystems};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
 use model::{BuildError, Builder, Cache};
 use scene::{Flexible, Scene, SceneError};
@@ -479,11 +480,13 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Modes { scene: SceneArgs { scene, json }, flexible, output, files, solver } => {
             output::require_file("--output", output.as_deref())?;
-            let mut scenes = read_bodies(scene)?;
+            let mut system = scene.read_system()?;
+            system.bodies.iter().for_each(tell_doubts);
             if let Some(count) = flexible {
-                scenes.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
+                system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
             }
-            if let Some(to) = solver.take_of(&scenes, &mut builder, signals.slepc())? {
+            let scenes = &system.bodies;
+            if let Some(to) = solver.take_of(scenes, &mut builder, signals.slepc())? {
                 return write_only(&scenes[0], &builder, &to, files.overwrite, bar);
             }
             output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
@@ -491,19 +494,46 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                 Some(body) => folder.join(format!("modes.{body}")),
                 None => folder.join("modes"),
             };
-            if let Some(folder) = &output {
+            if let Some(folder) = output.as_ref().filter(|_| !system.has_connections()) {
                 scenes.iter().try_for_each(modes::require_surface)?;
                 let pictures: Vec<_> =
                     scenes.iter().flat_map(|scene| figures::files(&picture(folder, scene))).collect();
-                outputs_of_scenes(&scenes, &builder, files.overwrite).claim(&pictures)?;
+                outputs_of_scenes(scenes, &builder, files.overwrite).claim(&pictures)?;
             }
+            let make_folder = |folder: &PathBuf| {
+                std::fs::create_dir_all(folder)
+                    .map_err(|source| run::RunError::Folder { folder: folder.clone(), source })
+            };
             let (mut reports, mut pictures) = (Vec::new(), Vec::new());
-            for scene in &scenes {
+            if system.has_connections() {
+                let models = system_modes::build(&system, &builder, |p| bar.build(p))
+                    .map_err(|error| of_option(error.into(), flexible))?;
+                let systems = system_modes::system_modes(&system, &models)?;
+                let number = systems.len();
+                for (k, modes) in systems.iter().enumerate() {
+                    let Some(folder) = &output else { continue };
+                    make_folder(folder)?;
+                    let name = if number == 1 { "modes".to_owned() } else { format!("modes.system{}", k + 1) };
+                    let stem = folder.join(name);
+                    outputs_of_scenes(scenes, &builder, files.overwrite).claim(&figures::files(&stem))?;
+                    pictures.extend(system_modes::draw(&system, &models, modes, &stem)?.into_iter().flatten());
+                }
+                let is_tied = |number: &usize| systems.iter().any(|modes| modes.bodies.contains(number));
+                for scene in (0..scenes.len()).filter(|number| !is_tied(number)).map(|number| &scenes[number]) {
+                    let (_, report) = modes::modes(scene, &builder, |p| bar.build(p))
+                        .map_err(|error| of_option(error.into(), flexible))?;
+                    reports.push((scene.name.clone(), report));
+                }
+                let systems = systems.into_iter().map(|modes| modes.report).collect();
+                drop(bar);
+                output::print(&ModesOfSystems { systems, bodies: reports }, json)?;
+                return if json { Ok(()) } else { output::list(&pictures) };
+            }
+            for scene in scenes {
                 let (model, report) = modes::modes(scene, &builder, |p| bar.build(p))
                     .map_err(|error| of_option(error.into(), flexible))?;
                 if let Some(folder) = output.as_ref().filter(|_| model.meshed.is_some() || scenes.len() == 1) {
-                    std::fs::create_dir_all(folder)
-                        .map_err(|source| run::RunError::Folder { folder: folder.clone(), source })?;
+                    make_folder(folder)?;
                     pictures.extend(mode_shapes::draw(scene, &model, &picture(folder, scene))?);
                 }
                 reports.push((scene.name.clone(), report));

@@ -79,6 +79,11 @@ impl Linearization {
         })
     }
 
+    /// What holds elastic energy beside the bodies, in the order of [`SystemMode::elastic`](crate::SystemMode).
+    pub fn springs(&self) -> impl Iterator<Item = Spring> {
+        self.springs.iter().map(|(spring, _)| *spring)
+    }
+
     /// Number of independent coordinates.
     pub fn size(&self) -> usize {
         self.basis.ncols()

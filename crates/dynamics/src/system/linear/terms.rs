@@ -232,7 +232,8 @@ pub(crate) fn springs(system: &System, at: &Configuration) -> Vec<(Spring, Tie)>
     let of_joints = system.connections.joint_forces().map(|(number, coordinate, force)| {
         let joint = &system.joints()[number];
         let mut tie = Tie::new(system, at, joint.markers.iter());
-        tie.add_coordinate(coordinate, &at.places(joint), at.turns[number], |at| (0.0, [force.slopes(at)[0], 0.0]));
+        let law = |here| (0.0, [force.slopes(here, [at.time; 2])[0], 0.0]);
+        tie.add_coordinate(coordinate, &at.places(joint), at.turns[number], law);
         (Spring::Joint(number), tie)
     });
     let of_elements = system.connections.elements.iter().enumerate().map(|(number, element)| {

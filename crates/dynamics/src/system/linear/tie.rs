@@ -144,7 +144,9 @@ impl Tie {
         turn: f64,
         time: f64,
     ) {
-        self.add_coordinate(coordinate, places, turn, |at| (force.at(at, [time; 2]).sum(), force.slopes(at)));
+        self.add_coordinate(coordinate, places, turn, |at| {
+            (force.at(at, [time; 2]).sum(), force.slopes(at, [time; 2]))
+        });
     }
 
     /// A force element.

@@ -1,0 +1,73 @@
+//! `flexframe modes` of bodies that joints tie together: the vibrations of the assembled system where it stands at the start.
+
+mod assembled;
+mod draw;
+mod report;
+
+use std::path::PathBuf;
+
+use dynamics::{CommonSpin, SteadyError, Vibrations};
+use model::{BuildError, BuildProgress, Builder, Model, StartError};
+use scene::System;
+
+pub(crate) use assembled::{TiedMotion, tied_motions};
+pub use draw::draw;
+pub use report::{ModesOfSystems, Share, SystemModeReport, SystemModesReport};
+
+/// Vibrations of a system that could not be found.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
+pub enum SystemModesError {
+    /// A body cannot be built.
+    #[error("{0}")]
+    Build(#[from] BuildError),
+    /// The bodies cannot be put together.
+    #[error("{}", source.in_scene(scene))]
+    Setup { scene: PathBuf, source: Box<StartError> },
+    /// The system has no steady state, or its vibrations cannot be found.
+    #[error("{}: {source}", scene.display())]
+    Steady { scene: PathBuf, source: SteadyError },
+}
+
+/// The vibrations of bodies that are tied together.
+#[derive(Debug, Clone)]
+pub struct SystemModes {
+    /// Numbers of the bodies in the scene.
+    pub bodies: Vec<usize>,
+    /// The states of the bodies.
+    pub states: Vec<dynamics::MotionState>,
+    /// Their vibrations.
+    pub vibrations: Vibrations,
+    /// Report for people and programs.
+    pub report: SystemModesReport,
+}
+
+/// Builds the bodies of a scene.
+///
+/// # Errors
+/// [`BuildError`].
+pub fn build(
+    system: &System,
+    builder: &Builder,
+    mut progress: impl FnMut(BuildProgress),
+) -> Result<Vec<Model>, BuildError> {
+    system.bodies.iter().map(|scene| builder.build(scene, &mut progress)).collect()
+}
+
+/// Finds the vibrations of all bodies of a scene that joints, springs or bushings tie together, at rest where they stand at the
+/// start; the bodies are deformed as their loads ask, and drives hold still.
+///
+/// # Errors
+/// [`SystemModesError`].
+pub fn system_modes(system: &System, models: &[Model]) -> Result<Vec<SystemModes>, SystemModesError> {
+    tied_motions(system, models)?.iter().map(|motion| of_motion(system, motion)).collect()
+}
+
+fn of_motion(system: &System, motion: &TiedMotion) -> Result<SystemModes, SystemModesError> {
+    let scene = &system.bodies[motion.bodies[0]];
+    let failed = |source| SystemModesError::Steady { scene: scene.path.clone(), source };
+    let steady = motion.simulation.motion().steady_state(&CommonSpin::REST).map_err(failed)?;
+    let vibrations = steady.linear.vibrations().map_err(failed)?;
+    let report = SystemModesReport::new(system, motion, &steady, &vibrations);
+    Ok(SystemModes { bodies: motion.bodies.clone(), states: steady.states(), vibrations, report })
+}
