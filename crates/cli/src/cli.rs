@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, MAX_FRAMES, animate, animate_results};
-use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds};
+use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds, SystemCampbellSettings};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, FailureReport, Kind};
@@ -171,9 +171,13 @@ enum Command {
     Campbell {
         #[command(flatten)]
         scene: SceneArgs,
-        /// Spin axis in the axes of the mesh: x, y, z, or three numbers such as 0,0.6,0.8.
+        /// Spin axis in the axes of the mesh: x, y, z, or three numbers such as 0,0.6,0.8. Of bodies in joints it is global and goes
+        /// through their center of mass.
         #[arg(long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
-        axis: Direction,
+        axis: Option<Direction>,
+        /// A joint about whose axis the bodies of a system spin [default: the one that a drive turns].
+        #[arg(long, value_name = "NAME", conflicts_with = "axis")]
+        joint: Option<String>,
         /// Spin speeds in radians per time: from start to end, both included, count in all.
         #[arg(long, value_name = "START:END:COUNT", value_parser = speeds, allow_hyphen_values = true)]
         speeds: Speeds,
@@ -553,7 +557,8 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Campbell {
             scene: SceneArgs { scene, json },
-            axis: Direction(axis),
+            axis,
+            joint,
             speeds,
             orders,
             flexible,
@@ -561,15 +566,33 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             files,
         } => {
             output::require_file("--output", output.as_deref())?;
-            let mut scene = read(scene)?;
-            if let Some(count) = flexible {
-                scene.modes.flexible = Flexible::Count(count);
+            let mut system = scene.clone().read_system()?;
+            if system.bodies.len() > 1 && !system.has_connections() {
+                system = read(scene)?.into();
+            } else {
+                system.bodies.iter().for_each(tell_doubts);
             }
-            let settings = CampbellSettings { axis, speeds, orders };
-            let folder = folder(&scene, output)?;
-            outputs_of_scene(&scene, &builder, files.overwrite).claim(&campbell::files(&folder))?;
-            let report = campbell::campbell(&scene, &builder, &folder, &settings, |p| bar.campbell(p))
-                .map_err(|error| of_option(error, flexible))?;
+            if let Some(count) = flexible {
+                system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
+            }
+            let axis = axis.map(|Direction(axis)| axis);
+            let Some(scene) = system.bodies.first() else { return Err(run::RunError::NoBody.into()) };
+            let folder = folder(scene, output)?;
+            outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(&campbell::files(&folder))?;
+            let report = if system.has_connections() {
+                let settings = SystemCampbellSettings { axis, joint, speeds, orders };
+                campbell::campbell_of_system(&system, &builder, &folder, &settings, |p| bar.campbell(p))
+            } else {
+                let axis = axis.ok_or_else(|| CliError::Option {
+                    option: "--axis",
+                    found: "none".to_owned(),
+                    expected: "the axis of the spin, in the axes of the mesh".to_owned(),
+                    help: "give x, y, z, or three numbers such as 0,0.6,0.8".to_owned(),
+                })?;
+                let settings = CampbellSettings { axis, speeds, orders };
+                campbell::campbell(scene, &builder, &folder, &settings, |p| bar.campbell(p))
+            };
+            let report = report.map_err(|error| of_option(error, flexible))?;
             drop(bar);
             output::print(&report, json)
         }

@@ -14,6 +14,7 @@ pub(crate) mod configuration;
 mod linearization;
 mod load;
 mod mode;
+mod spin;
 mod steady;
 pub(crate) mod terms;
 pub(crate) mod tie;

@@ -12,6 +12,7 @@ use scene::System;
 
 pub(crate) use assembled::{TiedMotion, tied_motions};
 pub use draw::draw;
+pub(crate) use report::body_names;
 pub use report::{ModesOfSystems, Share, SystemModeReport, SystemModesReport};
 
 /// Vibrations of a system that could not be found.

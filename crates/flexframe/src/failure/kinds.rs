@@ -428,8 +428,9 @@ impl Fault for HtmlReportError {
 impl Fault for CampbellError {
     fn known(&self) -> Known {
         match self {
-            Self::Build(_) | Self::Figure(_) | Self::Write(_) => Known::default(),
-            Self::Eigen { scene, .. } => Kind::Run.of(scene),
+            Self::Build(_) | Self::System(_) | Self::Figure(_) | Self::Write(_) => Known::default(),
+            Self::Eigen { scene, .. } | Self::Steady { scene, .. } => Kind::Run.of(scene),
+            Self::NoAxis { scene, .. } => Kind::Usage.of(scene),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
         }
     }
