@@ -19,7 +19,7 @@ use flexframe::outputs::{OutputError, Written, outputs_of_results, outputs_of_sc
 use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::{Shard, SweepSettings};
-use flexframe::system_modes::{self, ModesOfSystems};
+use flexframe::system_modes::{self, AdviceOnSystems, ModesOfSystems};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
 use model::{BuildError, Builder, Cache};
 use scene::{Flexible, Scene, SceneError};
@@ -547,10 +547,17 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             if json { Ok(()) } else { output::list(&pictures) }
         }
         Command::Advise { scene: SceneArgs { scene, json }, verify } => {
+            let system = scene.read_system()?;
+            system.bodies.iter().for_each(tell_doubts);
             let mut reports = Vec::new();
-            for scene in read_bodies(scene)? {
-                let report = advise::advise(&scene, &builder, verify, |p| bar.advise(p))?;
-                reports.push((scene.name, report));
+            for scene in &system.bodies {
+                let report = advise::advise(scene, &builder, verify, |p| bar.advise(p))?;
+                reports.push((scene.name.clone(), report));
+            }
+            if system.has_connections() {
+                let systems = system_modes::system_advice(&system, &builder, |p| bar.build(p))?;
+                drop(bar);
+                return output::print(&AdviceOnSystems { bodies: reports, systems }, json);
             }
             drop(bar);
             output::print(&OfBodies(reports), json)

@@ -1,5 +1,6 @@
 //! `flexframe modes` of bodies that joints tie together: the vibrations of the assembled system where it stands at the start.
 
+mod advice;
 mod assembled;
 mod draw;
 mod report;
@@ -10,6 +11,7 @@ use dynamics::{CommonSpin, SteadyError, Vibrations};
 use model::{BuildError, BuildProgress, Builder, Model, StartError};
 use scene::System;
 
+pub use advice::{AdviceOnSystems, SystemAdvice};
 pub(crate) use assembled::{TiedMotion, tied_motions};
 pub use draw::draw;
 pub(crate) use report::body_names;
@@ -62,6 +64,23 @@ pub fn build(
 /// [`SystemModesError`].
 pub fn system_modes(system: &System, models: &[Model]) -> Result<Vec<SystemModes>, SystemModesError> {
     tied_motions(system, models)?.iter().map(|motion| of_motion(system, motion)).collect()
+}
+
+/// Advice on the systems of a scene, by their vibrations at rest.
+///
+/// # Errors
+/// [`SystemModesError`].
+pub fn system_advice(
+    system: &System,
+    builder: &Builder,
+    progress: impl FnMut(BuildProgress),
+) -> Result<Vec<SystemAdvice>, SystemModesError> {
+    let models = build(system, builder, progress)?;
+    let of_system = |modes: &SystemModes| {
+        let flexible = modes.bodies.iter().copied().filter(|body| models[*body].body.flexible() > 0);
+        SystemAdvice::new(&modes.report, &body_names(system, &flexible.collect::<Vec<_>>()))
+    };
+    Ok(system_modes(system, &models)?.iter().map(of_system).collect())
 }
 
 fn of_motion(system: &System, motion: &TiedMotion) -> Result<SystemModes, SystemModesError> {

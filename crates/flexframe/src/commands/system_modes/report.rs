@@ -220,15 +220,16 @@ impl fmt::Display for SystemModesReport {
                 each.collect::<Vec<_>>().join(", ")
             };
             let strained = if mode.strained.is_empty() { "nothing".to_owned() } else { words(&mode.strained) };
-            writeln!(
-                f,
-                "  {:>4}  {:>17.6}  {:>7.4}  {}; {strained}{}",
-                k + 1,
-                mode.frequency,
-                mode.damping_ratio,
-                words(&mode.moves),
-                if mode.growth > 0.0 { "  grows" } else { "" },
-            )?;
+            // A ratio that is zero but for rounding is shown as zero.
+            let ratio = if mode.damping_ratio.abs() < 5e-5 { 0.0 } else { mode.damping_ratio };
+            let swings = mode.frequency > 0.0;
+            let growth = match (mode.growth > 0.0, swings) {
+                (true, _) => format!("; grows by {} per {}", quantity(mode.growth), self.time_unit),
+                (false, true) => String::new(),
+                (false, false) => format!("; decays by {} per {}", quantity(-mode.growth), self.time_unit),
+            };
+            let moves = words(&mode.moves);
+            writeln!(f, "  {:>4}  {:>17.6}  {ratio:>7.4}  {moves}; {strained}{growth}", k + 1, mode.frequency)?;
         }
         if self.modes.len() > SHOWN {
             let more = self.modes.len() - SHOWN;
