@@ -72,9 +72,10 @@ interval = 0.01
     scene.to_str().unwrap().to_owned()
 }
 
-/// Independent reference: the first flap of a bar as a free body that is welded to a driven hub, at η = 0, 2, 4, 6, 8, 10 in units
-/// of √(EI/(ρAL⁴)), from the table of the theory of systems given with the project (another mesh); thin beam 3.516 to 11.202.
-const FLAP: [f64; 6] = [3.442, 4.094, 5.511, 7.304, 9.190, 11.121];
+/// Independent reference: the first flap of a clamped thin beam that spins about an axis across it through its root, at η = 0, 2, 4,
+/// 6, 8, 10 in units of √(EI/(ρAL⁴)): rotating_bar.csv, given with the project. The mean of the face at the root gives way a little:
+/// the table of the theory of systems has 3.442 to 11.121 on a coarser mesh.
+const FLAP: [f64; 6] = [3.5160, 4.1373, 5.5850, 7.3604, 9.2568, 11.2023];
 
 #[test]
 fn a_bar_welded_to_a_driven_hub_stiffens_as_it_spins() {
@@ -93,8 +94,9 @@ fn a_bar_welded_to_a_driven_hub_stiffens_as_it_spins() {
     }
     assert_eq!(report["bodies"], serde_json::json!(["hub", "bar"]));
     assert!(out.join("campbell.csv").exists() && out.join("campbell.svg").exists());
-    let refused =
-        flexframe(&["campbell", &scene, "--joint", "wold", "--speeds", "0:10:3", "-o", out.to_str().unwrap()]);
+    let given =
+        ["campbell", &scene, "--joint", "wold", "--speeds", "0:10:3", "--overwrite", "-o", out.to_str().unwrap()];
+    let refused = flexframe(&given);
     let said = String::from_utf8_lossy(&refused.stderr);
     assert!(!refused.status.success() && said.contains("no joint \"wold\"") && said.contains("shaft, weld"), "{said}");
 }
@@ -116,10 +118,15 @@ fn modes_of_a_system_say_who_moves() {
     assert!(number(&first["moves"][0]["part"]) > 0.999);
     assert!(out.join("modes.svg").exists());
     let alone = json(&["modes", &scene, "--json", "--body", "bar"]);
-    assert!(alone["body"]["natural_frequencies"].as_array().unwrap().len() == 10, "{alone}");
+    let free = number(&alone["body"]["natural_frequencies"][0]) * TAU / unit();
+    // Closed form: a free beam has 22.373.
+    assert!((free / 22.373 - 1.0).abs() < 0.01, "{free}");
     let told = flexframe(&["modes", &scene]);
     let told = String::from_utf8_lossy(&told.stdout);
     assert!(told.contains("bodies   hub, bar") && told.contains("bar 100 %; bar 100 %"), "{told}");
+    let advised = flexframe(&["advise", &scene]);
+    let advised = String::from_utf8_lossy(&advised.stdout);
+    assert!(advised.contains("system of hub, bar") && advised.contains("bar bends in motions of"), "{advised}");
 }
 
 /// Closed form: flapping about a hinge at the distance e with first and second moments S and I of what is outside of it has the
