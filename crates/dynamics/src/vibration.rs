@@ -3,3 +3,4 @@
 pub(crate) mod loaded;
 pub(crate) mod own_coupling;
 pub(crate) mod steady_spin;
+pub(crate) mod system;

@@ -3,47 +3,19 @@
 mod advice;
 mod assembled;
 mod draw;
+mod error;
 mod report;
 
-use std::path::PathBuf;
-
-use dynamics::{CommonSpin, SteadyError, Vibrations};
-use model::{BuildError, BuildProgress, Builder, Model, StartError};
+use dynamics::CommonSpin;
+use model::{BuildError, BuildProgress, Builder, Model};
 use scene::System;
 
 pub use advice::{AdviceOnSystems, SystemAdvice};
 pub(crate) use assembled::{TiedMotion, tied_motions};
 pub use draw::draw;
+pub use error::SystemModesError;
 pub(crate) use report::body_names;
-pub use report::{ModesOfSystems, Share, SystemModeReport, SystemModesReport};
-
-/// Vibrations of a system that could not be found.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // the message of a variant says what its fields are
-pub enum SystemModesError {
-    /// A body cannot be built.
-    #[error("{0}")]
-    Build(#[from] BuildError),
-    /// The bodies cannot be put together.
-    #[error("{}", source.in_scene(scene))]
-    Setup { scene: PathBuf, source: Box<StartError> },
-    /// The system has no steady state, or its vibrations cannot be found.
-    #[error("{}: {source}", scene.display())]
-    Steady { scene: PathBuf, source: SteadyError },
-}
-
-/// The vibrations of bodies that are tied together.
-#[derive(Debug, Clone)]
-pub struct SystemModes {
-    /// Numbers of the bodies in the scene.
-    pub bodies: Vec<usize>,
-    /// The states of the bodies.
-    pub states: Vec<dynamics::MotionState>,
-    /// Their vibrations.
-    pub vibrations: Vibrations,
-    /// Report for people and programs.
-    pub report: SystemModesReport,
-}
+pub use report::{ModesOfSystems, Share, SystemModeReport, SystemModes, SystemModesReport};
 
 /// Builds the bodies of a scene.
 ///

@@ -67,8 +67,8 @@ pub fn campbell_of_system(
     let total = speeds.len();
     let branches = Branches::follow(&find, speeds, |done| progress(CampbellProgress::Speeds { done, total }))?;
     let is_on = |effect: Effect| {
-        let flexible = motion.bodies.iter().map(|body| &models[*body]).filter(|model| model.body.flexible() > 0);
-        flexible.map(|model| model.physics.effects[effect]).all(|is_on| is_on)
+        let mut flexible = motion.bodies.iter().map(|body| &models[*body]).filter(|model| model.body.flexible() > 0);
+        flexible.all(|model| model.physics.effects[effect])
     };
     let static_shapes: usize = motion.bodies.iter().map(|body| models[*body].static_shapes()).sum();
     let grows = |here: &Vec<dynamics::SpinMode>| here.iter().any(|mode| mode.growth > 0.0);

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::report::SystemModesReport;
+use super::report::{SystemModeReport, SystemModesReport};
 use crate::report::quantity;
 
 /// Part of the elastic energy of a mode below which a body is as good as rigid in it.
@@ -50,7 +50,7 @@ impl SystemAdvice {
         let mut sentences = Vec::new();
         let unit = &report.frequency_unit;
         for body in flexible {
-            let strained = |mode: &&super::SystemModeReport| {
+            let strained = |mode: &&SystemModeReport| {
                 mode.frequency > 0.0 && mode.strained.iter().any(|share| share.name == *body && share.part >= RIGID)
             };
             sentences.push(match report.modes.iter().find(strained) {

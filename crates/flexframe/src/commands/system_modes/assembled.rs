@@ -4,7 +4,7 @@ use dynamics::{Rows, StepControl, SystemSetup, SystemSimulation};
 use model::{Model, StartError, Tied, tie};
 use scene::System;
 
-use super::SystemModesError;
+use super::error::SystemModesError;
 
 /// Bodies that are tied together, at the start.
 pub(crate) struct TiedMotion {

@@ -7,7 +7,7 @@ use model::Model;
 use nalgebra::Vector3;
 use scene::System;
 
-use super::SystemModes;
+use super::report::SystemModes;
 use crate::commands::mode_shapes::ShapesError;
 use crate::commands::modes::require_surface;
 use crate::surface::Surface;

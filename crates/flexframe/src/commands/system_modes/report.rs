@@ -7,7 +7,7 @@ use dynamics::{Spring, SteadyState, SystemMode, Vibrations};
 use scene::System;
 use serde::Serialize;
 
-use super::TiedMotion;
+use super::assembled::TiedMotion;
 use crate::commands::modes::{ModesReport, frequency_unit};
 use crate::files::json;
 use crate::report::quantity;
@@ -19,7 +19,20 @@ const SHOWN: usize = 30;
 /// An acceleration, as a part of the size of the system and the square of its lowest frequency, from which it is told.
 const TOLD: f64 = 1e-9;
 
-/// Vibrations of bodies that are tied together.
+/// The vibrations of bodies that are tied together.
+#[derive(Debug, Clone)]
+pub struct SystemModes {
+    /// Numbers of the bodies in the scene.
+    pub bodies: Vec<usize>,
+    /// The states of the bodies.
+    pub states: Vec<dynamics::MotionState>,
+    /// Their vibrations.
+    pub vibrations: Vibrations,
+    /// Report for people and programs.
+    pub report: SystemModesReport,
+}
+
+/// Report of the vibrations of bodies that are tied together.
 #[derive(Debug, Clone, Serialize)]
 pub struct SystemModesReport {
     /// Title of the scene.

@@ -11,6 +11,7 @@
 
 mod body;
 pub(crate) mod configuration;
+mod error;
 mod linearization;
 mod load;
 mod mode;
@@ -20,7 +21,8 @@ pub(crate) mod terms;
 pub(crate) mod tie;
 
 pub use configuration::CommonSpin;
+pub use error::SteadyError;
 pub use linearization::Linearization;
 pub use mode::{SystemMode, Vibrations};
-pub use steady::{SteadyError, SteadyState, Unbalance};
+pub use steady::{SteadyState, Unbalance};
 pub use terms::Spring;

@@ -3,12 +3,12 @@
 use faer::c64;
 use nalgebra::Vector3;
 
-use crate::system::linear::configuration::{CommonSpin, Configuration};
-use crate::system::linear::linearization::Linearization;
-use crate::system::linear::mode::SystemMode;
-use crate::system::linear::steady::SteadyError;
 use crate::system::radau::SystemMotion;
 use crate::vibration::steady_spin::SpinMode;
+use crate::vibration::system::configuration::{CommonSpin, Configuration};
+use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::linearization::Linearization;
+use crate::vibration::system::mode::SystemMode;
 
 impl SystemMotion {
     /// A point and the z axis of the first marker of a joint, global.

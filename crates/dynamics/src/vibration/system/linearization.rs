@@ -4,9 +4,9 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
 use crate::system::description::System;
-use crate::system::linear::steady::SteadyError;
-use crate::system::linear::terms::{Spring, Terms};
-use crate::system::linear::tie::{Tie, stiffnesses};
+use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::terms::{Spring, Terms};
+use crate::vibration::system::tie::{Tie, stiffnesses};
 
 /// The linearised equations over independent coordinates η: η̈ + C η̇ + K η = 0, changes of place ξ = N η.
 ///

@@ -6,11 +6,11 @@ use crate::system::constraints::Constraints;
 use crate::system::description::System;
 use crate::system::elimination::inverse::{Inertia, Inverse};
 use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
-use crate::system::linear::body::BodyTerms;
-use crate::system::linear::configuration::Configuration;
-use crate::system::linear::steady::SteadyError;
-use crate::system::linear::tie::{Sums, Tie, add_block};
 use crate::system::relaxed::rigid_inverses;
+use crate::vibration::system::body::BodyTerms;
+use crate::vibration::system::configuration::Configuration;
+use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::tie::{Sums, Tie, add_block};
 
 /// M ξ̈ + C ξ̇ + K ξ = Gᵀ δλ with G ξ = 0, over the changes of place ξ of all bodies.
 #[derive(Debug, Clone)]
