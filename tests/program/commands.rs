@@ -9,3 +9,4 @@ pub(crate) mod fmu;
 pub(crate) mod html_report;
 pub(crate) mod new_scene;
 pub(crate) mod sweep;
+pub(crate) mod systems;

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, MAX_FRAMES, animate, animate_results};
-use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds};
+use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds, SystemCampbellSettings};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, FailureReport, Kind};
@@ -19,6 +19,7 @@ use flexframe::outputs::{OutputError, Written, outputs_of_results, outputs_of_sc
 use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::{Shard, SweepSettings};
+use flexframe::system_modes::{self, AdviceOnSystems, ModesOfSystems};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
 use model::{BuildError, Builder, Cache};
 use scene::{Flexible, Scene, SceneError};
@@ -170,9 +171,13 @@ enum Command {
     Campbell {
         #[command(flatten)]
         scene: SceneArgs,
-        /// Spin axis in the axes of the mesh: x, y, z, or three numbers such as 0,0.6,0.8.
+        /// Spin axis in the axes of the mesh: x, y, z, or three numbers such as 0,0.6,0.8. Of bodies in joints it is global and goes
+        /// through their center of mass.
         #[arg(long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
-        axis: Direction,
+        axis: Option<Direction>,
+        /// A joint about whose axis the bodies of a system spin [default: the one that a drive turns].
+        #[arg(long, value_name = "NAME", conflicts_with = "axis")]
+        joint: Option<String>,
         /// Spin speeds in radians per time: from start to end, both included, count in all.
         #[arg(long, value_name = "START:END:COUNT", value_parser = speeds, allow_hyphen_values = true)]
         speeds: Speeds,
@@ -479,11 +484,13 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Modes { scene: SceneArgs { scene, json }, flexible, output, files, solver } => {
             output::require_file("--output", output.as_deref())?;
-            let mut scenes = read_bodies(scene)?;
+            let mut system = scene.read_system()?;
+            system.bodies.iter().for_each(tell_doubts);
             if let Some(count) = flexible {
-                scenes.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
+                system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
             }
-            if let Some(to) = solver.take_of(&scenes, &mut builder, signals.slepc())? {
+            let scenes = &system.bodies;
+            if let Some(to) = solver.take_of(scenes, &mut builder, signals.slepc())? {
                 return write_only(&scenes[0], &builder, &to, files.overwrite, bar);
             }
             output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
@@ -491,19 +498,46 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                 Some(body) => folder.join(format!("modes.{body}")),
                 None => folder.join("modes"),
             };
-            if let Some(folder) = &output {
+            if let Some(folder) = output.as_ref().filter(|_| !system.has_connections()) {
                 scenes.iter().try_for_each(modes::require_surface)?;
                 let pictures: Vec<_> =
                     scenes.iter().flat_map(|scene| figures::files(&picture(folder, scene))).collect();
-                outputs_of_scenes(&scenes, &builder, files.overwrite).claim(&pictures)?;
+                outputs_of_scenes(scenes, &builder, files.overwrite).claim(&pictures)?;
             }
+            let make_folder = |folder: &PathBuf| {
+                std::fs::create_dir_all(folder)
+                    .map_err(|source| run::RunError::Folder { folder: folder.clone(), source })
+            };
             let (mut reports, mut pictures) = (Vec::new(), Vec::new());
-            for scene in &scenes {
+            if system.has_connections() {
+                let models = system_modes::build(&system, &builder, |p| bar.build(p))
+                    .map_err(|error| of_option(error.into(), flexible))?;
+                let systems = system_modes::system_modes(&system, &models)?;
+                let number = systems.len();
+                for (k, modes) in systems.iter().enumerate() {
+                    let Some(folder) = &output else { continue };
+                    make_folder(folder)?;
+                    let name = if number == 1 { "modes".to_owned() } else { format!("modes.system{}", k + 1) };
+                    let stem = folder.join(name);
+                    outputs_of_scenes(scenes, &builder, files.overwrite).claim(&figures::files(&stem))?;
+                    pictures.extend(system_modes::draw(&system, &models, modes, &stem)?.into_iter().flatten());
+                }
+                let is_tied = |number: &usize| systems.iter().any(|modes| modes.bodies.contains(number));
+                for scene in (0..scenes.len()).filter(|number| !is_tied(number)).map(|number| &scenes[number]) {
+                    let (_, report) = modes::modes(scene, &builder, |p| bar.build(p))
+                        .map_err(|error| of_option(error.into(), flexible))?;
+                    reports.push((scene.name.clone(), report));
+                }
+                let systems = systems.into_iter().map(|modes| modes.report).collect();
+                drop(bar);
+                output::print(&ModesOfSystems { systems, bodies: reports }, json)?;
+                return if json { Ok(()) } else { output::list(&pictures) };
+            }
+            for scene in scenes {
                 let (model, report) = modes::modes(scene, &builder, |p| bar.build(p))
                     .map_err(|error| of_option(error.into(), flexible))?;
                 if let Some(folder) = output.as_ref().filter(|_| model.meshed.is_some() || scenes.len() == 1) {
-                    std::fs::create_dir_all(folder)
-                        .map_err(|source| run::RunError::Folder { folder: folder.clone(), source })?;
+                    make_folder(folder)?;
                     pictures.extend(mode_shapes::draw(scene, &model, &picture(folder, scene))?);
                 }
                 reports.push((scene.name.clone(), report));
@@ -513,17 +547,25 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             if json { Ok(()) } else { output::list(&pictures) }
         }
         Command::Advise { scene: SceneArgs { scene, json }, verify } => {
+            let system = scene.read_system()?;
+            system.bodies.iter().for_each(tell_doubts);
             let mut reports = Vec::new();
-            for scene in read_bodies(scene)? {
-                let report = advise::advise(&scene, &builder, verify, |p| bar.advise(p))?;
-                reports.push((scene.name, report));
+            for scene in &system.bodies {
+                let report = advise::advise(scene, &builder, verify, |p| bar.advise(p))?;
+                reports.push((scene.name.clone(), report));
+            }
+            if system.has_connections() {
+                let systems = system_modes::system_advice(&system, &builder, |p| bar.build(p))?;
+                drop(bar);
+                return output::print(&AdviceOnSystems { bodies: reports, systems }, json);
             }
             drop(bar);
             output::print(&OfBodies(reports), json)
         }
         Command::Campbell {
             scene: SceneArgs { scene, json },
-            axis: Direction(axis),
+            axis,
+            joint,
             speeds,
             orders,
             flexible,
@@ -531,15 +573,33 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             files,
         } => {
             output::require_file("--output", output.as_deref())?;
-            let mut scene = read(scene)?;
-            if let Some(count) = flexible {
-                scene.modes.flexible = Flexible::Count(count);
+            let mut system = scene.clone().read_system()?;
+            if system.bodies.len() > 1 && !system.has_connections() {
+                system = read(scene)?.into();
+            } else {
+                system.bodies.iter().for_each(tell_doubts);
             }
-            let settings = CampbellSettings { axis, speeds, orders };
-            let folder = folder(&scene, output)?;
-            outputs_of_scene(&scene, &builder, files.overwrite).claim(&campbell::files(&folder))?;
-            let report = campbell::campbell(&scene, &builder, &folder, &settings, |p| bar.campbell(p))
-                .map_err(|error| of_option(error, flexible))?;
+            if let Some(count) = flexible {
+                system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
+            }
+            let axis = axis.map(|Direction(axis)| axis);
+            let Some(scene) = system.bodies.first() else { return Err(run::RunError::NoBody.into()) };
+            let folder = folder(scene, output)?;
+            outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(&campbell::files(&folder))?;
+            let report = if system.has_connections() {
+                let settings = SystemCampbellSettings { axis, joint, speeds, orders };
+                campbell::campbell_of_system(&system, &builder, &folder, &settings, |p| bar.campbell(p))
+            } else {
+                let axis = axis.ok_or_else(|| CliError::Option {
+                    option: "--axis",
+                    found: "none".to_owned(),
+                    expected: "the axis of the spin, in the axes of the mesh".to_owned(),
+                    help: "give x, y, z, or three numbers such as 0,0.6,0.8".to_owned(),
+                })?;
+                let settings = CampbellSettings { axis, speeds, orders };
+                campbell::campbell(scene, &builder, &folder, &settings, |p| bar.campbell(p))
+            };
+            let report = report.map_err(|error| of_option(error, flexible))?;
             drop(bar);
             output::print(&report, json)
         }

@@ -16,7 +16,7 @@ const STANDARD_INPUT: &str = "-";
 /// Its name in messages and in names of output; paths in its scene are relative to the folder that the user is in.
 const NAME: &str = "stdin";
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct SceneInput {
     /// The scene file, or - for standard input (paths in it are relative to the current folder then).
     #[arg(value_name = "SCENE")]

@@ -76,9 +76,6 @@ pub use system::joint::law::{JointLaw, JointLawFn};
 pub use system::joint::observation::JointObservation;
 pub use system::joint::row::Row;
 pub use system::joint::{Joint, JointPart};
-pub use system::linear::{
-    CommonSpin, Linearization, Spring, SteadyError, SteadyState, SystemMode, Unbalance, Vibrations,
-};
 pub use system::marker::Marker;
 pub use system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 pub use system::radau::{Failed, JointWork, SystemMotion, Tried};
@@ -87,6 +84,9 @@ pub use system::simulation::observation::SystemObservation;
 pub use system::simulation::setup::{Assembled, SystemSetup};
 pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
+pub use vibration::system::{
+    CommonSpin, Linearization, Spring, SteadyError, SteadyState, SystemMode, Unbalance, Vibrations,
+};
 
 /// Crates whose types are in the interface.
 pub use keys::{Key, Keyed};

@@ -4,3 +4,4 @@ pub(crate) mod at_state;
 pub(crate) mod loaded;
 pub(crate) mod own_coupling;
 pub(crate) mod steady_spin;
+pub(crate) mod system;

@@ -13,3 +13,4 @@ pub mod new_scene;
 pub mod paper;
 pub mod run;
 pub mod sweep;
+pub mod system_modes;

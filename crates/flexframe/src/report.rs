@@ -29,14 +29,16 @@ impl<R: fmt::Display> fmt::Display for OfBodies<R> {
     }
 }
 
+/// A report with the name of its body.
+#[derive(Serialize)]
+struct Named<'a, R> {
+    name: Option<&'a str>,
+    #[serde(flatten)]
+    report: &'a R,
+}
+
 impl<R: Serialize> Serialize for OfBodies<R> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Named<'a, R> {
-            name: Option<&'a str>,
-            #[serde(flatten)]
-            report: &'a R,
-        }
         #[derive(Serialize)]
         struct Bodies<'a, R> {
             bodies: Vec<Named<'a, R>>,
@@ -49,6 +51,14 @@ impl<R: Serialize> Serialize for OfBodies<R> {
             }
         }
     }
+}
+
+/// Reports with the names of their bodies.
+pub(crate) fn list_of_named<R: Serialize, S: Serializer>(
+    reports: &[(Option<String>, R)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(reports.iter().map(|(name, report)| Named { name: name.as_deref(), report }))
 }
 
 /// The list `bodies`, and of a single one its keys.

@@ -84,6 +84,11 @@ impl System {
         self.bodies.iter().any(|scene| scene.tied)
     }
 
+    /// True if joints, springs or bushings of this system connect something.
+    pub fn has_connections(&self) -> bool {
+        !(self.joints.is_empty() && self.springs.is_empty() && self.bushings.is_empty())
+    }
+
     /// The name of an end as `between` has it, such as `arm.root`, `ground.wall` or `ground`.
     pub fn name_of(&self, end: End) -> String {
         let name = match end {

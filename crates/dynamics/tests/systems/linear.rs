@@ -4,8 +4,10 @@ use std::sync::{Arc, OnceLock};
 
 use dynamics::{
     Bushing, CommonSpin, ConservativeBody, Coordinate, ForceElement, History, Joint, JointDrive, JointForce, LoadFrame,
-    Marker, MotionState, Observation, Physics, PointForce, PointSpring, SteadyState, System, SystemMotion, Table,
+    Marker, MotionState, Observation, Physics, PointForce, PointSpring, SteadyState, System, SystemMode, SystemMotion,
+    Table,
 };
+use faer::c64;
 use fem_tet10::Material;
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -117,7 +119,7 @@ fn error(system: &System, steady: &SteadyState) -> f64 {
     worst
 }
 
-fn rigid(mass: f64, inertia: [f64; 3]) -> ConservativeBody {
+pub fn rigid(mass: f64, inertia: [f64; 3]) -> ConservativeBody {
     let inertia = Matrix3::from_diagonal(&Vector3::from(inertia));
     let reduced = ReducedBody::rigid(mass, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
     ConservativeBody::new(&reduced, &[], Vec::new(), &Physics::default()).unwrap()
@@ -174,6 +176,15 @@ fn rotor(speed: f64) -> (System, Vec<MotionState>) {
     };
     let at = |x: f64| bar.at_rest(Vector3::new(x, 0.0, 0.0), Attitude::identity());
     (system, vec![hub, at(150.0), at(350.0)])
+}
+
+/// The states of a steady motion moved by the real part of a mode times an amplitude.
+pub fn changed_by(steady: &SteadyState, mode: &SystemMode, amplitude: c64) -> Vec<MotionState> {
+    let states = steady.states();
+    let place: Vec<f64> = mode.motion.iter().map(|x| (*x * amplitude).re).collect();
+    let mut velocity = convected(&states, &place);
+    velocity.iter_mut().zip(&mode.motion).for_each(|(v, x)| *v += (*x * amplitude * mode.eigenvalue).re);
+    changed(&states, &place, &velocity)
 }
 
 /// Independent reference: central differences of the accelerations that the equations of the run give.

@@ -12,3 +12,4 @@ mod rigid;
 mod run;
 mod stiff;
 mod stiffening;
+mod vibrations;

@@ -1,6 +1,8 @@
 //! Plane mechanisms of rigid bodies, with revolutes in space.
 
-use dynamics::{ConservativeBody, Joint, Marker, MotionState, Physics, SharedLoad, System, SystemMotion};
+use dynamics::{
+    ConservativeBody, Coordinate, Joint, JointForce, Marker, MotionState, Physics, SharedLoad, System, SystemMotion,
+};
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
@@ -46,6 +48,19 @@ impl Mechanism {
         let markers = bodies.map(|body| self.marker(body, at));
         let name = format!("hinge {}", self.joints.len());
         self.joints.push(Joint::revolute(&name, markers));
+    }
+
+    /// Adds a moment about the last hinge.
+    pub fn with_force(&mut self, force: JointForce) {
+        if let Some(joint) = self.joints.pop() {
+            self.joints.push(joint.with_force(Coordinate::Turn, force));
+        }
+    }
+
+    /// The mechanism at rest.
+    pub fn rests(self) -> SystemMotion {
+        let still = vec![([0.0; 2], 0.0); self.links.len()];
+        self.starts(&still)
     }
 
     /// The mechanism in motion, from velocities (in the plane) and angular velocities of its links.

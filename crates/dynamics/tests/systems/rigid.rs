@@ -11,7 +11,7 @@ use crate::mechanism::{Link, Mechanism, angle};
 
 const GRAVITY: f64 = 9.81;
 
-fn weight(mass: f64) -> SharedLoad {
+pub fn weight(mass: f64) -> SharedLoad {
     let body = ReducedBody::rigid(1.0, Vector3::zeros(), Matrix3::identity(), RigidMotion::free()).unwrap();
     let center = PointShapes::new(&body, &BodyPoint::rigid(Vector3::zeros()));
     Arc::new(LoadFn::new("weight", move |motion, applied| {

@@ -11,6 +11,7 @@ mod diagram;
 mod error;
 mod files;
 mod report;
+mod system;
 mod table;
 
 use std::path::Path;
@@ -25,6 +26,7 @@ pub use critical::Critical;
 pub use error::CampbellError;
 pub use files::files;
 pub use report::{CampbellReport, SpinEffects};
+pub use system::{SystemCampbellSettings, campbell_of_system};
 
 use crate::commands::modes::{frequency_unit, require_flexible};
 use crate::report::MeshReport;
@@ -78,6 +80,34 @@ pub struct CampbellSettings {
     pub orders: Vec<f64>,
 }
 
+/// The speeds, where they and the orders are in range.
+fn checked(speeds: Speeds, orders: &[f64]) -> Result<Vec<f64>, CampbellError> {
+    if let Some(&order) = orders.iter().find(|order| !(**order > 0.0 && order.is_finite())) {
+        return Err(CampbellError::Order { order });
+    }
+    speeds.values()
+}
+
+/// A unit vector along an axis.
+fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, CampbellError> {
+    let unit = Vector3::from(axis).try_normalize(0.0).filter(|axis| (axis.norm() - 1.0).abs() < 1e-12);
+    unit.ok_or(CampbellError::Axis { axis })
+}
+
+/// A scene with all its modes and without loads, whose effects of spin are on unless it says otherwise: the spin is given,
+/// whatever the scene's own motion would call for.
+fn spinning(scene: &Scene) -> Scene {
+    let mut scene = scene.clone().without_rows();
+    scene.loads.clear();
+    scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
+    for effect in [Effect::DeformedInertia, Effect::Coriolis, Effect::GeometricStiffening] {
+        if scene.effects.choices[effect] == Choice::Auto {
+            scene.effects.choices[effect] = Choice::On;
+        }
+    }
+    scene
+}
+
 /// Computes the diagram of a scene, and writes `campbell.csv`, `critical_speeds.csv`, and `campbell` as SVG, PDF and PNG
 /// to `folder`.
 ///
@@ -93,22 +123,9 @@ pub fn campbell(
     settings: &CampbellSettings,
     mut progress: impl FnMut(CampbellProgress),
 ) -> Result<CampbellReport, CampbellError> {
-    let axis = Vector3::from(settings.axis);
-    let axis = axis.try_normalize(0.0).filter(|axis| (axis.norm() - 1.0).abs() < 1e-12);
-    let axis = axis.ok_or(CampbellError::Axis { axis: settings.axis })?;
-    let speeds = settings.speeds.values()?;
-    if let Some(&order) = settings.orders.iter().find(|order| !(**order > 0.0 && order.is_finite())) {
-        return Err(CampbellError::Order { order });
-    }
-    let mut scene = scene.clone().without_rows();
-    scene.loads.clear();
-    scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
-    // The spin is given here, whatever the scene's own motion would call for.
-    for effect in [Effect::DeformedInertia, Effect::Coriolis, Effect::GeometricStiffening] {
-        if scene.effects.choices[effect] == Choice::Auto {
-            scene.effects.choices[effect] = Choice::On;
-        }
-    }
+    let axis = unit(settings.axis)?;
+    let speeds = checked(settings.speeds, &settings.orders)?;
+    let scene = spinning(scene);
     let model = builder.build(&scene, |p| progress(CampbellProgress::Build(p)))?;
     require_flexible(&scene, &model).map_err(BuildError::from)?;
 
@@ -117,9 +134,11 @@ pub fn campbell(
     let total = speeds.len();
     let failed = |source| CampbellError::Eigen { scene: scene.path.clone(), source };
     let branches =
-        Branches::follow(&spin, speeds, |done| progress(CampbellProgress::Speeds { done, total })).map_err(failed)?;
+        Branches::follow(&|speed| spin.modes(speed), speeds, |done| progress(CampbellProgress::Speeds { done, total }))
+            .map_err(failed)?;
     let critical_speed = spin.critical_speed().map_err(failed)?;
     let mut report = CampbellReport {
+        bodies: Vec::new(),
         title: scene.title.clone(),
         time_unit: scene.units.time.clone(),
         frequency_unit: frequency_unit(&scene.units.time),

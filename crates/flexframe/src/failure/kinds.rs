@@ -29,6 +29,7 @@ use crate::commands::html_report::HtmlReportError;
 use crate::commands::paper::PaperError;
 use crate::commands::run::RunError;
 use crate::commands::sweep::{SWEEP_CURE, SweepError};
+use crate::commands::system_modes::SystemModesError;
 use crate::drawn::DrawnError;
 use crate::files::given_file::OtherFile;
 use crate::files::outputs::OutputError;
@@ -84,7 +85,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 30] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 31] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
@@ -112,6 +113,7 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 30] = [
     known_by::<ExportError>,
     known_by::<HtmlReportError>,
     known_by::<CampbellError>,
+    known_by::<SystemModesError>,
     known_by::<CostError>,
     known_by::<PaperError>,
     known_by::<SweepError>,
@@ -426,9 +428,20 @@ impl Fault for HtmlReportError {
 impl Fault for CampbellError {
     fn known(&self) -> Known {
         match self {
-            Self::Build(_) | Self::Figure(_) | Self::Write(_) => Known::default(),
-            Self::Eigen { scene, .. } => Kind::Run.of(scene),
+            Self::Build(_) | Self::System(_) | Self::Figure(_) | Self::Write(_) => Known::default(),
+            Self::Eigen { scene, .. } | Self::Steady { scene, .. } => Kind::Run.of(scene),
+            Self::NoAxis { scene, .. } => Kind::Usage.of(scene),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
+        }
+    }
+}
+
+impl Fault for SystemModesError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Build(_) => Known::default(),
+            Self::Setup { scene, .. } => in_file(scene),
+            Self::Steady { scene, .. } => Kind::Run.of(scene),
         }
     }
 }

@@ -123,8 +123,8 @@ impl JointForce {
 }
 
 impl JointForce {
-    /// The slopes of the force over the coordinate and over its rate.
-    pub(crate) fn slopes(&self, [x, rate]: [f64; 2]) -> [f64; 2] {
+    /// The slopes of the force over the coordinate and over its rate; of laws from outside by central differences.
+    pub(crate) fn slopes(&self, [x, rate]: [f64; 2], times: [f64; 2]) -> [f64; 2] {
         let of_law = self.characteristic.as_ref().map_or(0.0, |of| of.at([x, x])[1]);
         let mut slopes = [of_law - self.stiffness, -self.damping];
         if let Some(Friction { force, rate_scale }) = self.friction {
@@ -137,9 +137,19 @@ impl JointForce {
             slopes[0] -= stops.stiffness;
             slopes[1] -= stops.damping;
         }
+        for law in &self.laws {
+            for (slope, direction) in slopes.iter_mut().zip([[1.0, 0.0], [0.0, 1.0]]) {
+                let small = DIFFERENCE * (direction[0] * x + direction[1] * rate).abs().max(1.0);
+                let at = |by: f64| law.force(times, [x + direction[0] * by, rate + direction[1] * by]);
+                *slope += (at(small) - at(-small)) / (2.0 * small);
+            }
+        }
         slopes
     }
 }
+
+/// Differences of coordinates and rates, relative to these or to 1.
+const DIFFERENCE: f64 = 1e-6;
 
 impl Stops {
     /// How far a coordinate is beyond an end: positive above the highest, negative below the lowest.

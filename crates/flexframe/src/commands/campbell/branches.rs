@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use dynamics::{EigenError, SpinMode, SteadySpin};
+use dynamics::SpinMode;
 use serde::Serialize;
 
 /// |⟨a, b⟩|² of two shapes that are taken for the same without a closer look. Above ½ only one can be.
@@ -40,18 +40,22 @@ impl Branch {
 pub(super) struct Branches {
     /// Rising, radians per time.
     pub speeds: Vec<f64>,
-    modes: Vec<Vec<SpinMode>>,
+    pub modes: Vec<Vec<SpinMode>>,
 }
 
 impl Branches {
-    /// Follows all vibrations down from the highest speed: at rest a symmetric body has equal frequencies, whose shapes
+    /// Follows all vibrations, which `find` finds at a speed, down from the highest speed: at rest a symmetric body has equal frequencies, whose shapes
     /// are any mixture. The places are in the order of the frequencies at the lowest speed.
-    pub fn follow(spin: &SteadySpin, speeds: Vec<f64>, mut done: impl FnMut(usize)) -> Result<Self, EigenError> {
+    pub fn follow<E>(
+        find: &impl Fn(f64) -> Result<Vec<SpinMode>, E>,
+        speeds: Vec<f64>,
+        mut done: impl FnMut(usize),
+    ) -> Result<Self, E> {
         let mut modes: Vec<Vec<SpinMode>> = Vec::with_capacity(speeds.len());
         for (i, &speed) in speeds.iter().enumerate().rev() {
             let here = match modes.last() {
-                Some(above) => continued(spin, above, speeds[i + 1], speed, HALVINGS)?,
-                None => spin.modes(speed)?,
+                Some(above) => continued(find, above, speeds[i + 1], speed, HALVINGS)?,
+                None => find(speed)?,
             };
             modes.push(here);
             done(modes.len());
@@ -63,10 +67,10 @@ impl Branches {
         Ok(Self { speeds, modes })
     }
 
-    /// The vibrations at a speed between the others, at the same places.
-    pub fn at(&self, spin: &SteadySpin, speed: f64) -> Result<Vec<SpinMode>, EigenError> {
+    /// The vibrations at a speed between the others, at the same places; `find` finds them.
+    pub fn at<E>(&self, find: &impl Fn(f64) -> Result<Vec<SpinMode>, E>, speed: f64) -> Result<Vec<SpinMode>, E> {
         let above = self.speeds.partition_point(|s| *s < speed).min(self.speeds.len() - 1);
-        continued(spin, &self.modes[above], self.speeds[above], speed, HALVINGS)
+        continued(find, &self.modes[above], self.speeds[above], speed, HALVINGS)
     }
 
     /// The lines of the diagram; the last ones are those of static shapes, which are stiff.
@@ -86,20 +90,20 @@ impl Branches {
 }
 
 /// The vibrations at the speed `to`, each at the place of the one at the speed `from` that it continues.
-fn continued(
-    spin: &SteadySpin,
+fn continued<E>(
+    find: &impl Fn(f64) -> Result<Vec<SpinMode>, E>,
     modes: &[SpinMode],
     from: f64,
     to: f64,
     halvings: u32,
-) -> Result<Vec<SpinMode>, EigenError> {
-    let (matched, least_alike) = matched(modes, spin.modes(to)?);
+) -> Result<Vec<SpinMode>, E> {
+    let (matched, least_alike) = matched(modes, find(to)?);
     if least_alike >= ALIKE || halvings == 0 || from == to {
         return Ok(matched);
     }
     let middle = 0.5 * (from + to);
-    let halfway = continued(spin, modes, from, middle, halvings - 1)?;
-    continued(spin, &halfway, middle, to, halvings - 1)
+    let halfway = continued(find, modes, from, middle, halvings - 1)?;
+    continued(find, &halfway, middle, to, halvings - 1)
 }
 
 /// Sorts the vibrations `next` to those of `modes` that they are most alike, and says how alike the worst pair is.

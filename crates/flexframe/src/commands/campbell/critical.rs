@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use dynamics::{EigenError, SteadySpin};
+use dynamics::{EigenError, SpinMode, SteadySpin};
 use serde::Serialize;
 
 use super::branches::Branches;
@@ -28,7 +28,7 @@ pub(super) fn find(spin: &SteadySpin, branches: &Branches, orders: &[f64]) -> Re
     for &order in std::iter::once(&0.0).chain(orders) {
         for speed in spin.critical_speeds(order)?.into_iter().filter(|speed| (start..=end).contains(speed)) {
             let off = |omega: f64| (omega - order * speed).abs();
-            let modes = branches.at(spin, speed)?;
+            let modes = branches.at(&|speed| spin.modes(speed), speed)?;
             let nearest = modes
                 .iter()
                 .enumerate()
@@ -38,5 +38,43 @@ pub(super) fn find(spin: &SteadySpin, branches: &Branches, orders: &[f64]) -> Re
             }
         }
     }
+    Ok(all)
+}
+
+/// Halvings of a step between two speeds: a crossing is found to a part of 1e-12 of it.
+const HALVINGS: usize = 40;
+
+/// All crossings of branches that `find` continues between the speeds, by halving; order 0 where a vibration stops to swing.
+pub(super) fn find_between<E>(
+    find: &impl Fn(f64) -> Result<Vec<SpinMode>, E>,
+    branches: &Branches,
+    orders: &[f64],
+) -> Result<Vec<Critical>, E> {
+    let mut all = Vec::new();
+    for &order in std::iter::once(&0.0).chain(orders) {
+        let above = |mode: &SpinMode, speed: f64| mode.circular_frequency > order * speed;
+        for (i, pair) in branches.speeds.windows(2).enumerate() {
+            for k in 0..branches.modes[i].len() {
+                let is_above = above(&branches.modes[i][k], pair[0]);
+                if is_above == above(&branches.modes[i + 1][k], pair[1]) {
+                    continue;
+                }
+                let [mut low, mut high] = [pair[0], pair[1]];
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (low + high);
+                    match above(&branches.at(find, middle)?[k], middle) == is_above {
+                        true => low = middle,
+                        false => high = middle,
+                    }
+                }
+                let speed = 0.5 * (low + high);
+                // At rest order n and a vibration without frequency meet, which is no crossing.
+                if speed > 0.0 && low > branches.speeds[0] {
+                    all.push(Critical { order, mode: k + 1, speed, frequency: order * speed / TAU });
+                }
+            }
+        }
+    }
+    all.sort_by(|a, b| (a.order, a.speed).partial_cmp(&(b.order, b.speed)).unwrap_or(std::cmp::Ordering::Equal));
     Ok(all)
 }

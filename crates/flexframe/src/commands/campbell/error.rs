@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use dynamics::EigenError;
+use dynamics::{EigenError, SteadyError};
 use figures::FigureError;
 use model::BuildError;
 
+use crate::commands::system_modes::SystemModesError;
 use crate::files::write_error::WriteError;
 
 /// Each speed takes an eigenvalue problem, and a row of a table.
@@ -21,6 +22,17 @@ pub enum CampbellError {
     /// The vibrations cannot be found.
     #[error("{}: {source}", scene.display())]
     Eigen { scene: PathBuf, source: EigenError },
+    /// The system cannot be put together.
+    #[error("{0}")]
+    System(#[from] SystemModesError),
+    /// The system has no vibrations in this spin.
+    #[error("{}: at {speed} rad per time: {source}", scene.display())]
+    Steady { scene: PathBuf, speed: f64, source: SteadyError },
+    /// The axis of the spin of a system is not known.
+    #[error(
+        "{}: {found}; expected --axis, an axis through the center of mass, or --joint, whose axis it is: one of {}", scene.display(), joints.join(", ")
+    )]
+    NoAxis { scene: PathBuf, found: String, joints: Vec<String> },
     /// The axis has no direction.
     #[error("axis {axis:?}: expected three finite numbers that are not all zero, in the axes of the mesh")]
     Axis { axis: [f64; 3] },

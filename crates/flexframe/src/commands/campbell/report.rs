@@ -20,9 +20,12 @@ pub struct CampbellReport {
     pub frequency_unit: String,
     /// The finite-element model.
     pub mesh: Option<MeshReport>,
-    /// The spin axis: unit vector, axes of the mesh.
+    /// Names of the bodies of a system; none of one body alone.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<String>,
+    /// The spin axis: unit vector, axes of the mesh; of a system global.
     pub axis: [f64; 3],
-    /// The point that the axis goes through, mesh axes.
+    /// The point that the axis goes through, mesh axes; of a system global.
     pub origin: [f64; 3],
     /// The effects of the spin that are computed.
     pub effects: SpinEffects,
@@ -31,7 +34,7 @@ pub struct CampbellReport {
     /// The lines of the diagram, in the order of their frequencies at the lowest speed.
     pub branches: Vec<Branch>,
     /// The spin speed at which the body loses its stability because K + Ω²(K_σ − N) is no longer positive definite; none
-    /// if it never does.
+    /// if it never does. Of a system the lowest of the speeds at which a vibration grows; none if none does within them.
     pub stable_below: Option<f64>,
     /// Where orders and branches cross, by order and speed; order 0 where a frequency is zero.
     pub critical_speeds: Vec<Critical>,

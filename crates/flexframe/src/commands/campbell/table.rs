@@ -18,6 +18,9 @@ impl fmt::Display for CampbellReport {
         if let Some(mesh) = &self.mesh {
             writeln!(f, "  mesh     {mesh}")?;
         }
+        if !self.bodies.is_empty() {
+            writeln!(f, "  bodies   {}", self.bodies.join(", "))?;
+        }
         // A coordinate that is zero but for rounding is shown as zero.
         let vector = |v: &[f64; 3]| {
             let dust = 1e-9 * v.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
@@ -28,6 +31,7 @@ impl fmt::Display for CampbellReport {
         let time = &self.time_unit;
         match self.stable_below {
             Some(speed) => writeln!(f, "  stable   below {} rad/{time}", quantity(speed))?,
+            None if !self.bodies.is_empty() => writeln!(f, "  stable   at all speeds of this range")?,
             None => writeln!(f, "  stable   no frequency falls to zero at any speed")?,
         }
         self.write_branches(f)?;

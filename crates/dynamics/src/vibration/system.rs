@@ -11,15 +11,18 @@
 
 mod body;
 pub(crate) mod configuration;
+mod error;
 mod linearization;
 mod load;
 mod mode;
+mod spin;
 mod steady;
 pub(crate) mod terms;
 pub(crate) mod tie;
 
 pub use configuration::CommonSpin;
+pub use error::SteadyError;
 pub use linearization::Linearization;
 pub use mode::{SystemMode, Vibrations};
-pub use steady::{SteadyError, SteadyState, Unbalance};
+pub use steady::{SteadyState, Unbalance};
 pub use terms::Spring;

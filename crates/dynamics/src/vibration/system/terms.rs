@@ -6,11 +6,11 @@ use crate::system::constraints::Constraints;
 use crate::system::description::System;
 use crate::system::elimination::inverse::{Inertia, Inverse};
 use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
-use crate::system::linear::body::BodyTerms;
-use crate::system::linear::configuration::Configuration;
-use crate::system::linear::steady::SteadyError;
-use crate::system::linear::tie::{Sums, Tie, add_block};
 use crate::system::relaxed::rigid_inverses;
+use crate::vibration::system::body::BodyTerms;
+use crate::vibration::system::configuration::Configuration;
+use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::tie::{Sums, Tie, add_block};
 
 /// M ξ̈ + C ξ̇ + K ξ = Gᵀ δλ with G ξ = 0, over the changes of place ξ of all bodies.
 #[derive(Debug, Clone)]
@@ -237,9 +237,8 @@ pub(crate) fn springs(system: &System, at: &Configuration) -> Vec<(Spring, Tie)>
     let of_joints = system.connections.joint_forces().map(|(number, coordinate, force)| {
         let joint = &system.joints()[number];
         let mut tie = Tie::new(system, at, joint.markers.iter());
-        tie.add_coordinate(coordinate, &at.places(&joint.markers), at.turns[number], |at| {
-            (0.0, [force.slopes(at)[0], 0.0])
-        });
+        let law = |here| (0.0, [force.slopes(here, [at.time; 2])[0], 0.0]);
+        tie.add_coordinate(coordinate, &at.places(&joint.markers), at.turns[number], law);
         (Spring::Joint(number), tie)
     });
     let of_elements = system.connections.elements.iter().enumerate().map(|(number, element)| {

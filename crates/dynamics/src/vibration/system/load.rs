@@ -10,7 +10,7 @@ use rigid_kin::cross_matrix;
 
 use crate::conservative::ConservativeBody;
 use crate::load::{Applied, Coordinates, Kinematics};
-use crate::system::linear::configuration::BodyConfiguration;
+use crate::vibration::system::configuration::BodyConfiguration;
 
 /// Step of the differences: of turns in rad, and of displacements and velocities relative to their scales.
 const STEP: f64 = 1e-4;

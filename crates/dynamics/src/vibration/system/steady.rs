@@ -1,4 +1,4 @@
-//! The steady state of a system: its bodies deformed as their loads, joints and spin ask.
+//! The steady state of a system, Eq. (L7) of `docs/method/systems.md`: its bodies deformed as their loads, joints and spin ask.
 //!
 //! Newton's method with the exact stiffness, over the motions that deform bodies: those that deform none stay where the system has
 //! been put.
@@ -6,10 +6,11 @@
 use nalgebra::Vector3;
 
 use crate::body::motion_state::MotionState;
-use crate::system::linear::configuration::{BodyConfiguration, CommonSpin, Configuration};
-use crate::system::linear::linearization::Linearization;
-use crate::system::linear::terms::{Terms, springs};
 use crate::system::radau::SystemMotion;
+use crate::vibration::system::configuration::{BodyConfiguration, CommonSpin, Configuration};
+use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::linearization::Linearization;
+use crate::vibration::system::terms::{Terms, springs};
 
 /// Most passes of Newton's method, and the change relative to the size of bodies at which it has converged.
 const PASSES: usize = 40;
@@ -18,38 +19,6 @@ const STILL: f64 = 1e-12;
 const STRIDE: f64 = 0.2;
 /// Rate of a row in a common spin, relative to the speed of the bodies, above which its joint does not allow the spin.
 const AGAINST: f64 = 1e-6;
-
-/// Errors of steady states.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SteadyError {
-    /// The inertia of a body is singular.
-    #[error("the inertia of a body is singular; check masses and mesh")]
-    Inertia,
-    /// Numbers are not finite, or the linear algebra does not converge.
-    #[error(
-        "the linearised equations of the system have no answer: numbers are not finite or far apart; check materials, units and masses"
-    )]
-    Numbers,
-    /// The spin turns bodies that a joint holds.
-    #[error(
-        "the spin is not one that joint {joint:?} allows: it would move at a rate of {rate:.3e}; the axis of the spin is to be that of \
-         the joints that tie the system to the ground"
-    )]
-    Against {
-        /// Name of the joint or coupling.
-        joint: String,
-        /// Rate of its row.
-        rate: f64,
-    },
-    /// Newton's method does not converge.
-    #[error(
-        "the bodies find no shape in which they are at rest in this state after {passes} passes; forces or spin may buckle them: try less"
-    )]
-    NoRest {
-        /// Passes that were made.
-        passes: usize,
-    },
-}
 
 /// How far a steady state is from balance: the accelerations that are left, along motions that deform no body.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,10 +11,10 @@ use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::force::JointForce;
 use crate::system::joint::row::Row;
 use crate::system::joint::wrench::RowWrench;
-use crate::system::linear::configuration::Configuration;
 use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 use crate::system::marker::tangent::MarkerTangent;
 use crate::system::marker::{Marker, MarkerPlace};
+use crate::vibration::system::configuration::Configuration;
 
 /// Some markers with the forces between them, to first order. Entries of lists and matrices are those of the markers one after
 /// another, six each: displacement and turn, or force and moment, global.
@@ -143,7 +143,9 @@ impl Tie {
         turn: f64,
         time: f64,
     ) {
-        self.add_coordinate(coordinate, places, turn, |at| (force.at(at, [time; 2]).sum(), force.slopes(at)));
+        self.add_coordinate(coordinate, places, turn, |at| {
+            (force.at(at, [time; 2]).sum(), force.slopes(at, [time; 2]))
+        });
     }
 
     /// A force element.

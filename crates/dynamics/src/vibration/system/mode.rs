@@ -2,8 +2,8 @@
 
 use faer::{Mat, c64};
 
-use crate::system::linear::linearization::Linearization;
-use crate::system::linear::steady::SteadyError;
+use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::linearization::Linearization;
 
 /// A part of the terms of an equation that is more than their rounding.
 const ROUNDING: f64 = 1e-10;

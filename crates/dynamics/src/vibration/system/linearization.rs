@@ -4,9 +4,9 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
 use crate::system::description::System;
-use crate::system::linear::steady::SteadyError;
-use crate::system::linear::terms::{Spring, Terms};
-use crate::system::linear::tie::{Tie, stiffnesses};
+use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::terms::{Spring, Terms};
+use crate::vibration::system::tie::{Tie, stiffnesses};
 
 /// The linearised equations over independent coordinates η: η̈ + C η̇ + K η = 0, changes of place ξ = N η.
 ///
@@ -21,8 +21,6 @@ pub struct Linearization {
     pub damping: Mat<f64>,
     /// Number of coordinates that deform no body.
     pub rigid: usize,
-    /// Roots of the strain stiffness of the coordinates, zero of the first ones.
-    pub(crate) strain_rates: Vec<f64>,
     /// The magnitude of the terms of K and C in the coordinates that deform no body, to which their rounding is in proportion.
     pub(crate) magnitudes: [f64; 2],
     /// First coordinate of each body, and their number.
@@ -30,7 +28,6 @@ pub struct Linearization {
     /// Λ of all coordinates; zero of the rigid ones.
     pub(crate) strain: Vec<f64>,
     pub(crate) masses: Vec<Mat<f64>>,
-    pub(crate) convections: Vec<Mat<f64>>,
     pub(crate) springs: Vec<(Spring, Tie)>,
 }
 
@@ -74,14 +71,17 @@ impl Linearization {
             stiffness,
             damping,
             rigid,
-            strain_rates,
             magnitudes,
             first: system.first.clone(),
             strain,
             masses: terms.masses.clone(),
-            convections: terms.convections.clone(),
             springs,
         })
+    }
+
+    /// What holds elastic energy beside the bodies, in the order of [`SystemMode::elastic`](crate::SystemMode).
+    pub fn springs(&self) -> impl Iterator<Item = Spring> {
+        self.springs.iter().map(|(spring, _)| *spring)
     }
 
     /// Number of independent coordinates.

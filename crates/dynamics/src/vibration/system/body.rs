@@ -6,8 +6,8 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::cross_matrix;
 
 use crate::conservative::ConservativeBody;
-use crate::system::linear::configuration::BodyConfiguration;
-use crate::system::linear::load::load_forces;
+use crate::vibration::system::configuration::BodyConfiguration;
+use crate::vibration::system::load::load_forces;
 
 /// The terms of one body: M ξ̈ + C ξ̇ + K ξ, and the forces that steady motion leaves.
 #[derive(Debug, Clone)]

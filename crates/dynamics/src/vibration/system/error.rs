@@ -1,0 +1,33 @@
+//! Errors of steady states and of linearised equations.
+
+/// Errors of steady states.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SteadyError {
+    /// The inertia of a body is singular.
+    #[error("the inertia of a body is singular; check masses and mesh")]
+    Inertia,
+    /// Numbers are not finite, or the linear algebra does not converge.
+    #[error(
+        "the linearised equations of the system have no answer: numbers are not finite or far apart; check materials, units and masses"
+    )]
+    Numbers,
+    /// The spin turns bodies that a joint holds.
+    #[error(
+        "the spin is not one that joint {joint:?} allows: it would move at a rate of {rate:.3e}; the axis of the spin is to be that of \
+         the joints that tie the system to the ground"
+    )]
+    Against {
+        /// Name of the joint or coupling.
+        joint: String,
+        /// Rate of its row.
+        rate: f64,
+    },
+    /// Newton's method does not converge.
+    #[error(
+        "the bodies find no shape in which they are at rest in this state after {passes} passes; forces or spin may buckle them: try less"
+    )]
+    NoRest {
+        /// Passes that were made.
+        passes: usize,
+    },
+}

@@ -1,0 +1,86 @@
+//! The vibrations of a system in spin, as a Campbell diagram follows them.
+
+use faer::c64;
+use nalgebra::Vector3;
+
+use crate::system::radau::SystemMotion;
+use crate::vibration::steady_spin::SpinMode;
+use crate::vibration::system::configuration::{CommonSpin, Configuration};
+use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::linearization::Linearization;
+use crate::vibration::system::mode::SystemMode;
+
+impl SystemMotion {
+    /// A point and the z axis of the first marker of a joint, global.
+    pub fn joint_axis(&self, joint: usize) -> (Vector3<f64>, Vector3<f64>) {
+        let at = Configuration::of(self, &CommonSpin::REST);
+        let [first, _] = at.places(&self.system().joints()[joint]);
+        (first.position, first.axes.column(2).into())
+    }
+
+    /// The center of mass of all bodies, undeformed, global.
+    pub fn center_of_mass(&self) -> Vector3<f64> {
+        let at = Configuration::of(self, &CommonSpin::REST);
+        let bodies = || self.system().bodies().iter();
+        let moment: Vector3<f64> = bodies().zip(&at.bodies).map(|(body, at)| at.origin * body.mass()).sum();
+        moment / bodies().map(crate::ConservativeBody::mass).sum::<f64>()
+    }
+
+    /// The vibrations in a common spin about a unit vector through a point, at a speed in rad per time, slowest first: one for each
+    /// independent coordinate. The bodies are deformed as the spin asks.
+    ///
+    /// # Errors
+    /// [`SteadyError`].
+    pub fn spin_modes(
+        &self,
+        axis_global: &Vector3<f64>,
+        point_global: Vector3<f64>,
+        speed: f64,
+    ) -> Result<Vec<SpinMode>, SteadyError> {
+        let linear = self.steady_state(&CommonSpin { omega_global: axis_global * speed, point_global })?.linear;
+        let (mut moving, mut still): (Vec<SystemMode>, Vec<SystemMode>) =
+            linear.vibrations()?.modes.into_iter().partition(|mode| mode.circular_frequency() > 0.0);
+        // Two that do not swing are in the place of one that does.
+        still.sort_by(|a, b| b.growth().total_cmp(&a.growth()));
+        still.truncate(linear.size().saturating_sub(moving.len()));
+        still.append(&mut moving);
+        let mut modes: Vec<SpinMode> = still.iter().map(|mode| linear.spin_mode(mode, speed)).collect();
+        // Those that nothing resists.
+        let none = SpinMode { circular_frequency: 0.0, growth: 0.0, whirl: 0.0, state: Vec::new() };
+        modes.resize(linear.size(), none);
+        modes.sort_by(|a, b| a.circular_frequency.total_cmp(&b.circular_frequency));
+        Ok(modes)
+    }
+}
+
+impl Linearization {
+    fn spin_mode(&self, mode: &SystemMode, speed: f64) -> SpinMode {
+        let eta = &mode.coordinates;
+        let size = self.size();
+        let squares: f64 = eta.iter().map(|x| x.norm_sqr()).sum();
+        // Im(ηᴴ G η)/(ηᴴη), with the gyroscopic part 2Ω G of C.
+        let whirl = if speed == 0.0 {
+            0.0
+        } else {
+            let turned = |i: usize| {
+                let of = |j: usize| eta[j] * (0.25 * (self.damping[(i, j)] - self.damping[(j, i)]) / speed);
+                (0..size).map(of).sum::<c64>()
+            };
+            (0..size).map(|i| (eta[i].conj() * turned(i)).im).sum::<f64>() / squares
+        };
+        let mut masses = Vec::with_capacity(mode.motion.len());
+        for mass in &self.masses {
+            masses.extend((0..mass.nrows()).map(|k| mass[(k, k)].sqrt()));
+        }
+        let strained = mode.motion.iter().zip(&self.strain).map(|(x, strain)| *x * strain.sqrt());
+        let moving = mode.motion.iter().zip(&masses).map(|(x, mass)| mode.eigenvalue * *x * *mass);
+        let state: Vec<c64> = strained.chain(moving).collect();
+        let length = state.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt();
+        SpinMode {
+            circular_frequency: mode.circular_frequency(),
+            growth: mode.growth(),
+            whirl,
+            state: state.into_iter().map(|x| x / length).collect(),
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The diagram of bodies that joints tie together: all of them spin about one axis.
+
+use std::path::Path;
+
+use dynamics::{Effect, SteadyError};
+use model::Builder;
+use nalgebra::Vector3;
+use scene::System;
+
+use super::branches::Branches;
+use super::error::CampbellError;
+use super::report::{CampbellReport, SpinEffects};
+use super::{CampbellProgress, Speeds, checked, critical, files, spinning, unit};
+use crate::commands::modes::frequency_unit;
+use crate::commands::system_modes::{TiedMotion, body_names, build, tied_motions};
+
+/// Settings of the diagram of a system.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SystemCampbellSettings {
+    /// Direction of the spin, global, through the center of mass; or that of a joint's axis.
+    pub axis: Option<[f64; 3]>,
+    /// A joint about whose axis all bodies spin. By default the one that a drive turns.
+    pub joint: Option<String>,
+    /// The spin speeds.
+    pub speeds: Speeds,
+    /// Engine orders: numbers of times a turn that loads come by.
+    pub orders: Vec<f64>,
+}
+
+/// Computes the diagram of the first system of a scene, and writes the files of [`campbell`](super::campbell) to `folder`.
+///
+/// At each speed the bodies are deformed as the spin asks, and drives hold still what they turn. Loads are left out; dampers and the
+/// damping of modes count.
+///
+/// # Errors
+/// [`CampbellError`].
+pub fn campbell_of_system(
+    system: &System,
+    builder: &Builder,
+    folder: &Path,
+    settings: &SystemCampbellSettings,
+    mut progress: impl FnMut(CampbellProgress),
+) -> Result<CampbellReport, CampbellError> {
+    let speeds = checked(settings.speeds, &settings.orders)?;
+    let mut system = system.clone();
+    system.bodies.iter_mut().for_each(|scene| *scene = spinning(scene));
+    let models = build(&system, builder, |p| progress(CampbellProgress::Build(p)))?;
+    let motions = tied_motions(&system, &models)?;
+    let scene = &system.bodies[0];
+    let Some(motion) = motions.first() else {
+        let found = "bodies that nothing ties together".to_owned();
+        return Err(CampbellError::NoAxis { scene: scene.path.clone(), found, joints: Vec::new() });
+    };
+    let of_motion = motion.simulation.motion();
+    let (axis, point) = axis_of(motion, settings).map_err(|found| match found {
+        Found::Nothing(found) => CampbellError::NoAxis {
+            scene: scene.path.clone(),
+            found,
+            joints: of_motion.system().joints().iter().map(|joint| joint.name.clone()).collect(),
+        },
+        Found::NoDirection(error) => error,
+    })?;
+    let find = |speed: f64| {
+        let failed = |source: SteadyError| CampbellError::Steady { scene: scene.path.clone(), speed, source };
+        of_motion.spin_modes(&axis, point, speed).map_err(failed)
+    };
+    let total = speeds.len();
+    let branches = Branches::follow(&find, speeds, |done| progress(CampbellProgress::Speeds { done, total }))?;
+    let is_on = |effect: Effect| {
+        let mut flexible = motion.bodies.iter().map(|body| &models[*body]).filter(|model| model.body.flexible() > 0);
+        flexible.all(|model| model.physics.effects[effect])
+    };
+    let static_shapes: usize = motion.bodies.iter().map(|body| models[*body].static_shapes()).sum();
+    let grows = |here: &Vec<dynamics::SpinMode>| here.iter().any(|mode| mode.growth > 0.0);
+    let unstable = branches.modes.iter().position(grows);
+    let mut report = CampbellReport {
+        title: scene.title.clone(),
+        time_unit: scene.units.time.clone(),
+        frequency_unit: frequency_unit(&scene.units.time),
+        mesh: None,
+        bodies: body_names(&system, &motion.bodies),
+        axis: axis.into(),
+        origin: point.into(),
+        effects: SpinEffects {
+            coriolis: is_on(Effect::Coriolis),
+            softening: is_on(Effect::DeformedInertia),
+            stiffening: is_on(Effect::GeometricStiffening),
+        },
+        stable_below: unstable.map(|at| branches.speeds[at]),
+        critical_speeds: critical::find_between(&find, &branches, &settings.orders)?,
+        branches: branches.lines(static_shapes),
+        speeds: branches.speeds,
+        files: Vec::new(),
+    };
+    report.files = files::write(&report, folder, &settings.orders)?;
+    Ok(report)
+}
+
+/// Why there is no axis.
+enum Found {
+    Nothing(String),
+    NoDirection(CampbellError),
+}
+
+/// The axis of the spin and a point on it, global.
+fn axis_of(motion: &TiedMotion, settings: &SystemCampbellSettings) -> Result<(Vector3<f64>, Vector3<f64>), Found> {
+    let of_motion = motion.simulation.motion();
+    let joints = of_motion.system().joints();
+    let is_meant = |joint: &dynamics::Joint| match &settings.joint {
+        Some(name) => joint.name == *name,
+        None => joint.rows.contains(&dynamics::Row::DrivenRotation),
+    };
+    let meant: Vec<usize> = (0..joints.len()).filter(|number| is_meant(&joints[*number])).collect();
+    match (&settings.axis, &settings.joint, &meant[..]) {
+        (Some(axis), None, _) => Ok((unit(*axis).map_err(Found::NoDirection)?, of_motion.center_of_mass())),
+        (_, _, [joint]) => {
+            let (position, axis) = of_motion.joint_axis(*joint);
+            Ok((axis, position))
+        }
+        (_, Some(name), _) => Err(Found::Nothing(format!("there is no joint {name:?}"))),
+        (_, None, []) => Err(Found::Nothing("no joint is turned by a drive".to_owned())),
+        (_, None, _) => Err(Found::Nothing("several joints are turned by drives".to_owned())),
+    }
+}

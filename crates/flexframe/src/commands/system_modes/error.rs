@@ -1,0 +1,21 @@
+//! Errors of the vibrations of a system.
+
+use std::path::PathBuf;
+
+use dynamics::SteadyError;
+use model::{BuildError, StartError};
+
+/// Vibrations of a system that could not be found.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
+pub enum SystemModesError {
+    /// A body cannot be built.
+    #[error("{0}")]
+    Build(#[from] BuildError),
+    /// The bodies cannot be put together.
+    #[error("{}", source.in_scene(scene))]
+    Setup { scene: PathBuf, source: Box<StartError> },
+    /// The system has no steady state, or its vibrations cannot be found.
+    #[error("{}: {source}", scene.display())]
+    Steady { scene: PathBuf, source: SteadyError },
+}

@@ -1,0 +1,253 @@
+//! Report of the vibrations of a system.
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use dynamics::{Spring, SteadyState, SystemMode, Vibrations};
+use scene::System;
+use serde::Serialize;
+
+use super::assembled::TiedMotion;
+use crate::commands::modes::{ModesReport, frequency_unit};
+use crate::files::json;
+use crate::report::quantity;
+
+/// Part of a mode's energy from which a body or a joint is named.
+const NAMED: f64 = 0.005;
+/// More modes than this do not fit a page.
+const SHOWN: usize = 30;
+/// An acceleration, as a part of the size of the system and the square of its lowest frequency, from which it is told.
+const TOLD: f64 = 1e-9;
+
+/// The vibrations of bodies that are tied together.
+#[derive(Debug, Clone)]
+pub struct SystemModes {
+    /// Numbers of the bodies in the scene.
+    pub bodies: Vec<usize>,
+    /// The states of the bodies.
+    pub states: Vec<dynamics::MotionState>,
+    /// Their vibrations.
+    pub vibrations: Vibrations,
+    /// Report for people and programs.
+    pub report: SystemModesReport,
+}
+
+/// Report of the vibrations of bodies that are tied together.
+#[derive(Debug, Clone, Serialize)]
+pub struct SystemModesReport {
+    /// Title of the scene.
+    pub title: String,
+    /// Unit of frequencies, such as "1/s".
+    pub frequency_unit: String,
+    /// Label of the unit of time.
+    pub time_unit: String,
+    /// Names of the bodies.
+    pub bodies: Vec<String>,
+    /// Names of the joints.
+    pub joints: Vec<String>,
+    /// Names of springs and bushings.
+    pub elements: Vec<String>,
+    /// Rows of joints and couplings.
+    pub rows: usize,
+    /// Joints with rows that others imply where bodies are rigid, and how many.
+    pub redundant: Vec<(String, usize)>,
+    /// Independent coordinates.
+    pub degrees_of_freedom: usize,
+    /// Motions that deform no body.
+    pub mechanisms: usize,
+    /// Motions that nothing resists, whose frequency is zero.
+    pub rigid_modes: usize,
+    /// Sentences about a state that is not at rest, and about vibrations that grow.
+    pub warnings: Vec<String>,
+    /// Vibrations, slowest first.
+    pub modes: Vec<SystemModeReport>,
+}
+
+/// One vibration.
+#[derive(Debug, Clone, Serialize)]
+pub struct SystemModeReport {
+    /// Frequency of the motion, cycles per time.
+    #[serde(serialize_with = "json::number")]
+    pub frequency: f64,
+    /// Damping ratio: −growth over the magnitude of the eigenvalue.
+    #[serde(serialize_with = "json::number")]
+    pub damping_ratio: f64,
+    /// Rate at which it grows; negative where it decays.
+    #[serde(serialize_with = "json::number")]
+    pub growth: f64,
+    /// Parts of the kinetic energy by bodies: who moves.
+    pub moves: Vec<Share>,
+    /// Parts of the elastic energy by bodies, joints and springs: who is strained. Empty where nothing is.
+    pub strained: Vec<Share>,
+}
+
+/// A part of the energy of a vibration.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Share {
+    /// Name of the body, joint, spring or bushing.
+    pub name: String,
+    /// Its part.
+    #[serde(serialize_with = "json::number")]
+    pub part: f64,
+}
+
+impl SystemModesReport {
+    pub(super) fn new(system: &System, motion: &TiedMotion, steady: &SteadyState, found: &Vibrations) -> Self {
+        let scene = &system.bodies[motion.bodies[0]];
+        let of_motion = motion.simulation.motion().system();
+        let bodies = body_names(system, &motion.bodies);
+        let joints: Vec<String> = of_motion.joints().iter().map(|joint| joint.name.clone()).collect();
+        let springs = steady.linear.springs().map(|spring| match spring {
+            Spring::Joint(joint) => joints[joint].clone(),
+            Spring::Element(element) => motion.elements[element].clone(),
+        });
+        let names: Vec<String> = bodies.iter().cloned().chain(springs).collect();
+        let mode = |mode: &SystemMode| SystemModeReport {
+            frequency: mode.circular_frequency() / TAU,
+            damping_ratio: mode.damping_ratio(),
+            growth: mode.growth(),
+            moves: shares(&bodies, &mode.kinetic),
+            strained: shares(&names, &mode.elastic),
+        };
+        let rigid_modes = found.rigid.ncols() + found.zeros / 2;
+        let time = &scene.units.time;
+        let mut report = Self {
+            title: scene.title.clone(),
+            frequency_unit: frequency_unit(time),
+            time_unit: time.clone(),
+            rows: steady.multipliers().len(),
+            redundant: motion.simulation.redundant().to_vec(),
+            degrees_of_freedom: steady.linear.size(),
+            mechanisms: steady.linear.rigid,
+            rigid_modes,
+            warnings: Vec::new(),
+            modes: found.modes.iter().map(mode).collect(),
+            elements: motion.elements.clone(),
+            bodies,
+            joints,
+        };
+        report.warnings.extend(report.unbalance(steady, motion.simulation.size(), &scene.units.length));
+        report.warnings.extend(report.growth());
+        report
+    }
+
+    /// Tells of a body that does not stay where it is.
+    fn unbalance(&self, steady: &SteadyState, size: f64, length: &str) -> Option<String> {
+        let unbalance = &steady.unbalance;
+        let accelerations = unbalance.accelerations.iter().zip(&unbalance.angular_accelerations);
+        let sizes = accelerations.map(|(a, alpha)| a.norm() / size + alpha.norm());
+        let (body, largest) = sizes.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        let lowest = self.modes.iter().map(|mode| mode.frequency).find(|frequency| *frequency > 0.0).unwrap_or(1.0);
+        (largest > TOLD * (TAU * lowest).powi(2)).then(|| {
+            let time = &self.time_unit;
+            format!(
+                "the system is not at rest where it stands: body {} is free to go with {} {length}/{time}² and {} rad/{time}²; the \
+                 vibrations are those of this place as if it were held there by its inertia. Place it where its forces balance, or \
+                 take out what moves it",
+                self.bodies[body],
+                quantity(unbalance.accelerations[body].norm()),
+                quantity(unbalance.angular_accelerations[body].norm()),
+            )
+        })
+    }
+
+    fn growth(&self) -> Option<String> {
+        let grows = self.modes.iter().position(|mode| mode.growth > 0.0)?;
+        Some(format!(
+            "mode {} grows by a rate of {} per {}: the system does not stay in this state",
+            grows + 1,
+            quantity(self.modes[grows].growth),
+            self.time_unit
+        ))
+    }
+}
+
+/// Reports of the systems of a scene, and of its bodies that nothing ties.
+#[derive(Debug, Serialize)]
+pub struct ModesOfSystems {
+    /// Of bodies that are tied together.
+    pub systems: Vec<SystemModesReport>,
+    /// Of bodies that move alone, with their names.
+    #[serde(serialize_with = "crate::report::list_of_named")]
+    pub bodies: Vec<(Option<String>, ModesReport)>,
+}
+
+impl fmt::Display for ModesOfSystems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, system) in self.systems.iter().enumerate() {
+            if i > 0 {
+                f.write_str("\n\n")?;
+            }
+            write!(f, "{system}")?;
+        }
+        for (name, report) in &self.bodies {
+            write!(f, "\n\nbody {}\n{report}", name.as_deref().unwrap_or("body"))?;
+        }
+        Ok(())
+    }
+}
+
+/// Names of bodies by their numbers.
+pub(crate) fn body_names(system: &System, numbers: &[usize]) -> Vec<String> {
+    let name = |number: &usize| system.bodies[*number].name.clone().unwrap_or_else(|| "body".to_owned());
+    numbers.iter().map(name).collect()
+}
+
+/// Sums of the parts by names, largest first, without the smallest.
+fn shares(names: &[String], parts: &[f64]) -> Vec<Share> {
+    let mut shares: Vec<Share> = Vec::new();
+    for (name, part) in names.iter().zip(parts) {
+        match shares.iter_mut().find(|share| share.name == *name) {
+            Some(share) => share.part += part,
+            None => shares.push(Share { name: name.clone(), part: *part }),
+        }
+    }
+    shares.retain(|share| share.part.abs() >= NAMED);
+    shares.sort_by(|a, b| b.part.abs().total_cmp(&a.part.abs()));
+    shares
+}
+
+impl fmt::Display for SystemModesReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.title)?;
+        let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        writeln!(f, "  bodies   {}", list(&self.bodies))?;
+        let elements = if self.elements.is_empty() { String::new() } else { format!("; {}", self.elements.join(", ")) };
+        writeln!(f, "  joints   {}{elements}: {} rows", list(&self.joints), self.rows)?;
+        for (name, rows) in &self.redundant {
+            let s = if *rows == 1 { " is" } else { "s are" };
+            writeln!(f, "           {rows} row{s} implied by others at {name}, where bodies are rigid")?;
+        }
+        let count = |count: usize, of: &str| format!("{count} {of}{}", if count == 1 { "" } else { "s" });
+        writeln!(
+            f,
+            "  motions  {}, of which {} no body; nothing resists {}",
+            count(self.degrees_of_freedom, "independent coordinate"),
+            if self.mechanisms == 1 { "1 deforms".to_owned() } else { format!("{} deform", self.mechanisms) },
+            if self.rigid_modes == 0 { "none".to_owned() } else { self.rigid_modes.to_string() },
+        )?;
+        writeln!(f, "\n  mode  frequency, {:<6}  damping  who moves; who is strained", self.frequency_unit)?;
+        for (k, mode) in self.modes.iter().enumerate().take(SHOWN) {
+            let words = |shares: &[Share]| {
+                let each = shares.iter().take(4).map(|share| format!("{} {:.0} %", share.name, 100.0 * share.part));
+                each.collect::<Vec<_>>().join(", ")
+            };
+            let strained = if mode.strained.is_empty() { "nothing".to_owned() } else { words(&mode.strained) };
+            // A ratio that is zero but for rounding is shown as zero.
+            let ratio = if mode.damping_ratio.abs() < 5e-5 { 0.0 } else { mode.damping_ratio };
+            let swings = mode.frequency > 0.0;
+            let growth = match (mode.growth > 0.0, swings) {
+                (true, _) => format!("; grows by {} per {}", quantity(mode.growth), self.time_unit),
+                (false, true) => String::new(),
+                (false, false) => format!("; decays by {} per {}", quantity(-mode.growth), self.time_unit),
+            };
+            let moves = words(&mode.moves);
+            writeln!(f, "  {:>4}  {:>17.6}  {ratio:>7.4}  {moves}; {strained}{growth}", k + 1, mode.frequency)?;
+        }
+        if self.modes.len() > SHOWN {
+            let more = self.modes.len() - SHOWN;
+            writeln!(f, "  {more} more, most of them of static shapes; --json has them all")?;
+        }
+        self.warnings.iter().try_for_each(|warning| write!(f, "\n  warning  {warning}"))
+    }
+}
