@@ -27,6 +27,7 @@ pub mod drawn;
 pub mod failure;
 mod files;
 pub mod forked;
+pub mod motion;
 pub mod plausible;
 pub mod report;
 mod rows;

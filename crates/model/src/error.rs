@@ -87,7 +87,8 @@ impl StartError {
     }
 
     /// At the key of the scene, where it is the step.
-    pub(crate) fn at_key(self, scene: &Scene) -> Self {
+    #[must_use]
+    pub fn at_key(self, scene: &Scene) -> Self {
         let (step, limit, why, help) = match &self {
             Self::Setup(SetupError::StepBeyondLimit { step, limit, mode, frequency }) => (
                 step,

@@ -10,11 +10,9 @@ mod checkpoint;
 mod error;
 mod estimate;
 mod metadata;
-mod motion;
 mod mover;
 mod recorder;
 mod report;
-mod row_times;
 mod settings;
 mod tied_report;
 mod turn;
@@ -24,8 +22,8 @@ mod words;
 use std::path::Path;
 use std::time::Instant;
 
-use dynamics::{Initial, Rows, SystemSetup, SystemSimulation};
-use model::{BuildError, BuildProgress, Builder, Model, StartError, Tied, tie};
+use dynamics::Initial;
+use model::{BuildError, BuildProgress, Builder, Model};
 use results::{Expected, Results, Resumed, Writer, unfinished};
 use scene::{Scene, System};
 
@@ -46,16 +44,15 @@ use crate::drawn::stored_shapes;
 use crate::files::outputs::outputs_of_scenes;
 pub use crate::files::results_path::results_path;
 use crate::files::scene_file;
+use crate::motion::{Beginning, begin};
 use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;
 use body::FollowedBody;
 use checkpoint::{checkpoint, restored};
 use estimate::LARGE;
 use metadata::metadata_of_file;
-use motion::Motion;
 use mover::Mover;
 use recorder::Recorder;
-use row_times::RowTimes;
 
 /// Runs the bodies of a scene and writes their results to `<folder>/<name of the scene file>.h5`; until the end they are in an
 /// unfinished file beside it ([`results::unfinished`]). `progress` hears how far it is, at every phase and every few
@@ -206,48 +203,13 @@ fn movers<'a>(
     models: &[Model],
     initial: &'a [Initial],
 ) -> Result<Vec<Mover<'a>>, RunError> {
-    let follow = |number: usize| FollowedBody::new(bodies[number], number, &initial[number]);
-    let mut movers = Vec::new();
-    let tied = tie(system, models)?;
-    for (number, body) in bodies.iter().enumerate() {
-        if tied.iter().all(|tied| !tied.bodies.contains(&number)) {
-            let motion = Motion::Alone(Box::new(start(body)?));
-            movers.push(Mover { motion, bodies: vec![follow(number)?], joints: Vec::new() });
-        }
-    }
-    for tied in tied {
-        let numbers = tied.bodies.clone();
-        let joints = tied.joints.clone();
-        let motion = Motion::Tied(Box::new(start_tied(system, tied, models)?));
-        let bodies = numbers.into_iter().map(follow).collect::<Result<_, _>>()?;
-        movers.push(Mover { motion, bodies, joints });
-    }
-    Ok(movers)
-}
-
-fn start(RunBody { scene, model }: &RunBody<'_>) -> Result<dynamics::Simulation, RunError> {
-    model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })
-}
-
-/// The motion of bodies that are tied together, whose steps end at the rows of the scene.
-fn start_tied(system: &System, tied: Tied, models: &[Model]) -> Result<SystemSimulation, RunError> {
-    let scene = &system.bodies[tied.bodies[0]];
-    let points = |body: &usize| models[*body].points.iter().map(|(_, point)| point.clone()).collect();
-    let setup = SystemSetup {
-        points: tied.bodies.iter().map(points).collect(),
-        system: tied.system,
-        states: tied.states,
-        relaxed: system.relaxed,
-        scheme: scene.time.system_scheme,
-        control: scene.time.control,
-        end: scene.time.end,
-        rows: Rows::Interval(RowTimes::new(scene).of(1)),
+    let beginning = Beginning::of(system, models).ok_or(RunError::NoBody)?;
+    let mover = |moving: crate::motion::Moving| {
+        let follow = |number: &usize| FollowedBody::new(bodies[*number], *number, &initial[*number]);
+        let followed = moving.bodies.iter().map(follow).collect::<Result<_, _>>()?;
+        Ok(Mover { motion: moving.motion, bodies: followed, joints: moving.joints })
     };
-    let refused = |source: dynamics::SetupError| RunError::Setup {
-        scene: scene.path.clone(),
-        source: Box::new(StartError::from(source)),
-    };
-    SystemSimulation::new(setup).map_err(refused)
+    begin(system, models, &beginning)?.into_iter().map(mover).collect()
 }
 
 fn initial(bodies: &[RunBody<'_>]) -> Vec<Initial> {

@@ -54,6 +54,14 @@ pub fn tie(system: &System, models: &[Model]) -> Result<Vec<Tied>, BuildError> {
     islands(models.len(), &pairs).into_iter().map(|bodies| Island::new(system, models, bodies)?.tied()).collect()
 }
 
+/// All bodies of a scene as one system, also those that nothing ties.
+///
+/// # Errors
+/// As [`tie`].
+pub fn tie_all(system: &System, models: &[Model]) -> Result<Tied, BuildError> {
+    Island::new(system, models, (0..models.len()).collect())?.tied()
+}
+
 /// Bodies that are connected, with what they are made of.
 struct Island<'a> {
     scene: &'a System,

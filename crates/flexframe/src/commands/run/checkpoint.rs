@@ -5,7 +5,7 @@ use std::path::Path;
 use dynamics::CheckpointError;
 
 use super::error::RunError;
-use super::motion::Motion;
+use crate::motion::Motion;
 
 /// The states of all motions, one after the other: each takes the same room at any time.
 pub(super) fn checkpoint<'m>(motions: impl IntoIterator<Item = &'m Motion>, part: &Path) -> Result<Vec<u64>, RunError> {

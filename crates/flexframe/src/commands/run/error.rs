@@ -11,6 +11,7 @@ use scene::SceneError;
 use super::estimate::Estimate;
 use crate::files::outputs::OutputError;
 use crate::files::write_error::help_of_writing;
+use crate::motion::BeginError;
 
 /// A run that could not be done.
 #[derive(Debug, thiserror::Error)]
@@ -67,6 +68,15 @@ pub enum RunError {
     /// The output folder cannot be made.
     #[error("{}: cannot make the output folder: {source}\n = {}", folder.display(), help_of_writing(source))]
     Folder { folder: PathBuf, source: std::io::Error },
+}
+
+impl From<BeginError> for RunError {
+    fn from(error: BeginError) -> Self {
+        match error {
+            BeginError::Build(source) => Self::Build(source),
+            BeginError::Start { scene, source } => Self::Setup { scene, source },
+        }
+    }
 }
 
 impl RunError {

@@ -10,8 +10,8 @@ use results::{Metadata, bytes_per_row};
 use scene::Scene;
 use serde::Serialize;
 
-use super::motion::Motion;
-use super::row_times::RowTimes;
+use crate::motion::Motion;
+use crate::motion::row_times::RowTimes;
 use crate::rows::columns::COLUMNS;
 
 /// A larger file is only written for who has asked for it.

@@ -3,9 +3,9 @@
 use dynamics::{Reached, StepError};
 
 use super::body::FollowedBody;
-use super::motion::Motion;
-use super::row_times::RowTimes;
 use super::tied_report::TiedReport;
+use crate::motion::Motion;
+use crate::motion::row_times::RowTimes;
 use crate::rows::row::{BodyRow, Row};
 
 /// Steps between two reports of progress, where no row comes first.

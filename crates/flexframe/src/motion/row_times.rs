@@ -7,7 +7,7 @@ const SAME: f64 = 1e-13;
 
 /// The times at which several bodies have rows. They follow from the scene alone, not from the steps of a body.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct RowTimes {
+pub(crate) struct RowTimes {
     spacing: Spacing,
     end: f64,
 }

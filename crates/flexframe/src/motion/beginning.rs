@@ -1,0 +1,190 @@
+//! The beginning of the motions of a scene, as the scene has it or otherwise.
+
+use std::sync::Arc;
+
+use dynamics::{
+    ConservativeBody, Coordinate, JointLaw, Method, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation,
+    StepControl, SystemScheme, SystemSetup, SystemSimulation,
+};
+use model::{BuildError, Model, StartError, Tied, tie, tie_all};
+use scene::{Scene, System};
+
+use super::Motion;
+use super::row_times::RowTimes;
+
+/// Forces on a body, and the damping and effects that they call for.
+#[derive(Debug, Clone)]
+pub struct BodyForces {
+    /// All its loads.
+    pub loads: Vec<SharedLoad>,
+    /// Damping ratio of each mode.
+    pub damping_ratios: Vec<f64>,
+    /// Effects, gravity, drive.
+    pub physics: Physics,
+}
+
+/// A law for the force along a coordinate of a joint, by the number of the joint in the scene.
+#[derive(Debug, Clone)]
+pub struct JointForces {
+    /// The joint.
+    pub joint: usize,
+    /// Its turn or its slide.
+    pub along: Coordinate,
+    /// The law.
+    pub law: Arc<dyn JointLaw>,
+}
+
+/// How the motions of a scene begin: at first as the scene says.
+#[derive(Debug, Clone)]
+pub struct Beginning {
+    /// Formulation and scheme of bodies alone.
+    pub method: Method,
+    /// Scheme of tied bodies.
+    pub system_scheme: SystemScheme,
+    /// Steps.
+    pub control: StepControl,
+    /// Time of the end.
+    pub end: f64,
+    /// Rows of bodies alone.
+    pub rows: Rows,
+    /// Rows of tied bodies.
+    pub tied_rows: Rows,
+    /// Forces on each body.
+    pub bodies: Vec<BodyForces>,
+    /// Laws from outside at joints.
+    pub laws: Vec<JointForces>,
+    /// True if all bodies are stepped as one system, also those that nothing ties.
+    pub together: bool,
+}
+
+/// A motion and what it moves.
+#[derive(Debug, Clone)]
+pub struct Moving {
+    /// The motion.
+    pub motion: Motion,
+    /// Numbers of its bodies in the scene.
+    pub bodies: Vec<usize>,
+    /// Numbers of its joints in the scene.
+    pub joints: Vec<usize>,
+}
+
+impl Beginning {
+    /// That of a scene with a model of each body; `None` without bodies.
+    pub fn of(system: &System, models: &[Model]) -> Option<Self> {
+        let Scene { time, output, .. } = system.bodies.first()?;
+        let forces = |model: &Model| BodyForces {
+            loads: model.loads().to_vec(),
+            damping_ratios: model.damping_ratios().to_vec(),
+            physics: model.physics.clone(),
+        };
+        Some(Self {
+            method: time.method,
+            system_scheme: time.system_scheme,
+            control: time.control,
+            end: time.end,
+            rows: output.rows,
+            tied_rows: Rows::Interval(RowTimes::new(&system.bodies[0]).of(1)),
+            bodies: models.iter().map(forces).collect(),
+            laws: Vec::new(),
+            together: false,
+        })
+    }
+
+    /// The same with rows at an interval.
+    #[must_use]
+    pub fn with_rows(self, rows: Rows) -> Self {
+        Self { rows, tied_rows: rows, ..self }
+    }
+}
+
+/// The motions of a scene: first of bodies alone, then of bodies that are tied. There is a model of each body.
+///
+/// # Errors
+/// [`BuildError`], or the scene of a body whose motion cannot start, and why.
+pub fn begin(system: &System, models: &[Model], beginning: &Beginning) -> Result<Vec<Moving>, BeginError> {
+    let mut all = Vec::new();
+    let tied = if beginning.together { vec![tie_all(system, models)?] } else { tie(system, models)? };
+    for (number, (scene, model)) in system.bodies.iter().zip(models).enumerate() {
+        if tied.iter().all(|tied| !tied.bodies.contains(&number)) {
+            let alone = alone(scene, model, &beginning.bodies[number], beginning);
+            let simulation = alone.map_err(|source| BeginError::start(scene, source.at_key(scene)))?;
+            let motion = Motion::Alone(Box::new(simulation));
+            all.push(Moving { motion, bodies: vec![number], joints: Vec::new() });
+        }
+    }
+    for tied in tied {
+        let (bodies, joints) = (tied.bodies.clone(), tied.joints.clone());
+        let scene = &system.bodies[bodies[0]];
+        let simulation = start_tied(system, models, tied, beginning);
+        let simulation = simulation.map_err(|source| BeginError::start(scene, source))?;
+        all.push(Moving { motion: Motion::Tied(Box::new(simulation)), bodies, joints });
+    }
+    Ok(all)
+}
+
+/// Motions that cannot begin.
+#[derive(Debug, thiserror::Error)]
+pub enum BeginError {
+    /// The system cannot be put together.
+    #[error("{0}")]
+    Build(#[from] BuildError),
+    /// A motion cannot start. `scene`: that of its first body.
+    #[error("{}", source.in_scene(scene))]
+    Start {
+        /// The scene file.
+        scene: std::path::PathBuf,
+        /// The reason.
+        source: Box<StartError>,
+    },
+}
+
+impl BeginError {
+    fn start(scene: &Scene, source: StartError) -> Self {
+        Self::Start { scene: scene.path.clone(), source: Box::new(source) }
+    }
+}
+
+fn points(model: &Model) -> Vec<PointShapes> {
+    model.points.iter().map(|(_, point)| point.clone()).collect()
+}
+
+fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> Result<Simulation, StartError> {
+    if let Some(refusal) = model.refusal.filter(|_| scene.effects.refuse) {
+        return Err(refusal.into());
+    }
+    let (initial, points) = (model.initial(scene), points(model));
+    Ok(Simulation::new(&Setup {
+        damping_ratios: &forces.damping_ratios,
+        loads: &forces.loads,
+        physics: &forces.physics,
+        method: model.paper.or(&of.method),
+        control: of.control,
+        end: of.end,
+        rows: of.rows,
+        points: &points,
+        ..model.setup(scene, &initial)
+    })?)
+}
+
+fn start_tied(system: &System, models: &[Model], tied: Tied, of: &Beginning) -> Result<SystemSimulation, StartError> {
+    let body = |number: &usize| {
+        let BodyForces { loads, damping_ratios, physics } = &of.bodies[*number];
+        ConservativeBody::new(&models[*number].body, damping_ratios, loads.clone(), physics)
+    };
+    let mut described = tied.system.with_bodies(tied.bodies.iter().map(body).collect::<Result<_, _>>()?)?;
+    for JointForces { joint, along, law } in &of.laws {
+        if let Some(here) = tied.joints.iter().position(|number| number == joint) {
+            described = described.with_law(here, *along, Arc::clone(law))?;
+        }
+    }
+    Ok(SystemSimulation::new(SystemSetup {
+        system: described,
+        states: tied.states,
+        relaxed: system.relaxed,
+        scheme: of.system_scheme,
+        control: of.control,
+        end: of.end,
+        rows: of.tied_rows,
+        points: tied.bodies.iter().map(|number| points(&models[*number])).collect(),
+    })?)
+}
