@@ -558,11 +558,12 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Cost { scene: SceneArgs { scene, json }, output, files, target, patience } => {
             output::require_file("--output", output.as_deref())?;
-            let scenes = read_bodies(scene)?;
+            let system = scene.read_system()?;
+            system.bodies.iter().for_each(tell_doubts);
             let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
-            let folder = folder(&scenes[0], output)?;
-            outputs_of_scenes(&scenes, &builder, files.overwrite).claim(&cost::files(&folder))?;
-            let report = cost::price_list(&scenes, &builder, &folder, settings, |p| bar.cost(p))?;
+            let folder = folder(&system.bodies[0], output)?;
+            outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(&cost::files(&folder))?;
+            let report = cost::price_list(&system, &builder, &folder, settings, |p| bar.cost(p))?;
             drop(bar);
             output::print(&report, json)
         }

@@ -47,6 +47,11 @@ impl Motion {
         either!(self, of => of.is_over())
     }
 
+    /// True if a row falls on what has been reached, and comes next without a step.
+    pub fn row_is_due(&self) -> bool {
+        matches!(self, Self::Alone(simulation) if simulation.row_is_due())
+    }
+
     /// Name of its scheme, of a scene.
     pub fn scheme<'s>(&self, scene: &'s Scene) -> &'s str {
         match self {

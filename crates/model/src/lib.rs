@@ -46,5 +46,5 @@ pub use progress::{BuildProgress, BuildTimes, BuildWork};
 pub use stress::shapes::{BodyStress, StressPeak};
 pub use support::reactions::SupportRows;
 pub use tie::body_marker::{BodyMarker, MarkerPart, UnknownTurns};
-pub use tie::tied::{Tied, tie, tie_all};
+pub use tie::tied::{Tied, tie, tie_models};
 pub use variants::Variants;

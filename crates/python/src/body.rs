@@ -252,7 +252,7 @@ impl Body {
 }
 
 /// Does the work of building for a scene in a thread, and tells as warnings what is doubtful.
-fn built<T: Send + 'static>(
+pub(crate) fn built<T: Send + 'static>(
     py: Python<'_>,
     scene: &Py<Scene>,
     build: impl FnOnce(&mut dyn FnMut(BuildProgress)) -> Result<T, BuildError> + Send + 'static,

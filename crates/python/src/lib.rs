@@ -1,7 +1,7 @@
 //! The Python package flexframe: its compiled part, the module `flexframe._flexframe`.
 //!
 //! The package is in `python/flexframe`; the types of everything here are in `_flexframe.pyi` there.
-//! `scene`, `body` and `motion::simulation` are the classes of these names; `builder` has the cache of the user;
+//! `scene`, `body`, `system` and `motion::simulation` are the classes of these names; `builder` has the cache of the user;
 //! `motion` lets Python functions act on a body; `rows` gives rows under the names of the columns of a results file;
 //! `values` takes numbers and dicts and gives arrays and tables: the only unsafe code is in `arrays`, which look into a body without a
 //! copy; `interrupt` lets Ctrl-C stop long work; `threads` lets it be done in a forked process; `errors` turns errors into exceptions
@@ -19,6 +19,7 @@ mod interrupt;
 mod motion;
 mod rows;
 mod scene;
+mod system;
 mod threads;
 mod values;
 
@@ -29,6 +30,8 @@ mod _flexframe {
 
     #[pymodule_export]
     use super::body::Body;
+    #[pymodule_export]
+    use super::motion::joint_force::JointForce;
     #[pymodule_export]
     use super::motion::load::{Force, ModalForce};
     #[pymodule_export]
@@ -43,6 +46,8 @@ mod _flexframe {
     use super::rows::run::{resume, run};
     #[pymodule_export]
     use super::scene::{Scene, unpickled};
+    #[pymodule_export]
+    use super::system::System;
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
 

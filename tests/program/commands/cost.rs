@@ -36,7 +36,8 @@ fn list() -> &'static (CostReport, String) {
     LIST.get_or_init(|| {
         let folder = tempfile::tempdir().unwrap();
         let settings = settings(40_000, TARGET);
-        let report = price_list(&[scene("step = 3e-5")], &Builder::default(), folder.path(), settings, |_| ()).unwrap();
+        let report =
+            price_list(&scene("step = 3e-5").into(), &Builder::default(), folder.path(), settings, |_| ()).unwrap();
         assert_eq!(report.files.len(), 4);
         assert!(report.files.iter().all(|file| std::fs::metadata(file).unwrap().len() > 1000));
         let csv = std::fs::read_to_string(folder.path().join("cost.csv")).unwrap();
@@ -161,7 +162,8 @@ fn the_answer_reaches_the_target_when_the_scene_is_run_with_it() {
 fn a_target_beyond_reach_is_said_to_be() {
     let folder = tempfile::tempdir().unwrap();
     let report =
-        price_list(&[scene("step = 3e-5")], &Builder::default(), folder.path(), settings(1000, 1e-30), |_| ()).unwrap();
+        price_list(&scene("step = 3e-5").into(), &Builder::default(), folder.path(), settings(1000, 1e-30), |_| ())
+            .unwrap();
     let answer = report.answer.unwrap();
     assert!(answer.run.is_none() && answer.lines.is_empty() && answer.smallest_error > 1e-20);
     assert!(answer.to_string().contains("no setting that was tried"), "{answer}");
@@ -173,7 +175,8 @@ fn a_run_that_takes_longer_than_the_patience_is_stopped_and_named() {
     let patience = Duration::from_millis(20);
     let settings = CostSettings { patience, timed_for: Duration::from_millis(1), ..settings(1_000_000, TARGET) };
     // Five million steps, which take some seconds.
-    let report = price_list(&[scene("step = 1e-8")], &Builder::default(), folder.path(), settings, |_| ()).unwrap();
+    let report =
+        price_list(&scene("step = 1e-8").into(), &Builder::default(), folder.path(), settings, |_| ()).unwrap();
     let rows: Vec<&LadderRun> = report.lines.iter().flat_map(|line| &line.rows).collect();
     let own = rows.iter().find(|row| row.of_scene).unwrap();
     let Outcome::OutOfPatience(stopped) = &own.outcome else { panic!("{own:?}") };
@@ -337,15 +340,19 @@ step = 0.01
 #[test]
 fn of_several_bodies_an_error_is_that_of_the_worst_and_work_is_that_of_all() {
     let folder = tempfile::tempdir().unwrap();
-    let priced = |scenes: &[Scene], name: &str| {
+    let priced = |system: &System, name: &str| {
         let settings = CostSettings { target: None, ..settings(2000, 0.0) };
-        price_list(scenes, &Builder::default(), &folder.path().join(name), settings, |_| ()).unwrap()
+        price_list(system, &Builder::default(), &folder.path().join(name), settings, |_| ()).unwrap()
     };
-    let scenes = System::parse(SEVERAL, "tops.toml").unwrap().bodies;
-    let both = priced(&scenes, "both");
+    let system = System::parse(SEVERAL, "tops.toml").unwrap();
+    let both = priced(&system, "both");
     assert_eq!(both.bodies.iter().map(|body| body.name.as_str()).collect::<Vec<_>>(), ["slow", "fast"]);
     assert_eq!((both.bodies[0].points, both.bodies[1].points), (0, 1));
-    let [slow, fast] = [&scenes[..1], &scenes[1..]].map(|scene| priced(scene, &scene[0].name.clone().unwrap()));
+    let [slow, fast] = [0, 1].map(|number| {
+        let scene = system.bodies[number].clone();
+        let name = scene.name.clone().unwrap();
+        priced(&scene.into(), &name)
+    });
     let rows = |report: &CostReport| -> Vec<(&'static str, f64, Measured)> {
         let lines = report.lines.iter().filter(|line| line.formulation == "conservative" && !line.controlled);
         lines.flat_map(|line| runs(line).into_iter().map(|(step, run)| (line.scheme, step, run.clone()))).collect()
@@ -372,4 +379,66 @@ fn of_several_bodies_an_error_is_that_of_the_worst_and_work_is_that_of_all() {
     }
     let json = serde_json::to_value(&both).unwrap();
     assert!(json["bodies"][1]["initial_spin"].as_f64().unwrap() > 7.0 && json.get("initial_spin").is_none(), "{json}");
+}
+
+const TIED: &str = r#"
+title = "double pendulum"
+units = { length = "m", mass = "kg", time = "s" }
+[bodies.upper]
+rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[0.01, 0, 0], [0, 0.09, 0], [0, 0, 0.09]] }
+markers = { top = { at = [-0.5, 0, 0] }, bottom = { at = [0.5, 0, 0] } }
+initial = { position = [0.5, 0, 0] }
+[[bodies.upper.loads]]
+kind = "gravity"
+amplitude = 9.81
+direction = [0, -1, 0]
+[bodies.lower]
+rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[0.01, 0, 0], [0, 0.09, 0], [0, 0, 0.09]] }
+markers = { top = { at = [-0.5, 0, 0] } }
+initial = { position = [1.5, 0, 0] }
+points = { tip = [0.5, 0, 0] }
+[[bodies.lower.loads]]
+kind = "gravity"
+amplitude = 9.81
+direction = [0, -1, 0]
+[[joints]]
+name = "top"
+kind = "revolute"
+between = ["ground", "upper.top"]
+axis = [0, 0, 1]
+[[joints]]
+name = "middle"
+kind = "revolute"
+between = ["upper.bottom", "lower.top"]
+axis = [0, 0, 1]
+[time]
+end = 1.0
+tolerance = 1e-5
+"#;
+
+/// Conserved: the orders of the schemes of tied bodies.
+#[test]
+fn tied_bodies_have_a_price_list_of_their_schemes() {
+    let folder = tempfile::tempdir().unwrap();
+    let system = System::parse(TIED, "pendulum.toml").unwrap();
+    let settings = settings(20_000, 1e-4);
+    let report = price_list(&system, &Builder::default(), folder.path(), settings, |_| ()).unwrap();
+    let lines: Vec<_> = report.lines.iter().map(|line| (line.scheme, line.controlled, line.order)).collect();
+    assert_eq!(lines, [("radau", false, 5), ("radau", true, 5), ("gauss", false, 6), ("gauss", true, 6)]);
+    assert!(report.reference.own_error.largest() < 1e-7, "{:?}", report.reference.own_error);
+    for line in &report.lines {
+        let errors: Vec<f64> = runs(line).into_iter().map(|(_, run)| run.error).collect();
+        println!("{} {}: {errors:?} {:?}", line.scheme, line.controlled, line.measured_order);
+        assert!(errors.len() > 2 && errors.last().unwrap() < &1e-6, "{} {errors:?}", line.scheme);
+        if let Some(order) = line.measured_order {
+            assert!((order - f64::from(line.order)).abs() < 0.7, "{} {order}", line.scheme);
+        }
+    }
+    assert!(report.lines[1].rows.iter().any(|row| row.of_scene && row.measured().is_some()));
+    assert!(report.paper_limit.is_none() && report.bodies.iter().all(|body| body.modes_failure.is_some()));
+    let answer = report.answer.unwrap();
+    assert!(answer.lines[0] == "scheme = \"radau\"" || answer.lines[0] == "scheme = \"gauss\"", "{:?}", answer.lines);
+    let alone = flexframe::scene::Scene::parse_body(TIED, "pendulum.toml", Some("upper")).unwrap();
+    let refused = price_list(&alone.into(), &Builder::default(), folder.path(), settings, |_| ()).unwrap_err();
+    assert!(refused.to_string().contains("joints"), "{refused}");
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::error::StepError;
 use crate::observation::Observation;
+use crate::system::simulation::observation::SystemObservation;
 
 /// Which way an event function passes through zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -18,7 +19,7 @@ pub enum Crossing {
     Any,
 }
 
-/// A function of the motion, of a body or of a [system](crate::SystemObservation); a run stops where it passes through zero.
+/// A function of the motion, of a body or of a [system](SystemObservation); a run stops where it passes through zero.
 pub struct Event<O = Observation> {
     name: String,
     crossing: Crossing,
@@ -46,16 +47,29 @@ pub(crate) trait Inside<O> {
     fn at(&mut self, time: f64) -> Result<&O, StepError>;
 }
 
-impl<O> Event<O> {
+impl Event {
     /// An event with a name for messages. The function sees the motion and that of the points of the run.
     pub fn new(
         name: impl Into<String>,
         crossing: Crossing,
-        function: impl Fn(&O) -> f64 + Send + Sync + 'static,
+        function: impl Fn(&Observation) -> f64 + Send + Sync + 'static,
     ) -> Self {
         Self { name: name.into(), crossing, function: Arc::new(function) }
     }
+}
 
+impl Event<SystemObservation> {
+    /// The same for a [`SystemSimulation`](crate::SystemSimulation): the function sees all bodies and joints.
+    pub fn of_system(
+        name: impl Into<String>,
+        crossing: Crossing,
+        function: impl Fn(&SystemObservation) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self { name: name.into(), crossing, function: Arc::new(function) }
+    }
+}
+
+impl<O> Event<O> {
     /// Value of its function at a motion.
     fn value(&self, now: &O) -> Result<f64, StepError>
     where

@@ -236,7 +236,7 @@ fn a_pendulum_passes_its_lowest_point_at_quarter_periods() {
     let quarter = elliptic((0.25 * PI).sin()) / (9.81 * 0.5 / INERTIA).sqrt();
     let mut simulation = rod(0.0, JointForce::default(), 9.81, Rows::Interval(0.1), 2.0);
     let lowest = |now: &SystemObservation| now.joints[0].coordinates.turn + FRAC_PI_2;
-    let number = simulation.add_event(Event::new("lowest", Crossing::Any, lowest)).unwrap();
+    let number = simulation.add_event(Event::of_system("lowest", Crossing::Any, lowest)).unwrap();
     assert_eq!(simulation.event(number).unwrap().name(), "lowest");
     let reached = rest(&mut simulation);
     let events: Vec<f64> =
@@ -261,8 +261,8 @@ fn a_panel_on_a_spring_reaches_an_angle() {
     let mut simulation = rod(0.0, spring, 0.0, Rows::EverySteps(u64::MAX), 2.0);
     let half = |now: &SystemObservation| now.joints[0].coordinates.turn - 0.5;
     let torque = |now: &SystemObservation| now.joints[0].turn_effort;
-    simulation.add_event(Event::new("half way", Crossing::Rising, half)).unwrap();
-    simulation.add_event(Event::new("no torque", Crossing::Falling, torque)).unwrap();
+    simulation.add_event(Event::of_system("half way", Crossing::Rising, half)).unwrap();
+    simulation.add_event(Event::of_system("no torque", Crossing::Falling, torque)).unwrap();
     let mut seen = Vec::new();
     loop {
         match simulation.advance_watched(u64::MAX, |_, _| ()).unwrap() {
@@ -290,8 +290,8 @@ fn a_panel_on_a_spring_reaches_an_angle() {
 fn events_rows_and_stops_at_one_time_come_once_and_in_order() {
     let mut simulation = rod(2.0, JointForce::default(), 0.0, Rows::Interval(0.25), 1.0);
     let angle = |of: f64| move |now: &SystemObservation| now.joints[0].coordinates.turn - of;
-    simulation.add_event(Event::new("at a row", Crossing::Rising, angle(1.0))).unwrap();
-    simulation.add_event(Event::new("between", Crossing::Rising, angle(1.2))).unwrap();
+    simulation.add_event(Event::of_system("at a row", Crossing::Rising, angle(1.0))).unwrap();
+    simulation.add_event(Event::of_system("between", Crossing::Rising, angle(1.2))).unwrap();
     simulation.set_stop_time(Some(0.3));
     let mut reached = rest(&mut simulation);
     assert!(simulation.is_over());
@@ -382,7 +382,7 @@ fn what_changes_at_a_row_within_a_step_holds_from_there() {
 fn the_function_of_an_event_that_gives_no_number_is_told() {
     let mut simulation = rod(2.0, JointForce::default(), 0.0, Rows::Interval(0.25), 1.0);
     let broken = |now: &SystemObservation| if now.time > 0.4 { f64::NAN } else { 1.0 };
-    simulation.add_event(Event::new("broken", Crossing::Any, broken)).unwrap();
+    simulation.add_event(Event::of_system("broken", Crossing::Any, broken)).unwrap();
     let failed = loop {
         match simulation.advance_watched(u64::MAX, |_, _| ()) {
             Ok(Reached::End) => panic!("no error"),

@@ -19,14 +19,14 @@ mod setting;
 mod settings;
 mod short;
 mod table;
+mod way;
 
-use scene::METHODS;
 use std::path::Path;
 
 use advice::Subject;
-use dynamics::{Method, StepControl};
-use model::{BuildError, BuildProgress, Builder, Model, StartError};
-use scene::{Flexible, Scene};
+use dynamics::{Method, StepControl, SystemScheme};
+use model::{BuildError, BuildProgress, Builder, Model};
+use scene::{Flexible, METHODS, Scene, System, Time};
 
 pub use answer::Answer;
 pub use body::CostBody;
@@ -50,6 +50,7 @@ use answer::refine;
 use case::PreparedScene;
 use ladder::{Evaluator, refine_line};
 use reference::{Reference, converge};
+use way::Way;
 
 /// How far a price list has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,24 +72,28 @@ pub enum CostProgress {
 /// # Errors
 /// [`CostError`]. A run that fails is a row that says so.
 pub fn price_list(
-    scenes: &[Scene],
+    system: &System,
     builder: &Builder,
     folder: &Path,
     settings: CostSettings,
     mut progress: impl FnMut(CostProgress),
 ) -> Result<CostReport, CostError> {
-    let scenes: Vec<Scene> = scenes.iter().map(|scene| scene.clone().without_rows()).collect();
-    let scene = scenes.first().ok_or(CostError::NoBody)?;
-    scenes.iter().try_for_each(StartError::refuse_tied)?;
-    let built = scenes.iter().map(|scene| Built::new(scene, builder, |p| progress(CostProgress::Build(p))));
+    let bodies = system.bodies.iter().map(|scene| scene.clone().without_rows()).collect();
+    let system = System { bodies, ..system.clone() };
+    let scene = system.bodies.first().ok_or(CostError::NoBody)?;
+    let built = system.bodies.iter().map(|scene| Built::new(scene, builder, |p| progress(CostProgress::Build(p))));
     let built = built.collect::<Result<Vec<_>, _>>()?;
-    let bodies = || scenes.iter().zip(&built).map(|(scene, built)| RunBody { scene, model: &built.model });
-    let case = PreparedScene::new(bodies().collect());
+    let case = PreparedScene::new(system.clone(), built.iter().map(|built| &built.model).collect());
 
-    let ladders: Vec<(Method, bool)> = METHODS
+    let is_tied = system.has_ties();
+    let ways: Vec<Way> = match is_tied {
+        true => SystemScheme::ALL.map(Way::Tied).to_vec(),
+        false => METHODS.map(Way::Alone).to_vec(),
+    };
+    let ladders: Vec<(Way, bool)> = ways
         .into_iter()
-        .flat_map(|method| [(method, false), (method, true)])
-        .filter(|(method, controlled)| !controlled || method.estimates_error)
+        .flat_map(|way| [(way, false), (way, true)])
+        .filter(|(way, controlled)| !controlled || way.estimates_error())
         .collect();
     let total = (ladders.len() + 2 + built.len()) as u64;
     let mut done = 0;
@@ -97,21 +102,25 @@ pub fn price_list(
         progress(CostProgress::Measuring { done, total });
     };
     step(0);
-    let exponential = Method::EXPONENTIAL;
-    let reference = converge(&case, exponential, settings.budget(20), 0.0)
+    let finest = if is_tied { Way::Tied(SystemScheme::default()) } else { Way::Alone(Method::EXPONENTIAL) };
+    let reference = converge(&case, finest, settings.budget(20), 0.0)
         .map_err(|(steps, source)| CostError::Reference { scene: scene.path.clone(), steps, source })?;
     step(1);
     // The paper's formulation has a limit of its own, to which its schemes converge.
-    let (paper_limit, paper_limit_failure) = match converge(&case, frames_rk4::LIMIT, settings.budget(5), 0.0) {
-        Ok(limit) => (Some(limit), None),
-        Err((steps, failure)) => (None, Some(format!("in {steps} steps: {failure}"))),
+    let limit = Way::Alone(frames_rk4::LIMIT);
+    let limit = (!is_tied).then(|| converge(&case, limit, settings.budget(5), 0.0));
+    let (paper_limit, paper_limit_failure) = match limit {
+        Some(Ok(limit)) => (Some(limit), None),
+        Some(Err((steps, failure))) => (None, Some(format!("in {steps} steps: {failure}"))),
+        None => (None, Some("the paper's form has no joints".to_owned())),
     };
     step(1);
     let evaluator = Evaluator { reference: &reference, paper_limit: paper_limit.as_ref(), settings };
-    let own = own_setting(scene);
+    let tied = system.bodies.iter().find(|scene| scene.tied);
+    let own = own_setting(tied.unwrap_or(scene));
     let mut lines = Vec::new();
-    for (method, controlled) in ladders {
-        lines.push(refine_line(&case, &evaluator, method, controlled, own));
+    for (way, controlled) in ladders {
+        lines.push(refine_line(&case, &evaluator, way, controlled, own));
         step(1);
     }
     if let Some(target) = settings.target {
@@ -123,7 +132,7 @@ pub fn price_list(
         step(1);
         of_body
     };
-    let bodies: Vec<CostBody> = bodies().zip(&built).map(of_body).collect();
+    let bodies: Vec<CostBody> = case.bodies().zip(&built).map(of_body).collect();
 
     let mut report = CostReport {
         title: scene.title.clone(),
@@ -159,7 +168,8 @@ impl Built {
         let model = variants.build(scene, &mut progress)?;
         let mut settled = settled(scene, &model, Some((Subject::StaticCorrection, false)));
         let mut with_modes = Vec::new();
-        for count in modes::counts(Self::flexible(&model), variants.available()?).into_iter().rev() {
+        let counts = if scene.tied { Vec::new() } else { modes::counts(Self::flexible(&model), variants.available()?) };
+        for count in counts.into_iter().rev() {
             settled.modes.flexible = Flexible::Count(count);
             with_modes.insert(0, variants.build(&settled, &mut progress)?);
         }
@@ -171,9 +181,11 @@ impl Built {
     }
 
     fn report(&self, body: RunBody<'_>, settings: &CostSettings) -> CostBody {
-        let (modes, modes_failure) = match modes::compare(&self.settled, &self.with_modes, settings) {
-            Ok(modes) => (modes, None),
-            Err((count, failure)) => (Vec::new(), Some(format!("with {count} modes: {failure}"))),
+        let compared = (!body.scene.tied).then(|| modes::compare(&self.settled, &self.with_modes, settings));
+        let (modes, modes_failure) = match compared {
+            None => (Vec::new(), Some(TIED_MODES.to_owned())),
+            Some(Ok(modes)) => (modes, None),
+            Some(Err((count, failure))) => (Vec::new(), Some(format!("with {count} modes: {failure}"))),
         };
         CostBody {
             name: body.name().to_owned(),
@@ -187,9 +199,13 @@ impl Built {
     }
 }
 
-/// Method and control that the scene asks for itself.
-fn own_setting(scene: &Scene) -> (Method, StepControl) {
-    (scene.time.method, scene.time.control)
+/// Reason that the modes of a tied body are not compared.
+const TIED_MODES: &str = "the body is tied to others: give it other `modes.flexible` to see what they change";
+
+/// The way and the control that the scene asks for itself.
+fn own_setting(scene: &Scene) -> (Way, StepControl) {
+    let Time { method, system_scheme, control, .. } = scene.time;
+    (if scene.tied { Way::Tied(system_scheme) } else { Way::Alone(method) }, control)
 }
 
 impl Reference {

@@ -33,8 +33,8 @@ pub use body::RunBody;
 pub use body_report::BodyRunReport;
 pub use error::{RunError, RunFailure};
 pub use estimate::Estimate;
-pub use metadata::metadata;
 pub(crate) use metadata::units;
+pub use metadata::{metadata, metadata_of_system};
 pub use report::{RunReport, SystemReport};
 pub use settings::{RunProgress, RunSettings};
 pub use tied_report::{AssembledReport, TiedReport};
@@ -203,13 +203,14 @@ fn movers<'a>(
     models: &[Model],
     initial: &'a [Initial],
 ) -> Result<Vec<Mover<'a>>, RunError> {
-    let beginning = Beginning::of(system, models).ok_or(RunError::NoBody)?;
+    let models: Vec<&Model> = models.iter().collect();
+    let beginning = Beginning::of(system, &models).ok_or(RunError::NoBody)?;
     let mover = |moving: crate::motion::Moving| {
         let follow = |number: &usize| FollowedBody::new(bodies[*number], *number, &initial[*number]);
         let followed = moving.bodies.iter().map(follow).collect::<Result<_, _>>()?;
         Ok(Mover { motion: moving.motion, bodies: followed, joints: moving.joints })
     };
-    begin(system, models, &beginning)?.into_iter().map(mover).collect()
+    begin(system, &models, &beginning).map_err(|error| error.at_key(system))?.into_iter().map(mover).collect()
 }
 
 fn initial(bodies: &[RunBody<'_>]) -> Vec<Initial> {

@@ -6,7 +6,7 @@ use dynamics::{
     ConservativeBody, Coordinate, JointLaw, Method, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation,
     StepControl, SystemScheme, SystemSetup, SystemSimulation,
 };
-use model::{BuildError, Model, StartError, Tied, tie, tie_all};
+use model::{BuildError, Model, StartError, Tied, tie_models};
 use scene::{Scene, System};
 
 use super::Motion;
@@ -70,9 +70,9 @@ pub struct Moving {
 
 impl Beginning {
     /// That of a scene with a model of each body; `None` without bodies.
-    pub fn of(system: &System, models: &[Model]) -> Option<Self> {
+    pub fn of(system: &System, models: &[&Model]) -> Option<Self> {
         let Scene { time, output, .. } = system.bodies.first()?;
-        let forces = |model: &Model| BodyForces {
+        let forces = |model: &&Model| BodyForces {
             loads: model.loads().to_vec(),
             damping_ratios: model.damping_ratios().to_vec(),
             physics: model.physics.clone(),
@@ -101,13 +101,13 @@ impl Beginning {
 ///
 /// # Errors
 /// [`BuildError`], or the scene of a body whose motion cannot start, and why.
-pub fn begin(system: &System, models: &[Model], beginning: &Beginning) -> Result<Vec<Moving>, BeginError> {
+pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Vec<Moving>, BeginError> {
     let mut all = Vec::new();
-    let tied = if beginning.together { vec![tie_all(system, models)?] } else { tie(system, models)? };
+    let tied = tie_models(system, models, beginning.together)?;
     for (number, (scene, model)) in system.bodies.iter().zip(models).enumerate() {
         if tied.iter().all(|tied| !tied.bodies.contains(&number)) {
             let alone = alone(scene, model, &beginning.bodies[number], beginning);
-            let simulation = alone.map_err(|source| BeginError::start(scene, source.at_key(scene)))?;
+            let simulation = alone.map_err(|source| BeginError::start(number, scene, source))?;
             let motion = Motion::Alone(Box::new(simulation));
             all.push(Moving { motion, bodies: vec![number], joints: Vec::new() });
         }
@@ -116,7 +116,7 @@ pub fn begin(system: &System, models: &[Model], beginning: &Beginning) -> Result
         let (bodies, joints) = (tied.bodies.clone(), tied.joints.clone());
         let scene = &system.bodies[bodies[0]];
         let simulation = start_tied(system, models, tied, beginning);
-        let simulation = simulation.map_err(|source| BeginError::start(scene, source))?;
+        let simulation = simulation.map_err(|source| BeginError::start(bodies[0], scene, source))?;
         all.push(Moving { motion: Motion::Tied(Box::new(simulation)), bodies, joints });
     }
     Ok(all)
@@ -131,6 +131,8 @@ pub enum BeginError {
     /// A motion cannot start. `scene`: that of its first body.
     #[error("{}", source.in_scene(scene))]
     Start {
+        /// Number of the body in the scene.
+        body: usize,
         /// The scene file.
         scene: std::path::PathBuf,
         /// The reason.
@@ -139,8 +141,19 @@ pub enum BeginError {
 }
 
 impl BeginError {
-    fn start(scene: &Scene, source: StartError) -> Self {
-        Self::Start { scene: scene.path.clone(), source: Box::new(source) }
+    fn start(body: usize, scene: &Scene, source: StartError) -> Self {
+        Self::Start { body, scene: scene.path.clone(), source: Box::new(source) }
+    }
+
+    /// At the key of the scene, where that names the step.
+    #[must_use]
+    pub fn at_key(self, system: &System) -> Self {
+        match self {
+            Self::Start { body, scene, source } => {
+                Self::Start { body, scene, source: Box::new(source.at_key(&system.bodies[body])) }
+            }
+            Self::Build(_) => self,
+        }
     }
 }
 
@@ -149,6 +162,7 @@ fn points(model: &Model) -> Vec<PointShapes> {
 }
 
 fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> Result<Simulation, StartError> {
+    StartError::refuse_tied(scene)?;
     if let Some(refusal) = model.refusal.filter(|_| scene.effects.refuse) {
         return Err(refusal.into());
     }
@@ -166,7 +180,7 @@ fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> R
     })?)
 }
 
-fn start_tied(system: &System, models: &[Model], tied: Tied, of: &Beginning) -> Result<SystemSimulation, StartError> {
+fn start_tied(system: &System, models: &[&Model], tied: Tied, of: &Beginning) -> Result<SystemSimulation, StartError> {
     let body = |number: &usize| {
         let BodyForces { loads, damping_ratios, physics } = &of.bodies[*number];
         ConservativeBody::new(&models[*number].body, damping_ratios, loads.clone(), physics)
@@ -185,6 +199,6 @@ fn start_tied(system: &System, models: &[Model], tied: Tied, of: &Beginning) -> 
         control: of.control,
         end: of.end,
         rows: of.tied_rows,
-        points: tied.bodies.iter().map(|number| points(&models[*number])).collect(),
+        points: tied.bodies.iter().map(|number| points(models[*number])).collect(),
     })?)
 }

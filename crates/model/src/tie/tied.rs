@@ -43,6 +43,20 @@ pub struct Tied {
 /// [`BuildError`] for a joint that would hold turns that its marker does not know, for histories, and for a body that is known
 /// to be wrong.
 pub fn tie(system: &System, models: &[Model]) -> Result<Vec<Tied>, BuildError> {
+    tie_models(system, &models.iter().collect::<Vec<_>>(), false)
+}
+
+/// The same of models that are elsewhere. With `together` all bodies are one system, also those that nothing ties.
+///
+/// # Errors
+/// As [`tie`].
+pub fn tie_models(system: &System, models: &[&Model], together: bool) -> Result<Vec<Tied>, BuildError> {
+    let systems = if together { vec![(0..models.len()).collect()] } else { islands_of(system, models.len()) };
+    systems.into_iter().map(|bodies| Island::new(system, models, bodies)?.tied()).collect()
+}
+
+/// Numbers of the bodies of each system.
+fn islands_of(system: &System, bodies: usize) -> Vec<Vec<usize>> {
     let System { joints, springs, bushings, .. } = system;
     let of_joints = joints.iter().map(|joint| joint.between);
     let of_elements = springs.iter().map(|spring| spring.between).chain(bushings.iter().map(|b| b.between));
@@ -51,30 +65,22 @@ pub fn tie(system: &System, models: &[Model]) -> Result<Vec<Tied>, BuildError> {
     let first_body = |joint: usize| joints[joint].between.iter().find_map(End::body);
     let coupled = system.couplings.iter().map(|coupling| coupling.kind.joints().map(first_body));
     let pairs: Vec<_> = pairs.chain(coupled).collect();
-    islands(models.len(), &pairs).into_iter().map(|bodies| Island::new(system, models, bodies)?.tied()).collect()
-}
-
-/// All bodies of a scene as one system, also those that nothing ties.
-///
-/// # Errors
-/// As [`tie`].
-pub fn tie_all(system: &System, models: &[Model]) -> Result<Tied, BuildError> {
-    Island::new(system, models, (0..models.len()).collect())?.tied()
+    islands(bodies, &pairs)
 }
 
 /// Bodies that are connected, with what they are made of.
 struct Island<'a> {
     scene: &'a System,
-    models: &'a [Model],
+    models: &'a [&'a Model],
     /// Numbers in the scene.
     bodies: Vec<usize>,
     states: Vec<MotionState>,
 }
 
 impl<'a> Island<'a> {
-    fn new(scene: &'a System, models: &'a [Model], bodies: Vec<usize>) -> Result<Self, BuildError> {
+    fn new(scene: &'a System, models: &'a [&'a Model], bodies: Vec<usize>) -> Result<Self, BuildError> {
         let state = |number: &usize| {
-            let (of_body, model) = (&scene.bodies[*number], &models[*number]);
+            let (of_body, model) = (&scene.bodies[*number], models[*number]);
             if let Some(source) = model.refusal.filter(|_| of_body.effects.refuse) {
                 return Err(BuildError::Refused { scene: of_body.path.clone(), source });
             }
@@ -96,7 +102,7 @@ impl<'a> Island<'a> {
     fn tied(self) -> Result<Tied, BuildError> {
         let scene = self.scene;
         let conservative = |number: &usize| {
-            let model = &self.models[*number];
+            let model = self.models[*number];
             ConservativeBody::new(&model.body, model.damping_ratios(), model.loads().to_vec(), &model.physics)
         };
         let bodies = self.bodies.iter().map(conservative).collect::<Result<_, _>>()?;

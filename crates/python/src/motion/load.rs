@@ -25,15 +25,15 @@ pub(crate) fn listed(loads: Option<Bound<'_, PyAny>>) -> PyResult<Vec<Bound<'_, 
 }
 
 /// A law: a function of the motion, and what steps must know of it.
-struct Law {
-    function: Py<PyAny>,
-    name: String,
-    discontinuities: Vec<f64>,
+pub(crate) struct Law {
+    pub function: Py<PyAny>,
+    pub name: String,
+    pub discontinuities: Vec<f64>,
     longest_step: Option<f64>,
 }
 
 impl Law {
-    fn new(
+    pub fn new(
         function: &Bound<'_, PyAny>,
         name: Option<String>,
         discontinuities: Vec<f64>,

@@ -3,9 +3,12 @@
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use flexframe::columns::part;
-use flexframe::dynamics::{self, Crossing, EffectMap, Event, Observation, Setup, StepError};
+use flexframe::dynamics::{
+    self, Crossing, EffectMap, Event, JointObservation, Observation, StepError, SystemObservation,
+};
 use flexframe::failure::{Details, Kind};
-use flexframe::model::StartError;
+use flexframe::model::{Model, StartError};
+use flexframe::motion::{Beginning, BodyForces, Motion, begin};
 use flexframe::results::Metadata;
 use flexframe::row::BodyRow;
 use flexframe::run::{RunBody, RunError, Watch};
@@ -16,12 +19,14 @@ use pyo3::types::PyDict;
 use crate::body::Body;
 use crate::errors::{add_note, exception, exception_of, wrong_input};
 use crate::motion::faults::Faults;
+use crate::motion::joint_force::JointForce;
 use crate::motion::load::{listed, load_of};
 use crate::motion::seen::Points;
 use crate::motion::state::{changed, to_dict};
 use crate::rows::results::{Occurred, Rows};
 use crate::rows::row::Row;
 use crate::scene::Scene;
+use crate::system::System;
 use crate::threads::{detached, in_pool};
 use crate::values::numbers::described;
 
@@ -58,6 +63,9 @@ impl Reached {
 
 /// A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
 ///
+/// Of a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, and states are dicts from names
+/// of bodies; all bodies are stepped together, also those that nothing ties.
+///
 /// An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event
 /// ends the run at the end of the step. Ctrl-C raises KeyboardInterrupt within some thousand steps, and the simulation
 /// may go on.
@@ -73,20 +81,41 @@ impl Reached {
 /// modes, raises InputError.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Simulation {
-    body: Py<Body>,
+    /// The Body or the System.
+    of: Py<PyAny>,
+    bodies: Vec<Moved>,
+    /// Models of the bodies.
+    models: Vec<Arc<Model>>,
     metadata: Arc<Metadata>,
-    effects: EffectMap<bool>,
     faults: Faults,
     running: Mutex<Running>,
 }
 
+/// A body of a run.
+struct Moved {
+    scene: Arc<flexframe::scene::Scene>,
+    model: Arc<Model>,
+    effects: EffectMap<bool>,
+}
+
 struct Running {
-    simulation: dynamics::Simulation,
+    motion: Motion,
     /// True if the row at the start has been given, or a step been tried.
     begun: bool,
     /// True if the state has been set since the last try of a step, and no run has given its row.
     is_set: bool,
-    row: Observation,
+    row: flexframe::row::Row,
+}
+
+impl Running {
+    /// Observes the motion at the time that it has come to.
+    fn observe(&mut self) -> Result<(), StepError> {
+        let Self { motion, row, .. } = self;
+        motion.observe(None, row.bodies.iter_mut().map(|body| &mut body.motion))?;
+        row.time = motion.time();
+        row.joints.iter_mut().enumerate().for_each(|(joint, out)| *out = motion.observe_joint(joint));
+        Ok(())
+    }
 }
 
 impl Simulation {
@@ -109,7 +138,7 @@ impl Simulation {
         py: Python<'_>,
         running: &mut Running,
         max_steps: u64,
-        mut watch: Option<&mut Watch<'_>>,
+        mut watches: Option<&mut [Watch<'_>]>,
     ) -> PyResult<dynamics::Reached> {
         let mut left = max_steps;
         loop {
@@ -117,21 +146,21 @@ impl Simulation {
             py.check_signals()?;
             (running.begun, running.is_set) = (true, false);
             let steps = left.min(STEPS_PER_LOOK);
-            let simulation = &mut running.simulation;
-            let reached = detached(py, || match &mut watch {
-                Some(watch) => simulation.advance_watched(steps, |moment| watch.look(moment)),
-                None => simulation.advance(steps),
+            let motion = &mut running.motion;
+            let reached = detached(py, || match &mut watches {
+                Some(watches) => motion.advance(steps, |body, moment| watches[body].look(moment)),
+                None => motion.advance(steps, |_, _| ()),
             })?;
             if reached.is_err() {
                 // The next step is to start where the motion is.
-                simulation.set_stop_time(None);
+                motion.set_stop_time(None);
             }
             let reached = self.or_fault(py, reached)?;
             left -= steps;
             if reached != dynamics::Reached::Between || left == 0 {
                 return Ok(reached);
             }
-            if watch.as_ref().is_some_and(|watch| watch.refusal().is_some()) {
+            if watches.as_ref().is_some_and(|watches| watches.iter().any(|watch| watch.refusal().is_some())) {
                 return Ok(reached);
             }
         }
@@ -147,34 +176,31 @@ impl Simulation {
 
     /// The row of the time that has been reached.
     fn row(&self, py: Python<'_>, running: &mut Running) -> PyResult<Row> {
-        let Running { simulation, row, .. } = running;
-        let observed = detached(py, || simulation.observe(row))?;
+        let observed = detached(py, || running.observe())?;
         self.or_fault(py, observed)?;
-        Row::new(row, self.body.get().model(), &self.metadata)
+        Row::new(running.row.clone(), &self.models, &self.metadata)
     }
 
     fn reached(&self, running: &Running, reached: dynamics::Reached) -> Reached {
-        let simulation = &running.simulation;
+        let motion = &running.motion;
         let (kind, event) = match reached {
-            dynamics::Reached::Event(number) => {
-                ("event", simulation.event(number).map(|event| event.name().to_owned()))
-            }
+            dynamics::Reached::Event(number) => ("event", motion.event_name(number).map(str::to_owned)),
             dynamics::Reached::Stop => ("stop", None),
             dynamics::Reached::Row => ("row", None),
             dynamics::Reached::End => ("end", None),
             _ => ("step", None),
         };
-        Reached { kind, event, time: simulation.time(), unit: self.metadata.units.time.clone() }
+        Reached { kind, event, time: motion.time(), unit: self.metadata.units.time.clone() }
     }
 
     /// Refuses to go on from the end.
     fn refuse_at_end(&self, py: Python<'_>, running: &Running) -> PyResult<()> {
-        if !running.simulation.is_over() {
+        if !running.motion.is_over() {
             return Ok(());
         }
         let message = format!(
             "the run is at its end, time {}; take a scene with a later `time.end`, or set the state to an earlier time",
-            running.simulation.end()
+            running.motion.end()
         );
         Err(exception_of(py, Kind::Run, &message, &Details::default()))
     }
@@ -184,40 +210,37 @@ impl Simulation {
         &self,
         py: Python<'_>,
         running: &mut Running,
-        watch: &mut Watch<'_>,
+        watches: &mut [Watch<'_>],
         rows: &mut Rows,
         events: &mut Vec<Occurred>,
     ) -> PyResult<()> {
-        let model = self.body.get().model();
-        let mut row = flexframe::row::Row { time: 0.0, bodies: vec![BodyRow::new(model)], joints: Vec::new() };
-        let mut record = |running: &mut Running, watch: &mut Watch<'_>| -> PyResult<()> {
-            for body in &mut row.bodies {
-                let observed = detached(py, || running.simulation.observe(&mut body.motion))?;
-                self.or_fault(py, observed)?;
-                in_pool(|| body.complete(model))?;
-                row.time = body.time;
+        let mut record = |running: &mut Running, watches: &mut [Watch<'_>]| -> PyResult<()> {
+            let observed = detached(py, || running.observe())?;
+            self.or_fault(py, observed)?;
+            let row = &mut running.row;
+            in_pool(|| row.bodies.iter_mut().zip(&self.models).for_each(|(body, model)| body.complete(model)))?;
+            for (watch, body) in watches.iter_mut().zip(&row.bodies) {
                 watch.observe(body).map_err(|error| exception(py, &error))?;
             }
-            rows.push(&row, &self.metadata);
+            rows.push(row, &self.metadata);
             Ok(())
         };
         if !running.begun || running.is_set {
-            record(running, watch)?;
+            record(running, watches)?;
             (running.begun, running.is_set) = (true, false);
         }
-        while !running.simulation.is_over() {
-            let reached = self.go_on(py, running, u64::MAX, Some(watch));
+        while !running.motion.is_over() {
+            let reached = self.go_on(py, running, u64::MAX, Some(watches));
             // A step that fails after the model has come to mean nothing fails for that.
-            if let Some((time, refusal)) = watch.refusal() {
+            if let Some((time, refusal)) = watches.iter().find_map(Watch::refusal) {
                 let message = format!("at time {time:.6}: {refusal}");
                 return Err(exception_of(py, Kind::Refused, &message, &Details::default()));
             }
             match reached? {
-                dynamics::Reached::Row => record(running, watch)?,
+                dynamics::Reached::Row => record(running, watches)?,
                 dynamics::Reached::Event(number) => {
-                    let name =
-                        running.simulation.event(number).map_or_else(String::new, |event| event.name().to_owned());
-                    events.push((name, running.simulation.time()));
+                    let name = running.motion.event_name(number).unwrap_or_default().to_owned();
+                    events.push((name, running.motion.time()));
                 }
                 dynamics::Reached::End => break,
                 _ => {}
@@ -227,6 +250,48 @@ impl Simulation {
     }
 }
 
+/// The bodies of a Body or a System, and what ties them together.
+fn bodies_of(of: &Bound<'_, PyAny>) -> PyResult<(Arc<flexframe::scene::System>, Vec<Arc<Model>>)> {
+    if let Ok(body) = of.cast::<Body>() {
+        let scene: flexframe::scene::Scene = (**body.get().scene_of()).clone();
+        return Ok((Arc::new(scene.into()), vec![body.get().model().clone()]));
+    }
+    if let Ok(system) = of.cast::<System>() {
+        return Ok((system.get().system().clone(), system.get().models().to_vec()));
+    }
+    let found = of.get_type().name()?;
+    Err(PyTypeError::new_err(format!("a simulation is of a Body or of a System; found {found}")))
+}
+
+/// The loads of each body: of a Body those of a list, of a System those of a dict by the names of its bodies.
+fn loads_of_bodies<'py>(
+    py: Python<'py>,
+    loads: Option<Bound<'py, PyAny>>,
+    bodies: &[flexframe::scene::Scene],
+    is_system: bool,
+) -> PyResult<Vec<Vec<Bound<'py, PyAny>>>> {
+    if !is_system {
+        return Ok(vec![listed(loads)?]);
+    }
+    let mut all = vec![Vec::new(); bodies.len()];
+    let Some(loads) = loads else { return Ok(all) };
+    let Ok(loads) = loads.cast_into::<PyDict>() else {
+        let help = "name the body of each list: Simulation(system, {\"arm\": [load]})";
+        return Err(wrong_input(py, "loads", "no dict", "a dict from names of bodies to lists of loads", help));
+    };
+    for (name, loads) in loads {
+        let name: String = name.extract()?;
+        let number = bodies.iter().position(|body| body.name.as_deref().unwrap_or("body") == name);
+        let Some(number) = number else {
+            let known: Vec<&str> = bodies.iter().map(|body| body.name.as_deref().unwrap_or("body")).collect();
+            let expected = format!("one of {}", known.join(", "));
+            return Err(wrong_input(py, "loads", &format!("the key `{name}`"), &expected, "name a body of the scene"));
+        };
+        all[number] = listed(Some(loads))?;
+    }
+    Ok(all)
+}
+
 fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
     exception(py, &flexframe::run::RunFailure::Step(error.clone()))
 }
@@ -234,100 +299,119 @@ fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
 #[pymethods]
 impl Simulation {
     #[new]
-    #[pyo3(signature = (body, loads=None, *, scene=None))]
+    #[pyo3(signature = (body, loads=None, *, joint_forces=None, scene=None))]
     fn new(
         py: Python<'_>,
-        body: Py<Body>,
+        body: Bound<'_, PyAny>,
         loads: Option<Bound<'_, PyAny>>,
+        joint_forces: Option<Vec<Py<JointForce>>>,
         scene: Option<Py<Scene>>,
     ) -> PyResult<Self> {
-        let body = match scene {
-            Some(scene) => Py::new(py, body.get().of_scene(py, scene)?)?,
-            None => body,
+        let body = match (scene, body.cast::<Body>()) {
+            (Some(scene), Ok(body)) => Py::new(py, body.get().of_scene(py, scene)?)?.into_bound(py).into_any(),
+            (Some(_), Err(_)) => {
+                let help = "make another System of the scene: what takes long is in the cache";
+                return Err(wrong_input(py, "scene", "a scene beside a System", "one beside a Body", help));
+            }
+            (None, _) => body,
         };
-        let (model, scene) = (body.get().model().clone(), body.get().scene_of().clone());
-        let of_run = [RunBody { scene: &scene, model: &model }];
-        let metadata = flexframe::run::metadata(&of_run).ok_or_else(|| exception(py, &RunError::NoBody))?;
-        let points: Points = Arc::new(model.points.clone());
+        let (system, models) = bodies_of(&body)?;
+        let is_system = body.cast::<System>().is_ok();
+        let of_models: Vec<&Model> = models.iter().map(|model| &**model).collect();
+        let of_run: Vec<RunBody<'_>> =
+            system.bodies.iter().zip(&of_models).map(|(scene, model)| RunBody { scene, model }).collect();
+        let metadata = flexframe::run::metadata_of_system(&system, &of_run);
+        let mut metadata = metadata.ok_or_else(|| exception(py, &RunError::NoBody))?;
+        let beginning = Beginning::of(&system, &of_models).ok_or_else(|| exception(py, &RunError::NoBody))?;
+        let mut beginning = Beginning { together: is_system, ..beginning };
         let faults = Faults::default();
-        let mut laws = Vec::new();
-        for load in listed(loads)? {
-            laws.push(load_of(&load, &points, model.body.flexible(), &faults)?);
-        }
-        let mut without_supports = false;
-        let (physics, mut all, damping_ratios) = if laws.is_empty() {
-            (model.physics.clone(), model.loads().to_vec(), model.damping_ratios().to_vec())
-        } else {
-            // What each of several supports does would have to know the laws.
-            without_supports = true;
-            in_pool(|| model.under_unknown_forces(&scene))?
-        };
-        all.extend(laws);
-        let bodies = metadata.bodies.into_iter().map(|mut body| {
-            if without_supports {
+        let loads = loads_of_bodies(py, loads, &system.bodies, is_system)?;
+        for (number, loads) in loads.into_iter().enumerate() {
+            let (model, scene) = (&models[number], &system.bodies[number]);
+            let points: Points = Arc::new(model.points.clone());
+            let laws = loads.iter().map(|load| load_of(load, &points, model.body.flexible(), &faults));
+            let laws = laws.collect::<PyResult<Vec<_>>>()?;
+            let body = &mut metadata.bodies[number];
+            if !laws.is_empty() {
+                // What each of several supports does would have to know the laws.
                 body.parts.retain(|has| has != part::SUPPORTS);
                 body.support_names.clear();
+                let (physics, mut all, damping_ratios) = in_pool(|| model.under_unknown_forces(scene))?;
+                all.extend(laws);
+                beginning.bodies[number] = BodyForces { loads: all, damping_ratios, physics };
             }
-            body.model.damping_ratios.clone_from(&damping_ratios);
-            body
-        });
-        let metadata = Arc::new(Metadata { bodies: bodies.collect(), ..metadata });
-        if let Some(refusal) = model.refusal.filter(|_| scene.effects.refuse) {
-            return Err(exception(py, &StartError::from(refusal)));
+            body.model.damping_ratios.clone_from(&beginning.bodies[number].damping_ratios);
         }
-        let simulation = detached(py, || {
-            let observed: Vec<_> = points.iter().map(|(_, point)| point.clone()).collect();
-            let initial = model.initial(&scene);
-            dynamics::Simulation::new(&Setup {
-                damping_ratios: &damping_ratios,
-                loads: &all,
-                points: &observed,
-                physics: &physics,
-                ..model.setup(&scene, &initial)
-            })
-        })?;
+        for force in joint_forces.unwrap_or_default() {
+            let of = force.get().of(py, &system, &faults)?;
+            let parts = &mut metadata.joints[of.joint].parts;
+            let acts = match of.along {
+                dynamics::Coordinate::Turn => part::TURN_FORCE,
+                dynamics::Coordinate::Slide => part::SLIDE_FORCE,
+            };
+            for part in [part::DRIVE, acts] {
+                if !parts.iter().any(|has| has == part) {
+                    parts.push(part.to_owned());
+                }
+            }
+            beginning.laws.push(of);
+        }
+        let metadata = Arc::new(metadata);
+        let begun = detached(py, || begin(&system, &of_models, &beginning))?;
         if let Some(fault) = faults.take() {
             return Err(fault);
         }
-        let mut simulation = simulation.map_err(|error| {
-            let source = Box::new(StartError::from(error));
-            exception(py, &RunError::Setup { scene: scene.path.clone(), source })
-        })?;
-        simulation.watch(Arc::new(Mutex::new(EndAtFault(faults.clone()))));
-        let row = Observation::new(model.body.flexible(), points.len());
-        let effects = physics.effects;
-        let running = Mutex::new(Running { simulation, begun: false, is_set: false, row });
-        Ok(Self { body, metadata, effects, faults, running })
+        let begun = begun.map_err(|error| exception(py, &RunError::from(error)))?;
+        let Some(mut motion) = begun.into_iter().next().map(|moving| moving.motion) else {
+            return Err(exception(py, &RunError::NoBody));
+        };
+        if let Motion::Alone(simulation) = &mut motion {
+            simulation.watch(Arc::new(Mutex::new(EndAtFault(faults.clone()))));
+        }
+        let row = flexframe::row::Row {
+            time: 0.0,
+            bodies: models.iter().map(|model| BodyRow::new(model)).collect(),
+            joints: vec![JointObservation::default(); system.joints.len()],
+        };
+        let bodies = system.bodies.iter().zip(&models).zip(beginning.bodies);
+        let bodies = bodies.map(|((scene, model), forces)| Moved {
+            scene: Arc::new(scene.clone()),
+            model: model.clone(),
+            effects: forces.physics.effects,
+        });
+        let bodies = bodies.collect();
+        let running = Mutex::new(Running { motion, begun: false, is_set: false, row });
+        Ok(Self { of: body.unbind(), bodies, models, metadata, faults, running })
     }
 
-    /// The body, with the scene that is run.
+    /// The Body with the scene that is run, or the System.
     #[getter]
-    fn body(&self, py: Python<'_>) -> Py<Body> {
-        self.body.clone_ref(py)
+    fn body(&self, py: Python<'_>) -> Py<PyAny> {
+        self.of.clone_ref(py)
     }
 
     /// Time that has been reached.
     #[getter]
     fn time(&self) -> PyResult<f64> {
-        Ok(self.running()?.simulation.time())
+        Ok(self.running()?.motion.time())
     }
 
     /// Time at the end.
     #[getter]
     fn end(&self) -> PyResult<f64> {
-        Ok(self.running()?.simulation.end())
+        Ok(self.running()?.motion.end())
     }
 
     /// True if there is nothing more to come, neither a step nor a row.
     #[getter]
     fn done(&self) -> PyResult<bool> {
-        Ok(self.running()?.simulation.is_over())
+        Ok(self.running()?.motion.is_over())
     }
 
     /// Counts of its work: "steps", "rejected_steps", "evaluations".
     #[getter]
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let stats = self.running()?.simulation.stats();
+        let stats = self.running()?.motion.stats();
         let out = PyDict::new(py);
         out.set_item("steps", stats.accepted)?;
         out.set_item("rejected_steps", stats.rejected)?;
@@ -340,16 +424,24 @@ impl Simulation {
     fn run<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut running = self.running()?;
         self.refuse_at_end(py, &running)?;
-        let (model, scene) = (self.body.get().model(), self.body.get().scene_of());
-        let initial = model.initial(scene);
-        let mut watch = Watch::new(scene, model, &initial, self.effects).map_err(|error| exception(py, &error))?;
+        let initial: Vec<_> = self.bodies.iter().map(|Moved { scene, model, .. }| model.initial(scene)).collect();
+        let watches = self.bodies.iter().zip(&initial);
+        let watches =
+            watches.map(|(Moved { scene, model, effects }, initial)| Watch::new(scene, model, initial, *effects));
+        let watches = watches.collect::<Result<Vec<_>, _>>();
+        let mut watches = watches.map_err(|error| exception(py, &error))?;
         let (mut rows, mut events) = (Rows::new(&self.metadata), Vec::new());
-        let followed = self.follow(py, &mut running, &mut watch, &mut rows, &mut events);
+        let followed = self.follow(py, &mut running, &mut watches, &mut rows, &mut events);
         match followed {
             Ok(()) => {
-                let warnings =
-                    watch.finish(running.simulation.exchanged(), running.simulation.stats().longest).warnings;
-                let metadata = Metadata { warnings, ..(*self.metadata).clone() };
+                let motion = &running.motion;
+                let longest = motion.stats().longest;
+                let warnings = watches.iter_mut().zip(&self.bodies).enumerate().flat_map(|(body, (watch, of))| {
+                    let name = of.scene.name.as_ref().filter(|_| self.bodies.len() > 1);
+                    let named = move |words: String| name.map_or(words.clone(), |name| format!("body {name}: {words}"));
+                    watch.finish(motion.exchanged(body), longest).warnings.into_iter().map(named)
+                });
+                let metadata = Metadata { warnings: warnings.collect(), ..(*self.metadata).clone() };
                 rows.into_results(py, &metadata, true, &events)
             }
             Err(error) => {
@@ -379,14 +471,14 @@ impl Simulation {
     fn advance_to(&self, py: Python<'_>, time: f64) -> PyResult<Reached> {
         let mut running = self.running()?;
         self.refuse_at_end(py, &running)?;
-        let (now, end) = (running.simulation.time(), running.simulation.end());
+        let (now, end) = (running.motion.time(), running.motion.end());
         // The run knows no time between that it could stop at.
         if !(time - now > SAME * end && time <= end) {
             let expected = format!("a time after {now}, up to the end at {end}");
             let help = "name a time within the run; a later end is `time.end` of the scene";
             return Err(wrong_input(py, "time", &time.to_string(), &expected, help));
         }
-        running.simulation.set_stop_time(Some(time));
+        running.motion.set_stop_time(Some(time));
         let reached = loop {
             match self.go_on(py, &mut running, u64::MAX, None) {
                 Ok(dynamics::Reached::Row) => {}
@@ -394,7 +486,7 @@ impl Simulation {
             }
         };
         if !matches!(reached, Ok(dynamics::Reached::Stop)) {
-            running.simulation.set_stop_time(None);
+            running.motion.set_stop_time(None);
         }
         Ok(self.reached(&running, reached?))
     }
@@ -417,9 +509,33 @@ impl Simulation {
             }
         };
         let mut running = self.running()?;
-        let event = self.event(name, function, crossing);
-        let simulation = &mut running.simulation;
-        let added = detached(py, || simulation.add_event(event))?;
+        let seen = self.seen(name.clone(), function);
+        let joints = running.row.joints.len();
+        let added = match &mut running.motion {
+            Motion::Alone(simulation) => {
+                let models = self.models.clone();
+                let event = Event::new(name, crossing, move |now: &Observation| {
+                    let mut body = BodyRow::new(&models[0]);
+                    body.motion.clone_from(now);
+                    let joints = vec![JointObservation::default(); joints];
+                    seen(flexframe::row::Row { time: now.time, bodies: vec![body], joints })
+                });
+                detached(py, || simulation.add_event(event))?
+            }
+            Motion::Tied(simulation) => {
+                let models = self.models.clone();
+                let event = Event::of_system(name, crossing, move |now: &SystemObservation| {
+                    let body = |(motion, model): (&Observation, &Arc<Model>)| {
+                        let mut body = BodyRow::new(model);
+                        body.motion.clone_from(motion);
+                        body
+                    };
+                    let bodies = now.bodies.iter().zip(&models).map(body).collect();
+                    seen(flexframe::row::Row { time: now.time, bodies, joints: now.joints.clone() })
+                });
+                detached(py, || simulation.add_event(event))?
+            }
+        };
         self.or_fault(py, added).map(|_| ())
     }
 
@@ -431,31 +547,56 @@ impl Simulation {
     /// The state that has been reached: time, attitude (quaternion), origin, velocity of the origin, angular_velocity
     /// (body axes), modal_displacement, modal_velocity.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let state = self.running()?.simulation.state().map_err(|error| step_error(py, &error))?;
-        to_dict(py, &state)
+        let states = self.running()?.motion.states().map_err(|error| step_error(py, &error))?;
+        if let ([state], false) = (&states[..], self.is_system(py)) {
+            return to_dict(py, state);
+        }
+        let out = PyDict::new(py);
+        for (state, name) in states.iter().zip(self.names()) {
+            out.set_item(name, to_dict(py, state)?)?;
+        }
+        Ok(out)
     }
 
     /// Goes on from another state; keys that are not given stay as they are. Work and balances are counted from there.
-    /// `run` then begins with the row of this state; an iteration goes on to the next row.
+    /// `run` then begins with the row of this state; an iteration goes on to the next row. Bodies in joints are moved so that
+    /// these close.
     fn set_state(&self, py: Python<'_>, state: &Bound<'_, PyDict>) -> PyResult<()> {
         let mut running = self.running()?;
-        let now = running.simulation.state().map_err(|error| step_error(py, &error))?;
-        let state = changed(now, state)?;
-        let end = running.simulation.end();
-        if !(0.0..=end).contains(&state.time) {
+        let mut states = running.motion.states().map_err(|error| step_error(py, &error))?;
+        if self.is_system(py) {
+            let before = states.first().map_or(0.0, |state| state.time);
+            for (name, state) in state {
+                let name: String = name.extract()?;
+                let Some(number) = self.names().position(|known| known == name) else {
+                    let expected = format!("one of {}", self.names().collect::<Vec<_>>().join(", "));
+                    let help = "change the dict that state() gives, or give some of its keys";
+                    return Err(wrong_input(py, "state", &format!("the key `{name}`"), &expected, help));
+                };
+                let state = state.cast::<PyDict>()?;
+                states[number] = changed(states[number].clone(), state)?;
+            }
+            // The time of one is that of all.
+            let time = states.iter().map(|state| state.time).find(|time| *time != before).unwrap_or(before);
+            states.iter_mut().for_each(|state| state.time = time);
+        } else if let Some(first) = states.first_mut() {
+            *first = changed(first.clone(), state)?;
+        }
+        let (end, time) = (running.motion.end(), states.first().map_or(0.0, |state| state.time));
+        if !(0.0..=end).contains(&time) {
             let help = "take a scene with a later `time.end`";
             let expected = format!("a time from 0 to the end at {end}");
-            return Err(wrong_input(py, "state[\"time\"]", &state.time.to_string(), &expected, help));
+            return Err(wrong_input(py, "state[\"time\"]", &time.to_string(), &expected, help));
         }
-        let simulation = &mut running.simulation;
-        let set = detached(py, || simulation.set_state(&state))?;
+        let motion = &mut running.motion;
+        let set = detached(py, || motion.set_states(&states))?;
         if let Some(fault) = self.faults.take() {
             return Err(fault);
         }
         set.map_err(|error| exception(py, &StartError::from(error)))?;
         // An iteration goes on to the next row: it may set the state at every one.
         // A row that is due here shows the new state.
-        running.is_set = !running.simulation.row_is_due();
+        running.is_set = !running.motion.row_is_due();
         Ok(())
     }
 
@@ -469,7 +610,7 @@ impl Simulation {
             running.begun = true;
             return self.row(py, &mut running).map(Some);
         }
-        while !running.simulation.is_over() {
+        while !running.motion.is_over() {
             if self.go_on(py, &mut running, u64::MAX, None)? == dynamics::Reached::Row {
                 return self.row(py, &mut running).map(Some);
             }
@@ -480,7 +621,7 @@ impl Simulation {
     fn __repr__(&self) -> String {
         match self.running() {
             Ok(running) => {
-                let (now, end) = (running.simulation.time(), running.simulation.end());
+                let (now, end) = (running.motion.time(), running.motion.end());
                 format!("Simulation({:?}: time {now} of {end} {})", self.metadata.title, self.metadata.units.time)
             }
             Err(_) => "Simulation(in the midst of a step)".to_owned(),
@@ -489,21 +630,36 @@ impl Simulation {
 }
 
 impl Simulation {
-    fn event(&self, name: String, function: &Bound<'_, PyAny>, crossing: Crossing) -> Event {
-        let (body, metadata, faults) = (self.body.get().model().clone(), self.metadata.clone(), self.faults.clone());
-        let (function, known) = (function.clone().unbind(), name.clone());
-        Event::new(name, crossing, move |now: &Observation| {
+    fn is_system(&self, py: Python<'_>) -> bool {
+        self.of.bind(py).cast::<System>().is_ok()
+    }
+
+    /// Names of the bodies.
+    fn names(&self) -> impl Iterator<Item = &str> {
+        self.bodies.iter().map(|body| body.scene.name.as_deref().unwrap_or("body"))
+    }
+
+    /// The function of an event, of a row as it has been observed.
+    fn seen(
+        &self,
+        name: String,
+        function: &Bound<'_, PyAny>,
+    ) -> impl Fn(flexframe::row::Row) -> f64 + Send + Sync + 'static {
+        let (models, metadata, faults) = (self.models.clone(), self.metadata.clone(), self.faults.clone());
+        let function = function.clone().unbind();
+        move |now| {
             if faults.any() {
                 return f64::NAN;
             }
-            let value = Row::new(now, &body, &metadata)
-                .and_then(|row| Python::attach(|py| value_of_event(function.bind(py), &known, row)));
+            let time = now.time;
+            let value = Row::new(now, &models, &metadata)
+                .and_then(|row| Python::attach(|py| value_of_event(function.bind(py), &name, row)));
             value.unwrap_or_else(|error| {
-                Python::attach(|py| add_note(py, &error, &format!("in the event `{known}` at time {}", now.time)));
+                Python::attach(|py| add_note(py, &error, &format!("in the event `{name}` at time {time}")));
                 faults.put(error);
                 f64::NAN
             })
-        })
+        }
     }
 }
 

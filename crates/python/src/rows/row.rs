@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 
-use flexframe::dynamics::Observation;
 use flexframe::model::Model;
 use flexframe::results::Metadata;
-use flexframe::row::BodyRow;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
@@ -23,11 +21,9 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    pub(crate) fn new(motion: &Observation, model: &Model, metadata: &Arc<Metadata>) -> PyResult<Self> {
-        let mut body = BodyRow::new(model);
-        body.motion.clone_from(motion);
-        in_pool(|| body.complete(model))?;
-        let row = flexframe::row::Row { time: motion.time, bodies: vec![body], joints: Vec::new() };
+    /// The row of what has been observed of bodies and joints, with what follows from it.
+    pub(crate) fn new(mut row: flexframe::row::Row, models: &[Arc<Model>], metadata: &Arc<Metadata>) -> PyResult<Self> {
+        in_pool(|| row.bodies.iter_mut().zip(models).for_each(|(body, model)| body.complete(model)))?;
         Ok(Self { row, metadata: metadata.clone() })
     }
 }

@@ -10,6 +10,7 @@ use super::case::PreparedScene;
 use super::ladder::{Evaluator, LadderRun, Line, Outcome, settings_between};
 use super::setting::Setting;
 use super::short::{duration, setting};
+use super::way::Way;
 use crate::files::json;
 
 /// A setting between two others cannot be faster than the finer of them by more than this.
@@ -48,7 +49,7 @@ pub(super) fn refine(case: &PreparedScene<'_>, evaluator: &Evaluator<'_>, lines:
         while !between.is_empty() {
             let finer = between.split_off(between.len() / 2);
             let control = finer[0];
-            let row = LadderRun::new(control, evaluator.measure(case, line.method, control), false);
+            let row = LadderRun::new(control, evaluator.measure(case, line.way, control), false);
             let good = row.measured().is_some_and(|measured| measured.error <= target);
             line.insert(row);
             if !good {
@@ -75,11 +76,11 @@ impl Answer {
             .min_by(|a, b| a.2.seconds.total_cmp(&b.2.seconds))
             .map(|(line, row, _)| (line, row));
         let time_lines = |line: &Line, row: &LadderRun| {
-            vec![
-                format!("formulation = \"{}\"", line.formulation),
-                format!("scheme = \"{}\"", line.scheme),
-                row.setting.to_string(),
-            ]
+            let formulation = format!("formulation = \"{}\"", line.formulation);
+            // Tied bodies have but one.
+            let formulation = matches!(line.way, Way::Alone(_)).then_some(formulation);
+            let others = [format!("scheme = \"{}\"", line.scheme), row.setting.to_string()];
+            formulation.into_iter().chain(others).collect()
         };
         Self {
             target,

@@ -1,34 +1,43 @@
-//! The bodies of a scene with their models, ready to be run in any way.
+//! A scene with its models, ready to be run in any way.
 
-use dynamics::{Method, Rows, SetupError, Simulation, StepControl};
+use dynamics::{Rows, SetupError, StepControl};
 use model::{Model, StartError};
-use scene::Scene;
+use scene::{Scene, System};
 
 use super::run::Scales;
-use crate::commands::run::RunBody;
+use super::way::Way;
+use crate::commands::run::{RunBody, RunFailure};
+use crate::motion::{BeginError, Beginning, Moving, begin};
 
 /// Times at which runs are compared; runs with longer steps are compared at a divisor of this.
 const COMPARED: u64 = 100;
 
-/// Bodies with their models.
+/// A scene with a model of each body.
 pub(super) struct PreparedScene<'a> {
-    bodies: Vec<RunBody<'a>>,
+    system: System,
+    models: Vec<&'a Model>,
     scales: Vec<Scales>,
 }
 
 impl<'a> PreparedScene<'a> {
-    pub(super) fn new(bodies: Vec<RunBody<'a>>) -> Self {
-        let scales = bodies.iter().map(|body| Scales::of_body(body.model, body.scene.time.end)).collect();
-        Self { bodies, scales }
+    pub(super) fn new(system: System, models: Vec<&'a Model>) -> Self {
+        let bodies = system.bodies.iter().zip(&models);
+        let scales = bodies.map(|(scene, model)| Scales::of_body(model, scene.time.end)).collect();
+        Self { system, models, scales }
     }
 
     /// One body.
-    pub(super) fn alone(scene: &'a Scene, model: &'a Model) -> Self {
-        Self::new(vec![RunBody { scene, model }])
+    pub(super) fn alone(scene: &Scene, model: &'a Model) -> Self {
+        Self::new(scene.clone().into(), vec![model])
+    }
+
+    /// The bodies.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = RunBody<'_>> {
+        self.system.bodies.iter().zip(&self.models).map(|(scene, model)| RunBody { scene, model })
     }
 
     pub(super) fn end(&self) -> f64 {
-        self.bodies.first().map_or(0.0, |body| body.scene.time.end)
+        self.system.bodies.first().map_or(0.0, |scene| scene.time.end)
     }
 
     /// Sizes of each body below which a quantity does not move.
@@ -36,14 +45,19 @@ impl<'a> PreparedScene<'a> {
         &self.scales
     }
 
-    /// The motion of each body from its beginning, with rows at the times of comparison.
-    pub(super) fn begin(&self, method: Method, control: StepControl) -> Result<Vec<Simulation>, StartError> {
-        self.bodies.iter().map(|body| self.begin_body(body, method, control)).collect()
+    /// The motions from their beginning, with rows at the times of comparison.
+    pub(super) fn begin(&self, way: Way, control: StepControl) -> Result<Vec<Moving>, RunFailure> {
+        Ok(self.try_begin(way, control)?)
     }
 
-    fn begin_body(&self, body: &RunBody<'_>, method: Method, control: StepControl) -> Result<Simulation, StartError> {
-        let interval = self.end() / self.intervals(control) as f64;
-        body.model.start_with(body.scene, method, control, Rows::Interval(interval))
+    fn try_begin(&self, way: Way, control: StepControl) -> Result<Vec<Moving>, BeginError> {
+        let Some(beginning) = Beginning::of(&self.system, &self.models) else { return Ok(Vec::new()) };
+        let mut beginning = Beginning { method: way.method(), control, ..beginning }
+            .with_rows(Rows::Interval(self.end() / self.intervals(control) as f64));
+        if let Way::Tied(scheme) = way {
+            beginning.system_scheme = scheme;
+        }
+        begin(&self.system, &self.models, &beginning)
     }
 
     /// Equal parts of the run at whose ends it is compared: the most that leave the steps as long as asked.
@@ -58,14 +72,21 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
-    /// The longest fixed step that the method allows for all bodies, at most the whole run.
-    pub(super) fn longest_step(&self, method: Method) -> f64 {
-        let of_body = |body| match self.begin_body(body, method, StepControl::Fixed(self.end())) {
-            Err(StartError::Setup(
-                SetupError::StepBeyondLimit { limit, .. } | SetupError::StepBeyondSpin { limit, .. },
-            )) => limit,
-            _ => self.end(),
-        };
-        self.bodies.iter().map(of_body).fold(self.end(), f64::min)
+    /// The longest fixed step that a way allows for all bodies, at most the whole run.
+    pub(super) fn longest_step(&self, way: Way) -> f64 {
+        let mut longest = self.end();
+        // Each body has a limit of its own, and the first that is met is told.
+        for _ in &self.models {
+            match self.try_begin(way, StepControl::Fixed(longest)) {
+                Err(BeginError::Start { source, .. }) => match *source {
+                    StartError::Setup(
+                        SetupError::StepBeyondLimit { limit, .. } | SetupError::StepBeyondSpin { limit, .. },
+                    ) if limit < longest => longest = limit,
+                    _ => break,
+                },
+                _ => break,
+            }
+        }
+        longest
     }
 }

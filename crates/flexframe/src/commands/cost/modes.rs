@@ -9,6 +9,7 @@ use super::case::PreparedScene;
 use super::reference::converge;
 use super::run::{Errors, Trajectory, seconds_per_step};
 use super::settings::CostSettings;
+use super::way::Way;
 use crate::commands::run::RunFailure;
 use crate::files::json;
 
@@ -54,16 +55,16 @@ pub(super) fn compare(
     settings: &CostSettings,
 ) -> Result<Vec<ModesRow>, (usize, RunFailure)> {
     let Some(richest) = models.last() else { return Ok(Vec::new()) };
-    let method = Method::EXPONENTIAL;
+    let way = Way::Alone(Method::EXPONENTIAL);
     let budget = settings.budget(5);
-    let most = converge(&PreparedScene::alone(scene, richest), method, budget, CONVERGED)
+    let most = converge(&PreparedScene::alone(scene, richest), way, budget, CONVERGED)
         .map_err(|(_, failure)| (richest.body.flexible(), failure))?;
     let control = StepControl::Fixed(most.step);
     let row = |model: &Model| -> Result<ModesRow, RunFailure> {
         let case = PreparedScene::alone(scene, model);
-        let simulations = case.begin(method, control)?;
-        let seconds_per_step = seconds_per_step(&simulations, settings.timed_for)?;
-        let run = Trajectory::follow(simulations, budget.time)?;
+        let motions = case.begin(way, control)?;
+        let seconds_per_step = seconds_per_step(&motions, settings.timed_for)?;
+        let run = Trajectory::follow(motions, budget.time)?;
         let flexible = model.body.flexible();
         let is_most = flexible == richest.body.flexible();
         Ok(ModesRow {

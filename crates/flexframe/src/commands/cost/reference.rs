@@ -2,11 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use dynamics::{Method, StepControl};
+use dynamics::StepControl;
 use serde::Serialize;
 
 use super::case::PreparedScene;
 use super::run::{Errors, Trajectory};
+use super::way::Way;
 use crate::commands::run::RunFailure;
 
 /// Steps of the first run.
@@ -45,7 +46,7 @@ pub(super) struct Budget {
     pub steps: u64,
 }
 
-/// Runs a fourth-order method with ever shorter steps, each half as long as those before, until the error is below
+/// Runs a method of fourth or higher order with ever shorter steps, each half as long as those before, until the error is below
 /// `goal`, or rounding hides what halving changes, or the next run would go beyond the `budget`, which also stops a run. Of two runs that are d
 /// apart, the finer is d/15 from the limit, if d has fallen as it does for fourth order; else d is taken.
 ///
@@ -53,7 +54,7 @@ pub(super) struct Budget {
 /// Steps of a try and its failure, where none came to its end: the last one, but for one that ran out of time.
 pub(super) fn converge(
     case: &PreparedScene<'_>,
-    method: Method,
+    way: Way,
     budget: Budget,
     goal: f64,
 ) -> Result<Reference, (u64, RunFailure)> {
@@ -61,7 +62,7 @@ pub(super) fn converge(
     let left = || budget.time.saturating_sub(started.elapsed());
     let (mut steps, mut before) = (FIRST, None);
     let coarse = loop {
-        match follow(case, method, steps, left()) {
+        match follow(case, way, steps, left()) {
             Ok(run) => break run,
             // What longer steps have failed for says more than that there is no time for shorter ones.
             Err(failure @ RunFailure::OutOfPatience { .. }) => return Err(before.unwrap_or((steps, failure))),
@@ -77,7 +78,7 @@ pub(super) fn converge(
     let reference = |trajectory, steps, error| Reference { trajectory, step: case.end() / steps as f64, steps, error };
     // Without a second run nothing is known of the error.
     steps *= 2;
-    let finer = follow(case, method, steps, left()).map_err(|failure| (steps, failure))?;
+    let finer = follow(case, way, steps, left()).map_err(|failure| (steps, failure))?;
     let mut difference = Errors::between(&coarse, &finer, case.scales());
     let mut best = reference(finer, steps, difference);
     while best.error.largest() > goal
@@ -85,7 +86,7 @@ pub(super) fn converge(
         && started.elapsed() + 2 * best.trajectory.time <= budget.time
     {
         steps *= 2;
-        let Ok(finer) = follow(case, method, steps, left()) else { break };
+        let Ok(finer) = follow(case, way, steps, left()) else { break };
         let before = difference.largest();
         difference = Errors::between(&best.trajectory, &finer, case.scales());
         let now = difference.largest();
@@ -98,7 +99,7 @@ pub(super) fn converge(
     Ok(best)
 }
 
-fn follow(case: &PreparedScene<'_>, method: Method, steps: u64, patience: Duration) -> Result<Trajectory, RunFailure> {
-    let simulations = case.begin(method, StepControl::Fixed(case.end() / steps as f64))?;
-    Trajectory::follow(simulations, patience)
+fn follow(case: &PreparedScene<'_>, way: Way, steps: u64, patience: Duration) -> Result<Trajectory, RunFailure> {
+    let motions = case.begin(way, StepControl::Fixed(case.end() / steps as f64))?;
+    Trajectory::follow(motions, patience)
 }

@@ -2,13 +2,14 @@
 
 use std::time::{Duration, Instant};
 
-use dynamics::{Observation, PointMotion, Reached, Simulation};
+use dynamics::{Observation, PointMotion, Reached};
 use model::Model;
 use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::commands::run::{Monitor, RunFailure};
 use crate::files::json;
+use crate::motion::{Motion, Moving};
 
 /// Motion smaller than this fraction of the body is rounding.
 const STILL: f64 = 1e-12;
@@ -16,30 +17,30 @@ const STILL: f64 = 1e-12;
 /// Steps between two looks at the clock. Shorter runs come to their end whatever the patience is.
 const STEPS_PER_LOOK: u64 = 1000;
 
-/// Leads bodies to their end, one after the other, until its patience is used up.
+/// Leads motions to their end, one after the other, until its patience is used up.
 struct Watch {
     started: Instant,
     patience: Duration,
-    bodies: usize,
-    /// Bodies that have come to their end.
+    motions: usize,
+    /// Motions that have come to their end.
     ended: usize,
-    /// Steps of the present body tried at the last look.
+    /// Steps of the present motion tried at the last look.
     looked: u64,
 }
 
 impl Watch {
-    fn new(patience: Duration, bodies: usize) -> Self {
-        Self { started: Instant::now(), patience, bodies, ended: 0, looked: 0 }
+    fn new(patience: Duration, motions: usize) -> Self {
+        Self { started: Instant::now(), patience, motions, ended: 0, looked: 0 }
     }
 
-    /// Leads a body to its end.
+    /// Leads a motion to its end.
     fn lead(
         &mut self,
-        simulation: &mut Simulation,
-        mut at_row: impl FnMut(&mut Simulation) -> Result<(), RunFailure>,
+        motion: &mut Motion,
+        mut at_row: impl FnMut(&mut Motion) -> Result<(), RunFailure>,
     ) -> Result<(), RunFailure> {
-        while self.advance(simulation)? != Reached::End {
-            at_row(simulation)?;
+        while self.advance(motion)? != Reached::End {
+            at_row(motion)?;
         }
         self.ended += 1;
         self.looked = 0;
@@ -47,16 +48,15 @@ impl Watch {
     }
 
     /// Goes on to the next row, or to the end.
-    fn advance(&mut self, simulation: &mut Simulation) -> Result<Reached, RunFailure> {
+    fn advance(&mut self, motion: &mut Motion) -> Result<Reached, RunFailure> {
         loop {
-            let reached = simulation.advance(STEPS_PER_LOOK)?;
-            let stats = simulation.stats();
-            let tried = stats.accepted + stats.rejected;
+            let reached = motion.advance(STEPS_PER_LOOK, |_, _| ())?;
+            let tried = motion.tried();
             // What has come to its end need not be stopped.
-            if simulation.time() < simulation.end() && tried - self.looked >= STEPS_PER_LOOK {
+            if motion.time() < motion.end() && tried - self.looked >= STEPS_PER_LOOK {
                 self.looked = tried;
                 if self.started.elapsed() >= self.patience {
-                    let reached = (self.ended as f64 + simulation.time() / simulation.end()) / self.bodies as f64;
+                    let reached = (self.ended as f64 + motion.time() / motion.end()) / self.motions as f64;
                     return Err(RunFailure::OutOfPatience { patience: self.patience.as_secs_f64(), reached });
                 }
             }
@@ -87,11 +87,12 @@ pub(super) struct Trajectory {
 }
 
 impl Trajectory {
-    /// Runs simulations to their end, if that takes no longer than the patience.
-    pub(super) fn follow(simulations: Vec<Simulation>, patience: Duration) -> Result<Self, RunFailure> {
-        let mut watch = Watch::new(patience, simulations.len());
+    /// Leads motions to their end, if that takes no longer than the patience.
+    pub(super) fn follow(motions: Vec<Moving>, patience: Duration) -> Result<Self, RunFailure> {
+        let mut watch = Watch::new(patience, motions.len());
+        let count = motions.iter().map(|moving| moving.bodies.len()).sum();
         let mut all = Self {
-            bodies: Vec::new(),
+            bodies: vec![Vec::new(); count],
             steps: 0,
             rejected: 0,
             evaluations: 0,
@@ -99,24 +100,31 @@ impl Trajectory {
             angular_momentum: 0.0,
             time: Duration::ZERO,
         };
-        for mut simulation in simulations {
-            let mut observations = Vec::new();
-            let mut monitor = Monitor::default();
-            let mut observe = |simulation: &mut Simulation| -> Result<(), RunFailure> {
-                let now = simulation.observation()?;
-                monitor.watch(&now);
-                observations.push(now);
+        for Moving { mut motion, bodies, .. } in motions {
+            let mut monitors = vec![Monitor::default(); bodies.len()];
+            let mut row = rooms(&motion)?;
+            let mut observe = |motion: &mut Motion| -> Result<(), RunFailure> {
+                motion.observe(None, &mut row)?;
+                for ((now, monitor), number) in row.iter().zip(&mut monitors).zip(&bodies) {
+                    monitor.watch(now);
+                    all.bodies[*number].push(now.clone());
+                }
                 Ok(())
             };
-            observe(&mut simulation)?;
-            watch.lead(&mut simulation, observe)?;
-            let (balances, stats) = (monitor.balances(), simulation.stats());
-            all.bodies.push(observations);
+            observe(&mut motion)?;
+            watch.lead(&mut motion, observe)?;
+            // Tied bodies pass momentum and energy to each other.
+            let scales = monitors.iter().map(Monitor::scales).reduce(|most, scales| most.or_larger(&scales));
+            for mut monitor in monitors {
+                scales.iter().for_each(|scales| monitor.widen(scales));
+                let balances = monitor.balances();
+                all.energy = all.energy.max(balances.energy);
+                all.angular_momentum = all.angular_momentum.max(balances.angular_momentum);
+            }
+            let stats = motion.stats();
             all.steps += stats.accepted;
             all.rejected += stats.rejected;
             all.evaluations += stats.evaluations;
-            all.energy = all.energy.max(balances.energy);
-            all.angular_momentum = all.angular_momentum.max(balances.angular_momentum);
         }
         all.time = watch.started.elapsed();
         Ok(all)
@@ -132,6 +140,16 @@ impl Trajectory {
     }
 }
 
+/// Room for the bodies of a motion.
+fn rooms(motion: &Motion) -> Result<Vec<Observation>, RunFailure> {
+    Ok(match motion {
+        Motion::Alone(simulation) => vec![simulation.clone().observation()?],
+        Motion::Tied(simulation) => {
+            (0..simulation.motion().system().bodies().len()).map(|body| simulation.room(body)).collect()
+        }
+    })
+}
+
 /// Time that the loop of a run takes, without the observations.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Timing {
@@ -143,18 +161,18 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// Runs the simulations from their beginning at least three times, and so often that it takes `at_least` in all. A run that
+    /// Leads the motions from their beginning at least three times, and so often that it takes `at_least` in all. A run that
     /// takes longer than the patience is the last, and does not count.
     ///
     /// # Errors
     /// The error of the first run.
-    pub(super) fn of(simulations: &[Simulation], at_least: Duration, patience: Duration) -> Result<Self, RunFailure> {
+    pub(super) fn of(motions: &[Moving], at_least: Duration, patience: Duration) -> Result<Self, RunFailure> {
         let mut timing = Self { shortest: Duration::MAX, longest: Duration::ZERO, repeats: 0 };
         let mut sum = Duration::ZERO;
         while timing.repeats < 3 || (sum < at_least && timing.repeats < 1000) {
-            let mut simulations = simulations.to_vec();
-            let mut watch = Watch::new(patience, simulations.len());
-            match simulations.iter_mut().try_for_each(|simulation| watch.lead(simulation, |_| Ok(()))) {
+            let mut motions = motions.to_vec();
+            let mut watch = Watch::new(patience, motions.len());
+            match motions.iter_mut().try_for_each(|moving| watch.lead(&mut moving.motion, |_| Ok(()))) {
                 Err(RunFailure::OutOfPatience { .. }) if timing.repeats > 0 => break,
                 ended => ended?,
             }
@@ -170,16 +188,16 @@ impl Timing {
 
 /// Time of a step, seconds: the shortest of the means over three stretches from the beginning of the run, each of which
 /// takes `at_least` or the whole run.
-pub(super) fn seconds_per_step(simulations: &[Simulation], at_least: Duration) -> Result<f64, RunFailure> {
+pub(super) fn seconds_per_step(motions: &[Moving], at_least: Duration) -> Result<f64, RunFailure> {
     let mut shortest = f64::INFINITY;
     for _ in 0..3 {
-        let mut simulations = simulations.to_vec();
-        let mut watch = Watch::new(at_least, simulations.len());
-        match simulations.iter_mut().try_for_each(|simulation| watch.lead(simulation, |_| Ok(()))) {
+        let mut motions = motions.to_vec();
+        let mut watch = Watch::new(at_least, motions.len());
+        match motions.iter_mut().try_for_each(|moving| watch.lead(&mut moving.motion, |_| Ok(()))) {
             Ok(()) | Err(RunFailure::OutOfPatience { .. }) => {}
             Err(failure) => return Err(failure),
         }
-        let steps: u64 = simulations.iter().map(|simulation| simulation.stats().accepted).sum();
+        let steps: u64 = motions.iter().map(|moving| moving.motion.stats().accepted).sum();
         shortest = shortest.min(watch.started.elapsed().as_secs_f64() / steps.max(1) as f64);
     }
     Ok(shortest)

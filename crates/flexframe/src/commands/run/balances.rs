@@ -23,7 +23,7 @@ pub struct Balances {
 
 impl Balances {
     /// The larger of each.
-    pub(super) fn or_larger(&self, other: &Self) -> Self {
+    pub(crate) fn or_larger(&self, other: &Self) -> Self {
         Self {
             energy: self.energy.max(other.energy),
             linear_momentum: self.linear_momentum.max(other.linear_momentum),
@@ -75,13 +75,13 @@ impl Monitor {
     }
 
     /// The largest values so far.
-    pub(super) fn scales(&self) -> Balances {
+    pub(crate) fn scales(&self) -> Balances {
         self.scales
     }
 
     /// Takes larger values as those that changes are relative to: of bodies that pass momentum and energy to each other, those of
     /// all of them.
-    pub(super) fn widen(&mut self, scales: &Balances) {
+    pub(crate) fn widen(&mut self, scales: &Balances) {
         self.scales = self.scales.or_larger(scales);
     }
 

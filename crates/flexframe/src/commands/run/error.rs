@@ -74,7 +74,7 @@ impl From<BeginError> for RunError {
     fn from(error: BeginError) -> Self {
         match error {
             BeginError::Build(source) => Self::Build(source),
-            BeginError::Start { scene, source } => Self::Setup { scene, source },
+            BeginError::Start { scene, source, .. } => Self::Setup { scene, source },
         }
     }
 }
@@ -101,6 +101,9 @@ fn prefix(body: Option<&str>) -> String {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum RunFailure {
+    /// Its bodies could not be tied together.
+    #[error("{0}")]
+    Tie(String),
     /// It could not start.
     #[error("{0}")]
     Start(#[from] StartError),
@@ -114,4 +117,13 @@ pub enum RunFailure {
         100.0 * reached
     )]
     OutOfPatience { patience: f64, reached: f64 },
+}
+
+impl From<BeginError> for RunFailure {
+    fn from(error: BeginError) -> Self {
+        match error {
+            BeginError::Build(source) => Self::Tie(source.to_string()),
+            BeginError::Start { source, .. } => Self::Start(*source),
+        }
+    }
 }

@@ -14,7 +14,7 @@ use crate::rows::effects;
 
 /// The metadata in the results file of a run; `None` without a body.
 pub(super) fn metadata_of_file(system: &System, bodies: &[RunBody<'_>], builder: &Builder) -> Option<Metadata> {
-    let mut metadata = metadata(bodies)?;
+    let mut metadata = metadata_of_system(system, bodies)?;
     let mut files: Vec<String> = Vec::new();
     for (RunBody { scene, model }, body) in bodies.iter().zip(&mut metadata.bodies) {
         for file in builder.files(scene) {
@@ -25,8 +25,13 @@ pub(super) fn metadata_of_file(system: &System, bodies: &[RunBody<'_>], builder:
         }
         body.model.mesh = mesh_properties(scene, model);
     }
+    Some(Metadata { input_files: files, ..metadata })
+}
+
+/// As [`metadata`], with the joints.
+pub fn metadata_of_system(system: &System, bodies: &[RunBody<'_>]) -> Option<Metadata> {
     let joints = system.joints.iter().map(|joint| joint_metadata(system, joint)).collect();
-    Some(Metadata { input_files: files, joints, ..metadata })
+    Some(Metadata { joints, ..metadata(bodies)? })
 }
 
 /// The metadata of a run without what only a file has: the files that it read, and the sizes of meshes. `None` without a body.

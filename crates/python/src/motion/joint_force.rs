@@ -1,0 +1,132 @@
+//! The class JointForce: a force along the coordinate of a joint, whose law is a function of Python.
+
+use std::fmt;
+use std::sync::Arc;
+
+use flexframe::dynamics::{Coordinate, JointLaw};
+use flexframe::motion::JointForces;
+use flexframe::scene;
+use pyo3::prelude::*;
+
+use crate::errors::{add_note, wrong_input};
+use crate::motion::faults::Faults;
+use crate::motion::load::Law;
+use crate::values::numbers::described;
+
+/// A moment about the turn of a joint, or a force along its slide, by a law: a function of the time, the coordinate (rad or a
+/// length) and its rate that returns a number. It is positive on the second body along the coordinate, as the motor of a scene.
+///
+/// `along` is "turn" or "slide"; a joint that has but one needs none. The law is evaluated several times a step, and must depend on
+/// nothing but these. `discontinuities` are times at which it or its rate jumps, so that steps end there.
+#[pyclass(frozen, module = "flexframe")]
+pub(crate) struct JointForce {
+    joint: String,
+    along: Option<scene::Coordinate>,
+    law: Law,
+}
+
+#[pymethods]
+impl JointForce {
+    #[new]
+    #[pyo3(signature = (joint, law, *, along=None, name=None, discontinuities=Vec::new()))]
+    fn new(
+        joint: String,
+        law: &Bound<'_, PyAny>,
+        along: Option<&str>,
+        name: Option<String>,
+        discontinuities: Vec<f64>,
+    ) -> PyResult<Self> {
+        let along = match along {
+            None => None,
+            Some("turn") => Some(scene::Coordinate::Turn),
+            Some("slide") => Some(scene::Coordinate::Slide),
+            Some(other) => {
+                let help = "name the coordinate of the joint that the law acts along";
+                return Err(wrong_input(law.py(), "along", &format!("`{other}`"), "`turn` or `slide`", help));
+            }
+        };
+        Ok(Self { joint, along, law: Law::new(law, name, discontinuities, None)? })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("JointForce({:?}, {})", self.joint, self.law.name)
+    }
+}
+
+impl JointForce {
+    /// The law at a joint of a system.
+    pub(crate) fn of(&self, py: Python<'_>, system: &scene::System, faults: &Faults) -> PyResult<JointForces> {
+        let names = || system.joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>().join(", ");
+        let Some(number) = system.joints.iter().position(|joint| joint.name == self.joint) else {
+            let expected = if system.joints.is_empty() { "none: there are no joints".to_owned() } else { names() };
+            let help = "name a joint of [[joints]]";
+            return Err(wrong_input(py, "joint", &format!("`{}`", self.joint), &format!("one of {expected}"), help));
+        };
+        let known = system.joints[number].kind.coordinates();
+        let along = match (self.along, known) {
+            (None, [only]) => *only,
+            (Some(along), known) if known.contains(&along) => along,
+            (found, _) => {
+                let found = match found {
+                    None => "no coordinate",
+                    Some(scene::Coordinate::Turn) => "`turn`",
+                    Some(scene::Coordinate::Slide) => "`slide`",
+                };
+                let kind = system.joints[number].kind.name();
+                let help = "a hinge turns, a slide slides, a cylindrical joint does both";
+                return Err(wrong_input(py, "along", found, &format!("a coordinate of a {kind} joint"), help));
+            }
+        };
+        let along = match along {
+            scene::Coordinate::Turn => Coordinate::Turn,
+            scene::Coordinate::Slide => Coordinate::Slide,
+        };
+        let law = PythonLaw {
+            function: self.law.function.clone_ref(py),
+            name: self.law.name.clone(),
+            discontinuities: self.law.discontinuities.clone(),
+            faults: faults.clone(),
+        };
+        Ok(JointForces { joint: number, along, law: Arc::new(law) })
+    }
+}
+
+struct PythonLaw {
+    function: Py<PyAny>,
+    name: String,
+    discontinuities: Vec<f64>,
+    faults: Faults,
+}
+
+impl fmt::Debug for PythonLaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "PythonLaw({})", self.name)
+    }
+}
+
+impl JointLaw for PythonLaw {
+    fn force(&self, [time, _]: [f64; 2], [coordinate, rate]: [f64; 2]) -> f64 {
+        if self.faults.any() {
+            return f64::NAN;
+        }
+        let asked = Python::attach(|py| {
+            let value = self.function.bind(py).call1((time, coordinate, rate));
+            let number = value.and_then(|value| {
+                value.extract::<f64>().map_err(|_| {
+                    let help = "return the force or the moment";
+                    let what = format!("the force of the law `{}`", self.name);
+                    wrong_input(py, &what, &described(&value), "a number", help)
+                })
+            });
+            number.inspect_err(|error| add_note(py, error, &format!("in the law `{}` at time {time}", self.name)))
+        });
+        asked.unwrap_or_else(|error| {
+            self.faults.put(error);
+            f64::NAN
+        })
+    }
+
+    fn discontinuities(&self) -> Vec<f64> {
+        self.discontinuities.clone()
+    }
+}

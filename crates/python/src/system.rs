@@ -1,0 +1,75 @@
+//! The class System.
+
+use std::sync::Arc;
+
+use flexframe::model::{BuildProgress, Model};
+use flexframe::plausible::doubts_of_scene;
+use pyo3::prelude::*;
+use pyo3::types::PyType;
+
+use crate::body::built;
+use crate::errors::warn;
+use crate::scene::Scene;
+
+/// All bodies of a scene with the joints between them: their meshes are read, their modes are found, and they are reduced.
+///
+/// What takes long is kept in the user's cache, as for Body. A Simulation of it steps all bodies together.
+#[pyclass(frozen, module = "flexframe")]
+pub(crate) struct System {
+    scene: Py<Scene>,
+    models: Vec<Arc<Model>>,
+}
+
+impl System {
+    /// Its bodies with what ties them together.
+    pub(crate) fn system(&self) -> &Arc<flexframe::scene::System> {
+        self.scene.get().system()
+    }
+
+    pub(crate) fn models(&self) -> &[Arc<Model>] {
+        &self.models
+    }
+}
+
+#[pymethods]
+impl System {
+    #[new]
+    fn new(py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
+        let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
+        for of in &system.bodies {
+            warn(py, doubts_of_scene(of))?;
+        }
+        let build = move |told: &mut dyn FnMut(BuildProgress)| {
+            system.bodies.iter().map(|of| builder.build(of, &mut *told).map(Arc::new)).collect()
+        };
+        let models = built(py, &scene, build)?;
+        Ok(Self { scene, models })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, (Py<Scene>,)) {
+        (py.get_type::<Self>(), (self.scene.clone_ref(py),))
+    }
+
+    /// The scene that it was made for.
+    #[getter]
+    fn scene(&self, py: Python<'_>) -> Py<Scene> {
+        self.scene.clone_ref(py)
+    }
+
+    /// Names of its bodies.
+    #[getter]
+    fn bodies(&self) -> Vec<String> {
+        let name = |scene: &flexframe::scene::Scene| scene.name.clone().unwrap_or_else(|| "body".to_owned());
+        self.system().bodies.iter().map(name).collect()
+    }
+
+    /// Names of its joints.
+    #[getter]
+    fn joints(&self) -> Vec<String> {
+        self.system().joints.iter().map(|joint| joint.name.clone()).collect()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("System(bodies {}; joints {})", self.bodies().join(", "), self.joints().join(", "))
+    }
+}
