@@ -76,12 +76,13 @@ pub use system::joint::force::{Friction, JointForce, Stops};
 pub use system::joint::law::{JointLaw, JointLawFn};
 pub use system::joint::observation::JointObservation;
 pub use system::joint::row::Row;
+pub use system::joint::work::JointWork;
 pub use system::linear::{
     CommonSpin, Linearization, Spring, SteadyError, SteadyState, SystemMode, Unbalance, Vibrations,
 };
 pub use system::marker::Marker;
 pub use system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
-pub use system::radau::{Failed, JointWork, SystemMotion, Tried};
+pub use system::radau::{Failed, SystemMotion, Tried};
 pub use system::simulation::SystemSimulation;
 pub use system::simulation::observation::SystemObservation;
 pub use system::simulation::setup::{Assembled, SystemSetup};

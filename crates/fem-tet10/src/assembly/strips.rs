@@ -132,7 +132,8 @@ mod tests {
     fn strips_are_where_they_are_whatever_the_mesh() {
         let mesh = read_msh(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/cube.msh")).unwrap();
         let low = mesh.positions().iter().map(|x| x[0]).fold(f64::INFINITY, f64::min);
-        let is_in = |nodes: &[u32; 6]| nodes.iter().all(|node| (mesh.positions()[*node as usize][0] - low).abs() < 1e-9);
+        let is_in =
+            |nodes: &[u32; 6]| nodes.iter().all(|node| (mesh.positions()[*node as usize][0] - low).abs() < 1e-9);
         let faces: Vec<[u32; 6]> = mesh.outer_faces().into_iter().filter(is_in).collect();
         let [_, size, height] = mesh.size();
         let whole = mesh.outer_patch(|x| (x.x - low).abs() < 1e-9).unwrap();

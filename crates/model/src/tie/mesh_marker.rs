@@ -42,7 +42,8 @@ pub(crate) fn on_mesh(scene: &Scene, mesh: &Mesh, dofs: usize) -> Result<Vec<Mes
 
 /// Forces (N×k) of unit forces and moments on each of the markers, side by side.
 pub(crate) fn unit_forces(markers: &[MeshMarker], unknowns: usize) -> Mat<f64> {
-    let loads: Vec<_> = markers.iter().flat_map(|marker| marker.loads().into_iter().map(move |load| (marker, load))).collect();
+    let loads: Vec<_> =
+        markers.iter().flat_map(|marker| marker.loads().into_iter().map(move |load| (marker, load))).collect();
     let mut forces = Mat::zeros(unknowns, loads.len());
     for ((marker, load), mut column) in loads.iter().zip(forces.as_mut().col_iter_mut()) {
         for Share { place, wrench, factor } in load {
@@ -242,7 +243,8 @@ fn strips(
     let key_of = key_path(key, "patches");
     let faces = faces(mesh, region).filter(|faces| !faces.is_empty());
     let help = "remove `patches`, or name a physical surface, a `box` or a `radius` with faces of the body in it";
-    let faces = faces.ok_or_else(|| scene.refuse(&key_of, "patches of a marker without faces", "faces of the body", help))?;
+    let faces =
+        faces.ok_or_else(|| scene.refuse(&key_of, "patches of a marker without faces", "faces of the body", help))?;
     let along = match along {
         Some(along) => Vector3::from(along),
         None => mesh.longest(&faces).ok_or_else(|| {
@@ -256,7 +258,9 @@ fn strips(
         true => Ok(strips),
         false => {
             let help = "give fewer patches, or another direction `along`";
-            Err(scene.refuse(&key_of, format!("{count} patches, one of them without faces"), "faces in each", help).into())
+            Err(scene
+                .refuse(&key_of, format!("{count} patches, one of them without faces"), "faces in each", help)
+                .into())
         }
     }
 }

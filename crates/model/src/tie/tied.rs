@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use dynamics::{
-    ConservativeBody, Coordinate, ForceElement, JointForce, JointPart, Marker, MotionState, PointSpring,
-};
+use dynamics::{ConservativeBody, Coordinate, ForceElement, JointForce, JointPart, Marker, MotionState, PointSpring};
 use nalgebra::{Matrix3, Vector3};
-use scene::{AlongAndAbout, Bushing, CouplingKind, End, Joint, JointDrive, JointKind, JointSpring, Locked, Spring, System};
+use scene::{
+    AlongAndAbout, Bushing, CouplingKind, End, Joint, JointDrive, JointKind, JointSpring, Locked, Spring, System,
+};
 
 use crate::error::BuildError;
 use crate::load::history::history;

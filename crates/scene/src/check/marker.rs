@@ -71,7 +71,8 @@ impl Check<'_> {
             Err(self.document.place(&join(key, name)).refuse(found, expected, help))
         };
         let given = if patches.is_some() { "patches" } else { "tie" };
-        if matches!(place, MarkerPlace::Point(_)) && (patches.is_some() || tie.is_some_and(|tie| tie != TieName::Mean)) {
+        if matches!(place, MarkerPlace::Point(_)) && (patches.is_some() || tie.is_some_and(|tie| tie != TieName::Mean))
+        {
             let help = "add `radius`, or give a `box` or a `group` in the place of `at`";
             return refuse(given, "a marker at a point", "a marker on a part of the mesh", help);
         }

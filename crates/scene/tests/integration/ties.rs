@@ -44,7 +44,8 @@ fn all_keys_are_read() {
     let Some(MarkerAxes { z, x: Some(x) }) = tip.axes else { panic!() };
     assert_eq!((z, x), ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]), "x is made to be at right angles to z");
     assert_eq!(root.place, MarkerPlace::Region(Region::Ball { at: [0.0; 3], radius: 0.1 }));
-    let expected = Marker { name: "middle".into(), place: MarkerPlace::Point([0.5, 0.0, 0.0]), tie: Tie::Mean, axes: None };
+    let expected =
+        Marker { name: "middle".into(), place: MarkerPlace::Point([0.5, 0.0, 0.0]), tie: Tie::Mean, axes: None };
     assert_eq!(*middle, expected);
 
     let [shoulder, wrist] = &system.joints[..] else { panic!() };
