@@ -68,7 +68,6 @@ pub use system::collocation::SystemScheme;
 pub use system::description::System;
 pub use system::element::springs::{Bushing, PointSpring};
 pub use system::element::{ForceElement, SetDirection};
-pub use system::joint::{Joint, JointPart};
 pub use system::joint::coordinate::{Coordinate, JointCoordinates};
 pub use system::joint::coupling::{CoupledCoordinate, Coupling};
 pub use system::joint::drive::JointDrive;
@@ -77,6 +76,7 @@ pub use system::joint::law::{JointLaw, JointLawFn};
 pub use system::joint::observation::JointObservation;
 pub use system::joint::row::Row;
 pub use system::joint::work::JointWork;
+pub use system::joint::{Joint, JointPart};
 pub use system::linear::{
     CommonSpin, Linearization, Spring, SteadyError, SteadyState, SystemMode, Unbalance, Vibrations,
 };

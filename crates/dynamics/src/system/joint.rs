@@ -57,7 +57,15 @@ impl JointPart {
 impl Joint {
     /// A joint of these rows.
     pub fn new(name: &str, markers: [Marker; 2], rows: Vec<Row>) -> Self {
-        Self { name: name.to_owned(), markers, rows, parts: Vec::new(), drive: None, turn_force: None, slide_force: None }
+        Self {
+            name: name.to_owned(),
+            markers,
+            rows,
+            parts: Vec::new(),
+            drive: None,
+            turn_force: None,
+            slide_force: None,
+        }
     }
 
     /// Displacements along and turns about axes of i that are not free. One turn alone that is not free is that of two axes, the
@@ -177,9 +185,8 @@ fn locked_rows(markers: &[Marker; 2], displacements: [bool; 3], turns: [bool; 3]
     let mut rows: Vec<Row> = axes(displacements, true).map(|axis| Row::Point { of, axis }).collect();
     match axes(turns, true).count() {
         3 => rows.extend([0, 1, 2].map(Row::Rotation)),
-        2 => rows.extend(
-            axes(turns, false).flat_map(|free| [1, 2].map(|next| Row::Perpendicular(free, (free + next) % 3))),
-        ),
+        2 => rows
+            .extend(axes(turns, false).flat_map(|free| [1, 2].map(|next| Row::Perpendicular(free, (free + next) % 3)))),
         _ => rows.extend(axes(turns, true).map(|axis| Row::Perpendicular((axis + 1) % 3, (axis + 2) % 3))),
     }
     rows
