@@ -65,7 +65,7 @@ def rates(state):
 # Independent reference: Lagrange's equations, in 4000 steps of RK4.
 def test_an_arm_under_controllers_moves_by_lagranges_equations():
     system = flexframe.System(flexframe.Scene(arm()))
-    assert (system.bodies, system.joints) == (["upper", "fore"], ["shoulder", "elbow"])
+    assert (set(system.bodies), system.joints) == ({"upper", "fore"}, ["shoulder", "elbow"])
     forces = [flexframe.JointForce(name, controller(i)) for i, name in enumerate(system.joints)]
     results = flexframe.Simulation(system, joint_forces=forces).run()
     angles = np.column_stack([results[f"joints/{name}/angle"] for name in system.joints])
@@ -97,17 +97,19 @@ def test_an_event_on_a_joint_and_a_state():
     simulation.add_event("half a radian", lambda row: row["joints/shoulder/angle"] - 0.5, crossing="rising")
     reached = simulation.advance_to(0.6)
     assert (reached.kind, reached.event) == ("event", "half a radian")
-    assert reached.time == pytest.approx(0.25, abs=1e-8)
+    assert reached.time == pytest.approx(0.25, abs=1e-7)
     reached = simulation.advance_to(0.63)
     assert (reached.kind, reached.time) == ("stop", 0.63)
     row = simulation.observe()
-    assert row["joints/shoulder/rate"] == pytest.approx(2.0, abs=1e-8)
+    assert row["joints/shoulder/rate"] == pytest.approx(2.0, abs=1e-6)
     hand = 2 * LENGTH * np.array([math.cos(1.26), math.sin(1.26), 0.0])
-    assert row["bodies/fore/position"] == pytest.approx(hand * 0.75, abs=1e-7)
+    assert row["bodies/fore/position"] == pytest.approx(hand * 0.75, abs=1e-6)
     rows = list(simulation)
     assert [round(row.time / 0.05) for row in rows] == list(range(13, 21))
 
 
+# Closed form: 4/3 a + 1/2 b = 1/2 a + 1/3 b = 3 N l / (m l²) are the accelerations of straight links whose end is pushed across: the
+# shoulder goes back.
 def test_a_load_on_a_body_of_a_system_is_a_law():
     seen = []
 
@@ -117,7 +119,9 @@ def test_a_load_on_a_body_of_a_system_is_a_law():
 
     system = flexframe.System(flexframe.Scene(arm(end=0.1, loads=())))
     pushed = flexframe.Simulation(system, {"fore": [flexframe.Force("hand", push)]}).run()
-    assert seen and pushed["joints/shoulder/angle"][-1] > 1e-3
+    push_over_inertia = 3.0 / (MASS * LENGTH)
+    first = push_over_inertia * (1 / 3 - 1 / 2) / (4 / 9 - 1 / 4)
+    assert seen and pushed["joints/shoulder/angle"][-1] == pytest.approx(0.5 * first * 0.1**2, rel=1e-2)
 
 
 def test_what_does_not_fit_is_refused():
