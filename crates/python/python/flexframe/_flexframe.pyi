@@ -13,12 +13,14 @@ __all__ = [
     "VERSION",
     "Body",
     "Force",
+    "JointForce",
     "ModalForce",
     "Motion",
     "Reached",
     "Row",
     "Scene",
     "Simulation",
+    "System",
     "_scene",
     "read_results",
     "resume",
@@ -249,6 +251,7 @@ class System:
     def joints(self) -> list[str]:
         """Names of its joints."""
 
+@final
 class JointForce:
     """A moment about the turn of a joint, or a force along its slide, by a law: a function of the time, the coordinate (rad or a
     length) and its rate that returns a number. It is positive on the second body along the coordinate, as the motor of a scene.
@@ -267,6 +270,7 @@ class JointForce:
         discontinuities: Sequence[float] = ...,
     ) -> JointForce: ...
 
+@final
 class Simulation:
     """A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
 
