@@ -319,7 +319,7 @@ fn motions(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Vec<
             beginning.laws.push(JointForces { joint, along, law: Arc::new(Motor(signal.clone())) });
         }
     }
-    Ok(begin(&fmu.system, &models, &beginning)?)
+    begin(&fmu.system, &models, &beginning).map_err(|error| Error::Start(Box::new(error)))
 }
 
 /// Lets inputs act on a body.
