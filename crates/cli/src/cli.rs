@@ -472,13 +472,13 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Fmu { scene: SceneArgs { scene, json }, output, files, library } => {
             output::require_file("--output", Some(&output))?;
-            let scenes = scene.read_bodies_or_body()?;
+            let system = scene.read_system_or_body()?;
             if !json {
-                output::doubts(scenes.iter().flat_map(plausible::doubts_of_scene));
+                output::doubts(system.bodies.iter().flat_map(plausible::doubts_of_scene));
             }
-            let outputs = outputs_of_scenes(&scenes, &builder, files.overwrite);
+            let outputs = outputs_of_scenes(&system.bodies, &builder, files.overwrite);
             outputs.and_input(&fmu::library_path(library.as_deref())).claim_as(&Written::FMU, &output)?;
-            let report = fmu::pack(&scenes, &builder, &output, &FmuSettings { library }, |p| bar.build(p))?;
+            let report = fmu::pack(&system, &builder, &output, &FmuSettings { library }, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)
         }

@@ -32,15 +32,15 @@ pub struct SceneInput {
 }
 
 impl SceneInput {
-    /// As [`Self::read_bodies`], of a body file, too: then it is the scene that it was made of.
-    pub fn read_bodies_or_body(self) -> Result<Vec<Scene>, Box<dyn Error>> {
+    /// As [`Self::read_system`], of a body file, too: then it is the scene that it was made of.
+    pub fn read_system_or_body(self) -> Result<System, Box<dyn Error>> {
         if !self.scene.extension().is_some_and(|extension| extension == "h5" || extension == "hdf5") {
-            return self.read_bodies();
+            return self.read_system();
         }
         GivenFile::expect(&self.scene, &[GivenFile::Scene, GivenFile::Body], "a scene file or a body file")?;
         let scene = scene_of_body(&self.scene)?;
         let text = assigned(&scene.source, &self.set)?;
-        Ok(vec![Scene::parse(&text, &self.scene)?])
+        Ok(Scene::parse(&text, &self.scene)?.into())
     }
 
     /// The results file that was given in the place of a scene, if one was. It has a scene of its own, which is not to be changed.

@@ -706,7 +706,7 @@ mod tests {
         let library = folder.join("library");
         std::fs::write(&library, format!("{MARKER} fmi2DoStep")).unwrap();
         let report = pack(
-            std::slice::from_ref(&scene),
+            &scene.into(),
             &Builder::default(),
             &folder.join("ball.fmu"),
             &FmuSettings { library: Some(library) },

@@ -33,7 +33,7 @@ pub enum Error {
     #[error("the stop time is {found}; give a positive number, or none")]
     StopTime { found: f64 },
     #[error("the motion cannot start: {0}")]
-    Start(#[from] flexframe::dynamics::SetupError),
+    Start(Box<flexframe::motion::BeginError>),
     #[error("the value reference {reference} is none of this FMU, which has 0 to {last}")]
     Reference { reference: u32, last: usize },
     #[error("there are no {kind} variables in this FMU; all are real (value reference {reference} was asked for)")]

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use flexframe::advice::Review;
 use flexframe::dynamics::{
-    History, Initial, LoadFrame, Physics, PointForce, PointMoment, PointShapes, Reached, Rows, ScaledLoad, Setup,
-    SharedLoad, Signal, Simulation,
+    Coordinate, History, Initial, JointLaw, JointObservation, LoadFrame, PointForce, PointMoment, Reached, Rows,
+    ScaledLoad, SharedLoad, Signal,
 };
 use flexframe::fmu::{FmuBody, FmuModel, Input, InputKind, Source};
+use flexframe::model::Model;
+use flexframe::motion::{Beginning, BodyForces, JointForces, Moving, begin};
 use flexframe::nalgebra::Vector3;
 use flexframe::row::{BodyRow, Row};
 use self_cell::self_cell;
@@ -52,10 +54,10 @@ impl Reviewed {
 /// Bodies in motion, all at one time.
 pub struct Motion {
     reviewed: Option<Reviewed>,
-    simulations: Vec<Simulation>,
+    motions: Vec<Moving>,
     /// One for each input variable, in their order.
     inputs: Vec<Channel>,
-    /// True of a body of which an input has been set since the last step.
+    /// True of a motion of which an input has been set since the last step.
     changed: Vec<bool>,
     row: Row,
     numbers: Vec<f64>,
@@ -85,21 +87,19 @@ impl Motion {
     pub fn new(fmu: FmuModel, stop: Option<f64>) -> Result<Self, (Box<FmuModel>, Error)> {
         let initial: Vec<Initial> = fmu.bodies.iter().map(|body| body.model.initial(&body.scene)).collect();
         let inputs: Vec<Channel> = fmu.variables.iter().filter_map(|variable| channel(variable.source)).collect();
-        let bodies = fmu.bodies.iter().zip(&initial).enumerate();
-        let simulations = bodies.map(|(i, (body, initial))| simulation((i, body), initial, &inputs, stop));
-        let simulations: Vec<Simulation> = match simulations.collect::<Result<_, _>>() {
-            Ok(simulations) => simulations,
+        let motions = match motions(&fmu, &inputs, stop) {
+            Ok(motions) => motions,
             Err(error) => return Err((Box::new(fmu), error)),
         };
         Ok(Self {
             row: Row {
                 time: 0.0,
                 bodies: fmu.bodies.iter().map(|body| BodyRow::new(&body.model)).collect(),
-                joints: Vec::new(),
+                joints: vec![JointObservation::default(); fmu.system.joints.len()],
             },
             reviewed: Some(Reviewed::of(Owner { fmu, initial })),
-            changed: vec![false; simulations.len()],
-            simulations,
+            changed: vec![false; motions.len()],
+            motions,
             inputs,
             numbers: Vec::new(),
             known: false,
@@ -114,7 +114,7 @@ impl Motion {
 
     /// Time, in the scene's unit.
     pub fn time(&self) -> f64 {
-        self.simulations.first().map_or(0.0, Simulation::time)
+        self.motions.first().map_or(0.0, |moving| moving.motion.time())
     }
 
     /// The value of an input, by its number among the inputs.
@@ -133,9 +133,9 @@ impl Motion {
         }
         channel.value = value;
         self.known = false;
-        if let Some(changed) = self.changed.get_mut(channel.input.body) {
-            *changed = true;
-        }
+        let body = channel.input.body;
+        let changed = self.motions.iter().zip(&mut self.changed).find(|(moving, _)| moving.bodies.contains(&body));
+        changed.into_iter().for_each(|(_, changed)| *changed = true);
     }
 
     /// The numbers of a row of a results file, now.
@@ -150,11 +150,13 @@ impl Motion {
         let Some(reviewed) = &self.reviewed else { return Ok(()) };
         let fmu = &reviewed.borrow_owner().fmu;
         self.row.time = self.time();
-        let Self { simulations, row, .. } = self;
-        for ((simulation, body), row) in simulations.iter_mut().zip(&fmu.bodies).zip(&mut row.bodies) {
-            simulation.observe(&mut row.motion)?;
-            row.complete(&body.model);
+        let Self { motions, row, .. } = self;
+        for Moving { motion, bodies, joints } in motions {
+            let own = row.bodies.iter_mut().enumerate().filter(|(number, _)| bodies.contains(number));
+            motion.observe(None, own.map(|(_, body)| &mut body.motion))?;
+            joints.iter().enumerate().for_each(|(i, number)| row.joints[*number] = motion.observe_joint(i));
         }
+        row.bodies.iter_mut().zip(&fmu.bodies).for_each(|(row, body)| row.complete(&body.model));
         fmu.numbers(&self.row, &mut self.numbers);
         self.known = true;
         Ok(())
@@ -162,7 +164,7 @@ impl Motion {
 
     /// Goes on from `point` by `step`, in the scene's unit of time. After an error everything is as it was.
     pub fn go(&mut self, point: f64, step: f64) -> Result<(), Error> {
-        let (time, end) = (self.time(), self.simulations.first().map_or(0.0, Simulation::end));
+        let (time, end) = (self.time(), self.motions.first().map_or(0.0, |moving| moving.motion.end()));
         let least = SHORTEST * end;
         if !(step >= least && step.is_finite()) {
             return Err(Error::Step { found: step, least, time });
@@ -179,14 +181,14 @@ impl Motion {
         if (target - end).abs() <= slack {
             target = end;
         }
-        let before = (self.simulations.clone(), self.changed.clone());
-        for (simulation, changed) in self.simulations.iter_mut().zip(&mut self.changed) {
+        let before = (self.motions.clone(), self.changed.clone());
+        for (moving, changed) in self.motions.iter_mut().zip(&mut self.changed) {
             if std::mem::take(changed) {
-                simulation.loads_have_changed();
+                moving.motion.loads_have_changed();
             }
         }
         self.advance_to(target).map_err(|source| {
-            (self.simulations, self.changed) = before;
+            (self.motions, self.changed) = before;
             self.known = false;
             // What the failed step has shown is not to be held against what comes.
             self.reviewed = self.reviewed.take().map(|reviewed| Reviewed::of(reviewed.into_owner()));
@@ -195,11 +197,10 @@ impl Motion {
     }
 
     fn advance_to(&mut self, target: f64) -> Result<(), Failure> {
-        let Self { simulations, reviewed, .. } = self;
+        let Self { motions, reviewed, .. } = self;
         let Some(reviewed) = reviewed else { return Ok(()) };
         reviewed.with_dependent_mut(|Owner { fmu, .. }, reviews| {
-            let mut bodies = simulations.iter_mut().zip(reviews).zip(&fmu.bodies);
-            bodies.try_for_each(|((simulation, review), body)| advance(simulation, review, body, target))
+            motions.iter_mut().try_for_each(|moving| advance(moving, reviews, &fmu.bodies, target))
         })?;
         self.observe()?;
         let Self { row, reviewed: Some(reviewed), .. } = self else { return Ok(()) };
@@ -233,22 +234,25 @@ impl Motion {
     /// The state with the inputs.
     pub fn state(&self) -> Result<State, Error> {
         let inputs = self.inputs.iter().map(|channel| (channel.value, channel.signal.numbers())).collect();
-        let checkpoints = self.simulations.iter().map(Simulation::checkpoint).collect::<Result<_, _>>()?;
+        let checkpoints = self.motions.iter().map(|moving| moving.motion.checkpoint()).collect::<Result<_, _>>()?;
         Ok(State { checkpoints, inputs, changed: self.changed.clone() })
     }
 
     /// Goes on from a state of this FMU. After an error everything is as it was.
     pub fn set_state(&mut self, state: &State) -> Result<(), Error> {
         let finite = |(value, numbers): &(f64, [f64; 3])| value.is_finite() && numbers.iter().all(|n| n.is_finite());
-        let bodies = self.simulations.len();
+        let motions = self.motions.len();
         let fits =
-            state.inputs.len() == self.inputs.len() && [state.checkpoints.len(), state.changed.len()] == [bodies; 2];
+            state.inputs.len() == self.inputs.len() && [state.checkpoints.len(), state.changed.len()] == [motions; 2];
         if !(fits && state.inputs.iter().all(finite)) {
             return Err(Error::Bytes);
         }
-        let simulations = self.simulations.iter().zip(&state.checkpoints);
-        let restored = simulations.map(|(simulation, checkpoint)| simulation.clone().restored(checkpoint));
-        self.simulations = restored.collect::<Result<_, _>>()?;
+        let motions = self.motions.iter().zip(&state.checkpoints);
+        let restored = motions.map(|(moving, checkpoint)| {
+            let Moving { motion, bodies, joints } = moving.clone();
+            Ok(Moving { motion: motion.restored(checkpoint)?, bodies, joints })
+        });
+        self.motions = restored.collect::<Result<_, Error>>()?;
         for (channel, (value, numbers)) in self.inputs.iter_mut().zip(&state.inputs) {
             channel.value = *value;
             channel.signal.set(*numbers);
@@ -264,33 +268,66 @@ fn channel(source: Source) -> Option<Channel> {
     Some(Channel { input, value: input.start(), signal: Signal::held(input.start()) })
 }
 
-/// Goes on to a time, under the eyes of a review.
-fn advance(simulation: &mut Simulation, review: &mut Review<'_>, body: &FmuBody, target: f64) -> Result<(), Failure> {
-    simulation.set_stop_time(Some(target));
+/// Goes on to a time, under the eyes of the reviews of its bodies.
+fn advance(moving: &mut Moving, reviews: &mut [Review<'_>], bodies: &[FmuBody], target: f64) -> Result<(), Failure> {
+    let Moving { motion, bodies: numbers, .. } = moving;
+    motion.set_stop_time(Some(target));
     loop {
-        let reached = simulation.advance_watched(u64::MAX, |instant| review.look(instant));
+        let reached = motion.advance(u64::MAX, |body, instant| reviews[numbers[body]].look(instant));
         // A step that fails after the model has come to mean nothing fails for that.
-        if let Some((time, refusal)) = review.stop().filter(|_| body.scene.effects.refuse) {
+        let refusing = numbers.iter().filter(|number| bodies[**number].scene.effects.refuse);
+        if let Some((time, refusal)) = refusing.filter_map(|number| reviews[*number].stop()).next() {
             return Err(Failure::Refused { time, words: refusal.to_string() });
         }
         match reached? {
             Reached::Stop | Reached::End => return Ok(()),
-            _ if simulation.time() >= target => return Ok(()),
+            _ if motion.time() >= target => return Ok(()),
             _ => {}
         }
     }
 }
 
-fn simulation(
-    (number, FmuBody { scene, model, rotations }): (usize, &FmuBody),
-    initial: &Initial,
-    inputs: &[Channel],
-    stop: Option<f64>,
-) -> Result<Simulation, Error> {
-    let mut loads = model.loads().to_vec();
-    let mut physics: Physics = model.physics.clone();
+/// A motor that an input drives.
+#[derive(Debug)]
+struct Motor(Signal);
+
+impl JointLaw for Motor {
+    fn force(&self, [time, _]: [f64; 2], _: [f64; 2]) -> f64 {
+        self.0.at(time)
+    }
+
+    fn stiffness_and_damping(&self, _: [f64; 2], _: [f64; 2]) -> [f64; 2] {
+        [0.0; 2]
+    }
+}
+
+/// The motions of the bodies, with the inputs.
+fn motions(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Vec<Moving>, Error> {
+    let models: Vec<&Model> = fmu.bodies.iter().map(|body| &body.model).collect();
+    let Some(beginning) = Beginning::of(&fmu.system, &models) else { return Ok(Vec::new()) };
+    let mut beginning = beginning.with_rows(Rows::EverySteps(u64::MAX));
+    beginning.end = stop.unwrap_or(0.0).max(beginning.end);
+    for (number, (body, forces)) in fmu.bodies.iter().zip(&mut beginning.bodies).enumerate() {
+        connect(body, forces, inputs.iter().filter(|channel| channel.input.body == number));
+    }
+    for Channel { input, signal, .. } in inputs {
+        if let InputKind::Motor(joint, along) = input.kind {
+            let along = match along {
+                flexframe::scene::Coordinate::Turn => Coordinate::Turn,
+                flexframe::scene::Coordinate::Slide => Coordinate::Slide,
+            };
+            beginning.laws.push(JointForces { joint, along, law: Arc::new(Motor(signal.clone())) });
+        }
+    }
+    begin(&fmu.system, &models, &beginning).map_err(|error| Error::Start(Box::new(error)))
+}
+
+/// Lets inputs act on a body.
+fn connect<'c>(body: &FmuBody, forces: &mut BodyForces, inputs: impl Iterator<Item = &'c Channel>) {
+    let FmuBody { model, rotations, .. } = body;
+    let BodyForces { loads, physics, .. } = forces;
     let axis = |axis: usize| Vector3::from_fn(|i, _| if i == axis { 1.0 } else { 0.0 });
-    for Channel { input, signal, .. } in inputs.iter().filter(|channel| channel.input.body == number) {
+    for Channel { input, signal, .. } in inputs {
         let factor = signal.clone();
         let unit: SharedLoad = match input.kind {
             InputKind::Factor(load) => {
@@ -305,6 +342,7 @@ fn simulation(
                 }
                 continue;
             }
+            InputKind::Motor(..) => continue,
             InputKind::Force(point, component) => {
                 let Some((_, point)) = model.points.get(point) else { continue };
                 Arc::new(PointForce::dead(point.clone(), axis(component), History::Constant))
@@ -317,14 +355,4 @@ fn simulation(
         };
         loads.push(Arc::new(ScaledLoad { load: unit, factor }));
     }
-    let points: Vec<PointShapes> = model.points.iter().map(|(_, point)| point.clone()).collect();
-    let setup = model.setup(scene, initial);
-    Ok(Simulation::new(&Setup {
-        loads: &loads,
-        physics: &physics,
-        end: stop.unwrap_or(0.0).max(setup.end),
-        rows: Rows::EverySteps(u64::MAX),
-        points: &points,
-        ..setup
-    })?)
 }

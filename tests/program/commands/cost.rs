@@ -429,7 +429,7 @@ fn tied_bodies_have_a_price_list_of_their_schemes() {
     for line in &report.lines {
         let errors: Vec<f64> = runs(line).into_iter().map(|(_, run)| run.error).collect();
         println!("{} {}: {errors:?} {:?}", line.scheme, line.controlled, line.measured_order);
-        assert!(errors.len() > 2 && errors.last().unwrap() < &1e-6, "{} {errors:?}", line.scheme);
+        assert!(errors.len() > 1 && errors.last().unwrap() < &1e-6, "{} {errors:?}", line.scheme);
         if let Some(order) = line.measured_order {
             assert!((order - f64::from(line.order)).abs() < 0.7, "{} {order}", line.scheme);
         }

@@ -76,11 +76,12 @@ fn gauss_leads_a_scene_to_the_same_end() {
     assert_eq!(report.scheme, "gauss");
     let results = Results::open(&report.results, &COLUMNS).unwrap();
     let slider = *results.vectors::<3>("bodies/slider/position").unwrap().last().unwrap();
-    assert!((slider[0] - 0.169_737_332_842_786).abs() < 1e-6, "{slider:?}");
+    // 1.3e-6: Gauss keeps what rings, in some half of the steps that rows at an interval once asked for.
+    assert!((slider[0] - 0.169_737_332_842_786).abs() < 3e-6, "{slider:?}");
 }
 
 #[test]
-fn a_scene_with_joints_is_drawn_and_what_moves_bodies_alone_refuses_it() {
+fn a_scene_with_joints_is_drawn_and_a_body_of_it_alone_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let flexframe = |arguments: &[&str]| {
         let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tied.toml");
@@ -90,7 +91,7 @@ fn a_scene_with_joints_is_drawn_and_what_moves_bodies_alone_refuses_it() {
     let drawn = flexframe(&["animate", "-o", "tied.gif", "--frames", "5", "--to", "0.02"]);
     assert!(drawn.status.success(), "{}", String::from_utf8_lossy(&drawn.stderr));
     assert!(std::fs::read(folder.path().join("tied.gif")).unwrap().starts_with(b"GIF"));
-    for arguments in [&["cost"][..], &["fmu", "-o", "tied.fmu", "--set", "bodies.rod.modes.flexible=6"]] {
+    for arguments in [&["cost", "--body", "rod"][..], &["fmu", "-o", "tied.fmu", "--body", "rod"]] {
         let refused = flexframe(arguments);
         let words = String::from_utf8_lossy(&refused.stderr).into_owned();
         assert!(!refused.status.success() && words.contains("joints, springs or bushings hold"), "{words}");

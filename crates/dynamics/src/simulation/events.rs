@@ -54,7 +54,14 @@ impl Event {
         crossing: Crossing,
         function: impl Fn(&Observation) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        Self { name: name.into(), crossing, function: Arc::new(function) }
+        Self::of(name.into(), crossing, Arc::new(function))
+    }
+}
+
+impl<O> Event<O> {
+    /// An event of anything.
+    pub(crate) fn of(name: String, crossing: Crossing, function: Arc<dyn Fn(&O) -> f64 + Send + Sync>) -> Self {
+        Self { name, crossing, function }
     }
 }
 

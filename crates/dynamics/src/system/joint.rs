@@ -8,6 +8,7 @@ pub(crate) mod force;
 pub(crate) mod law;
 pub(crate) mod observation;
 pub(crate) mod row;
+pub(crate) mod work;
 pub(crate) mod wrench;
 
 use crate::history::History;

@@ -8,15 +8,15 @@
 //! ```
 
 mod end;
-pub(in crate::system) mod exchange;
+mod exchange;
 mod newton;
+pub(in crate::system) mod stage_rates;
 mod stepping;
 mod within;
 
 pub(in crate::system) use stepping::EXACTNESS;
 
 use nalgebra::{Complex, Vector3};
-use serde::{Deserialize, Serialize};
 
 use crate::body::motion_state::MotionState;
 use crate::conservative::{ConservativeBody, get, part};
@@ -30,7 +30,8 @@ use crate::system::elimination::newton::Solution;
 use crate::system::elimination::patterns::Patterns;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::coupling::CoupledCoordinate;
-use crate::system::radau::exchange::StageRates;
+use crate::system::joint::work::JointWork;
+use crate::system::radau::stage_rates::StageRates;
 use crate::system::stage::{BodyStart, Stage, Start};
 
 /// The step whose Newton matrix is the metric in which a system is assembled, as a part of the shortest period.
@@ -62,17 +63,6 @@ impl From<RateError> for Failed {
     fn from(error: RateError) -> Self {
         Self::Rates(error)
     }
-}
-
-/// Works at a joint since the beginning.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct JointWork {
-    /// What its drive and its motors have put in.
-    pub drive: f64,
-    /// What its springs, stops and preload have given back; negative for what they hold.
-    pub spring: f64,
-    /// What friction and dampers have taken out.
-    pub loss: f64,
 }
 
 /// A system on its way.

@@ -10,7 +10,8 @@ use crate::simulation::checkpoint::{CheckpointError, counts, expect, finite, fix
 use crate::state::State;
 use crate::system::collocation::STAGES;
 use crate::system::joint::coordinate::JointCoordinates;
-use crate::system::radau::{JointWork, SystemMotion};
+use crate::system::joint::work::JointWork;
+use crate::system::radau::SystemMotion;
 use crate::system::stage::vector;
 
 /// A motion in a checkpoint.

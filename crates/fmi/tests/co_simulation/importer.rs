@@ -9,7 +9,7 @@ use std::ptr;
 
 use flexframe::fmu::{FmuModel, FmuSettings, Input, Manifest, Source, Variable, marker, pack};
 use flexframe::model::Builder;
-use flexframe::scene::Scene;
+use flexframe::scene::{Scene, System};
 use flexframe_fmi::c_interface::*;
 use tempfile::TempDir;
 
@@ -27,12 +27,16 @@ impl Fmu {
     }
 
     pub fn of_bodies(scenes: &[Scene]) -> Self {
+        Self::of_system(&System { bodies: scenes.to_vec(), ..scenes[0].clone().into() })
+    }
+
+    pub fn of_system(system: &System) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let place = |name: &str| folder.path().join(name);
         // The functions are called in this process: the library in the FMU has only to be taken for it.
         fs::write(place("library"), format!("{} fmi2DoStep", marker())).unwrap();
         let settings = FmuSettings { library: Some(place("library")) };
-        let report = pack(scenes, &Builder::default(), &place("beam.fmu"), &settings, |_| ()).unwrap();
+        let report = pack(system, &Builder::default(), &place("beam.fmu"), &settings, |_| ()).unwrap();
         let mut zip = zip::ZipArchive::new(Cursor::new(fs::read(place("beam.fmu")).unwrap())).unwrap();
         zip.extract(place("unpacked")).unwrap();
         let mut description = String::new();

@@ -86,7 +86,7 @@ fn a_controller_outside_is_the_same_controller_inside() {
         instance.set(&force, &held).unwrap();
     });
 
-    let fmu_model = FmuModel::new(vec![scene.clone()], &Builder::default(), |_| ()).unwrap();
+    let fmu_model = FmuModel::new(scene.clone().into(), &Builder::default(), |_| ()).unwrap();
     let (model, tip) = (&fmu_model.bodies[0].model, 1);
     assert_eq!(model.points[tip].0, "tip");
     let held = Arc::new(Mutex::new(Vector3::zeros()));
@@ -315,4 +315,61 @@ fn the_bodies_of_a_scene_are_one_fmu_and_know_nothing_of_each_other() {
     assert_eq!(first, rows[count / 2..]);
     assert_eq!(follow(&mut instance, count / 2), first);
     instance.free(state);
+}
+
+/// Closed form: a rotor on a hinge with a spring, J a'' = M − k a, whose motor gets a moment at 0.2 s and loses it at 0.5 s.
+#[test]
+fn bodies_in_joints_are_an_fmu_whose_motors_are_inputs() {
+    let text = r#"
+title = "rotor"
+units = { length = "m", mass = "kg", time = "s" }
+[bodies.rotor]
+rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[1.0, 0, 0], [0, 1.5, 0], [0, 0, 0.5]] }
+markers = { axle = { at = [0, 0, 0] } }
+modes = { flexible = 0 }
+[[joints]]
+name = "axle"
+kind = "revolute"
+between = ["ground", "rotor.axle"]
+axis = [0, 0, 1]
+spring = { stiffness = 8.0 }
+[time]
+end = 1.0
+tolerance = 1e-8
+"#;
+    let system = flexframe::scene::System::parse(text, "rotor.toml").unwrap();
+    let fmu = Fmu::of_system(&system);
+    let motor = fmu.reference("joints.axle.motor.torque");
+    let seen = ["joints.axle.angle", "joints.axle.rate", "joints.axle.torque", "joints.axle.drive_work"];
+    let seen = seen.map(|name| fmu.reference(name));
+    let (moment, stiffness, inertia) = (0.6, 8.0, 0.5);
+    let omega = f64::sqrt(stiffness / inertia);
+    let angle = |time: f64| {
+        let since =
+            |from: f64| if time > from { moment / stiffness * (1.0 - (omega * (time - from)).cos()) } else { 0.0 };
+        since(0.2) - since(0.5)
+    };
+    let follow = |instance: &mut Instance, from: usize| {
+        (from..20).for_each(|i| {
+            instance.set(&[motor], &[if (4..10).contains(&i) { moment } else { 0.0 }]).unwrap();
+            instance.step(0.05 * i as f64, 0.05).unwrap();
+            let now = instance.get(&seen).unwrap();
+            let time = 0.05 * (i + 1) as f64;
+            assert!((now[0] - angle(time)).abs() < 1e-7, "{now:?} {} at {time}", angle(time));
+        });
+        instance.get(&seen).unwrap()
+    };
+    let mut instance = fmu.start();
+    for i in 0..7 {
+        instance.set(&[motor], &[if i >= 4 { moment } else { 0.0 }]).unwrap();
+        instance.step(0.05 * f64::from(i), 0.05).unwrap();
+    }
+    let state = instance.save().unwrap();
+    let last = follow(&mut instance, 7);
+    instance.restore(state).unwrap();
+    assert_eq!(follow(&mut instance, 7), last);
+    instance.free(state);
+    // All that the motor has put in is at the end in the spring and in the motion.
+    assert!((last[3] - 0.5 * stiffness * last[0].powi(2) - 0.5 * inertia * last[1].powi(2)).abs() < 1e-7, "{last:?}");
+    assert!((last[2] + stiffness * last[0]).abs() < 1e-9, "{last:?}");
 }

@@ -147,7 +147,7 @@ pub fn bodies() -> Vec<Scene> {
 
 /// The rows of a run of the library, without an FMU.
 pub fn own_run(scene: &Scene) -> Vec<Vec<f64>> {
-    let fmu = FmuModel::new(vec![scene.clone()], &Builder::default(), |_| ()).unwrap();
+    let fmu = FmuModel::new(scene.clone().into(), &Builder::default(), |_| ()).unwrap();
     let FmuBody { scene, model, .. } = &fmu.bodies[0];
     let mut row = Row { time: 0.0, bodies: vec![BodyRow::new(model)], joints: Vec::new() };
     (model.start(scene).unwrap())

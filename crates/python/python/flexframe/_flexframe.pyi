@@ -13,12 +13,14 @@ __all__ = [
     "VERSION",
     "Body",
     "Force",
+    "JointForce",
     "ModalForce",
     "Motion",
     "Reached",
     "Row",
     "Scene",
     "Simulation",
+    "System",
     "_scene",
     "read_results",
     "resume",
@@ -232,8 +234,48 @@ class Reached:
         """Time."""
 
 @final
+class System:
+    """All bodies of a scene with the joints between them: their meshes are read, their modes are found, and they are reduced.
+
+    What takes long is kept in the user's cache, as for Body. A Simulation of it steps all bodies together.
+    """
+
+    def __new__(cls, scene: Scene) -> System: ...
+    @property
+    def scene(self) -> Scene:
+        """The scene that it was made for."""
+    @property
+    def bodies(self) -> list[str]:
+        """Names of its bodies."""
+    @property
+    def joints(self) -> list[str]:
+        """Names of its joints."""
+
+@final
+class JointForce:
+    """A moment about the turn of a joint, or a force along its slide, by a law: a function of the time, the coordinate (rad or a
+    length) and its rate that returns a number. It is positive on the second body along the coordinate, as the motor of a scene.
+
+    `along` is "turn" or "slide"; a joint that has but one needs none. The law is evaluated several times a step, and must depend on
+    nothing but these. `discontinuities` are times at which it or its rate jumps, so that steps end there.
+    """
+
+    def __new__(
+        cls,
+        joint: str,
+        law: Callable[[float, float, float], float],
+        *,
+        along: Literal["turn", "slide"] | None = None,
+        name: str | None = None,
+        discontinuities: Sequence[float] = ...,
+    ) -> JointForce: ...
+
+@final
 class Simulation:
     """A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
+
+    Of a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, and states are dicts from
+    names of bodies; all bodies are stepped together, also those that nothing ties.
 
     An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event ends the
     run at the end of the step. Ctrl-C raises KeyboardInterrupt within some thousand steps, and the simulation may go on.
@@ -248,11 +290,16 @@ class Simulation:
     """
 
     def __new__(
-        cls, body: Body, loads: Sequence[Force | ModalForce] | None = None, *, scene: Scene | None = None
+        cls,
+        body: Body | System,
+        loads: Sequence[Force | ModalForce] | dict[str, Sequence[Force | ModalForce]] | None = None,
+        *,
+        joint_forces: Sequence[JointForce] | None = None,
+        scene: Scene | None = None,
     ) -> Simulation: ...
     @property
-    def body(self) -> Body:
-        """The body, with the scene that is run."""
+    def body(self) -> Any:
+        """The Body with the scene that is run, or the System."""
     @property
     def time(self) -> float:
         """Time that has been reached."""
@@ -287,7 +334,8 @@ class Simulation:
         axes), modal_displacement, modal_velocity."""
     def set_state(self, state: dict[str, Any]) -> None:
         """Goes on from another state; keys that are not given stay as they are. Work and balances are counted from there.
-        `run` then begins with the row of this state; an iteration goes on to the next row."""
+        `run` then begins with the row of this state; an iteration goes on to the next row. Bodies in joints are moved so that
+        these close."""
     def __iter__(self) -> Simulation: ...
     def __next__(self) -> Row: ...
 

@@ -3,8 +3,9 @@
 use nalgebra::Vector3;
 
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
+use crate::system::joint::work::JointWork;
 use crate::system::marker::motion::MarkerWrench;
-use crate::system::radau::{JointWork, SystemMotion};
+use crate::system::radau::SystemMotion;
 
 /// A joint at one time.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

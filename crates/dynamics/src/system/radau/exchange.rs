@@ -1,53 +1,9 @@
 //! Quantities that a step sums up: works, impulses, dissipation, momenta.
 
-use serde::{Deserialize, Serialize};
-
-use crate::conservative::{Slow, part};
-use crate::simulation::checkpoint::{CheckpointError, expect, finite};
+use crate::conservative::part;
 use crate::system::collocation::STAGES;
-use crate::system::radau::{JointWork, SystemMotion};
-
-/// Rates at one stage of a step of what the step sums up.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(in crate::system) struct StageRates {
-    /// Rates of each body, of which those from the work on count.
-    bodies: Vec<Slow>,
-    /// Powers at the joints.
-    joints: Vec<JointWork>,
-    /// Power of the force elements.
-    elements: f64,
-    /// y', with the forces of the joints.
-    pub(super) y: Vec<f64>,
-}
-
-impl StageRates {
-    /// Room for bodies with these numbers of modes, and so many joints.
-    pub(super) fn new(flexible: &[usize], joints: usize) -> Self {
-        Self {
-            bodies: vec![[0.0; 20]; flexible.len()],
-            joints: vec![JointWork::default(); joints],
-            elements: 0.0,
-            y: vec![0.0; flexible.iter().map(|modes| 6 + modes).sum()],
-        }
-    }
-
-    /// Takes over other rates, without allocating.
-    pub(super) fn copy_from(&mut self, other: &Self) {
-        self.bodies.copy_from_slice(&other.bodies);
-        self.joints.copy_from_slice(&other.joints);
-        self.y.copy_from_slice(&other.y);
-        self.elements = other.elements;
-    }
-
-    /// Refuses those of another system, and numbers that are not finite.
-    pub(in crate::system) fn check(&self, own: &Self) -> Result<(), CheckpointError> {
-        let lengths = |of: &Self| [of.bodies.len(), of.joints.len(), of.y.len()];
-        expect("the rates of the last step", lengths(self) == lengths(own))?;
-        let of_joints = self.joints.iter().flat_map(|JointWork { drive, spring, loss }| [drive, spring, loss]);
-        let numbers = self.bodies.iter().flatten().chain(of_joints).chain(&self.y).chain([&self.elements]);
-        finite("the rates of the last step", numbers)
-    }
-}
+use crate::system::joint::work::JointWork;
+use crate::system::radau::SystemMotion;
 
 impl SystemMotion {
     /// Finds the rates at the stages of a step. What joints and elements do to a body counts as its loads do, so that its balances

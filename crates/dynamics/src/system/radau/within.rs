@@ -4,7 +4,8 @@ use crate::body::motion_state::MotionState;
 use crate::conservative::{get, part, set};
 use crate::equations::Equations;
 use crate::error::SetupError;
-use crate::system::radau::{Failed, JointWork, SystemMotion};
+use crate::system::joint::work::JointWork;
+use crate::system::radau::{Failed, SystemMotion};
 use crate::system::stage::vector;
 
 impl SystemMotion {

@@ -1,9 +1,11 @@
 //! Bodies and joints at one time, as events and rows see them.
 
+use std::sync::Arc;
+
 use crate::body::shapes::PointShapes;
 use crate::error::RateError;
 use crate::observation::Observation;
-use crate::simulation::events::Seen;
+use crate::simulation::events::{Crossing, Event, Seen};
 use crate::system::description::System;
 use crate::system::joint::observation::JointObservation;
 use crate::system::radau::SystemMotion;
@@ -47,5 +49,16 @@ impl SystemObservation {
 impl Seen for SystemObservation {
     fn time(&self) -> f64 {
         self.time
+    }
+}
+
+impl Event<SystemObservation> {
+    /// An event of a [`SystemSimulation`](crate::SystemSimulation), with a name for messages: the function sees all bodies and joints.
+    pub fn of_system(
+        name: impl Into<String>,
+        crossing: Crossing,
+        function: impl Fn(&SystemObservation) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self::of(name.into(), crossing, Arc::new(function))
     }
 }

@@ -8,7 +8,7 @@ use crate::simulation::checkpoint::{CheckpointError, counts, decode, encode, exp
 use crate::simulation::checkpoint::{fixed_room, from_words, to_words};
 use crate::simulation::plan::Progress;
 use crate::system::collocation::STAGES;
-use crate::system::radau::exchange::StageRates;
+use crate::system::radau::stage_rates::StageRates;
 use crate::system::saved::SavedMotion;
 use crate::system::simulation::{Due, Exchanged, SystemSimulation, Walk};
 

@@ -14,7 +14,7 @@ impl SystemMotion {
     /// A point and the z axis of the first marker of a joint, global.
     pub fn joint_axis(&self, joint: usize) -> (Vector3<f64>, Vector3<f64>) {
         let at = Configuration::of(self, &CommonSpin::REST);
-        let [first, _] = at.places(&self.system().joints()[joint]);
+        let [first, _] = at.places(&self.system().joints()[joint].markers);
         (first.position, first.axes.column(2).into())
     }
 

@@ -431,7 +431,7 @@ mod tests {
             order: 4,
             measured_order: None,
             rows,
-            way: Way::EXPONENTIAL,
+            way: Way::Alone(dynamics::Method::EXPONENTIAL),
         };
         let mut lines = vec![line(rows), line(vec![failed])];
         mark_front(&mut lines);

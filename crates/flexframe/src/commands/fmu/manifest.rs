@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use keys::{Digest, Hash};
-use scene::Scene;
+use scene::{Scene, System};
 use serde::{Deserialize, Serialize};
 
 use super::error::FmuError;
@@ -21,6 +21,8 @@ pub struct Manifest {
     pub program_version: String,
     /// The bodies.
     pub bodies: Vec<PackedBody>,
+    /// The file of the scene of all bodies, where they are tied together.
+    pub system: Option<String>,
     /// The BLAKE3 hash of every other file.
     pub files: BTreeMap<String, String>,
 }
@@ -36,7 +38,11 @@ pub struct PackedBody {
 
 impl Manifest {
     /// The list of the files in a folder, and of the bodies in them; `names` are relative to it.
-    pub(super) fn of(folder: &Path, names: &[String], bodies: Vec<PackedBody>) -> Result<Self, FmuError> {
+    pub(super) fn of(
+        folder: &Path,
+        names: &[String],
+        (bodies, system): (Vec<PackedBody>, Option<String>),
+    ) -> Result<Self, FmuError> {
         let mut files = BTreeMap::new();
         let program_version = env!("CARGO_PKG_VERSION").to_owned();
         let mut digest = Digest::new().text(&program_version);
@@ -52,7 +58,7 @@ impl Manifest {
         let digits = digest.finish().to_string();
         let part = |from: usize, to: usize| digits.get(from..to).unwrap_or_default();
         let guid = format!("{{{}-{}-{}-{}-{}}}", part(0, 8), part(8, 12), part(12, 16), part(16, 20), part(20, 32));
-        Ok(Self { guid, program_version, bodies, files })
+        Ok(Self { guid, program_version, bodies, system, files })
     }
 
     /// Reads the manifest of an unpacked FMU, and checks every file that it names.
@@ -76,11 +82,16 @@ impl Manifest {
         Ok(manifest)
     }
 
-    /// The scenes of the bodies.
-    pub(super) fn scenes(&self, resources: &Path) -> Result<Vec<Scene>, FmuError> {
-        let scene = |PackedBody { name, scene }: &PackedBody| {
+    /// The bodies, and what ties them together.
+    pub(super) fn system(&self, resources: &Path) -> Result<System, FmuError> {
+        if let Some(file) = &self.system {
+            return Ok(System::read(resources.join(file))?);
+        }
+        let scene = |PackedBody { name, scene }: &PackedBody| -> Result<Scene, FmuError> {
             Ok(Scene { name: name.clone(), ..Scene::read(resources.join(scene))? })
         };
-        self.bodies.iter().map(scene).collect()
+        let bodies = self.bodies.iter().map(scene).collect::<Result<Vec<Scene>, FmuError>>()?;
+        let first = bodies.first().ok_or(FmuError::NoBody)?.clone();
+        Ok(System { bodies, ..first.into() })
     }
 }

@@ -5,14 +5,15 @@ use std::path::Path;
 use dynamics::RotationShapes;
 use model::{BuildProgress, Builder, Model};
 use results::{Metadata, histories};
-use scene::Scene;
+use scene::{Coordinate, Scene, System};
 
 use super::error::FmuError;
 use super::manifest::Manifest;
 use super::si_unit::seconds;
 use super::variables::{Variable, variables};
 use crate::commands::run::{self, RunBody};
-use crate::rows::columns::COLUMNS;
+use crate::motion::{BeginError, Beginning, begin};
+use crate::rows::columns::{COLUMNS, part};
 use crate::rows::row::Row;
 
 /// The bodies of a scene, with the variables that another program sees.
@@ -24,6 +25,8 @@ pub struct FmuModel {
     pub variables: Vec<Variable>,
     /// Seconds in the scene's unit of time: FMI counts time in seconds.
     pub seconds: f64,
+    /// Its bodies and what ties them together, in the words of the scene.
+    pub system: System,
     metadata: Metadata,
 }
 
@@ -43,18 +46,23 @@ impl FmuModel {
     ///
     /// # Errors
     /// [`FmuError`].
-    pub fn new(
-        scenes: Vec<Scene>,
-        builder: &Builder,
-        mut progress: impl FnMut(BuildProgress),
-    ) -> Result<Self, FmuError> {
-        let bodies = scenes.into_iter().map(|scene| FmuBody::new(scene, builder, &mut progress));
+    pub fn new(system: System, builder: &Builder, mut progress: impl FnMut(BuildProgress)) -> Result<Self, FmuError> {
+        let scenes = system.bodies.into_iter().map(Scene::for_unknown_forces).collect();
+        let system = System { bodies: scenes, ..system };
+        let bodies = system.bodies.iter().map(|scene| FmuBody::new(scene, builder, &mut progress));
         let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
+        let models: Vec<&Model> = bodies.iter().map(|body| &body.model).collect();
+        let beginning = Beginning::of(&system, &models).ok_or(FmuError::NoBody)?;
+        begin(&system, &models, &beginning).map_err(|error| match error.at_key(&system) {
+            BeginError::Build(source) => FmuError::Build(source),
+            BeginError::Start { scene, source, .. } => FmuError::Start { scene, source },
+        })?;
         let of_run: Vec<_> = bodies.iter().map(|FmuBody { scene, model, .. }| RunBody { scene, model }).collect();
-        let metadata = run::metadata(&of_run).ok_or(FmuError::NoBody)?;
-        let variables = variables(&of_run, &metadata);
+        let mut metadata = run::metadata_of_system(&system, &of_run).ok_or(FmuError::NoBody)?;
+        add_motors(&system, &mut metadata);
+        let variables = variables(&system, &of_run, &metadata);
         let seconds = of_run.first().map_or(1.0, |body| seconds(&body.scene.units));
-        Ok(Self { variables, seconds, metadata, bodies })
+        Ok(Self { variables, seconds, metadata, bodies, system })
     }
 
     /// The model in the resources of an FMU, which have been [checked](Manifest::checked).
@@ -62,7 +70,7 @@ impl FmuModel {
     /// # Errors
     /// [`FmuError`].
     pub fn open(resources: &Path, manifest: &Manifest) -> Result<Self, FmuError> {
-        Self::new(manifest.scenes(resources)?, &Builder::default(), |_| ())
+        Self::new(manifest.system(resources)?, &Builder::default(), |_| ())
     }
 
     /// The scene of the first body: title, units, times and rows are those of all.
@@ -78,13 +86,26 @@ impl FmuModel {
 }
 
 impl FmuBody {
-    fn new(scene: Scene, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, FmuError> {
-        let scene = scene.for_unknown_forces();
-        let model = builder.build(&scene, progress)?;
-        model
-            .start(&scene)
-            .map_err(|source| FmuError::Start { scene: scene.path.clone(), source: Box::new(source) })?;
-        let rotations = model.point_rotations(&scene)?;
-        Ok(Self { scene, model, rotations })
+    fn new(scene: &Scene, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, FmuError> {
+        let model = builder.build(scene, progress)?;
+        let rotations = model.point_rotations(scene)?;
+        Ok(Self { scene: scene.clone(), model, rotations })
+    }
+}
+
+/// Gives each joint the columns of a motor along its coordinates, since that is an input.
+fn add_motors(system: &System, metadata: &mut Metadata) {
+    for (joint, of) in system.joints.iter().zip(&mut metadata.joints) {
+        for along in joint.kind.coordinates() {
+            let acts = match along {
+                Coordinate::Turn => part::TURN_FORCE,
+                Coordinate::Slide => part::SLIDE_FORCE,
+            };
+            for part in [part::DRIVE, acts] {
+                if !of.parts.iter().any(|has| has == part) {
+                    of.parts.push(part.to_owned());
+                }
+            }
+        }
     }
 }

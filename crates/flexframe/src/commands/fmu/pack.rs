@@ -5,7 +5,7 @@ use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use model::{BuildProgress, Builder, StartError};
-use scene::{Body, Flexible, Scene};
+use scene::{Body, Flexible, Scene, System};
 use sealed::{Format, SealedFile};
 use serde::Serialize;
 use whole_file::{TemporaryFolder, write_whole};
@@ -95,29 +95,45 @@ pub fn scene_of_body(file: &Path) -> Result<Scene, FmuError> {
 /// # Errors
 /// [`FmuError`].
 pub fn pack(
-    scenes: &[Scene],
+    system: &System,
     builder: &Builder,
     output: &Path,
     settings: &FmuSettings,
     mut progress: impl FnMut(BuildProgress),
 ) -> Result<FmuReport, FmuError> {
+    let scenes = &system.bodies[..];
     scenes.iter().try_for_each(check)?;
+    let is_tied = system.has_ties();
+    if system.joints.is_empty() && system.springs.is_empty() && system.bushings.is_empty() {
+        // One of several that are tied.
+        let tied = scenes.iter().find_map(|scene| Some((scene, StartError::refuse_tied(scene).err()?)));
+        if let Some((scene, source)) = tied {
+            return Err(FmuError::Start { scene: scene.path.clone(), source: Box::new(source) });
+        }
+    }
     let library = Library::find(settings.library.as_deref())?;
     let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
     let resources = temporary.path();
     let (mut names, mut bodies) = (Vec::new(), Vec::new());
+    let file = is_tied.then(|| pack_system(scenes, resources, &mut names)).transpose()?;
     for (i, scene) in scenes.iter().enumerate() {
+        if let Some(file) = &file {
+            bodies.push(PackedBody { name: scene.name.clone(), scene: file.clone() });
+            continue;
+        }
         // The only body of its own scene has no number.
         let prefix = scene.name.as_ref().map_or_else(String::new, |_| format!("{}-", i + 1));
         bodies.push(pack_body((scene, builder), resources, &prefix, &mut names, &mut progress)?);
     }
-    let manifest = Manifest::of(resources, &names, bodies)?;
+    let manifest = Manifest::of(resources, &names, (bodies, file))?;
     // What is packed is what will be opened. Its files have been found by now; messages name the scene that was given.
-    let opened = manifest.scenes(resources)?.into_iter().zip(scenes).map(|(opened, given)| {
+    let opened = manifest.system(resources)?;
+    let opened_bodies = opened.bodies.into_iter().zip(scenes).map(|(opened, given)| {
         let Scene { path, source, whole_file, .. } = given.clone();
         Scene { path, source, whole_file, ..opened }
     });
-    let fmu = FmuModel::new(opened.collect(), &Builder::default(), progress)?;
+    let opened = System { bodies: opened_bodies.collect(), ..opened };
+    let fmu = FmuModel::new(opened, &Builder::default(), progress)?;
     let text = serde_json::to_string_pretty(&manifest).map_err(|error| FmuError::Text(error.to_string()))?;
     std::fs::write(resources.join(MANIFEST), text).map_err(WriteError::of(&resources.join(MANIFEST)))?;
     names.push(MANIFEST.to_owned());
@@ -131,8 +147,12 @@ pub fn pack(
 
 /// Refuses a body that cannot be packed.
 fn check(scene: &Scene) -> Result<(), FmuError> {
-    let tied = StartError::refuse_tied(scene);
-    tied.map_err(|source| FmuError::Start { scene: scene.path.clone(), source: Box::new(source) })?;
+    if let (true, Body::Meshed(body)) = (scene.tied, &scene.body)
+        && body.mesh.extension().is_none_or(|ending| ending != "msh")
+    {
+        let help = "convert it with gmsh or meshio: the FMU holds the meshes of tied bodies, and reads them without other programs";
+        return Err(scene.refuse("body.mesh", "a mesh of another format", "one in MSH 4.1 (.msh)", help).into());
+    }
     if matches!(scene.body, Body::Matrices(_)) {
         let (found, expected) =
             ("a body of matrices, which no body file holds yet", "a body with a mesh, or a rigid one");
@@ -146,6 +166,22 @@ fn check(scene: &Scene) -> Result<(), FmuError> {
             .into());
     }
     Ok(())
+}
+
+/// Writes the scene of bodies that are tied together, its tables and meshes into the resources, and adds their names.
+fn pack_system(scenes: &[Scene], resources: &Path, names: &mut Vec<String>) -> Result<String, FmuError> {
+    let scene = scenes.first().ok_or(FmuError::NoBody)?;
+    let folder = scene.path.parent().unwrap_or(Path::new(""));
+    let packed = PackedScene::of_system(scene.file_text(), folder)?;
+    let name = "scene.toml".to_owned();
+    let place = resources.join(&name);
+    std::fs::write(&place, &packed.text).map_err(WriteError::of(&place))?;
+    names.push(name.clone());
+    for (from, name) in packed.tables {
+        std::fs::copy(&from, resources.join(&name)).map_err(|source| FmuError::Unreadable { path: from, source })?;
+        names.push(name);
+    }
+    Ok(name)
 }
 
 /// Writes the scene of a body, its tables and its body file into the resources, and adds their names.

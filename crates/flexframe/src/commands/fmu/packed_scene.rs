@@ -6,10 +6,10 @@ use toml::{Table, Value};
 
 use super::error::FmuError;
 
-/// A scene of one body that finds everything in its own folder.
+/// A scene that finds everything in its own folder.
 pub(super) struct PackedScene {
     pub text: String,
-    /// Tables of histories: where they are, and their names in the FMU.
+    /// Tables of histories, and of a system its meshes: where they are, and their names in the FMU.
     pub tables: Vec<(PathBuf, String)>,
 }
 
@@ -28,6 +28,34 @@ impl PackedScene {
         }
         let text = toml::to_string(&scene).map_err(|error| FmuError::Text(error.to_string()))?;
         Ok(Self { text, tables })
+    }
+
+    /// The packed form of a scene of bodies that are tied together: with their meshes, since body files have no markers.
+    pub fn of_system(text: &str, folder: &Path) -> Result<Self, FmuError> {
+        let mut scene: Table = toml::from_str(text).map_err(|error| FmuError::Text(error.to_string()))?;
+        let mut files = Vec::new();
+        scene.iter_mut().for_each(|(_, value)| take_tables(value, folder, "", &mut files));
+        if let Some(body) = scene.get_mut("body") {
+            take_mesh(body, folder, &mut files);
+        }
+        if let Some(Value::Table(bodies)) = scene.get_mut("bodies") {
+            bodies.iter_mut().for_each(|(_, body)| take_mesh(body, folder, &mut files));
+        }
+        let text = toml::to_string(&scene).map_err(|error| FmuError::Text(error.to_string()))?;
+        Ok(Self { text, tables: files })
+    }
+}
+
+/// Names the mesh or the body file of a body anew.
+fn take_mesh(body: &mut Value, folder: &Path, files: &mut Vec<(PathBuf, String)>) {
+    for key in ["mesh", "file"] {
+        if let Some(Value::String(file)) = body.get_mut(key) {
+            let path = folder.join(&*file);
+            let ending = path.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
+            let name = format!("{key}{}{ending}", files.len() + 1);
+            files.push((path, name.clone()));
+            *file = name;
+        }
     }
 }
 

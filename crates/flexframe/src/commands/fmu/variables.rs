@@ -2,8 +2,8 @@
 
 use dynamics::{DrivenMotion, Effect};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
-use results::{Components, Dimension, History, Metadata, Role, histories};
-use scene::Load;
+use results::{Components, Dimension, History, JointMetadata, Metadata, Role, histories};
+use scene::{Coordinate, End, Load, System};
 
 use crate::commands::run::RunBody;
 use crate::rows::columns::COLUMNS;
@@ -30,7 +30,7 @@ pub enum Source {
 /// A number that the importing program sets. Each is held from one communication point to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Input {
-    /// Number of its body.
+    /// Number of its body; of a joint, that of one that it holds.
     pub body: usize,
     /// Its kind.
     pub kind: InputKind,
@@ -47,6 +47,8 @@ pub enum InputKind {
     Moment(usize, usize),
     /// An acceleration that is added to that of the drive.
     DriveAcceleration,
+    /// A moment about the turn of a joint, or a force along its slide, by its number in the scene.
+    Motor(usize, Coordinate),
 }
 
 impl Input {
@@ -70,12 +72,13 @@ pub struct Variable {
 }
 
 /// All variables of a model: the time, the inputs of each body, then the columns of a results file.
-pub(super) fn variables(bodies: &[RunBody<'_>], metadata: &Metadata) -> Vec<Variable> {
+pub(super) fn variables(system: &System, bodies: &[RunBody<'_>], metadata: &Metadata) -> Vec<Variable> {
     let mut all =
         vec![Variable { name: "time".to_owned(), description: "time".to_owned(), unit: "time", source: Source::Time }];
     for (i, body) in bodies.iter().enumerate() {
         inputs(i, body, &Of::body(metadata, i), &mut all);
     }
+    motors(system, &mut all);
     let mut place = 0;
     for history in histories(&COLUMNS, metadata) {
         let count = history.width(metadata);
@@ -104,7 +107,12 @@ impl Of {
     fn history(history: History<Row>, metadata: &Metadata) -> Self {
         match history.body {
             Some(body) => Self::body(metadata, body),
-            None => Self { prefix: "system.".to_owned(), words: String::new() },
+            None => match history.joint.and_then(|joint| metadata.joints.get(joint)) {
+                Some(JointMetadata { name, .. }) => {
+                    Self { prefix: format!("joints.{}.", identifier(name)), words: format!(" of the joint {name}") }
+                }
+                None => Self { prefix: "system.".to_owned(), words: String::new() },
+            },
         }
     }
 }
@@ -140,6 +148,25 @@ fn inputs(body: usize, RunBody { scene, model }: &RunBody<'_>, of: &Of, all: &mu
         };
         let description = format!("acceleration of the drive{words}, added to that of the scene");
         add("drive.acceleration".to_owned(), description, dimension.unit(), InputKind::DriveAcceleration);
+    }
+}
+
+/// A motor along each coordinate of each joint.
+fn motors(system: &System, all: &mut Vec<Variable>) {
+    for (number, joint) in system.joints.iter().enumerate() {
+        let Some(body) = joint.between.iter().find_map(End::body) else { continue };
+        for along in joint.kind.coordinates() {
+            let (what, words, unit) = match along {
+                Coordinate::Turn => ("torque", "moment about the axis", Dimension::Moment.unit()),
+                Coordinate::Slide => ("force", "force along the axis", Dimension::Force.unit()),
+            };
+            all.push(Variable {
+                name: format!("joints.{}.motor.{what}", identifier(&joint.name)),
+                description: format!("{words} of a motor in the joint {}, on the second body", joint.name),
+                unit,
+                source: Source::Input(Input { body, kind: InputKind::Motor(number, *along) }),
+            });
+        }
     }
 }
 

@@ -1,0 +1,146 @@
+"""Systems of bodies in Python: a robot arm under controllers, events on joints, states."""
+
+import math
+
+import flexframe
+import numpy as np
+import pytest
+
+LENGTH, MASS = 0.5, 4.0
+INERTIA = MASS * LENGTH**2 / 12
+GAINS = [(400.0, 40.0), (150.0, 12.0)]
+TARGETS = [1.0, -0.7]
+WEIGHT = {"kind": "gravity", "amplitude": 9.81, "direction": [0, -1, 0]}
+
+
+def link(x, loads=(WEIGHT,)):
+    inertia = [[1e-3, 0, 0], [0, INERTIA, 0], [0, 0, INERTIA]]
+    return {
+        "rigid": {"mass": MASS, "center_of_mass": [0, 0, 0], "inertia": inertia},
+        "markers": {"root": {"at": [-LENGTH / 2, 0, 0]}, "tip": {"at": [LENGTH / 2, 0, 0]}},
+        "initial": {"position": [x, 0, 0]},
+        "points": {"hand": [LENGTH / 2, 0, 0]},
+        "loads": list(loads),
+    }
+
+
+def arm(end=1.0, loads=(WEIGHT,)):
+    return {
+        "title": "arm",
+        "units": {"length": "m", "mass": "kg", "time": "s"},
+        "bodies": {"upper": link(LENGTH / 2, loads), "fore": link(1.5 * LENGTH, loads)},
+        "joints": [
+            {"name": "shoulder", "kind": "revolute", "between": ["ground", "upper.root"], "axis": [0, 0, 1]},
+            {"name": "elbow", "kind": "revolute", "between": ["upper.tip", "fore.root"], "axis": [0, 0, 1]},
+        ],
+        "time": {"end": end, "tolerance": 1e-7},
+        "output": {"interval": 0.05},
+    }
+
+
+def controller(number):
+    proportional, derivative = GAINS[number]
+    return lambda time, angle, rate: proportional * (TARGETS[number] - angle) - derivative * rate
+
+
+def rates(state):
+    """Lagrange's equations of the two links: angles against the horizontal, and their rates."""
+    first, second, first_rate, second_rate = state
+    shoulder = controller(0)(0, first, first_rate)
+    elbow = controller(1)(0, second - first, second_rate - first_rate)
+    square, weight, bend = MASS * LENGTH**2, MASS * 9.81 * LENGTH, second - first
+    mass = np.array(
+        [
+            [INERTIA + 1.25 * square, 0.5 * square * math.cos(bend)],
+            [0.5 * square * math.cos(bend), INERTIA + 0.25 * square],
+        ]
+    )
+    right = [
+        shoulder - elbow + 0.5 * square * math.sin(bend) * second_rate**2 - 1.5 * weight * math.cos(first),
+        elbow - 0.5 * square * math.sin(bend) * first_rate**2 - 0.5 * weight * math.cos(second),
+    ]
+    return np.array([first_rate, second_rate, *np.linalg.solve(mass, right)])
+
+
+# Independent reference: Lagrange's equations, in 4000 steps of RK4.
+def test_an_arm_under_controllers_moves_by_lagranges_equations():
+    system = flexframe.System(flexframe.Scene(arm()))
+    assert (set(system.bodies), system.joints) == ({"upper", "fore"}, ["shoulder", "elbow"])
+    forces = [flexframe.JointForce(name, controller(i)) for i, name in enumerate(system.joints)]
+    results = flexframe.Simulation(system, joint_forces=forces).run()
+    angles = np.column_stack([results[f"joints/{name}/angle"] for name in system.joints])
+    assert angles.shape == (21, 2)
+    state, h = np.zeros(4), 1 / 4000
+    for k in range(4001):
+        if k % 200 == 0:
+            expected = [state[0], state[1] - state[0]]
+            assert angles[k // 200] == pytest.approx(expected, abs=1e-5)
+        one = rates(state)
+        two = rates(state + h / 2 * one)
+        three = rates(state + h / 2 * two)
+        four = rates(state + h * three)
+        state = state + h / 6 * (one + 2 * two + 2 * three + four)
+    # The controllers' work is in the file.
+    assert results["joints/elbow/torque"].shape == (21,)
+    assert np.isfinite(results["joints/elbow/drive_power"]).all()
+
+
+# Closed form: without weight and forces an arm that turns as a whole does so evenly.
+def test_an_event_on_a_joint_and_a_state():
+    simulation = flexframe.Simulation(flexframe.System(flexframe.Scene(arm(loads=()))))
+    state = simulation.state()
+    assert set(state) == {"upper", "fore"}
+    for name, x in [("upper", LENGTH / 2), ("fore", 1.5 * LENGTH)]:
+        state[name]["angular_velocity"] = np.array([0.0, 0.0, 2.0])
+        state[name]["velocity"] = np.array([0.0, 2.0 * x, 0.0])
+    simulation.set_state(state)
+    simulation.add_event("half a radian", lambda row: row["joints/shoulder/angle"] - 0.5, crossing="rising")
+    reached = simulation.advance_to(0.6)
+    assert (reached.kind, reached.event) == ("event", "half a radian")
+    assert reached.time == pytest.approx(0.25, abs=1e-7)
+    reached = simulation.advance_to(0.63)
+    assert (reached.kind, reached.time) == ("stop", 0.63)
+    row = simulation.observe()
+    assert row["joints/shoulder/rate"] == pytest.approx(2.0, abs=1e-6)
+    hand = 2 * LENGTH * np.array([math.cos(1.26), math.sin(1.26), 0.0])
+    assert row["bodies/fore/position"] == pytest.approx(hand * 0.75, abs=1e-6)
+    rows = list(simulation)
+    assert [round(row.time / 0.05) for row in rows] == list(range(13, 21))
+
+
+# Closed form: 4/3 a + 1/2 b = 1/2 a + 1/3 b = 3 N l / (m l²) are the accelerations of straight links whose end is pushed across: the
+# shoulder goes back.
+def test_a_load_on_a_body_of_a_system_is_a_law():
+    seen = []
+
+    def push(motion):
+        seen.append(motion.time)
+        return [0.0, 3.0, 0.0]
+
+    system = flexframe.System(flexframe.Scene(arm(end=0.1, loads=())))
+    pushed = flexframe.Simulation(system, {"fore": [flexframe.Force("hand", push)]}).run()
+    push_over_inertia = 3.0 / (MASS * LENGTH)
+    first = push_over_inertia * (1 / 3 - 1 / 2) / (4 / 9 - 1 / 4)
+    assert seen and pushed["joints/shoulder/angle"][-1] == pytest.approx(0.5 * first * 0.1**2, rel=1e-2)
+
+
+def test_what_does_not_fit_is_refused():
+    system = flexframe.System(flexframe.Scene(arm()))
+    for force, words in [
+        (flexframe.JointForce("wrist", controller(0)), "wrist"),
+        (flexframe.JointForce("elbow", controller(0), along="slide"), "revolute"),
+    ]:
+        with pytest.raises(flexframe.InputError, match=words):
+            flexframe.Simulation(system, joint_forces=[force])
+    with pytest.raises(flexframe.InputError, match="names of bodies"):
+        flexframe.Simulation(system, [flexframe.Force("hand", lambda motion: [0, 0, 0])])
+    with pytest.raises(flexframe.InputError, match="thigh"):
+        flexframe.Simulation(system, {"thigh": []})
+    with pytest.raises(ValueError, match="no torque"):
+
+        def broken(time, angle, rate):
+            if time > 0.3:
+                raise ValueError("no torque")
+            return 0.0
+
+        flexframe.Simulation(system, joint_forces=[flexframe.JointForce("elbow", broken)]).run()
