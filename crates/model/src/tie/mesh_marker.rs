@@ -26,7 +26,7 @@ const MOST_NODES: usize = 100;
 pub(crate) struct MeshMarker {
     name: String,
     axes: Matrix3<f64>,
-    whole: Place,
+    pub(crate) whole: Place,
     /// Where the ends of its joints are several places: these, each with its part in the whole.
     parts: Vec<(f64, Place)>,
     /// Forces on the parts that are put on together (parts × patterns); none where each part has its own.

@@ -22,7 +22,7 @@ pub(crate) struct Place {
     /// The part of each node in the mean; the sum is 1.
     pub weights: Vec<f64>,
     /// How the material there is turned, where the mesh tells.
-    rotation: Option<Rotation>,
+    pub rotation: Option<Rotation>,
     pub unknown_turns: UnknownTurns,
     /// Mesh axes.
     pub position: Vector3<f64>,
