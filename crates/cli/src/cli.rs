@@ -9,6 +9,7 @@ use std::time::Duration;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, MAX_FRAMES, animate, animate_results};
 use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds};
+use flexframe::check::{self, CheckRows};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, FailureReport, Kind};
@@ -97,6 +98,18 @@ enum Command {
         #[command(flatten)]
         files: FileArgs,
         /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Check rows of a run against the full nonlinear body of its mesh: how wrong the displacements and the frequencies are, and why.
+    Check {
+        /// The results file, such as out/plate/plate.h5, or the unfinished one of a run. Its meshes have to be where they were.
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// Numbers of the rows, from 0 [default: those where a model is most likely to be wrong].
+        #[arg(long, value_name = "N,…", value_delimiter = ',')]
+        rows: Vec<usize>,
+        /// Print the report as JSON, for scripts, and errors as JSON on standard error.
         #[arg(long)]
         json: bool,
     },
@@ -450,6 +463,13 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                 signals.heard(p);
                 bar.run(p);
             })?;
+            drop(bar);
+            output::print(&report, json)
+        }
+        Command::Check { file, rows, json } => {
+            GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
+            let rows = if rows.is_empty() { CheckRows::Worst } else { CheckRows::Given(rows) };
+            let report = check::check(&file, &builder, &rows, |p| bar.check(p))?;
             drop(bar);
             output::print(&report, json)
         }

@@ -32,7 +32,8 @@ pub mod report;
 mod rows;
 pub mod surface;
 pub use commands::{
-    advise, animation, campbell, cost, export, fmu, html_report, mode_shapes, modes, new_scene, paper, run, sweep,
+    advise, animation, campbell, check, cost, export, fmu, html_report, mode_shapes, modes, new_scene, paper, run,
+    sweep,
 };
 pub use files::{given_file, outputs, write_error};
 pub use rows::{columns, peak_stress, row};

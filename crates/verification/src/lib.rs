@@ -2,5 +2,6 @@
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
+pub mod check;
 pub mod nonlinear;
 pub mod stability;

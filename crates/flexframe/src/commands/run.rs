@@ -27,7 +27,7 @@ use std::time::Instant;
 use dynamics::{Initial, Rows, SystemSetup, SystemSimulation};
 use model::{BuildError, BuildProgress, Builder, Model, StartError, Tied, tie};
 use results::{Expected, Results, Resumed, Writer, unfinished};
-use scene::{Scene, System};
+use scene::{Scene, SceneError, System};
 
 pub use balances::Balances;
 pub(crate) use balances::Monitor;
@@ -185,8 +185,8 @@ pub fn resume(
     recorder.follow(started, settings, progress)
 }
 
-/// The system of a run that is to go on, with the bodies that the run has; `None` where one of them is not there.
-fn system_of(results: &Results) -> Result<Option<System>, RunError> {
+/// The system of a run, with the bodies that the run has; `None` where one of them is not there.
+pub(crate) fn system_of(results: &Results) -> Result<Option<System>, SceneError> {
     let metadata = &results.metadata;
     let system = System::parse(&metadata.scene_text, scene_file::to_path(&metadata.scene_file))?;
     let are_all = system.bodies.len() == metadata.bodies.len()

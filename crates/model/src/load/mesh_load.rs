@@ -335,7 +335,11 @@ impl MeshLoad {
             Action::Force { force: vector, .. }
             | Action::Weight { force: vector, .. }
             | Action::Moment { moment: vector, .. } => {
-                if self.follows { *vector } else { attitude.to_body(vector) }
+                if self.follows {
+                    *vector
+                } else {
+                    attitude.to_body(vector)
+                }
             }
             Action::Field { .. } => Vector3::zeros(),
         }

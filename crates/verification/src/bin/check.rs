@@ -1,0 +1,27 @@
+//! `check FILE [--overwrite]`: holds the check by the full body against the truth and writes the page.
+
+use std::process::ExitCode;
+
+use verification::check::page;
+use whole_file::{Outputs, write_whole};
+
+fn main() -> ExitCode {
+    let (options, arguments): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).partition(|argument| argument == "--overwrite");
+    let [path] = arguments.as_slice() else {
+        eprintln!("usage: check FILE [--overwrite]");
+        return ExitCode::FAILURE;
+    };
+    let written = Outputs::new(Vec::new(), !options.is_empty())
+        .claim(&[path])
+        .map_err(|error| error.to_string())
+        .and_then(|()| page(|line| eprintln!("{line}")))
+        .and_then(|page| write_whole(path, page).map_err(|error| format!("{path}: {error}")));
+    match written {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
