@@ -87,6 +87,9 @@ enum Command {
         /// Allow a results file of more than 1 GB.
         #[arg(long)]
         large: bool,
+        /// Leave out the check of a row by the full nonlinear body at the end (see `flexframe check`).
+        #[arg(long)]
+        no_check: bool,
         #[command(flatten)]
         solver: SolverInput,
     },
@@ -391,7 +394,7 @@ pub fn main() -> ExitCode {
 }
 
 fn settings(signals: &Signals, overwrite: bool, builder: &Builder) -> RunSettings {
-    RunSettings { overwrite, large: false, rows_alone: false, stop: signals.stop(), builder: builder.clone() }
+    RunSettings { overwrite, stop: signals.stop(), builder: builder.clone(), ..RunSettings::default() }
 }
 
 fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Error>> {
@@ -441,7 +444,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             clap_complete::generate(shell, &mut Cli::command(), "flexframe", &mut script);
             Ok(output::written(std::io::stdout().write_all(&script))?)
         }
-        Command::Run { scene: SceneArgs { scene, json }, output, files, large, solver } => {
+        Command::Run { scene: SceneArgs { scene, json }, output, files, large, no_check, solver } => {
             output::require_file("--output", output.as_deref())?;
             let system = scene.read_system()?;
             system.bodies.iter().for_each(tell_doubts);
@@ -449,7 +452,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                 return write_only(&system.bodies[0], &builder, &to, files.overwrite, bar);
             }
             let folder = folder(&system.bodies[0], output)?;
-            let settings = RunSettings { large, ..settings(&signals, files.overwrite, &builder) };
+            let settings = RunSettings { large, check: !no_check, ..settings(&signals, files.overwrite, &builder) };
             let (_, report) = run::run(&system, &folder, &settings, |p| {
                 signals.heard(p);
                 bar.run(p);

@@ -79,6 +79,7 @@ impl Bar {
             RunProgress::Built => {}
             RunProgress::Estimate(estimate) if !self.is_silent => self.bar.suspend(|| output::show_estimate(&estimate)),
             RunProgress::Estimate(_) => {}
+            RunProgress::Check(progress) => self.check(progress),
             RunProgress::Motion(part) => self.show("stepping", Some(((10_000.0 * part) as u64, 10_000))),
         }
     }

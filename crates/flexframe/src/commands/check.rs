@@ -9,6 +9,7 @@ mod rows;
 
 use std::path::Path;
 
+use modal::SolveStats;
 use model::{BuildProgress, Builder, Checker, Model};
 use nonlinear::StateErrorSettings;
 use results::Results;
@@ -43,6 +44,15 @@ pub enum CheckProgress {
         /// All.
         total: usize,
     },
+}
+
+/// Most unknowns of a body whose check costs no more than its reduction did.
+const CHEAP: usize = 60_000;
+
+/// True if the check of a row costs no more than the modes of the body did: not where these needed no factor, or another program found
+/// them.
+pub(crate) fn is_cheap(stats: &SolveStats) -> bool {
+    stats.cycles == 0 && stats.engine.is_none() && stats.unknowns <= CHEAP
 }
 
 /// Checks a results file, finished or not.

@@ -32,6 +32,9 @@ impl fmt::Display for RunReport {
             writeln!(f, "  motion   {} steps, {:.0} steps per second", self.steps, self.steps_per_second)?;
             writeln!(f, "  energy   {} {} at the end", quantity(self.system.final_energy), units.energy())?;
         }
+        if let Some(check) = &self.check {
+            check.write_in_run(f)?;
+        }
         writeln!(f, "  time     {}", self.times)?;
         write!(f, "  results  {} ({} rows)", self.results.display(), self.rows)?;
         for warning in &self.warnings {
