@@ -99,7 +99,7 @@ nonlinear:
 
 # The estimate of `flexframe check` over the truth, on bodies, loads, spins and models: docs/evidence/check.md (a minute).
 check-table:
-    cargo run --release --quiet --package verification --bin check -- docs/evidence/check.md --overwrite
+    cargo run --quiet --package verification --bin check -- docs/evidence/check.md --overwrite
 
 # Steps a second of every scheme on one core, steps of chains of bodies, and what each effect costs per step and in set-up.
 bench:

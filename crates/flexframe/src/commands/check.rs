@@ -115,7 +115,7 @@ pub fn check_run(
             continue;
         }
         if model.body.flexible() == 0 {
-            checked.push(not_checked("it is rigid"));
+            checked.push(not_checked(report::RIGID));
             continue;
         }
         let full = builder.full(scene, |p| progress(CheckProgress::Build(p)))?;

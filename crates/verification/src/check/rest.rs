@@ -13,12 +13,7 @@ const CHANGE: f64 = 1e-11;
 /// The state of rest of a model, with the spin of its start or of its drive; `None` where there is none.
 pub fn rest(scene: &Scene, model: &Model) -> Option<(ConservativeBody, MotionState)> {
     let initial = model.initial(scene);
-    let body = ConservativeBody::new(
-        &model.body,
-        model.damping_ratios(),
-        model.loads().to_vec(),
-        &model.physics,
-    );
+    let body = ConservativeBody::new(&model.body, model.damping_ratios(), model.loads().to_vec(), &model.physics);
     let body = body.ok()?.beginning_at(&initial);
     let nf = model.body.flexible();
     let at = |q: &[f64]| MotionState {

@@ -53,6 +53,9 @@ impl BodyCheck {
     }
 }
 
+/// The reason that a rigid body is not checked.
+pub(super) const RIGID: &str = "it is rigid";
+
 /// The limit of the check, in words.
 const UNSEEN: &str = "not seen by it: phase, and the inertia of what the model leaves out";
 
@@ -84,9 +87,7 @@ impl CheckReport {
             let name = if self.bodies.len() > 1 { format!("body {}: ", body.name) } else { String::new() };
             match (body.worst(), &body.not_checked) {
                 (Some(row), _) => writeln!(f, "  check    {name}{}", row.in_words(&self.units))?,
-                (None, Some(why)) if body.name.is_empty() || self.bodies.len() > 1 => {
-                    writeln!(f, "  check    {name}none: {why}")?;
-                }
+                (None, Some(why)) if why != RIGID => writeln!(f, "  check    {name}none: {why}")?,
                 (None, _) => {}
             }
         }
