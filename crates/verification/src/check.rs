@@ -4,10 +4,14 @@
 //! coordinates; the truth is the full body under the same loads, by the mixed iteration to its end.
 
 mod cases;
+mod motions;
 mod page;
 mod pairs;
+mod random;
 mod rest;
 
-pub use cases::{Case, MODELS, cases};
+pub use cases::{Case, MODELS, Truth, cases};
+pub use motions::{LetGo, MotionRow, let_go, motions};
 pub use page::page;
-pub use pairs::{Pair, pairs};
+pub use pairs::{Pair, pair, pairs};
+pub use random::random_cases;

@@ -73,7 +73,7 @@ fn a_check_needs_the_mesh_of_the_run() {
     let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
     let checked = || check(&report.results, &Builder::default(), &CheckRows::Worst, |_| ());
     assert!(checked().is_ok());
-    fs::copy(root().join("crates/verification/meshes/arc.msh"), folder.path().join("column.msh")).unwrap();
+    fs::copy(root().join("crates/verification/meshes/rod.msh"), folder.path().join("column.msh")).unwrap();
     let changed = checked().unwrap_err().to_string();
     assert!(changed.contains("column.h5"), "{changed}");
     fs::remove_file(folder.path().join("column.msh")).unwrap();

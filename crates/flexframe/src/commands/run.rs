@@ -42,7 +42,9 @@ pub use settings::{RunProgress, RunSettings};
 pub use tied_report::{AssembledReport, TiedReport};
 pub use watch::{Watch, Watched};
 
-use crate::commands::check::{self, CheckError, CheckRows};
+use crate::commands::check::checked_rows::{check_run, is_cheap};
+use crate::commands::check::error::CheckError;
+use crate::commands::check::rows::CheckRows;
 use crate::drawn::stored_shapes;
 use crate::files::outputs::outputs_of_scenes;
 pub use crate::files::results_path::results_path;
@@ -90,14 +92,14 @@ fn check_by_full_body(
     report: &mut RunReport,
     mut progress: impl FnMut(RunProgress),
 ) {
-    let is_cheap = |model: &Model| model.meshed.as_ref().is_none_or(|meshed| check::is_cheap(&meshed.modes.stats));
-    if !models.iter().all(is_cheap) {
+    let may_be = |model: &Model| model.meshed.as_ref().is_none_or(|meshed| is_cheap(&meshed.modes.stats));
+    if !models.iter().all(may_be) {
         return;
     }
     let started = Instant::now();
     let checked = Results::open(&report.results, &COLUMNS).map_err(CheckError::from).and_then(|results| {
         let (file, builder, rows) = (&report.results, &settings.builder, CheckRows::First);
-        check::check_run(file, &results, system, models, builder, &rows, |p| progress(RunProgress::Check(p)))
+        check_run(file, &results, system, models, builder, &rows, |p| progress(RunProgress::Check(p)))
     });
     report.times.add("check", started.elapsed());
     match checked {

@@ -14,12 +14,25 @@ pub struct Case {
     /// What holds, drives and loads it. `SPIN` stands for a spin of `parameter` of the first frequency, `FORCE` for a force
     /// that would bend a linear body by about that part of a metre.
     pub text: String,
-    /// The part that `SPIN` and `FORCE` stand for.
+    /// The part that `SPIN`, `FORCE` and `GRAVITY` stand for,
     pub parameter: f64,
+    /// each times its own.
+    pub parts: [f64; 3],
     /// The point that is compared.
     pub tip: [f64; 3],
     /// A free body that spins by itself about the axis z.
     pub spins: bool,
+    /// Where the truth comes from.
+    pub truth: Truth,
+}
+
+/// The full body that a model is compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Truth {
+    /// Its rest under the loads and the spin, from the undeformed body.
+    Rest,
+    /// That under the accelerations of the row, by the iteration of the check to its end: a drive that speeds up leaves no rest.
+    OfRow,
 }
 
 /// Names and scene keys of the models: without stiffening, with stiffening by stress, with large modes.
@@ -29,7 +42,7 @@ pub const MODELS: [(&str, &str, &str); 3] = [
     ("large modes", "large = 2\n", "geometric_stiffening = true\nlarge_deflection = true\n"),
 ];
 
-const SOFT: Material = Material { young_modulus: 7e7, poisson_ratio: 0.3, density: 1000.0 };
+pub(super) const SOFT: Material = Material { young_modulus: 7e7, poisson_ratio: 0.3, density: 1000.0 };
 
 /// Held at its root.
 const CLAMP: &str = "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n";
@@ -50,7 +63,8 @@ pub fn cases() -> Vec<Case> {
     let mut add = |name: &str, mesh, text: String, tip, spins, parameters: &[f64]| {
         for parameter in parameters {
             let (name, text, parameter) = (name.to_owned(), text.clone(), *parameter);
-            cases.push(Case { name, mesh, material: SOFT, text, parameter, tip, spins });
+            let parts = [1.0, 1.0, 0.6];
+            cases.push(Case { name, mesh, material: SOFT, text, parameter, parts, tip, spins, truth: Truth::Rest });
         }
     };
     let end = [1.0, 0.0, 0.0];

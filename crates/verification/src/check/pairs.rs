@@ -2,10 +2,10 @@
 
 use model::{Builder, Checker};
 use nalgebra::Vector3;
-use nonlinear::{EquilibriumSettings, StateErrorSettings, equilibrium, state_error};
+use nonlinear::{EquilibriumSettings, NonlinearError, StateErrorSettings, equilibrium, state_error};
 use scene::Scene;
 
-use super::cases::{Case, MODELS};
+use super::cases::{Case, MODELS, Truth};
 use super::rest::rest;
 use crate::nonlinear::bodies::mesh_path;
 
@@ -30,59 +30,80 @@ pub struct Pair {
     pub factors: usize,
 }
 
-/// The pairs of a case; those whose model finds no rest are left out, and named in `left_out`.
+/// The pairs of a case, in all models.
+///
+/// # Errors
+/// As [`pair`].
+pub fn pairs(case: &Case, left_out: &mut Vec<String>) -> Result<Vec<Pair>, String> {
+    let found = (0..MODELS.len()).map(|model| pair(case, model, left_out)).collect::<Result<Vec<_>, _>>()?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// The pair of a case and a model; one without a rest is left out, and named in `left_out`.
 ///
 /// # Errors
 /// Scenes that are refused, and factors that cannot be made, in words.
-pub fn pairs(case: &Case, left_out: &mut Vec<String>) -> Result<Vec<Pair>, String> {
-    let mut found = Vec::new();
+pub fn pair(case: &Case, model: usize, left_out: &mut Vec<String>) -> Result<Option<Pair>, String> {
+    let (name, modes, effects) = MODELS[model];
     let builder = Builder::default();
     let base = build(&builder, case, ["", ""], [0.0; 3])?.1;
     let omega = base.body.circular_frequencies[0];
     // A force at the end of a bar with a quarter of its mass there.
-    let force = case.parameter * omega * omega * 0.25 * base.body.mass;
-    let spin = case.parameter * omega;
-    for (name, modes, effects) in MODELS {
-        let numbers = [spin, force, 0.6 * case.parameter * omega * omega];
-        let (scene, model) = build(&builder, case, [modes, effects], numbers)?;
-        let words = |error: &dyn std::fmt::Display| format!("{} in {name}: {error}", case.name);
-        let Some((moving, motion)) = rest(&scene, &model) else {
-            left_out.push(format!("{} ({}), {name}: it finds no rest", case.name, case.parameter));
-            continue;
-        };
-        let full = builder.full(&scene, |_| ()).map_err(|error| words(&error))?.ok_or("no elements")?;
-        let body = full.body().map_err(|error| words(&error))?;
-        let checker = Checker::new(&full, &scene, &model, &body).map_err(|error| words(&error))?;
-        let observed = moving.observed_at(&motion, &[]).map_err(|error| words(&error))?;
-        let state = checker.state(&observed, &[]).map_err(|error| words(&error))?;
-        let at_rest = body.at_rest().map_err(|error| words(&error))?;
-        let by = |settings: StateErrorSettings| state_error(&body, &at_rest, &state, &settings);
+    let force = omega * omega * 0.25 * base.body.mass;
+    let [spin, push, gravity] = case.parts.map(|part| part * case.parameter);
+    let numbers = [spin * omega, push * force, gravity * omega * omega];
+    let (scene, model) = build(&builder, case, [modes, effects], numbers)?;
+    let words = |error: &dyn std::fmt::Display| format!("{} in {name}: {error}", case.name);
+    let Some((moving, motion)) = rest(&scene, &model) else {
+        left_out.push(format!("{} ({}), {name}: it finds no rest", case.name, case.parameter));
+        return Ok(None);
+    };
+    let full = builder.full(&scene, |_| ()).map_err(|error| words(&error))?.ok_or("no elements")?;
+    let body = full.body().map_err(|error| words(&error))?;
+    let checker = Checker::new(&full, &scene, &model, &body).map_err(|error| words(&error))?;
+    let observed = moving.observed_at(&motion, &[]).map_err(|error| words(&error))?;
+    let state = checker.state(&observed, &[]).map_err(|error| words(&error))?;
+    let at_rest = body.at_rest().map_err(|error| words(&error))?;
+    let by = |settings: StateErrorSettings| state_error(&body, &at_rest, &state, &settings);
+    let found = match case.truth {
         // From the undeformed body, whatever the model says.
-        let settings = EquilibriumSettings::default();
-        let truth = equilibrium(&body, &state.forces, &state.omega_body, None, &settings);
-        let truth = truth.map_err(|error| words(&error))?;
-        let true_error: Vec<f64> = truth.displacement.iter().zip(&state.displacement).map(|(t, u)| t - u).collect();
-        let two = StateErrorSettings { small: 0.0, settled: 0.0, most_factors: 2 };
-        let estimate = by(two).map_err(|error| words(&error))?;
-        let own = by(StateErrorSettings::default()).map_err(|error| words(&error))?;
-        let nodes = full_tip(&body, case.tip);
-        let at = |list: &[f64]| Vector3::from_column_slice(&list[3 * nodes..3 * nodes + 3]).norm();
-        let of_truth = &truth.displacement;
-        let true_size = body.mass_norm(of_truth);
-        let own_truth: Vec<f64> = state.displacement.iter().zip(&own.error).map(|(u, e)| u + e).collect();
-        let extent = body.mesh().size().into_iter().fold(0.0, f64::max);
-        found.push(Pair {
-            case: case.name.clone(),
-            parameter: case.parameter,
-            model: name,
-            deflection: at(of_truth) / extent,
-            error: at(&true_error) / at(of_truth),
-            estimates: [&estimate.first, &estimate.error].map(|e| at(e) / at(&true_error)),
-            stated: [body.mass_norm(&true_error) / true_size, body.mass_norm(&own.error) / body.mass_norm(&own_truth)],
-            factors: truth.factors,
-        });
-    }
-    Ok(found)
+        Truth::Rest => {
+            let settings = EquilibriumSettings::default();
+            equilibrium(&body, &state.forces, &state.omega_body, None, &settings)
+                .map(|rest| (rest.displacement, rest.factors, true))
+        }
+        Truth::OfRow => by(StateErrorSettings::converged()).map(|row| {
+            let sum = row.error.iter().zip(&state.displacement).map(|(e, u)| u + e).collect();
+            (sum, row.factors, row.last_change < 1e-3)
+        }),
+    };
+    let (of_truth, factors) = match found {
+        Ok((truth, factors, true)) => (truth, factors),
+        Ok(_) | Err(NonlinearError::NoEquilibrium { .. } | NonlinearError::NotFinite { .. }) => {
+            left_out.push(format!("{} ({}), {name}: the full body finds no rest", case.name, case.parameter));
+            return Ok(None);
+        }
+        Err(error) => return Err(words(&error)),
+    };
+    let true_error: Vec<f64> = of_truth.iter().zip(&state.displacement).map(|(t, u)| t - u).collect();
+    let two = StateErrorSettings { small: 0.0, settled: 0.0, most_factors: 2 };
+    let estimate = by(two).map_err(|error| words(&error))?;
+    let own = by(StateErrorSettings::default()).map_err(|error| words(&error))?;
+    let nodes = full_tip(&body, case.tip);
+    let at = |list: &[f64]| Vector3::from_column_slice(&list[3 * nodes..3 * nodes + 3]).norm();
+    let true_size = body.mass_norm(&of_truth);
+    let own_truth: Vec<f64> = state.displacement.iter().zip(&own.error).map(|(u, e)| u + e).collect();
+    let extent = body.mesh().size().into_iter().fold(0.0, f64::max);
+    Ok(Some(Pair {
+        case: case.name.clone(),
+        parameter: case.parameter,
+        model: name,
+        deflection: at(&of_truth) / extent,
+        error: at(&true_error) / at(&of_truth),
+        estimates: [&estimate.first, &estimate.error].map(|e| at(e) / at(&true_error)),
+        stated: [body.mass_norm(&true_error) / true_size, body.mass_norm(&own.error) / body.mass_norm(&own_truth)],
+        factors,
+    }))
 }
 
 /// The node nearest to a point.

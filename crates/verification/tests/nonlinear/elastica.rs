@@ -257,12 +257,11 @@ fn a_mode_that_bending_draws_in_is_refused_as_a_large_one() {
     }
 }
 
-/// Independent reference: the elastica by shooting. Linear modes are off by up to 12 %; the check of their last row has the true
-/// place of the tip.
+/// Independent reference: the elastica by shooting, and the linear beam, α/3. The check of a row of linear modes has the true place of
+/// the tip, and knows how far they are off.
 #[test]
 fn the_check_of_linear_modes_knows_where_the_tip_is() {
-    // Measured: -0.02, -0.03 %. The linear modes are off by 1.7, 11.9 %.
-    for (alpha, off) in [(0.31, 0.017), (0.9, 0.119)] {
+    for alpha in [0.31, 0.9] {
         let text = format!(
             "[modes]\nflexible = 8\ndamping_ratio = 0.7\n[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n\
              [[loads]]\nkind = \"force\"\nat = [1.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = {:e}\n\
@@ -289,10 +288,12 @@ fn the_check_of_linear_modes_knows_where_the_tip_is() {
         let point = &found.points[0];
         println!("{alpha}: {found:?}");
         assert!((point.displacement[2] / exact - 1.0).abs() < 2e-3, "{} {exact}", point.displacement[2]);
-        assert!((point.error[2] / exact / off - 1.0).abs() < 0.05, "{}", point.error[2] / exact);
+        let off = alpha / 3.0 / exact - 1.0;
+        assert!((point.error[2] / exact - off).abs() < 2e-3, "{} {off}", point.error[2] / exact);
         assert!(found.is_settled && found.negative_directions == Some(0));
         assert_eq!(found.mends, [Mend::LargeModes]);
-        assert_eq!(found.frequencies.len(), 4);
+        // About the bent column: the tests above have them.
+        assert!(found.frequencies.len() == 4 && found.frequencies.iter().all(|f| f.error.abs() < 0.1));
     }
 }
 

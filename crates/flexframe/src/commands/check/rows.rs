@@ -7,7 +7,18 @@ use model::Model;
 use results::{BodyResults, Results};
 use rigid_kin::Attitude;
 
-use super::{CheckError, CheckRows};
+use super::error::CheckError;
+
+/// Which rows are checked.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CheckRows {
+    /// The rows at which a model is most likely to be wrong: the largest strain energy, the largest stress, the largest spin, the last.
+    Worst,
+    /// Of these the first alone.
+    First,
+    /// Rows by their numbers, from 0.
+    Given(Vec<usize>),
+}
 
 /// The rows of a body that are checked, each with the reasons.
 pub(super) fn chosen(

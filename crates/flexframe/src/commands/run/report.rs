@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::body_report::BodyRunReport;
 use super::estimate::Estimate;
 use super::tied_report::TiedReport;
-use crate::commands::check::CheckReport;
+use crate::commands::check::report::CheckReport;
 use crate::files::json;
 use crate::report::{Times, list_of_bodies};
 use crate::rows::row::Row;

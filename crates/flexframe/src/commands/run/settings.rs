@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use model::{BuildProgress, Builder};
 
 use super::estimate::Estimate;
-use crate::commands::check::CheckProgress;
+use crate::commands::check::checked_rows::CheckProgress;
 
 /// How far a run has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
