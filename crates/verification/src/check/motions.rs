@@ -39,8 +39,9 @@ pub struct MotionRow {
     pub frequency: f64,
 }
 
-/// Periods, steps of a period of the nonlinear body and of the model, and rows of a period.
+/// Periods, modes, steps of a period of the nonlinear body and of the model, and rows of a period.
 const PERIODS: usize = 4;
+const MODES: usize = 8;
 const STEPS: usize = 200;
 const FINE: usize = 10;
 const ROWS: usize = 8;
@@ -71,16 +72,34 @@ pub fn let_go(case: &LetGo) -> Result<Vec<MotionRow>, String> {
     let clamp = if case.clamped { "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n" } else { "" };
     let text = |initial: &str, end: f64, step: f64, rows: &str| {
         format!(
-            "[modes]\nflexible = 8\nstatic_correction = false\n{}{clamp}{initial}[effects]\nrefuse = false\n{}\
+            "[modes]\nflexible = {MODES}\nstatic_correction = false\n{}{clamp}{initial}[effects]\nrefuse = false\n{}\
              {rows}[time]\nend = {end:e}\nstep = {step:e}\n",
             case.modes, case.effects
         )
     };
     let (_, model) = built(case.mesh, case.material, &text("", 1e-3, 1e-3, "")).map_err(|error| words(&error))?;
     let period = std::f64::consts::TAU / model.body.circular_frequencies[0];
-    let q = case.deflection / peaks(&shape(&model, 0), 0)[0];
-    let mut start = vec![0.0; 8];
-    start[0] = q;
+    let held = |x: Vector3<f64>| case.clamped && x.x < 1e-9;
+    let mesh = bodies::mesh(case.mesh).map_err(|error| words(&error))?;
+    let solid = Solid::new(mesh, case.material, held).map_err(|error| words(&error))?;
+    // Held in its first mode, and at rest in all others.
+    let phi = shape(&model, 0);
+    let mut shapes = vec![phi.clone()];
+    if let Some(meshed) = model.meshed.as_ref().filter(|_| !case.clamped) {
+        shapes.extend(meshed.modes.rigid.shapes.col_iter().map(|column| column.iter().copied().collect()));
+    }
+    let mut amounts = vec![0.0; shapes.len()];
+    amounts[0] = case.deflection / peaks(&phi, 0)[0];
+    let omega = model.body.circular_frequencies[0];
+    let u = solid.held_in_modes(&shapes, &amounts, 0.3 * omega * omega, 8).map_err(|error| words(&error))?;
+    // The coordinates of the model whose displacements have the same parts along its modes.
+    let along = |k: usize| -> f64 { solid.momentum(&shape(&model, k)).iter().zip(&u).map(|(m, u)| m * u).sum() };
+    let wanted: Vec<f64> = (0..MODES).map(along).collect();
+    let mut start = wanted.clone();
+    for _ in 0..10 {
+        let found = model.coordinates(&start);
+        start.iter_mut().zip(wanted.iter().zip(found)).for_each(|(q, (wanted, found))| *q += wanted - found);
+    }
     let initial = format!("[initial]\nmodal_displacement = {start:?}\n");
     let h = period / STEPS as f64;
     let end = PERIODS as f64 * period;
@@ -89,17 +108,12 @@ pub fn let_go(case: &LetGo) -> Result<Vec<MotionRow>, String> {
     let (scene, model) = built(case.mesh, case.material, &text).map_err(|error| words(&error))?;
     let observed = rows(&scene, &model).map_err(|error| words(&error))?;
 
-    let held = |x: Vector3<f64>| case.clamped && x.x < 1e-9;
-    let mesh = bodies::mesh(case.mesh).map_err(|error| words(&error))?;
-    let solid = Solid::new(mesh, case.material, held).map_err(|error| words(&error))?;
-    // From the displacements of the model, those of second order among them.
     let full = Builder::default().full(&scene, |_| ()).map_err(|error| words(&error))?.ok_or("no elements")?;
     let body = full.body().map_err(|error| words(&error))?;
     let checker = Checker::new(&full, &scene, &model, &body).map_err(|error| words(&error))?;
     let on_nodes = |row: &dynamics::Observation| {
         checker.state(row, &[]).map(|state| state.displacement).map_err(|error| words(&error))
     };
-    let u = on_nodes(&observed[0])?;
     let largest = body.mass_norm(&u);
     let state = NodalState { time: 0.0, v: vec![0.0; u.len()], u };
     let mut motion = Motion::new(&solid, state, h, |_, u: &[f64]| vec![0.0; u.len()]);
