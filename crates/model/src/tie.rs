@@ -7,5 +7,5 @@ mod islands;
 pub(crate) mod mesh_marker;
 mod pairs;
 mod patterns;
-mod place;
+pub(crate) mod place;
 pub(crate) mod tied;

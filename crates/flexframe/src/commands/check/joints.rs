@@ -3,7 +3,7 @@
 use model::{MarkerForce, Model};
 use nalgebra::Vector3;
 use results::Results;
-use scene::{End, System};
+use scene::{End, System, Tie};
 
 use super::rows;
 
@@ -20,6 +20,15 @@ pub(super) fn unknown(system: &System, body: usize) -> Option<&'static str> {
     let with_effort = |joint: &&scene::Joint| joint.spring.is_some() || joint.motor.is_some();
     if system.joints.iter().filter(with_effort).any(|joint| touches(&joint.between)) {
         return Some("a joint with a spring or a motor acts on it, whose force is not told apart in the results file");
+    }
+    let has_several = |end: &End| match end {
+        End::Body { body: other, marker } if *other == body => {
+            system.bodies[body].markers.get(*marker).is_some_and(|marker| marker.tie != Tie::Mean)
+        }
+        _ => false,
+    };
+    if system.joints.iter().flat_map(|joint| &joint.between).any(has_several) {
+        return Some("a joint holds it at several places, whose forces are not told apart in the results file");
     }
     None
 }
