@@ -97,6 +97,10 @@ nonlinear:
     mkdir -p docs/evidence/nonlinear
     cargo run --release --quiet --package verification --bin nonlinear -- docs/evidence/nonlinear --overwrite
 
+# The estimate of `flexframe check` over the truth, on bodies, loads, spins and models: docs/evidence/check.md (a minute).
+check-table:
+    cargo run --quiet --package verification --bin check -- docs/evidence/check.md --overwrite
+
 # Steps a second of every scheme on one core, steps of chains of bodies, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package dynamics --bench steps

@@ -6,7 +6,9 @@
 
 use std::error::Error;
 
-use flexframe::dynamics::{Crossing, Event, History, PointForce, PointShapes, Reached, Rows, Simulation, StepControl};
+use flexframe::dynamics::{
+    Crossing, Event, History, Observation, PointForce, PointShapes, Reached, Rows, Simulation, StepControl,
+};
 use flexframe::modal::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::nalgebra::{Matrix3, Vector3};
 
@@ -32,10 +34,12 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
         .point(at(Vector3::new(0.3, 0.1, -0.2)))
         .rows(Rows::Interval(3.0))
         .build()?;
-    let impact = simulation.add_event(Event::new("the corner is on the plane", Crossing::Falling, |now| {
-        now.points[0].displacement.z + HEIGHT
-    }))?;
-    let top = simulation.add_event(Event::new("at rest", Crossing::Falling, |now| now.velocity_global.z))?;
+    let impact =
+        simulation.add_event(Event::new("the corner is on the plane", Crossing::Falling, |now: &Observation| {
+            now.points[0].displacement.z + HEIGHT
+        }))?;
+    let top =
+        simulation.add_event(Event::new("at rest", Crossing::Falling, |now: &Observation| now.velocity_global.z))?;
 
     let mut times = [0.0; 2];
     loop {

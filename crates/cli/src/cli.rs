@@ -9,6 +9,7 @@ use std::time::Duration;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, MAX_FRAMES, animate, animate_results};
 use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds, SystemCampbellSettings};
+use flexframe::check::{self, CheckRows};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, FailureReport, Kind};
@@ -87,6 +88,9 @@ enum Command {
         /// Allow a results file of more than 1 GB.
         #[arg(long)]
         large: bool,
+        /// Leave out the check of a row by the full nonlinear body at the end (see `flexframe check`).
+        #[arg(long)]
+        no_check: bool,
         #[command(flatten)]
         solver: SolverInput,
     },
@@ -98,6 +102,18 @@ enum Command {
         #[command(flatten)]
         files: FileArgs,
         /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Check rows of a run against the full nonlinear body of its mesh: how wrong the displacements and the frequencies are, and why.
+    Check {
+        /// The results file, such as out/plate/plate.h5, or the unfinished one of a run. Its meshes have to be where they were.
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// Numbers of the rows, from 0 [default: those where a model is most likely to be wrong].
+        #[arg(long, value_name = "N,…", value_delimiter = ',')]
+        rows: Vec<usize>,
+        /// Print the report as JSON, for scripts, and errors as JSON on standard error.
         #[arg(long)]
         json: bool,
     },
@@ -383,7 +399,7 @@ pub fn main() -> ExitCode {
 }
 
 fn settings(signals: &Signals, overwrite: bool, builder: &Builder) -> RunSettings {
-    RunSettings { overwrite, large: false, rows_alone: false, stop: signals.stop(), builder: builder.clone() }
+    RunSettings { overwrite, stop: signals.stop(), builder: builder.clone(), ..RunSettings::default() }
 }
 
 fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Error>> {
@@ -433,7 +449,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             clap_complete::generate(shell, &mut Cli::command(), "flexframe", &mut script);
             Ok(output::written(std::io::stdout().write_all(&script))?)
         }
-        Command::Run { scene: SceneArgs { scene, json }, output, files, large, solver } => {
+        Command::Run { scene: SceneArgs { scene, json }, output, files, large, no_check, solver } => {
             output::require_file("--output", output.as_deref())?;
             let system = scene.read_system()?;
             system.bodies.iter().for_each(tell_doubts);
@@ -441,7 +457,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                 return write_only(&system.bodies[0], &builder, &to, files.overwrite, bar);
             }
             let folder = folder(&system.bodies[0], output)?;
-            let settings = RunSettings { large, ..settings(&signals, files.overwrite, &builder) };
+            let settings = RunSettings { large, check: !no_check, ..settings(&signals, files.overwrite, &builder) };
             let (_, report) = run::run(&system, &folder, &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
@@ -455,6 +471,13 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                 signals.heard(p);
                 bar.run(p);
             })?;
+            drop(bar);
+            output::print(&report, json)
+        }
+        Command::Check { file, rows, json } => {
+            GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
+            let rows = if rows.is_empty() { CheckRows::Worst } else { CheckRows::Given(rows) };
+            let report = check::check(&file, &builder, &rows, |p| bar.check(p))?;
             drop(bar);
             output::print(&report, json)
         }

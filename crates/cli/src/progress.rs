@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use flexframe::advise::AdviseProgress;
 use flexframe::campbell::CampbellProgress;
+use flexframe::check::CheckProgress;
 use flexframe::cost::CostProgress;
 use flexframe::run::RunProgress;
 use flexframe::sweep::SweepProgress;
@@ -78,6 +79,7 @@ impl Bar {
             RunProgress::Built => {}
             RunProgress::Estimate(estimate) if !self.is_silent => self.bar.suspend(|| output::show_estimate(&estimate)),
             RunProgress::Estimate(_) => {}
+            RunProgress::Check(progress) => self.check(progress),
             RunProgress::Motion(part) => self.show("stepping", Some(((10_000.0 * part) as u64, 10_000))),
         }
     }
@@ -93,6 +95,13 @@ impl Bar {
         match progress {
             CampbellProgress::Build(progress) => self.build(progress),
             CampbellProgress::Speeds { done, total } => self.show("spinning", Some((done as u64, total as u64))),
+        }
+    }
+
+    pub fn check(&mut self, progress: CheckProgress) {
+        match progress {
+            CheckProgress::Build(progress) => self.build(progress),
+            CheckProgress::Rows { done, total } => self.show("checking", Some((done as u64, total as u64))),
         }
     }
 

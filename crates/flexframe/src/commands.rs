@@ -3,6 +3,7 @@
 pub mod advise;
 pub mod animation;
 pub mod campbell;
+pub mod check;
 pub mod cost;
 pub mod export;
 pub mod fmu;

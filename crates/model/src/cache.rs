@@ -80,6 +80,13 @@ impl Cache {
         Self(Arc::new(Inner { folder, limit: *limit, program, notes, ..Inner::default() }))
     }
 
+    /// The same with notes of its own, for work after that which the user is told of.
+    pub(crate) fn with_own_notes(&self) -> Self {
+        let Inner { folder, limit, program, .. } = &*self.0;
+        let (folder, program) = (folder.clone(), program.clone());
+        Self(Arc::new(Inner { folder, limit: *limit, program, ..Inner::default() }))
+    }
+
     /// The user's: the folder `FLEXFRAME_CACHE`, or `flexframe` in `XDG_CACHE_HOME` or in `~/.cache`, with 4 GiB at most. None
     /// where `FLEXFRAME_CACHE` is empty, or no folder is known.
     pub fn of_user() -> Self {

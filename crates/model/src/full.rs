@@ -54,7 +54,8 @@ impl Builder {
     /// # Errors
     /// As [`Builder::build`].
     pub fn full(&self, scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<Option<FullModel>, BuildError> {
-        let Assembled::Meshed(assembled) = self.assemble(scene, progress)?.0 else { return Ok(None) };
+        let builder = Builder { cache: self.cache.with_own_notes(), ..self.clone() };
+        let Assembled::Meshed(assembled) = builder.assemble(scene, progress)?.0 else { return Ok(None) };
         if assembled.elements().is_none() {
             return Ok(None);
         }

@@ -15,6 +15,7 @@ use faer::Mat;
 use fem_tet10::Mesh;
 use frames_rk4::Paper;
 use modal::{Modes, NoCycles, ReducedBody};
+use nalgebra::Vector3;
 use scene::{MeshedBody, Scene};
 
 use crate::error::StartError;
@@ -163,6 +164,11 @@ impl Model {
         let mut xi = vec![0.0; manifold.body().flexible()];
         manifold.coordinates(modal_displacement, &mut xi);
         xi
+    }
+
+    /// From the origin to a point of the deformed body, body components.
+    pub fn arm(&self, point: &PointShapes, modal_displacement: &[f64]) -> Vector3<f64> {
+        point.position_body() + point.deformation(&self.coordinates(modal_displacement))
     }
 
     /// How the frequency of each of the first modes goes with its amplitude, of those that may bend the body far.

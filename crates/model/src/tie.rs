@@ -7,6 +7,6 @@ mod islands;
 pub(crate) mod mesh_marker;
 mod pairs;
 mod patterns;
-mod place;
+pub(crate) mod place;
 pub(crate) mod tied;
 pub(crate) mod warp;

@@ -1,4 +1,4 @@
-//! The full body: its elements, its mass, its support.
+//! The full body: its elements, its mass, its support. Eq. (K2) of `docs/method/check.md`.
 
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};

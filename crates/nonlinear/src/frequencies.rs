@@ -1,4 +1,5 @@
-//! Frequencies of small vibrations about a state of the full body, in the space of one inverse iteration from a model's shapes.
+//! Frequencies of small vibrations about a state of the full body, Eq. (K6) of `docs/method/check.md`, in the space of one
+//! inverse iteration from a model's shapes.
 //!
 //! ```text
 //! V = K*⁻¹ M D        VᵀMV q̈ + 2 VᵀM(ω×)V q̇ + Vᵀ(K* − L)V q = 0

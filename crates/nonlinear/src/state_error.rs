@@ -7,7 +7,7 @@
 //!
 //! The stress of the first step comes from the linear body in equilibrium with the forces of the state, not from its
 //! displacements: those have a false membrane stress as soon as they bend a slender body, which makes K* a hundred times too stiff
-//! or indefinite. (Eqs. (C1) to (C4) of `docs/method/check.md`.)
+//! or indefinite. (Eqs. (K4), (K5) of `docs/method/check.md`.)
 
 use faer::{Mat, MatRef};
 use fem_tet10::Stresses;

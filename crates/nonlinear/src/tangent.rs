@@ -1,4 +1,4 @@
-//! The tangent K*, factored in the space that the support allows.
+//! The tangent K*, Eq. (K3) of `docs/method/check.md`, factored in the space that the support allows.
 //!
 //! ```text
 //! K* = ∫ B(u)ᵀ C B(u) + G(S) + (M_s ⊗ m)        m = −W of a spin

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
+pub mod check;
 pub mod nonlinear;
 pub mod stability;
 pub mod systems;

@@ -1,4 +1,5 @@
-//! A St. Venant–Kirchhoff body at any displacement: stresses, internal forces, stiffness.
+//! A St. Venant–Kirchhoff body at any displacement: stresses, internal forces, stiffness. Eqs. (K1), (K3) of
+//! `docs/method/check.md`.
 //!
 //! ```text
 //! F = 1 + ∇u      E = ½ (FᵀF − 1)      δE = sym(Fᵀ ∇δu) = B(u) δu      W = ½ ∫ E:C:E dV

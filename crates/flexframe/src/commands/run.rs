@@ -25,7 +25,7 @@ use std::time::Instant;
 use dynamics::Initial;
 use model::{BuildError, BuildProgress, Builder, Model};
 use results::{Expected, Results, Resumed, Writer, unfinished};
-use scene::{Scene, System};
+use scene::{Scene, SceneError, System};
 
 pub use balances::Balances;
 pub(crate) use balances::Monitor;
@@ -40,6 +40,9 @@ pub use settings::{RunProgress, RunSettings};
 pub use tied_report::{AssembledReport, TiedReport};
 pub use watch::{Watch, Watched};
 
+use crate::commands::check::checked_rows::{check_run, is_cheap};
+use crate::commands::check::error::CheckError;
+use crate::commands::check::rows::CheckRows;
 use crate::drawn::stored_shapes;
 use crate::files::outputs::outputs_of_scenes;
 pub use crate::files::results_path::results_path;
@@ -66,16 +69,44 @@ pub fn run(
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Vec<Model>, RunReport), RunError> {
-    check(&system.bodies, folder, settings)?;
+    check_files(&system.bodies, folder, settings)?;
     let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
     // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
     progress(RunProgress::Built);
-    let report = run_models(system, &models, folder, settings, progress)?;
+    let mut report = run_models(system, &models, folder, settings, &mut progress)?;
+    if settings.check {
+        check_by_full_body(system, &models, settings, &mut report, progress);
+    }
     Ok((models, report))
 }
 
+/// Checks the first of the worst rows of each body by the full body. The run is done whatever comes of it: a check that cannot be made
+/// is a warning.
+fn check_by_full_body(
+    system: &System,
+    models: &[Model],
+    settings: &RunSettings,
+    report: &mut RunReport,
+    mut progress: impl FnMut(RunProgress),
+) {
+    let may_be = |model: &Model| model.meshed.as_ref().is_none_or(|meshed| is_cheap(&meshed.modes.stats));
+    if !models.iter().all(may_be) {
+        return;
+    }
+    let started = Instant::now();
+    let checked = Results::open(&report.results, &COLUMNS).map_err(CheckError::from).and_then(|results| {
+        let (file, builder, rows) = (&report.results, &settings.builder, CheckRows::First);
+        check_run(file, &results, system, models, builder, &rows, |p| progress(RunProgress::Check(p)))
+    });
+    report.times.add("check", started.elapsed());
+    match checked {
+        Ok(checked) => report.check = Some(checked),
+        Err(error) => report.warnings.push(format!("it could not be checked by the full nonlinear body: {error}")),
+    }
+}
+
 /// Refuses a run that could not write its files.
-fn check(scenes: &[Scene], folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
+fn check_files(scenes: &[Scene], folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
     let path = results_path(scenes, folder).ok_or(RunError::NoBody)?;
     let outputs = outputs_of_scenes(scenes, &settings.builder, settings.overwrite);
     outputs.spare(&path)?;
@@ -182,8 +213,8 @@ pub fn resume(
     recorder.follow(started, settings, progress)
 }
 
-/// The system of a run that is to go on, with the bodies that the run has; `None` where one of them is not there.
-fn system_of(results: &Results) -> Result<Option<System>, RunError> {
+/// The system of a run, with the bodies that the run has; `None` where one of them is not there.
+pub(crate) fn system_of(results: &Results) -> Result<Option<System>, SceneError> {
     let metadata = &results.metadata;
     let system = System::parse(&metadata.scene_text, scene_file::to_path(&metadata.scene_file))?;
     let are_all = system.bodies.len() == metadata.bodies.len()

@@ -13,6 +13,7 @@ use memory::OutOfMemory;
 use mesh_import::ImportError;
 use modal::ModalError;
 use model::{BuildError, StartError};
+use nonlinear::NonlinearError;
 use report::ReportError;
 use results::FileError;
 use scene::SceneError;
@@ -22,6 +23,7 @@ use slepc::SlepcError;
 use super::{Details, FailureReport, Kind};
 use crate::commands::animation::AnimationError;
 use crate::commands::campbell::CampbellError;
+use crate::commands::check::CheckError;
 use crate::commands::cost::CostError;
 use crate::commands::export::ExportError;
 use crate::commands::fmu::FmuError;
@@ -85,7 +87,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 31] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 32] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
@@ -108,6 +110,8 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 31] = [
     known_by::<OtherFile>,
     known_by::<DrawnError>,
     known_by::<RunError>,
+    known_by::<CheckError>,
+    known_by::<NonlinearError>,
     known_by::<FmuError>,
     known_by::<AnimationError>,
     known_by::<ExportError>,
@@ -373,6 +377,31 @@ impl Fault for RunError {
                 help: Some("name fewer rows in [output], or allow it with --large".to_owned()),
                 ..Details::of_file(scene)
             }),
+        }
+    }
+}
+
+impl Fault for CheckError {
+    fn known(&self) -> Known {
+        match self {
+            Self::File(_) | Self::Scene(_) | Self::Build(_) => Known::default(),
+            Self::Changed { file, .. } | Self::NoRows { file } => Kind::Input.of(file),
+            Self::NoRow { file, asked, rows } => Kind::Usage.with(Details {
+                key: Some("--rows".to_owned()),
+                found: Some(asked.to_string()),
+                expected: Some(format!("a number from 0 to {}", rows - 1)),
+                ..Details::of_file(file)
+            }),
+            Self::Full { scene, .. } => in_file(scene),
+        }
+    }
+}
+
+impl Fault for NonlinearError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Assembly(_) | Self::Mesh(_) | Self::Modal(_) => Known::default(),
+            Self::Singular | Self::NoEquilibrium { .. } | Self::NotFinite { .. } => Kind::Run.alone(),
         }
     }
 }

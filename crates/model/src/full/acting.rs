@@ -7,7 +7,7 @@ use rigid_kin::Attitude;
 use crate::full::FullModel;
 use crate::load::mesh_load::{Action, MeshLoad};
 use crate::load::rotation::Rotation;
-use crate::tie::mesh_marker::MeshMarker;
+use crate::tie::place::Place;
 
 /// A force and a moment at a marker, global components.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,7 +32,7 @@ impl FullModel {
         for MarkerForce { marker, force_global, moment_global } in joints {
             if let Some(marker) = self.markers.get(*marker) {
                 let [force, moment] = [force_global, moment_global].map(|vector| attitude.to_body(vector));
-                act_at(marker, &force, moment, &mut dead, &mut others);
+                act_at(&marker.whole, &force, moment, &mut dead, &mut others);
             }
         }
         others.push(Acting::Dead(dead));
@@ -63,13 +63,13 @@ fn act(load: &MeshLoad, time: f64, attitude: &Attitude, dead: &mut [f64], others
     }
 }
 
-fn act_at(marker: &MeshMarker, force: &Vector3<f64>, moment: Vector3<f64>, dead: &mut [f64], others: &mut Vec<Acting>) {
-    for (node, weight) in marker.whole.nodes.iter().zip(&marker.whole.weights) {
+fn act_at(place: &Place, force: &Vector3<f64>, moment: Vector3<f64>, dead: &mut [f64], others: &mut Vec<Acting>) {
+    for (node, weight) in place.nodes.iter().zip(&place.weights) {
         for axis in 0..3 {
             dead[3 * *node as usize + axis] += force[axis] * weight;
         }
     }
-    if let Some(Rotation::Mean(patch)) = &marker.whole.rotation
+    if let Some(Rotation::Mean(patch)) = &place.rotation
         && moment != Vector3::zeros()
     {
         others.push(Acting::Moment { patch: patch.clone(), moment, turns: false });

@@ -115,7 +115,7 @@ impl<'a> Checker<'a> {
         settings: &StateErrorSettings,
         frequencies: bool,
     ) -> Result<StateCheck, FullError> {
-        let moving = self.moving(joints)?;
+        let moving = self.moving(joints, &self.model.damping_ratios)?;
         let observed = moving.observed_at(motion, &[])?;
         let state = self.state(&observed, joints)?;
         let found = state_error(self.body, &self.at_rest, &state, settings)?;
@@ -135,7 +135,7 @@ impl<'a> Checker<'a> {
         };
         let follows = state.forces.follow();
         let (frequencies, growth) = match frequencies && self.spin_is_held(&state) {
-            true => self.frequencies(&moving, motion, &state, &found)?,
+            true => self.frequencies(joints, motion, &state, &found)?,
             false => (Vec::new(), 0.0),
         };
         Ok(StateCheck {
@@ -167,8 +167,8 @@ impl<'a> Checker<'a> {
     }
 
     /// The model's equations with the forces of joints as loads.
-    fn moving(&self, joints: &[MarkerForce]) -> Result<ConservativeBody, FullError> {
-        let Model { body, loads, damping_ratios, physics, markers, .. } = self.model;
+    fn moving(&self, joints: &[MarkerForce], damping_ratios: &[f64]) -> Result<ConservativeBody, FullError> {
+        let Model { body, loads, physics, markers, .. } = self.model;
         let mut loads = loads.clone();
         for MarkerForce { marker, force_global, moment_global } in joints {
             let Some(marker) = markers.get(*marker) else { continue };
@@ -195,7 +195,7 @@ impl<'a> Checker<'a> {
 
     fn frequencies(
         &self,
-        moving: &ConservativeBody,
+        joints: &[MarkerForce],
         motion: &MotionState,
         state: &FullState,
         found: &nonlinear::StateError<'_>,
@@ -204,7 +204,9 @@ impl<'a> Checker<'a> {
         let full = true_frequencies(self.body, state, found, shapes.as_ref())?;
         let amplitudes: Vec<f64> =
             self.model.size.peaks.iter().map(|peak| 1e-4 * self.model.size.length / peak).collect();
-        let model = moving.vibrations_at(motion, &amplitudes)?;
+        // Without damping, which the full body does not have.
+        let undamped = vec![0.0; self.model.damping_ratios.len()];
+        let model = self.moving(joints, &undamped)?.vibrations_at(motion, &amplitudes)?;
         // Those of the frame itself, of a body that turns freely.
         let floor = 1e-3 * self.model.body.circular_frequencies.first().copied().unwrap_or(0.0);
         let tau = std::f64::consts::TAU;

@@ -56,7 +56,7 @@ fn followed<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let stop = Stop::default();
     let in_motion = Arc::new(AtomicBool::new(false));
-    let settings = RunSettings { overwrite, large, rows_alone: false, stop: stop.flag(), builder };
+    let settings = RunSettings { overwrite, large, stop: stop.flag(), builder, ..RunSettings::default() };
     let cache = settings.builder.cache.clone();
     let (told, moves) = (stop.clone(), in_motion.clone());
     let run = move || {
@@ -68,7 +68,7 @@ fn followed<'py>(
                 moves.store(true, Ordering::Relaxed);
                 told.check();
             }
-            RunProgress::Estimate(_) | RunProgress::Motion(_) => {}
+            RunProgress::Estimate(_) | RunProgress::Motion(_) | RunProgress::Check(_) => {}
         })
     };
     // The motion stops by itself at its next row, and its rows are kept.

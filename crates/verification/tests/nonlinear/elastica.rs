@@ -1,7 +1,15 @@
 //! A slender cantilever against the exact elastica and against the whole mesh.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use advice::FourthOrder;
+use dynamics::MotionState;
+use fem_tet10::{Materials, assemble};
+use modal::{RigidMotion, Support};
+use model::{Builder, Checker, Mend};
 use nalgebra::{DMatrix, DVector};
+use nonlinear::{EquilibriumSettings, ExternalForces, FullBody, StateErrorSettings, equilibrium};
 use verification::nonlinear::bodies::{COLUMN, COLUMN_BENDING};
 use verification::nonlinear::cases::{self, Course};
 use verification::nonlinear::{Motion, NodalState, Solid, bodies};
@@ -247,4 +255,73 @@ fn a_mode_that_bending_draws_in_is_refused_as_a_large_one() {
     for words in [&format!("mode {stretches}"), "drawn in where mode 1 bends", "large = [1, 2]"] {
         assert!(message.contains(words), "{message}");
     }
+}
+
+/// Independent reference: the elastica by shooting, and the linear beam, α/3. The check of a row of linear modes has the true place of
+/// the tip, and knows how far they are off.
+#[test]
+fn the_check_of_linear_modes_knows_where_the_tip_is() {
+    for alpha in [0.31, 0.9] {
+        let text = format!(
+            "[modes]\nflexible = 8\ndamping_ratio = 0.7\n[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n\
+             [[loads]]\nkind = \"force\"\nat = [1.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = {:e}\n\
+             history = {{ kind = \"ramp\", duration = 4.0 }}\n[effects]\nlarge_deflection = false\nrefuse = false\n\
+             [output.points]\ntip = [1.0, 0.0, 0.0]\n[time]\nend = 8.0\nstep = 4e-3\n",
+            alpha * COLUMN_BENDING
+        );
+        let (scene, model) = cases::built("column", COLUMN, &text).unwrap();
+        let last = cases::rows(&scene, &model).unwrap().pop().unwrap();
+        let motion = MotionState {
+            time: last.time,
+            attitude: last.attitude,
+            origin_global: last.origin_global,
+            velocity_global: nalgebra::Vector3::zeros(),
+            omega_body: last.omega_body,
+            modal_displacement: last.modal_displacement.clone(),
+            modal_velocity: last.modal_velocity.clone(),
+        };
+        let full = Builder::default().full(&scene, |_| ()).unwrap().unwrap();
+        let body = full.body().unwrap();
+        let checker = Checker::new(&full, &scene, &model, &body).unwrap();
+        let found = checker.check(&motion, &[], &StateErrorSettings::default(), true).unwrap();
+        let exact = elastica(alpha);
+        let point = &found.points[0];
+        println!("{alpha}: {found:?}");
+        assert!((point.displacement[2] / exact - 1.0).abs() < 2e-3, "{} {exact}", point.displacement[2]);
+        let off = alpha / 3.0 / exact - 1.0;
+        assert!((point.error[2] / exact - off).abs() < 2e-3, "{} {off}", point.error[2] / exact);
+        assert!(found.is_settled && found.negative_directions == Some(0));
+        assert_eq!(found.mends, [Mend::LargeModes]);
+        // About the bent column: the tests above have them.
+        assert!(found.frequencies.len() == 4 && found.frequencies.iter().all(|f| f.error.abs() < 0.1));
+    }
+}
+
+/// Independent reference: the nonlinear body of this crate, which has loops of its own, and Newton's iteration on displacements.
+#[test]
+fn the_full_body_of_the_check_is_the_nonlinear_body() {
+    let clamped = |x: nalgebra::Vector3<f64>| x.x < 1e-9;
+    let solid = Solid::new(bodies::mesh("column").unwrap(), COLUMN, clamped).unwrap();
+    let mesh = Arc::new(bodies::mesh("column").unwrap());
+    let materials = Materials::Uniform(COLUMN);
+    let matrices = assemble(&mesh, &materials, &[]).unwrap();
+    let root = (0..).zip(mesh.positions()).filter(|(_, x)| clamped((**x).into())).map(|(node, _)| node).collect();
+    let support = Support::new(RigidMotion::clamp(nalgebra::Vector3::zeros()), root);
+    let body = FullBody::new(Arc::clone(&mesh), &materials, Cow::Owned(matrices), &support).unwrap();
+    let tip = mesh.positions().iter().position(|x| (x[0] - 1.0).abs() + x[1].abs() + x[2].abs() < 1e-9).unwrap();
+    let mut load = vec![0.0; solid.dofs()];
+    load[3 * tip + 2] = 0.6 * COLUMN_BENDING;
+    load[3 * tip + 1] = 0.2 * COLUMN_BENDING;
+    let expected = solid.at_rest(6, 0.0, |_| load.clone()).unwrap();
+    let forces = ExternalForces::dead(load);
+    let settings = EquilibriumSettings::default();
+    let found = equilibrium(&body, &forces, &nalgebra::Vector3::zeros(), None, &settings).unwrap().displacement;
+    let largest = |a: &[f64], b: &[f64]| {
+        let size = b.iter().fold(0.0_f64, |size, b| size.max(b.abs()));
+        a.iter().zip(b).fold(0.0_f64, |off, (a, b)| off.max((a - b).abs())) / size
+    };
+    assert!(largest(&found, &expected) < 1e-8, "{}", largest(&found, &expected));
+    let bent: Vec<f64> = found.iter().enumerate().map(|(i, u)| u + 1e-4 * (i as f64).sin()).collect();
+    let off = largest(&body.strain().internal_forces(&bent), &solid.internal_forces(&bent, &bent));
+    assert!(off < 1e-11, "{off}");
 }

@@ -153,6 +153,7 @@ impl<'a> Recorder<'a> {
             steps,
             bodies: reports.into_iter().map(|report| report.body).collect(),
             system: SystemReport::of(&row),
+            check: None,
             warnings,
             times,
         };

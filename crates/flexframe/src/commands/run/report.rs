@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::body_report::BodyRunReport;
 use super::estimate::Estimate;
 use super::tied_report::TiedReport;
+use crate::commands::check::report::CheckReport;
 use crate::files::json;
 use crate::report::{Times, list_of_bodies};
 use crate::rows::row::Row;
@@ -43,6 +44,9 @@ pub struct RunReport {
     pub steps: u64,
     /// All bodies together, at the end.
     pub system: SystemReport,
+    /// The row of each body where its model is most likely to be wrong, against the full body; `None` where that was not asked for, would cost
+    /// more than the body did, or could not be done.
+    pub check: Option<CheckReport>,
     /// Assumptions that did not hold, with the name of the body where there are several.
     pub warnings: Vec<String>,
     /// Where the time went, seconds.

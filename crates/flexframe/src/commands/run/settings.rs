@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use model::{BuildProgress, Builder};
 
 use super::estimate::Estimate;
+use crate::commands::check::checked_rows::CheckProgress;
 
 /// How far a run has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +19,8 @@ pub enum RunProgress {
     Estimate(Estimate),
     /// Part of the time that has been passed, 0 to 1.
     Motion(f64),
+    /// Rows are being checked by the full body.
+    Check(CheckProgress),
 }
 
 /// How a run treats files, and how it is stopped.
@@ -29,6 +32,9 @@ pub struct RunSettings {
     pub large: bool,
     /// Leaves the shapes of the body out of the results file, for who reads its rows and throws it away.
     pub rows_alone: bool,
+    /// Checks a row of each body against the full body at the end, where that costs no more than the body did: the row where its
+    /// model is most likely to be wrong ([`check`](crate::check)).
+    pub check: bool,
     /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
     pub stop: Arc<AtomicBool>,
     /// What builds the body.

@@ -32,6 +32,9 @@ impl fmt::Display for RunReport {
             writeln!(f, "  motion   {} steps, {:.0} steps per second", self.steps, self.steps_per_second)?;
             writeln!(f, "  energy   {} {} at the end", quantity(self.system.final_energy), units.energy())?;
         }
+        if let Some(check) = &self.check {
+            check.write_in_run(f)?;
+        }
         writeln!(f, "  time     {}", self.times)?;
         write!(f, "  results  {} ({} rows)", self.results.display(), self.rows)?;
         for warning in &self.warnings {
@@ -92,11 +95,12 @@ impl BodyRunReport {
         if let Some(left_out) = self.left_out {
             let modes: Vec<String> = self.large_modes.iter().map(ToString::to_string).collect();
             let s = if modes.len() == 1 { "" } else { "s" };
-            writeln!(
-                f,
-                "  large    mode{s} {}; orders beyond the fourth left out, about {left_out:.1e} of the forces",
-                modes.join(", ")
-            )?;
+            write!(f, "  large    mode{s} {}", modes.join(", "))?;
+            // The full body knows better.
+            match run.check {
+                Some(_) => writeln!(f)?,
+                None => writeln!(f, "; orders beyond the fourth left out, about {left_out:.1e} of the forces")?,
+            }
         }
         write!(f, "  motion   {}", self.steps_in_words(run))?;
         match is_single {

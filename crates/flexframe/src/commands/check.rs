@@ -1,0 +1,49 @@
+//! `flexframe check`: rows of a run against the full nonlinear body.
+//!
+//! The model is built again from the scene in the results file and from the mesh, which has to be there as it was.
+
+pub(crate) mod checked_rows;
+pub(crate) mod error;
+mod joints;
+pub(crate) mod report;
+pub(crate) mod rows;
+
+use std::path::Path;
+
+use model::{Builder, Model};
+use results::Results;
+
+pub use checked_rows::{CheckProgress, check_run};
+pub use error::CheckError;
+pub use report::{BodyCheck, CheckReport, RowCheck};
+pub use rows::CheckRows;
+
+use crate::commands::run::{bodies, metadata, system_of};
+use crate::rows::columns::COLUMNS;
+
+/// Checks a results file, finished or not.
+///
+/// # Errors
+/// [`CheckError`].
+pub fn check(
+    file: &Path,
+    builder: &Builder,
+    rows: &CheckRows,
+    mut progress: impl FnMut(CheckProgress),
+) -> Result<CheckReport, CheckError> {
+    let results = Results::open(file, &COLUMNS)?;
+    let changed = |what| CheckError::Changed { file: file.to_owned(), what };
+    let system = system_of(&results)?.ok_or_else(|| changed("the list of bodies"))?;
+    let build = |scene| builder.build(scene, |p| progress(CheckProgress::Build(p)));
+    let models: Vec<Model> = system.bodies.iter().map(build).collect::<Result<_, _>>()?;
+    let of = bodies(&system.bodies, &models);
+    let now = metadata(&of).ok_or_else(|| changed("the list of bodies"))?;
+    for (now, then) in now.bodies.iter().zip(&results.metadata.bodies) {
+        let mut then = then.model.clone();
+        then.mesh = None;
+        if now.model != then {
+            return Err(changed("the body"));
+        }
+    }
+    check_run(file, &results, &system, &models, builder, rows, progress)
+}

@@ -1,0 +1,171 @@
+//! Report of `flexframe check`.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use model::{Mend, StateCheck};
+use serde::Serialize;
+
+use crate::commands::modes::frequency_unit;
+use crate::files::json;
+
+/// Report of `flexframe check`.
+#[derive(Debug, Clone, Serialize)]
+pub struct CheckReport {
+    /// Title of the scene.
+    pub title: String,
+    /// Labels of length, mass and time.
+    pub units: [String; 3],
+    /// The results file.
+    #[serde(serialize_with = "json::path")]
+    pub results: PathBuf,
+    /// Each body, in the order of the scene.
+    pub bodies: Vec<BodyCheck>,
+}
+
+/// The check of a body.
+#[derive(Debug, Clone, Serialize)]
+pub struct BodyCheck {
+    /// Its name.
+    pub name: String,
+    /// The rows.
+    pub rows: Vec<RowCheck>,
+    /// The reason that it was not checked.
+    pub not_checked: Option<String>,
+}
+
+/// The check of a row.
+#[derive(Debug, Clone, Serialize)]
+pub struct RowCheck {
+    /// Its number, from 0.
+    pub row: usize,
+    /// The reasons that it was chosen.
+    pub why: Vec<&'static str>,
+    /// The state against the full body.
+    #[serde(flatten)]
+    pub state: StateCheck,
+}
+
+impl BodyCheck {
+    /// The row with the largest error.
+    pub fn worst(&self) -> Option<&RowCheck> {
+        self.rows.iter().max_by(|a, b| a.state.error.total_cmp(&b.state.error))
+    }
+}
+
+/// The reason that a rigid body is not checked.
+pub(super) const RIGID: &str = "it is rigid";
+
+/// The limit of the check, in words.
+const UNSEEN: &str = "not seen by it: phase, and the inertia of what the model leaves out";
+
+impl fmt::Display for CheckReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.title)?;
+        for body in &self.bodies {
+            if self.bodies.len() > 1 {
+                write!(f, "\nbody {}", body.name)?;
+            }
+            if let Some(why) = &body.not_checked {
+                write!(f, "\n  not checked: {why}")?;
+            }
+            for row in &body.rows {
+                row.write(f, &self.units)?;
+            }
+        }
+        if self.bodies.iter().any(|body| !body.rows.is_empty()) {
+            write!(f, "\n  {UNSEEN}")?;
+        }
+        Ok(())
+    }
+}
+
+impl CheckReport {
+    /// The lines in the summary of a run.
+    pub(crate) fn write_in_run(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for body in &self.bodies {
+            let name = if self.bodies.len() > 1 { format!("body {}: ", body.name) } else { String::new() };
+            match (body.worst(), &body.not_checked) {
+                (Some(row), _) => writeln!(f, "  check    {name}{}", row.in_words(&self.units))?,
+                (None, Some(why)) if why != RIGID => writeln!(f, "  check    {name}none: {why}")?,
+                (None, _) => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+impl RowCheck {
+    fn write(&self, f: &mut fmt::Formatter<'_>, units: &[String; 3]) -> fmt::Result {
+        let [length, _, time] = units;
+        let state = &self.state;
+        write!(f, "\n  row {} (time {:.6} {time}: {})", self.row, state.time, self.why.join(", "))?;
+        write!(f, "\n    {}", self.error_in_words(length))?;
+        write!(
+            f,
+            "\n    along the modes {}, beside them {}",
+            percent(state.within_modes),
+            percent(state.beside_modes)
+        )?;
+        for point in &state.points {
+            let [x, y, z] = point.displacement;
+            write!(f, "\n    {}: {} of ({x:.4e}, {y:.4e}, {z:.4e}) {length}", point.name, percent(point.relative))?;
+        }
+        if !state.frequencies.is_empty() {
+            let each = state.frequencies.iter().map(|f| format!("{:.4} ({:+.2} %)", f.full, 100.0 * f.error));
+            let each: Vec<String> = each.collect();
+            write!(f, "\n    frequencies {} {}", each.join(", "), frequency_unit(time))?;
+        }
+        if let Some(words) = self.stability_in_words() {
+            write!(f, "\n    {words}")?;
+        }
+        if !state.mends.is_empty() {
+            write!(f, "\n    mended by {}", mends_in_words(&state.mends))?;
+        }
+        Ok(())
+    }
+
+    /// "displacements right to 0.3 % at time 1.2 (largest strain energy)".
+    fn in_words(&self, units: &[String; 3]) -> String {
+        let [length, _, time] = units;
+        let mut words = format!("{} at time {:.6} {time}", self.error_in_words(length), self.state.time);
+        if let Some(stability) = self.stability_in_words() {
+            words = format!("{words}; {stability}");
+        }
+        if !self.state.mends.is_empty() {
+            words = format!("{words}; mended by {}", mends_in_words(&self.state.mends));
+        }
+        words
+    }
+
+    fn error_in_words(&self, length: &str) -> String {
+        let StateCheck { error, largest_error, largest_displacement, is_settled, .. } = self.state;
+        let about = if is_settled { "" } else { "about " };
+        format!(
+            "displacements wrong by {about}{} by the full nonlinear body (a node by up to {largest_error:.3e} of {largest_displacement:.3e} {length})",
+            percent(error)
+        )
+    }
+
+    fn stability_in_words(&self) -> Option<String> {
+        let StateCheck { negative_directions, growth, .. } = self.state;
+        if growth > 0.0 {
+            return Some(format!("the true body is unstable there: a vibration grows at {growth:.3e} per time"));
+        }
+        match negative_directions {
+            Some(count @ 1..) => Some(format!(
+                "the true body has lost its stiffness in {count} direction(s): it buckles, or its spin alone holds it"
+            )),
+            _ => None,
+        }
+    }
+}
+
+fn percent(part: f64) -> String {
+    let percent = 100.0 * part;
+    if percent != 0.0 && percent < 0.01 { format!("{percent:.0e} %") } else { format!("{percent:.2} %") }
+}
+
+fn mends_in_words(mends: &[Mend]) -> String {
+    mends.iter().map(|mend| mend.words()).collect::<Vec<_>>().join(", or by ")
+}

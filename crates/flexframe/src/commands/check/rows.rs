@@ -1,0 +1,100 @@
+//! Rows of a results file, and the states in them.
+
+use std::path::Path;
+
+use dynamics::MotionState;
+use model::Model;
+use results::{BodyResults, Results};
+use rigid_kin::Attitude;
+
+use super::error::CheckError;
+
+/// Which rows are checked.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CheckRows {
+    /// The rows at which a model is most likely to be wrong: the largest strain energy, the largest stress, the largest spin, the last.
+    Worst,
+    /// Of these the first alone.
+    First,
+    /// Rows by their numbers, from 0.
+    Given(Vec<usize>),
+}
+
+/// The rows of a body that are checked, each with the reasons.
+pub(super) fn chosen(
+    file: &Path,
+    results: &Results,
+    body: usize,
+    model: &Model,
+    rows: &CheckRows,
+) -> Result<Vec<(usize, Vec<&'static str>)>, CheckError> {
+    let count = results.rows();
+    if let CheckRows::Given(asked) = rows {
+        return asked
+            .iter()
+            .map(|asked| match *asked < count {
+                true => Ok((*asked, vec!["asked for"])),
+                false => Err(CheckError::NoRow { file: file.to_owned(), asked: *asked, rows: count }),
+            })
+            .collect();
+    }
+    let Some(of) = results.bodies().nth(body) else { return Ok(Vec::new()) };
+    let mut chosen: Vec<(usize, Vec<&'static str>)> = Vec::new();
+    let mut add = |row: Option<usize>, why| {
+        let Some(row) = row else { return };
+        match chosen.iter_mut().find(|(other, _)| *other == row) {
+            Some((_, reasons)) => reasons.push(why),
+            None => chosen.push((row, vec![why])),
+        }
+    };
+    add(largest(count, |row| bending(of, model, row)), "largest strain energy");
+    add(largest(count, |row| stress(of, row)), "largest stress");
+    add(largest(count, |row| spin(of, row)), "largest spin");
+    add(count.checked_sub(1), "last");
+    if *rows == CheckRows::First {
+        chosen.truncate(1);
+    }
+    Ok(chosen)
+}
+
+/// The row where a size is the largest; none where it is nothing everywhere. The last of equal ones.
+fn largest(count: usize, size: impl Fn(usize) -> f64) -> Option<usize> {
+    let sizes = (0..count).map(|row| (row, size(row))).filter(|(_, size)| *size > 0.0 && size.is_finite());
+    sizes.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(row, _)| row)
+}
+
+/// The strain energy beyond the linear one where there are large modes, else all of it.
+fn bending(of: BodyResults<'_>, model: &Model, row: usize) -> f64 {
+    let q = of.table("modal/displacement").and_then(|table| table.row(row));
+    match (&model.physics.large_deflection, q) {
+        (Some(manifold), Some(q)) => manifold.energy(q).abs(),
+        _ => of.numbers("energy/strain").map_or(0.0, |energies| energies[row]),
+    }
+}
+
+fn stress(of: BodyResults<'_>, row: usize) -> f64 {
+    let points = of.metadata.point_names.iter();
+    let at = |name: &String| Some(of.numbers(&format!("points/{name}/von_mises_stress"))?[row]);
+    points.filter_map(at).fold(0.0, f64::max)
+}
+
+fn spin(of: BodyResults<'_>, row: usize) -> f64 {
+    let spins = of.vectors::<3>("angular_velocity");
+    spins.map_or(0.0, |spins| spins[row].iter().map(|omega| omega * omega).sum::<f64>().sqrt())
+}
+
+/// The state of a body in a row.
+pub(super) fn motion(results: &Results, body: usize, row: usize) -> Option<MotionState> {
+    let of = results.bodies().nth(body)?;
+    let vector = |path: &str| Some(of.vectors::<3>(path)?.get(row)?.to_owned().into());
+    let list = |path: &str| Some(of.table(path)?.row(row)?.to_vec());
+    Some(MotionState {
+        time: *results.numbers("time")?.get(row)?,
+        attitude: Attitude::from_wxyz(*of.vectors::<4>("attitude")?.get(row)?).ok()?,
+        origin_global: vector("origin")?,
+        velocity_global: vector("velocity")?,
+        omega_body: vector("angular_velocity")?,
+        modal_displacement: list("modal/displacement")?,
+        modal_velocity: list("modal/velocity")?,
+    })
+}

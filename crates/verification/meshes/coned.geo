@@ -1,0 +1,10 @@
+// A bar of 1 x 0.05 x 0.05 whose axis is coned by 2.9 degrees: along (1, 0, 0.05) from its root at x = 0; SI.
+Point(1) = {0, -0.025, -0.025};
+line[] = Extrude {0, 0.05, 0} { Point{1}; Layers{1}; };
+face[] = Extrude {0, 0, 0.05} { Line{line[1]}; Layers{1}; };
+body[] = Extrude {1, 0, 0.05} { Surface{face[1]}; Layers{20}; };
+Physical Volume("bar") = {body[1]};
+Physical Surface("root") = {face[1]};
+Physical Surface("tip") = {body[0]};
+Physical Surface("all") = {face[1], body[0], body[2], body[3], body[4], body[5]};
+Mesh.ElementOrder = 2;

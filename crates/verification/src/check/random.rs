@@ -1,0 +1,116 @@
+//! Random scenes: bodies, supports, drives, loads and models drawn by lot, the same ones each time.
+
+use super::cases::{Case, SOFT, Truth};
+
+/// A body, and the point at its end.
+const BODIES: [(&str, [f64; 3]); 4] = [
+    ("column", [1.0, 0.0, 0.0]),
+    ("coned", [1.0, 0.0, 0.05]),
+    ("blade", [1.0, 0.267_949_192_431_122_7, 0.0]),
+    ("arc", [1.0, 0.0, 1.0]),
+];
+
+/// Numbers drawn by lot (Marsaglia's xorshift).
+struct Lot(u64);
+
+impl Lot {
+    /// From 0 to 1.
+    fn number(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// From one number to another, their logarithms all alike.
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low * (high / low).powf(self.number())
+    }
+
+    /// One of so many.
+    fn of(&mut self, count: usize) -> usize {
+        ((self.number() * count as f64) as usize).min(count - 1)
+    }
+
+    /// A unit vector in a cube's directions, all signs alike.
+    fn direction(&mut self) -> [f64; 3] {
+        let vector = [(); 3].map(|()| 2.0 * self.number() - 1.0);
+        let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-3);
+        vector.map(|x| x / length)
+    }
+}
+
+/// So many scenes, each with the number of its model.
+pub fn random_cases(count: usize) -> Vec<(Case, usize)> {
+    let mut lot = Lot(0x9e37_79b9_7f4a_7c15);
+    (0..count).map(|_| random_case(&mut lot)).collect()
+}
+
+fn random_case(lot: &mut Lot) -> (Case, usize) {
+    let (mesh, tip) = BODIES[lot.of(BODIES.len())];
+    let constant = "history = { kind = \"constant\" }\n";
+    let (support, spins, truth) = match lot.of(10) {
+        0..4 => ("clamp", false, Truth::Rest),
+        4..7 => ("spin", true, Truth::Rest),
+        7..9 => ("spin-up", true, Truth::OfRow),
+        _ => ("slider", false, Truth::OfRow),
+    };
+    let hinge = "[[constraints]]\nkind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [0.0, 0.0, 1.0]\ngroup = \"root\"\n\
+                 [constraints.motion]\namplitude = SPIN\n";
+    let mut text = match support {
+        "clamp" => "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n".to_owned(),
+        "spin" => format!("{hinge}{constant}"),
+        // It speeds up by a part of the spin in a unit of time.
+        "spin-up" => format!("{hinge}history = {{ kind = \"expression\", formula = \"1 + {:.6}*t\" }}\n", lot.number()),
+        _ => format!(
+            "[[constraints]]\nkind = \"slider\"\ndirection = {:?}\ngroup = \"root\"\n[constraints.motion]\namplitude = GRAVITY\n\
+             history = {{ kind = \"expression\", formula = \"t\" }}\n",
+            lot.direction()
+        ),
+    };
+    let spin = if spins { lot.between(0.05, 1.5) } else { 0.0 };
+    let (mut force, mut gravity) = (0.0, if support == "slider" { lot.between(0.01, 0.4) } else { 0.0 });
+    let load =
+        if spins && lot.number() < 0.5 { "no load" } else { ["force", "gravity", "moment", "pressure"][lot.of(4)] };
+    let direction = lot.direction();
+    match load {
+        "force" => {
+            force = lot.between(0.003, 0.5);
+            text += &format!(
+                "[[loads]]\nkind = \"force\"\nat = {tip:?}\ndirection = {direction:?}\namplitude = FORCE\n{constant}"
+            );
+        }
+        "gravity" if support != "slider" => {
+            gravity = lot.between(0.005, 0.4);
+            text +=
+                &format!("[[loads]]\nkind = \"gravity\"\ndirection = {direction:?}\namplitude = GRAVITY\n{constant}");
+        }
+        "moment" => {
+            force = lot.between(0.003, 0.3);
+            text += &format!(
+                "[[loads]]\nkind = \"moment\"\nat = {tip:?}\nradius = 0.06\ndirection = {direction:?}\namplitude = FORCE\n{constant}"
+            );
+        }
+        "pressure" => {
+            // On the tip, of about a thousandth of a square metre.
+            force = 1e3 * lot.between(0.003, 0.3);
+            text += &format!("[[loads]]\nkind = \"pressure\"\ngroup = \"tip\"\namplitude = FORCE\n{constant}");
+        }
+        _ => {}
+    }
+    let name = format!("{mesh}, {support}, {load}");
+    (
+        Case {
+            name,
+            mesh,
+            material: SOFT,
+            text,
+            parameter: 1.0,
+            parts: [spin, force, gravity],
+            tip,
+            spins: false,
+            truth,
+        },
+        lot.of(3),
+    )
+}

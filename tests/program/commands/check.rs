@@ -1,0 +1,101 @@
+//! Rows of a run against the full nonlinear body.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use flexframe::check::{CheckError, CheckRows, check};
+use flexframe::model::Builder;
+use flexframe::run::{RunSettings, run};
+use flexframe::scene::{Scene, System};
+use serde_json::Value;
+
+fn root() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+/// A rod that is held at one end and pushed across the other, far: by linear modes.
+fn scene(folder: &Path) -> PathBuf {
+    fs::copy(root().join("crates/verification/meshes/column.msh"), folder.join("column.msh")).unwrap();
+    let text = "title = \"Column\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n[body]\nmesh = \"column.msh\"\n\
+                material = { young_modulus = 7e7, poisson_ratio = 0.0, density = 1000.0 }\n\
+                [modes]\nflexible = 6\ndamping_ratio = 0.7\n[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n\
+                [[loads]]\nkind = \"force\"\nat = [1.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = 1.4\n\
+                history = { kind = \"ramp\", duration = 3.0 }\n[effects]\nlarge_deflection = false\nrefuse = false\n\
+                [output]\ninterval = 1.0\npoints = { tip = [1.0, 0.0, 0.0] }\n[time]\nend = 5.0\nstep = 5e-3\n";
+    let path = folder.join("column.toml");
+    fs::write(&path, text).unwrap();
+    path
+}
+
+fn flexframe(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
+    command.args(arguments).env("FLEXFRAME_CACHE", "").output().unwrap()
+}
+
+#[test]
+fn a_run_says_how_wrong_it_is_and_the_command_says_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path());
+    let (scene, out) = (scene.to_str().unwrap(), folder.path().to_str().unwrap());
+    let said = flexframe(&["run", scene, "-o", out]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let said = String::from_utf8(said.stdout).unwrap();
+    let line = said.lines().find(|line| line.starts_with("  check ")).unwrap();
+    assert!(line.contains("full nonlinear body") && line.contains("large modes"), "{line}");
+    let without = flexframe(&["run", scene, "-o", out, "--overwrite", "--no-check"]);
+    assert!(!String::from_utf8(without.stdout).unwrap().contains("  check "));
+
+    let file = folder.path().join("column.h5");
+    let file = file.to_str().unwrap();
+    let report: Value = serde_json::from_slice(&flexframe(&["check", file, "--json"]).stdout).unwrap();
+    let rows = report["bodies"][0]["rows"].as_array().unwrap();
+    // The strain energy grows to the end.
+    assert_eq!(rows.len(), 1);
+    assert_eq!(rows[0]["row"], 5);
+    let error = rows[0]["error"].as_f64().unwrap();
+    assert!((0.02..0.5).contains(&error), "{error}");
+    assert_eq!(rows[0]["negative_directions"], 0);
+    // By the same check of a row that is named: of the undeformed body there is nothing wrong.
+    let report: Value = serde_json::from_slice(&flexframe(&["check", file, "--json", "--rows", "0,5"]).stdout).unwrap();
+    assert_eq!(report["bodies"][0]["rows"][0]["error"], 0.0);
+    assert_eq!(report["bodies"][0]["rows"][1]["error"], error);
+    let refused = flexframe(&["check", file, "--rows", "6"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("no row 6, expected a number from 0 to 5"));
+}
+
+#[test]
+fn a_check_needs_the_mesh_of_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = Scene::read(scene(folder.path())).unwrap();
+    let system = System::from(scene);
+    let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let checked = || check(&report.results, &Builder::default(), &CheckRows::Worst, |_| ());
+    assert!(checked().is_ok());
+    fs::copy(root().join("crates/verification/meshes/rod.msh"), folder.path().join("column.msh")).unwrap();
+    let changed = checked().unwrap_err().to_string();
+    assert!(changed.contains("column.h5"), "{changed}");
+    fs::remove_file(folder.path().join("column.msh")).unwrap();
+    let gone = checked().unwrap_err();
+    assert!(matches!(gone, CheckError::Build(_)), "{gone}");
+    assert!(gone.to_string().contains("column.msh"), "{gone}");
+}
+
+/// Conserved: with the forces of its joints at its markers, a body that they hold is in balance with its own accelerations; the
+/// error that is left is that of the model. A wrong sign or place of a joint's force would make it of the size of the displacements.
+#[test]
+fn a_body_in_joints_is_checked_under_their_forces() {
+    let folder = tempfile::tempdir().unwrap();
+    let system = System::read(root().join("examples/mechanisms/double_pendulum.toml")).unwrap();
+    let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let found = check(&report.results, &Builder::default(), &CheckRows::Worst, |_| ()).unwrap();
+    for body in &found.bodies {
+        let first = &body.rows[0];
+        assert!(first.why.contains(&"largest strain energy"));
+        // Measured: 1.6e-5.
+        assert!(first.state.error < 1e-4, "{}: {:?}", body.name, first.state);
+        // Measured: 1e-4.
+        assert!(first.state.frequencies.iter().all(|f| f.error.abs() < 1e-3), "{:?}", first.state.frequencies);
+    }
+}
