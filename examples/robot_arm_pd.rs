@@ -23,19 +23,19 @@ use flexframe::modal::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::nalgebra::{Matrix3, Vector3};
 use flexframe::rigid_kin::Attitude;
 
-/// Length, mass and moment of inertia of each link.
+/// Length of a link, m.
 pub const LENGTH: f64 = 0.5;
-/// kg
+/// Mass of a link, kg.
 pub const MASS: f64 = 4.0;
-/// kg m²
+/// Its moment of inertia about its centre, kg m².
 pub const INERTIA: f64 = MASS * LENGTH * LENGTH / 12.0;
 /// Gains of the shoulder and of the elbow: moment per angle, and per rate.
 pub const GAINS: [[f64; 2]; 2] = [[400.0, 40.0], [150.0, 12.0]];
-/// Angles that they are to reach, rad, and when.
+/// Angles that they are to reach, rad.
 pub const TARGETS: [f64; 2] = [1.0, -0.7];
-/// s
+/// Time at which they are to be there, s.
 pub const ARRIVAL: f64 = 0.6;
-/// s
+/// End of the run, s.
 pub const END: f64 = 1.0;
 
 /// A path to a target, and its rate.
@@ -47,11 +47,15 @@ pub fn path(target: f64, time: f64) -> [f64; 2] {
     [0.5 * target * (1.0 - phase.cos()), 0.5 * target * PI / ARRIVAL * phase.sin()]
 }
 
-/// A row of the motion: time, angles and rates of shoulder and elbow, and the power of the controllers.
+/// A row of the motion; pairs are of the shoulder and the elbow.
 pub struct ArmRow {
+    /// s
     pub time: f64,
+    /// rad
     pub angles: [f64; 2],
+    /// rad/s
     pub rates: [f64; 2],
+    /// Power of the controllers, W.
     pub power: [f64; 2],
 }
 
