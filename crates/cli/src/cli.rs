@@ -23,7 +23,7 @@ use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::system_modes::{self, AdviceOnSystems, ModesOfSystems};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
 use model::{BuildError, Builder, Cache};
-use scene::{Flexible, Scene, SceneError};
+use scene::{Flexible, Scene, SceneError, System};
 use slepc::files_of_folder;
 
 use crate::cli_error::{self, CliError};
@@ -423,10 +423,10 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         tell_doubts(&scene);
         Ok(scene)
     };
-    let read_bodies = |input: SceneInput| -> Result<Vec<Scene>, Box<dyn Error>> {
-        let scenes = input.read_bodies()?;
-        scenes.iter().for_each(tell_doubts);
-        Ok(scenes)
+    let read_system = |input: SceneInput| -> Result<System, Box<dyn Error>> {
+        let system = input.read_system()?;
+        system.bodies.iter().for_each(tell_doubts);
+        Ok(system)
     };
     let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
     threads::start(cli.threads)?;
@@ -451,8 +451,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Run { scene: SceneArgs { scene, json }, output, files, large, no_check, solver } => {
             output::require_file("--output", output.as_deref())?;
-            let system = scene.read_system()?;
-            system.bodies.iter().for_each(tell_doubts);
+            let system = read_system(scene)?;
             if let Some(to) = solver.take_of(&system.bodies, &mut builder, signals.slepc())? {
                 return write_only(&system.bodies[0], &builder, &to, files.overwrite, bar);
             }
@@ -507,8 +506,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Modes { scene: SceneArgs { scene, json }, flexible, output, files, solver } => {
             output::require_file("--output", output.as_deref())?;
-            let mut system = scene.read_system()?;
-            system.bodies.iter().for_each(tell_doubts);
+            let mut system = read_system(scene)?;
             if let Some(count) = flexible {
                 system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
             }
@@ -570,8 +568,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             if json { Ok(()) } else { output::list(&pictures) }
         }
         Command::Advise { scene: SceneArgs { scene, json }, verify } => {
-            let system = scene.read_system()?;
-            system.bodies.iter().for_each(tell_doubts);
+            let system = read_system(scene)?;
             let mut reports = Vec::new();
             for scene in &system.bodies {
                 let report = advise::advise(scene, &builder, verify, |p| bar.advise(p))?;
@@ -641,8 +638,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Cost { scene: SceneArgs { scene, json }, output, files, target, patience } => {
             output::require_file("--output", output.as_deref())?;
-            let system = scene.read_system()?;
-            system.bodies.iter().for_each(tell_doubts);
+            let system = read_system(scene)?;
             let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
             let folder = folder(&system.bodies[0], output)?;
             outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(&cost::files(&folder))?;
@@ -736,8 +732,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                     animate_results(file, &output, settings, |p| bar.run(p))?
                 }
                 None => {
-                    let mut system = scene.read_system()?;
-                    system.bodies.iter().for_each(tell_doubts);
+                    let mut system = read_system(scene)?;
                     system.bodies = system.bodies.into_iter().map(Scene::without_rows).collect();
                     outputs_of_scenes(&system.bodies, &builder, files.overwrite)
                         .claim_as(&Written::ANIMATION, &output)?;

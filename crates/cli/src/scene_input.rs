@@ -64,11 +64,6 @@ impl SceneInput {
         Ok(Scene::parse_body(&text, path, body.as_deref())?)
     }
 
-    /// Reads the scenes of all bodies, or of the one that was named.
-    pub fn read_bodies(self) -> Result<Vec<Scene>, Box<dyn Error>> {
-        Ok(self.read_system()?.bodies)
-    }
-
     /// Reads all bodies with what ties them together, or the one that was named.
     pub fn read_system(self) -> Result<System, Box<dyn Error>> {
         if self.body.is_some() {

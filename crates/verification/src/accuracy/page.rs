@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::slice::from_ref;
 use std::time::Duration;
 
 use flexframe::cost::{
@@ -12,7 +11,7 @@ use flexframe::cost::{
 use flexframe::model::Builder;
 use flexframe::modes::frequency_unit;
 use flexframe::outputs::outputs_of_scene;
-use flexframe::scene::Scene;
+use flexframe::scene::{Scene, System};
 use flexframe::write_error::WriteError;
 use whole_file::write_whole;
 
@@ -47,7 +46,7 @@ pub fn accuracy_page(
     for scene in scenes {
         let folder = lists.join(name_of(&scene.path));
         let settings = CostSettings::with_patience(patience);
-        reports.push((scene, price_list(from_ref(scene), &Builder::default(), &folder, settings, |_| ())?));
+        reports.push((scene, price_list(&System::from(Scene::clone(scene)), &Builder::default(), &folder, settings, |_| ())?));
     }
     let spin = match fastest(&reports) {
         Some((scene, report)) if initial_spin(report) > 0.0 => spin_rates(scene)?,

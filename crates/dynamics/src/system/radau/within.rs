@@ -1,4 +1,4 @@
-//! The motion within a step that has been done: Eqs. (J16) of `docs/method/systems.md`.
+//! The motion within a step that has been done: Eqs. (J17) of `docs/method/systems.md`.
 
 use crate::body::motion_state::MotionState;
 use crate::conservative::{get, part, set};
