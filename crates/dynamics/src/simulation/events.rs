@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use crate::error::StepError;
 use crate::observation::Observation;
-use crate::system::simulation::observation::SystemObservation;
 
 /// Which way an event function passes through zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -19,7 +18,7 @@ pub enum Crossing {
     Any,
 }
 
-/// A function of the motion, of a body or of a [system](SystemObservation); a run stops where it passes through zero.
+/// A function of the motion, of a body or of a [system](crate::SystemObservation); a run stops where it passes through zero.
 pub struct Event<O = Observation> {
     name: String,
     crossing: Crossing,
@@ -62,17 +61,6 @@ impl<O> Event<O> {
     /// An event of anything.
     pub(crate) fn of(name: String, crossing: Crossing, function: Arc<dyn Fn(&O) -> f64 + Send + Sync>) -> Self {
         Self { name, crossing, function }
-    }
-}
-
-impl Event<SystemObservation> {
-    /// The same for a [`SystemSimulation`](crate::SystemSimulation): the function sees all bodies and joints.
-    pub fn of_system(
-        name: impl Into<String>,
-        crossing: Crossing,
-        function: impl Fn(&SystemObservation) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        Self { name: name.into(), crossing, function: Arc::new(function) }
     }
 }
 

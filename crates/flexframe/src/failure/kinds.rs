@@ -87,7 +87,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 32] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 33] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
