@@ -33,7 +33,7 @@ pub use body::motion_state::MotionState;
 pub use body::physics::{Drive, DrivenMotion, DrivenSpeed, Physics};
 pub use body::second_order::SecondOrder;
 pub use body::shapes::{PointShapes, RotationShapes};
-pub use conservative::manifold::{MAX_LARGE, Manifold};
+pub use conservative::manifold::{MAX_FOLLOWING, MAX_LARGE, Manifold};
 pub use conservative::{ConservativeBody, Evaluation as ConservativeEvaluation};
 pub use equations::sizes::Sizes;
 pub use equations::{Equations, ErrorNorm, Evaluation, Glance, Oscillators, PlainNorm, StepDone};

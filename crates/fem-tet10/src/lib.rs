@@ -45,6 +45,7 @@ pub use mesh::checked::Mesh;
 pub use mesh::locate::Location;
 pub use mesh::msh::{msh_bytes, parse_msh, read_msh};
 pub use mesh::parts::{MeshParts, NodeGroup, SurfaceGroup};
-pub use nonlinear::geometric_stiffness::{GeometricTerms, extended_geometric_stiffness, reduced_geometric_stiffness};
+pub use nonlinear::expansion::Expansion;
+pub use nonlinear::geometric_stiffness::{extended_geometric_stiffness, reduced_geometric_stiffness};
 pub use nonlinear::second_order::{geometric_stiffness_product, second_order_energies, second_order_forces};
 pub use stress::{COMPONENTS, StressError, StressRecovery, StressSites, principal_stresses, von_mises};
