@@ -41,8 +41,6 @@ pub(crate) struct MeshLoad {
     /// Attitude of the body at the beginning.
     attitude: Attitude,
     is_gravity: bool,
-    /// True if it is the acceleration of the base, which stresses the body as that of a drive does.
-    pub is_base_acceleration: bool,
 }
 
 /// Loads on a body, each with whether it is gravity.
@@ -175,7 +173,6 @@ pub(crate) fn on_mesh(
                 _ => None,
             };
             let (follows, is_gravity) = (follows(load), is_gravity(load));
-            let is_base_acceleration = matches!(load, Load::BaseAcceleration(_));
             Ok(MeshLoad {
                 name,
                 action,
@@ -186,7 +183,6 @@ pub(crate) fn on_mesh(
                 dofs,
                 attitude,
                 is_gravity,
-                is_base_acceleration,
             })
         })
         .collect()
