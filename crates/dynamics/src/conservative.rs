@@ -66,4 +66,4 @@ mod state;
 pub use body::ConservativeBody;
 pub(crate) use coordinates::{InCoordinates, pair_weights};
 pub use rates::evaluation::Evaluation;
-pub(crate) use state::{Slow, get, part, set};
+pub(crate) use state::{SLOW, Slow, get, part, set};

@@ -13,7 +13,7 @@
 //! * [`assemble`] fills K and M in parallel over the pairs of coupled nodes. Nothing of size N×N is ever dense.
 //! * [`reduced_geometric_stiffness`] gives the stress stiffness of displacement fields, reduced to a few shapes;
 //!   [`second_order_forces`] and [`second_order_energies`] what displacements of second order meet in a St. Venant–Kirchhoff
-//!   body.
+//!   body; [`FiniteStrain`] its stresses, internal forces and stiffness at any displacement.
 //! * [`StressRecovery`] gives the stress of displacement fields at the nodes, and an estimate of its error; [`von_mises`] and
 //!   [`principal_stresses`] what a stress is in any axes.
 //!
@@ -46,6 +46,7 @@ pub use mesh::locate::Location;
 pub use mesh::msh::{msh_bytes, parse_msh, read_msh};
 pub use mesh::parts::{MeshParts, NodeGroup, SurfaceGroup};
 pub use nonlinear::expansion::Expansion;
+pub use nonlinear::finite_strain::{FiniteStrain, Stresses};
 pub use nonlinear::geometric_stiffness::{extended_geometric_stiffness, reduced_geometric_stiffness};
 pub use nonlinear::second_order::{geometric_stiffness_product, second_order_energies, second_order_forces};
 pub use stress::{COMPONENTS, StressError, StressRecovery, StressSites, principal_stresses, von_mises};

@@ -1,8 +1,9 @@
-//! The Cholesky factor of K + sM.
+//! The Cholesky factor of K + sM, and factors of matrices that need not be definite.
 
 #[cfg(all(test, feature = "threads-in-faer"))]
 mod against_faer;
 pub(crate) mod cholesky;
+pub(crate) mod indefinite;
 pub(crate) mod interleave;
 pub(crate) mod layout;
 pub(crate) mod ordering;

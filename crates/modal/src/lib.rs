@@ -34,6 +34,7 @@ mod support;
 
 pub use eigen::engine::{Eigenpairs, Engine, EngineStats, StaticAnswers};
 pub use error::{EngineError, ModalError};
+pub use factor::indefinite::{IndefiniteFactor, IndefiniteOrder};
 pub use matrix::mass::NodalMass;
 pub use matrix::mass_matrix::{GeneralMass, MassMatrix};
 pub use matrix::stiffness::{NodalStiffness, StiffnessMatrix};
@@ -48,6 +49,7 @@ pub use statics::large_shapes::{LargeShapes, Products};
 pub use statics::mass_left_out::mass_left_out;
 pub use statics::response::StaticAccuracy;
 
+pub use support::constraints::Constraints;
 pub use support::held_problem::{HeldMatrix, HeldProblem};
 pub use support::motion::{RigidMotion, Support, Twist};
 pub use support::rigid::RigidModes;

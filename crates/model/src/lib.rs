@@ -13,6 +13,7 @@
 //! | `support`, `load`, `stress` | what holds the body, what acts on it, and the stress of that |
 //! | `reduction` | `survey` (what the scene may need), `decide` (what it gets), `reduce` (make it) |
 //! | `model` | the reduced body with its points, markers and loads |
+//! | `full` | the full nonlinear body of the scene, and the check of a model's state by it |
 //! | `tie` | markers, and the systems of the bodies that joints connect |
 
 #![forbid(unsafe_code)]
@@ -23,6 +24,7 @@ mod body;
 mod builder;
 mod cache;
 mod error;
+mod full;
 mod load;
 mod mesh;
 mod model;
@@ -39,6 +41,10 @@ pub use body::files::files_of_body;
 pub use builder::Builder;
 pub use cache::{Cache, CacheNotes};
 pub use error::{BuildError, StartError};
+pub use full::acting::MarkerForce;
+pub use full::check::{Checker, FrequencyCheck, PointCheck, StateCheck};
+pub use full::mends::Mend;
+pub use full::{FullError, FullModel};
 pub use mesh::doubt::{Doubt, doubts};
 pub use mesh::given::MatrixChecks;
 pub use model::{Meshed, Model};

@@ -128,6 +128,11 @@ impl ConservativeBody {
         self.translation == Translation::Free && self.axes.len() == 3 && self.drive.is_none() && self.manifold.is_none()
     }
 
+    /// Numbers of the components of π that the body turns freely with: none of a driven one.
+    pub(crate) fn free_turns(&self) -> std::ops::Range<usize> {
+        0..if self.turn_driven { 0 } else { self.axes.len() }
+    }
+
     /// Its mass.
     pub(crate) fn mass(&self) -> f64 {
         self.mass

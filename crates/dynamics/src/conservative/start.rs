@@ -19,13 +19,18 @@ impl ConservativeBody {
     /// # Errors
     /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
     pub fn start(&self, initial: &Initial) -> Result<State, SetupError> {
+        self.start_at(initial, 0.0)
+    }
+
+    /// The same at another time, when the drive is as fast as it then is.
+    fn start_at(&self, initial: &Initial, time: f64) -> Result<State, SetupError> {
         initial.check(self.flexible())?;
         let mut e = self.room();
         let [q, _] = e.at.modes_mut();
         q.copy_from_slice(&initial.modal_displacement);
         let scalar = pulp::Scalar::new();
         self.deform(scalar, &mut e);
-        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(0.0, 0.0));
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(time, time));
         let mut spin = Vector3::zeros();
         for (w, axis) in spin.iter_mut().zip(&self.axes) {
             *w = if self.turn_driven { speed } else { axis.dot(&initial.omega) };
@@ -69,7 +74,7 @@ impl ConservativeBody {
         list.set_attitude(initial.attitude);
         list.set_slow(&slow);
         list.set_modes(&initial.modal_displacement, &momentum);
-        Ok(State { time: 0.0, values: list.values })
+        Ok(State { time, values: list.values })
     }
 
     /// A state in quantities that every formulation has.
@@ -99,9 +104,7 @@ impl ConservativeBody {
             modal_displacement: motion.modal_displacement.clone(),
             modal_velocity: motion.modal_velocity.clone(),
         };
-        let mut state = self.start(&initial)?;
-        state.time = motion.time;
-        Ok(state)
+        self.start_at(&initial, motion.time)
     }
 
     /// q̇ and ż.

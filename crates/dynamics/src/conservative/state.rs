@@ -40,7 +40,8 @@ pub(crate) fn set(slow: &mut Slow, first: usize, value: &Vector3<f64>) {
 
 const ATTITUDE: usize = 0;
 const ANGLE: usize = WIDTH;
-const SLOW: usize = 2 * WIDTH;
+/// First place of [`Slow`].
+pub(crate) const SLOW: usize = 2 * WIDTH;
 const MODES: usize = SLOW + 20;
 
 /// The layout of a body with these axes of rotation.

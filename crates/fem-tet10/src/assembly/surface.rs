@@ -85,6 +85,29 @@ impl Mesh {
         }))
     }
 
+    /// The forces of [`surface_pressure`](Self::surface_pressure) on the surface displaced by `displacement` (3n, length, row
+    /// `3·node + axis`): those of the undeformed one, [what they change to first order](Self::surface_pressure_change), and
+    /// the rest, of second order.
+    ///
+    /// # Errors
+    /// As [`surface_pressure`](Self::surface_pressure).
+    ///
+    /// # Panics
+    /// Where `displacement` has fewer than 3n rows.
+    pub fn surface_pressure_on(
+        &self,
+        group: &str,
+        displacement: ColRef<'_, f64>,
+    ) -> Result<(Vec<u32>, Vec<Vector3<f64>>), MeshError> {
+        let surface = self.outer_surface(group)?;
+        let moved =
+            |face: &Face| face.nodes.map(|node| Vector3::from_fn(|axis, _| displacement[3 * node as usize + axis]));
+        Ok(self.integrate_with(surface, moved, |x, u, slopes| {
+            let along = |direction: usize| tangent(x, slopes, direction) + tangent(u, slopes, direction);
+            -along(0).cross(&along(1))
+        }))
+    }
+
     /// A surface with the body on one side only.
     fn outer_surface(&self, group: &str) -> Result<&Surface, MeshError> {
         let surface = self.surface(group)?;

@@ -129,6 +129,7 @@ impl Tensors {
 }
 
 /// Elements that are computed side by side, all straight or all curved.
+#[derive(Debug)]
 pub(crate) struct Group {
     /// The last ones again where there are not enough of them.
     pub elements: [usize; LANES],

@@ -21,8 +21,8 @@ use crate::support::motion::{RigidMotion, Support};
 pub(crate) const NEGLIGIBLE: f64 = 1e-7;
 
 /// The constraints of the held degrees of freedom.
-#[derive(Clone)]
-pub(crate) struct Constraints {
+#[derive(Debug, Clone)]
+pub struct Constraints {
     /// Held degrees of freedom, in the order of the rows of `motions`.
     rows: Vec<usize>,
     /// True for each degree of freedom that is held.
@@ -37,7 +37,7 @@ impl Constraints {
     /// # Errors
     /// [`ModalError::HeldNode`], [`ModalError::HeldFreedom`], [`ModalError::Underheld`], and what
     /// [`RigidMotion::check`] refuses.
-    pub(crate) fn new(support: &Support, positions: &[[f64; 3]], dofs: usize) -> Result<Self, ModalError> {
+    pub fn new(support: &Support, positions: &[[f64; 3]], dofs: usize) -> Result<Self, ModalError> {
         support.motion.check()?;
         check_held(&support.nodes, &support.dofs, positions.len(), dofs)?;
         let of_nodes = support.nodes.iter().flat_map(|node| (0..dofs).map(move |dof| (*node, dof)));
@@ -105,19 +105,19 @@ impl Constraints {
     }
 
     /// True if a degree of freedom is held.
-    pub(crate) fn holds(&self, row: usize) -> bool {
+    pub fn holds(&self, row: usize) -> bool {
         self.held[row]
     }
 
     /// The motions of the held rows, zero on all others (N×k).
-    pub(crate) fn motions(&self) -> Mat<f64> {
+    pub fn motions(&self) -> Mat<f64> {
         let mut all = Mat::zeros(self.held.len(), self.motion_count());
         self.scatter(&self.motions, all.as_mut());
         all
     }
 
     /// Replaces X by T Tᵀ X.
-    pub(crate) fn project(&self, x: MatMut<'_, f64>) {
+    pub fn project(&self, x: MatMut<'_, f64>) {
         if !self.is_empty() {
             let coefficients = self.motions.transpose() * self.gather(x.rb());
             self.scatter(&(&self.motions * coefficients), x);

@@ -28,14 +28,14 @@ pub(crate) struct MeshLoad {
     /// Name for the reader.
     name: String,
     /// Action of an amplitude of 1 or −1.
-    action: Action,
+    pub(crate) action: Action,
     /// Size of the amplitude.
     size: f64,
     pub history: dynamics::History,
     /// True if it keeps its direction in the body or in the material.
     pub follows: bool,
     /// How the material that its direction turns with is turned by the nodes.
-    turning: Option<Rotation>,
+    pub(crate) turning: Option<Rotation>,
     /// Degrees of freedom of a node.
     dofs: usize,
     /// Attitude of the body at the beginning.
@@ -65,7 +65,7 @@ impl FromIterator<(SharedLoad, bool)> for BodyLoads {
 }
 
 /// Where a load acts, and how much.
-enum Action {
+pub(crate) enum Action {
     /// A force at the weighted mean of nodes; the weights sum to one.
     Force { nodes: Vec<u32>, weights: Vec<f64>, force: Vector3<f64> },
     /// A force on every mass: M times an acceleration of the whole body.
@@ -321,13 +321,19 @@ impl MeshLoad {
 
     /// The force or moment in the first attitude, body axes, where the history is 1 and the amplitude 1 or −1; none of a field.
     pub(crate) fn unit(&self) -> Option<Vector3<f64>> {
+        let is_field = matches!(self.action, Action::Field { .. });
+        (!is_field).then(|| self.vector_in(&self.attitude))
+    }
+
+    /// The force or moment in body axes in an attitude, where the history is 1 and the amplitude 1 or −1; zero of a field.
+    pub(crate) fn vector_in(&self, attitude: &Attitude) -> Vector3<f64> {
         match &self.action {
             Action::Force { force: vector, .. }
             | Action::Weight { force: vector, .. }
             | Action::Moment { moment: vector, .. } => {
-                Some(if self.follows { *vector } else { self.attitude.to_body(vector) })
+                if self.follows { *vector } else { attitude.to_body(vector) }
             }
-            Action::Field { .. } => None,
+            Action::Field { .. } => Vector3::zeros(),
         }
     }
 

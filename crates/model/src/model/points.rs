@@ -1,15 +1,14 @@
 //! The points that a scene asks for, and those that are chosen where it names none.
 
-use dynamics::PointShapes;
 use nalgebra::Vector3;
 use scene::Scene;
 
 use crate::error::BuildError;
 
-pub(crate) fn output_points(
+pub(crate) fn output_points<T>(
     scene: &Scene,
-    point: impl Fn(String, [f64; 3]) -> Result<PointShapes, BuildError>,
-) -> Result<Vec<(String, PointShapes)>, BuildError> {
+    point: impl Fn(String, [f64; 3]) -> Result<T, BuildError>,
+) -> Result<Vec<(String, T)>, BuildError> {
     let named = scene.output.points.iter();
     named.map(|(name, at)| Ok((name.clone(), point(format!("output.points.{name}"), *at)?))).collect()
 }

@@ -18,11 +18,11 @@ const ON: f64 = 1e-6;
 /// A place with axes on a mesh.
 pub(crate) struct MeshMarker {
     name: String,
-    nodes: Vec<u32>,
+    pub(crate) nodes: Vec<u32>,
     /// The part of each node in the mean; the sum is 1.
-    weights: Vec<f64>,
+    pub(crate) weights: Vec<f64>,
     /// How the material there is turned, where the mesh tells.
-    rotation: Option<Rotation>,
+    pub(crate) rotation: Option<Rotation>,
     axes: Matrix3<f64>,
     unknown_turns: UnknownTurns,
     /// Degrees of freedom of a node.

@@ -1,0 +1,83 @@
+//! What acts on the displaced nodes of a full body at a time.
+
+use nalgebra::Vector3;
+use nonlinear::{Acting, ExternalForces};
+use rigid_kin::Attitude;
+
+use crate::full::FullModel;
+use crate::load::mesh_load::{Action, MeshLoad};
+use crate::load::rotation::Rotation;
+use crate::tie::mesh_marker::MeshMarker;
+
+/// A force and a moment at a marker, global components.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MarkerForce {
+    /// Its number among the markers of the body.
+    pub marker: usize,
+    /// The force on the body.
+    pub force_global: Vector3<f64>,
+    /// The moment on the body about the marker.
+    pub moment_global: Vector3<f64>,
+}
+
+impl FullModel {
+    /// The loads at a time in an attitude of the body, and the forces of joints.
+    pub fn forces(&self, time: f64, attitude: &Attitude, joints: &[MarkerForce]) -> ExternalForces {
+        let nodes = self.assembled.mesh.positions().len();
+        let mut dead = vec![0.0; 3 * nodes];
+        let mut others = Vec::new();
+        for load in &self.loads {
+            act(load, time, attitude, &mut dead, &mut others);
+        }
+        for MarkerForce { marker, force_global, moment_global } in joints {
+            if let Some(marker) = self.markers.get(*marker) {
+                let [force, moment] = [force_global, moment_global].map(|vector| attitude.to_body(vector));
+                act_at(marker, &force, moment, &mut dead, &mut others);
+            }
+        }
+        others.push(Acting::Dead(dead));
+        ExternalForces(others)
+    }
+}
+
+fn act(load: &MeshLoad, time: f64, attitude: &Attitude, dead: &mut [f64], others: &mut Vec<Acting>) {
+    let factor = load.size() * load.history.at(time, time);
+    if factor == 0.0 {
+        return;
+    }
+    let vector = load.vector_in(attitude) * factor;
+    match (&load.action, &load.turning) {
+        (Action::Force { nodes, weights, .. }, Some(Rotation::Mean(patch))) => others.push(Acting::Turning {
+            nodes: nodes.clone(),
+            weights: weights.clone(),
+            patch: patch.clone(),
+            force: vector,
+        }),
+        (Action::Moment { patch: Rotation::Mean(patch), .. }, _) => {
+            others.push(Acting::Moment { patch: patch.clone(), moment: vector, turns: false });
+        }
+        (Action::Field { group, pressure, .. }, _) => {
+            others.push(Acting::Pressure { group: group.clone(), pressure: pressure * factor });
+        }
+        _ => load.add_unit_nodal_forces(Some(vector), faer::ColMut::from_slice_mut(dead)),
+    }
+}
+
+fn act_at(
+    marker: &MeshMarker,
+    force: &Vector3<f64>,
+    moment: Vector3<f64>,
+    dead: &mut [f64],
+    others: &mut Vec<Acting>,
+) {
+    for (node, weight) in marker.nodes.iter().zip(&marker.weights) {
+        for axis in 0..3 {
+            dead[3 * *node as usize + axis] += force[axis] * weight;
+        }
+    }
+    if let Some(Rotation::Mean(patch)) = &marker.rotation
+        && moment != Vector3::zeros()
+    {
+        others.push(Acting::Moment { patch: patch.clone(), moment, turns: false });
+    }
+}

@@ -1,0 +1,248 @@
+//! The check of a model's state by the full body.
+
+use dynamics::{
+    ConservativeBody, History, LoadFrame, MotionState, Observation, PointForce, PointMoment, SharedLoad,
+};
+use faer::Mat;
+use fem_tet10::Location;
+use nalgebra::Vector3;
+use nonlinear::{FullBody, FullState, StateErrorSettings, Tangent, state_error, true_frequencies};
+use scene::Scene;
+use serde::Serialize;
+
+use crate::error::refuse;
+use crate::full::acting::MarkerForce;
+use crate::full::mends::{Mend, Parts, mends};
+use crate::full::{FullError, FullModel};
+use crate::model::Model;
+
+/// Frequencies that are compared.
+const FREQUENCIES: usize = 4;
+/// A spin above this part of the first frequency turns the vibrations of a body that spins freely into ones with its spin, which
+/// the full body does not have.
+const HELD_SPIN: f64 = 1e-3;
+
+/// A state of a model against the full body.
+#[derive(Debug, Clone, Serialize)]
+pub struct StateCheck {
+    /// The time.
+    pub time: f64,
+    /// Size of the error of the displacements over that of the true ones, over the body: in the norm of its mass.
+    pub error: f64,
+    /// The part of it that is along the modes.
+    pub within_modes: f64,
+    /// The part that no combination of the modes has.
+    pub beside_modes: f64,
+    /// Largest error of the displacement of a node, length.
+    pub largest_error: f64,
+    /// Largest true displacement by deformation of a node, length.
+    pub largest_displacement: f64,
+    /// The points of the output.
+    pub points: Vec<PointCheck>,
+    /// The lowest frequencies of the model and of the full body about the state; empty where they are not compared.
+    pub frequencies: Vec<FrequencyCheck>,
+    /// Number of directions in which the stiffness at the state is negative; `None` under forces that follow the body, where it
+    /// says nothing.
+    pub negative_directions: Option<usize>,
+    /// Largest growth of a vibration of the full body about the state, 1 per time: positive where it is unstable.
+    pub growth: f64,
+    /// What would make the error smaller.
+    pub mends: Vec<Mend>,
+    /// Factors of the tangent that were made.
+    pub factors: usize,
+    /// True if the last of them changed little: the error is known well.
+    pub is_settled: bool,
+}
+
+/// A point of the output.
+#[derive(Debug, Clone, Serialize)]
+pub struct PointCheck {
+    /// Its name.
+    pub name: String,
+    /// The true displacement by deformation, body components.
+    pub displacement: [f64; 3],
+    /// Its error: the model's displacement less the true one, body components.
+    pub error: [f64; 3],
+    /// Size of the error over that of the displacement.
+    pub relative: f64,
+}
+
+/// A frequency.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct FrequencyCheck {
+    /// Of the model, cycles per time.
+    pub model: f64,
+    /// Of the full body, cycles per time.
+    pub full: f64,
+    /// Relative error of the model's.
+    pub error: f64,
+}
+
+/// A full body that checks states of a model: with its factor at rest.
+pub struct Checker<'a> {
+    full: &'a FullModel,
+    scene: &'a Scene,
+    model: &'a Model,
+    body: &'a FullBody<'a>,
+    at_rest: Tangent<'a>,
+    points: Vec<(String, Location)>,
+}
+
+impl<'a> Checker<'a> {
+    /// Factors the stiffness of the undeformed body.
+    ///
+    /// # Errors
+    /// [`FullError`].
+    pub fn new(
+        full: &'a FullModel,
+        scene: &'a Scene,
+        model: &'a Model,
+        body: &'a FullBody<'a>,
+    ) -> Result<Self, FullError> {
+        let points = crate::model::points::output_points(scene, |key: String, at: [f64; 3]| {
+            let located = full.assembled.mesh.locate(at);
+            located.map_err(|error| refuse(scene, &key, error).into())
+        })?;
+        Ok(Self { full, scene, model, body, at_rest: body.at_rest()?, points })
+    }
+
+    /// Checks the state of a motion under the forces of joints. `frequencies` is true where these are to be compared, too.
+    ///
+    /// # Errors
+    /// [`FullError`].
+    pub fn check(
+        &self,
+        motion: &MotionState,
+        joints: &[MarkerForce],
+        settings: &StateErrorSettings,
+        frequencies: bool,
+    ) -> Result<StateCheck, FullError> {
+        let moving = self.moving(joints)?;
+        let observed = moving.observed_at(motion, &[])?;
+        let state = self.state(&observed, joints)?;
+        let found = state_error(self.body, &self.at_rest, &state, settings)?;
+        let truth: Vec<f64> = state.displacement.iter().zip(&found.error).map(|(u, e)| u + e).collect();
+        let size = self.body.mass_norm(&truth);
+        let relative = |v: &[f64]| ratio(self.body.mass_norm(v), size);
+        let modes = self.model.meshed.as_ref().map_or_else(Mat::new, |meshed| meshed.modes.shapes.clone());
+        let [within, beside] = self.body.parts(modes.as_ref(), &found.error);
+        let [_, answer] = self.body.parts(modes.as_ref(), &found.linear_answer);
+        let product: f64 = beside.iter().zip(self.body.momentum(&answer)).map(|(e, a)| e * a).sum();
+        let sizes = self.body.mass_norm(&beside) * self.body.mass_norm(&answer);
+        let parts = Parts {
+            error: relative(&found.error),
+            within: relative(&within),
+            beside: relative(&beside),
+            linear: if sizes > 0.0 { (product / sizes).abs().min(1.0) } else { 0.0 },
+        };
+        let follows = state.forces.follow();
+        let (frequencies, growth) = match frequencies && self.spin_is_held(&state) {
+            true => self.frequencies(&moving, motion, &state, &found)?,
+            false => (Vec::new(), 0.0),
+        };
+        Ok(StateCheck {
+            time: motion.time,
+            error: parts.error,
+            within_modes: parts.within,
+            beside_modes: parts.beside,
+            largest_error: peak(&found.error),
+            largest_displacement: peak(&truth),
+            points: self.points.iter().map(|point| checked(point, &truth, &found.error)).collect(),
+            frequencies,
+            negative_directions: (!follows).then_some(found.negative_pivots),
+            growth,
+            mends: mends(&parts, self.model.static_shapes() > 0, !self.model.large_modes().is_empty()),
+            factors: found.factors,
+            is_settled: found.factors == 1 || found.last_change <= settings.settled.max(0.5),
+        })
+    }
+
+    /// The state of a motion on all nodes.
+    ///
+    /// # Errors
+    /// [`FullError`].
+    pub fn state(&self, observed: &Observation, joints: &[MarkerForce]) -> Result<FullState, FullError> {
+        let forces = self.full.forces(observed.time, &observed.attitude, joints);
+        let without_mesh = || nonlinear::NonlinearError::NotFinite { what: "the displacement of a body without a mesh" };
+        Ok(self.model.full_state(observed, forces).ok_or_else(without_mesh)?)
+    }
+
+    /// The model's equations with the forces of joints as loads.
+    fn moving(&self, joints: &[MarkerForce]) -> Result<ConservativeBody, FullError> {
+        let Model { body, loads, damping_ratios, physics, markers, .. } = self.model;
+        let mut loads = loads.clone();
+        for MarkerForce { marker, force_global, moment_global } in joints {
+            let Some(marker) = markers.get(*marker) else { continue };
+            let force: SharedLoad = std::sync::Arc::new(PointForce::dead(
+                marker.point.clone(),
+                *force_global,
+                History::Constant,
+            ));
+            let moment: SharedLoad = std::sync::Arc::new(PointMoment {
+                rotation: marker.turning.clone(),
+                moment: *moment_global,
+                frame: LoadFrame::Global,
+                history: History::Constant,
+            });
+            loads.extend([force, moment]);
+        }
+        let initial = self.model.initial(self.scene);
+        Ok(ConservativeBody::new(body, damping_ratios, loads, physics)?.beginning_at(&initial))
+    }
+
+    /// True if the spin is given, or next to none.
+    fn spin_is_held(&self, state: &FullState) -> bool {
+        let turns_freely = self.model.physics.drive.is_none() && !self.model.body.motion.rotations().is_empty();
+        let first = self.model.body.circular_frequencies.first().copied().unwrap_or(0.0);
+        !turns_freely || state.omega_body.norm() < HELD_SPIN * first
+    }
+
+    fn frequencies(
+        &self,
+        moving: &ConservativeBody,
+        motion: &MotionState,
+        state: &FullState,
+        found: &nonlinear::StateError<'_>,
+    ) -> Result<(Vec<FrequencyCheck>, f64), FullError> {
+        let Some(shapes) = self.model.slopes(&motion.modal_displacement) else { return Ok((Vec::new(), 0.0)) };
+        let full = true_frequencies(self.body, state, found, shapes.as_ref())?;
+        let amplitudes: Vec<f64> =
+            self.model.size.peaks.iter().map(|peak| 1e-4 * self.model.size.length / peak).collect();
+        let model = moving.vibrations_at(motion, &amplitudes)?;
+        // Those of the frame itself, of a body that turns freely.
+        let floor = 1e-3 * self.model.body.circular_frequencies.first().copied().unwrap_or(0.0);
+        let tau = std::f64::consts::TAU;
+        let of_model = model.iter().map(|mode| mode.circular_frequency).filter(|omega| *omega > floor);
+        let of_full = full.iter().map(|mode| mode.circular_frequency).filter(|omega| *omega > floor);
+        let compared = of_model.zip(of_full).take(FREQUENCIES.min(self.model.body.natural_modes));
+        let compared = compared
+            .map(|(model, full)| FrequencyCheck { model: model / tau, full: full / tau, error: model / full - 1.0 });
+        // Growth that is more than rounding.
+        let growth = full.iter().map(|mode| mode.growth).fold(0.0, f64::max);
+        let scale = full.iter().map(|mode| mode.circular_frequency).fold(0.0, f64::max);
+        Ok((compared.collect(), if growth > 1e-6 * scale { growth } else { 0.0 }))
+    }
+}
+
+fn ratio(error: f64, size: f64) -> f64 {
+    if error == 0.0 { 0.0 } else { error / size }
+}
+
+/// Largest displacement of a node.
+fn peak(u: &[f64]) -> f64 {
+    u.chunks_exact(3).map(|u| Vector3::from_column_slice(u).norm()).fold(0.0, f64::max)
+}
+
+fn checked((name, location): &(String, Location), truth: &[f64], error: &[f64]) -> PointCheck {
+    let at = |list: &[f64]| -> Vector3<f64> {
+        let node = |node: &u32| Vector3::from_column_slice(&list[3 * *node as usize..3 * *node as usize + 3]);
+        location.nodes.iter().zip(&location.weights).map(|(n, weight)| node(n) * *weight).sum()
+    };
+    let (displacement, error) = (at(truth), at(error));
+    PointCheck {
+        name: name.clone(),
+        displacement: displacement.into(),
+        error: (-error).into(),
+        relative: ratio(error.norm(), displacement.norm()),
+    }
+}
