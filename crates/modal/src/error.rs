@@ -77,7 +77,9 @@ pub enum ModalError {
     )]
     NoCorner { node: usize, end: u32 },
     /// Numbers of large or following modes that do not rise, that are twice there, or of modes that there are not.
-    #[error("the large modes, and those that follow, are {found:?}; expected rising numbers of each below {count}, the number of shapes")]
+    #[error(
+        "the large modes, and those that follow, are {found:?}; expected rising numbers of each below {count}, the number of shapes"
+    )]
     LargeModes { found: Vec<usize>, count: usize },
     /// Weights of a point that do not sum to one.
     #[error("the weights of a point sum to {sum}; expected 1, as of shape functions")]

@@ -5,4 +5,3 @@ pub(crate) mod inertia_relief;
 pub(crate) mod large_shapes;
 pub(crate) mod mass_left_out;
 pub(crate) mod response;
-

@@ -53,11 +53,7 @@ impl Builder {
     ///
     /// # Errors
     /// As [`Builder::build`].
-    pub fn full(
-        &self,
-        scene: &Scene,
-        progress: impl FnMut(BuildProgress),
-    ) -> Result<Option<FullModel>, BuildError> {
+    pub fn full(&self, scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<Option<FullModel>, BuildError> {
         let Assembled::Meshed(assembled) = self.assemble(scene, progress)?.0 else { return Ok(None) };
         if assembled.elements().is_none() {
             return Ok(None);

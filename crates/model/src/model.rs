@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
 use dynamics::{
-    ConservativeBody, Equations, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, MotionState, Physics, PointShapes, Rows,
-    Setup, SharedLoad, Simulation, StepControl,
+    ConservativeBody, Equations, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, MotionState, Physics,
+    PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl,
 };
 use faer::Mat;
 use fem_tet10::Mesh;

@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use dynamics::DrivenMotion;
 use faer::{ColRef, Mat, MatRef, Scale};
 use fem_tet10::{
-    AssemblyError, Expansion, StressRecovery, StressSites, extended_geometric_stiffness,
-    geometric_stiffness_product, second_order_energies, second_order_forces,
+    AssemblyError, Expansion, StressRecovery, StressSites, extended_geometric_stiffness, geometric_stiffness_product,
+    second_order_energies, second_order_forces,
 };
 use keys::{Key, Keyed};
 use modal::{
@@ -407,7 +407,10 @@ impl Structure<'_> {
             let forces = second_order_forces(mesh, materials, shapes.as_ref(), &pairs)?;
             let along = shapes.transpose() * forces;
             let part = |a: usize, pair: usize| along[(a, pair)].powi(2) / (modes.eigenvalues[list[a]] * energies[pair]);
-            Ok((0..list.len()).flat_map(|a| (0..pairs.len()).map(move |pair| (a, pair))).map(|(a, p)| part(a, p)).collect())
+            Ok((0..list.len())
+                .flat_map(|a| (0..pairs.len()).map(move |pair| (a, pair)))
+                .map(|(a, p)| part(a, p))
+                .collect())
         })
     }
 
@@ -445,9 +448,8 @@ impl Structure<'_> {
             self.pass_elements();
             let forces = expansion.forces(mesh, materials, &wanted)?;
             let answers = self.solve(modes, forces.as_ref(), StaticAccuracy::Shapes)? * Scale(-1.0);
-            let freed = |of: MatRef<'_, f64>| {
-                self.solver()?.freed(answers.as_ref(), of).map_err(|error| self.modal(error))
-            };
+            let freed =
+                |of: MatRef<'_, f64>| self.solver()?.freed(answers.as_ref(), of).map_err(|error| self.modal(error));
             let (of_large, of_all) = (freed(bent.subcols(0, large.len()))?, freed(bent.as_ref())?);
             let first = fields.ncols();
             fields = Mat::from_fn(fields.nrows(), first + wanted.len(), |i, j| match j.checked_sub(first) {

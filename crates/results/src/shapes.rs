@@ -74,7 +74,12 @@ impl Shapes {
         let (n, c, p) = (self.nodes.len(), self.displacements.len(), self.factors.len());
         let stress =
             self.stress.as_ref().map_or(0, |s| 4 * s.nodes.len() as u64 + 8 * numbers(c + p, s.nodes.len(), 6));
-        28 * n as u64 + 24 * self.faces.len() as u64 + 8 * numbers(c, n, 3) + 8 * numbers(p, c + 1, 1) + stress
+        28 * n as u64
+            + 24 * self.faces.len() as u64
+            + 8 * numbers(c, n, 3)
+            + 12 * p as u64
+            + 8 * numbers(p, c, 1)
+            + stress
     }
 
     /// True if its lists fit together and its numbers are finite.

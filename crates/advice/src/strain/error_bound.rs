@@ -145,7 +145,8 @@ mod tests {
 
     #[test]
     fn the_modes_that_move_furthest_are_large_and_both_of_a_pair() {
-        let moved = |omega: f64, displacement: f64| Worth { circular_frequency: omega, displacement, ..out_of_phase(0.5) };
+        let moved =
+            |omega: f64, displacement: f64| Worth { circular_frequency: omega, displacement, ..out_of_phase(0.5) };
         let modes = [moved(1.0, 0.2), moved(3.0, 1.0), moved(7.0, 0.5), moved(9.0, 0.4)];
         assert_eq!(large_modes(&modes, 4, 1e-3), [1, 2]);
         assert_eq!(large_modes(&modes[..2], 2, 1e-3), [1]);

@@ -110,17 +110,9 @@ mod tests {
     /// has turned; of a shape that stretches it, none.
     #[test]
     fn a_moment_works_on_the_angle_however_large_it_is() {
-        let nodes = [
-            Vector3::new(1.0, 0.0, 0.0),
-            Vector3::new(-1.0, 0.5, 0.0),
-            Vector3::new(0.0, -0.5, 0.0),
-        ];
+        let nodes = [Vector3::new(1.0, 0.0, 0.0), Vector3::new(-1.0, 0.5, 0.0), Vector3::new(0.0, -0.5, 0.0)];
         for lift in [0.0, 0.3] {
-            let nodes = [
-                nodes[0] + Vector3::z() * lift,
-                nodes[1] - Vector3::z() * lift,
-                nodes[2],
-            ];
+            let nodes = [nodes[0] + Vector3::z() * lift, nodes[1] - Vector3::z() * lift, nodes[2]];
             let sum = |of: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| -> Matrix3<f64> {
                 nodes.iter().map(|d| of(d) * d.transpose()).sum()
             };

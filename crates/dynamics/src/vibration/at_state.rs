@@ -46,7 +46,8 @@ impl ConservativeBody {
         let size = self.undeformed_inertia().trace() * omega.iter().copied().fold(f64::INFINITY, f64::min);
         let turning = self.free_turns().map(|k| (SLOW + part::PI + k, 1e-3 * size));
         let of_q = amplitudes.iter().enumerate().map(|(k, amplitude)| (first_q + k, *amplitude));
-        let of_p = amplitudes.iter().zip(omega).enumerate().map(|(k, (amplitude, omega))| (first_p + k, amplitude * omega));
+        let of_p =
+            amplitudes.iter().zip(omega).enumerate().map(|(k, (amplitude, omega))| (first_p + k, amplitude * omega));
         let places: Vec<(usize, f64)> = turning.chain(of_q).chain(of_p).collect();
         let mut jacobian = Mat::zeros(places.len(), places.len());
         for (column, (place, amplitude)) in places.iter().enumerate() {
@@ -61,8 +62,7 @@ impl ConservativeBody {
                 jacobian[(row, column)] = (after[*at] - before[*at]) / (2.0 * size);
             }
         }
-        let eigenvalues: Vec<c64> =
-            jacobian.eigenvalues().map_err(|_| EigenError { size: places.len() })?;
+        let eigenvalues: Vec<c64> = jacobian.eigenvalues().map_err(|_| EigenError { size: places.len() })?;
         let mut modes: Vec<LoadedMode> = eigenvalues
             .into_iter()
             .filter(|root| root.im > 0.0 || (root.im == 0.0 && root.re >= 0.0))

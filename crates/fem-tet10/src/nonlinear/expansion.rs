@@ -45,12 +45,7 @@ impl Expansion<'_> {
     ///
     /// # Panics
     /// Where there are not as many fields as products.
-    pub fn forces(
-        &self,
-        mesh: &Mesh,
-        materials: &Materials,
-        wanted: &[Vec<usize>],
-    ) -> Result<Mat<f64>, AssemblyError> {
+    pub fn forces(&self, mesh: &Mesh, materials: &Materials, wanted: &[Vec<usize>]) -> Result<Mat<f64>, AssemblyError> {
         let materials = self.checked(mesh, materials)?;
         let is_part = |strain: &Vec<usize>| wanted.iter().any(|w| strain.len() <= w.len() && divides(strain, w));
         let strains = Strains::new(self.products, is_part);
@@ -167,11 +162,7 @@ impl Expansion<'_> {
         Ok(sums)
     }
 
-    fn checked(
-        &self,
-        mesh: &Mesh,
-        materials: &Materials,
-    ) -> Result<Vec<Material>, AssemblyError> {
+    fn checked(&self, mesh: &Mesh, materials: &Materials) -> Result<Vec<Material>, AssemblyError> {
         assert_eq!(self.products.len(), self.fields.ncols(), "a field for each product");
         check_field(mesh, "fields", self.fields)?;
         if let Some(reference) = self.reference {

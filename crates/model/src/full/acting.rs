@@ -63,13 +63,7 @@ fn act(load: &MeshLoad, time: f64, attitude: &Attitude, dead: &mut [f64], others
     }
 }
 
-fn act_at(
-    marker: &MeshMarker,
-    force: &Vector3<f64>,
-    moment: Vector3<f64>,
-    dead: &mut [f64],
-    others: &mut Vec<Acting>,
-) {
+fn act_at(marker: &MeshMarker, force: &Vector3<f64>, moment: Vector3<f64>, dead: &mut [f64], others: &mut Vec<Acting>) {
     for (node, weight) in marker.nodes.iter().zip(&marker.weights) {
         for axis in 0..3 {
             dead[3 * *node as usize + axis] += force[axis] * weight;

@@ -1,8 +1,6 @@
 //! The check of a model's state by the full body.
 
-use dynamics::{
-    ConservativeBody, History, LoadFrame, MotionState, Observation, PointForce, PointMoment, SharedLoad,
-};
+use dynamics::{ConservativeBody, History, LoadFrame, MotionState, Observation, PointForce, PointMoment, SharedLoad};
 use faer::Mat;
 use fem_tet10::Location;
 use nalgebra::Vector3;
@@ -163,7 +161,8 @@ impl<'a> Checker<'a> {
     /// [`FullError`].
     pub fn state(&self, observed: &Observation, joints: &[MarkerForce]) -> Result<FullState, FullError> {
         let forces = self.full.forces(observed.time, &observed.attitude, joints);
-        let without_mesh = || nonlinear::NonlinearError::NotFinite { what: "the displacement of a body without a mesh" };
+        let without_mesh =
+            || nonlinear::NonlinearError::NotFinite { what: "the displacement of a body without a mesh" };
         Ok(self.model.full_state(observed, forces).ok_or_else(without_mesh)?)
     }
 
@@ -173,11 +172,8 @@ impl<'a> Checker<'a> {
         let mut loads = loads.clone();
         for MarkerForce { marker, force_global, moment_global } in joints {
             let Some(marker) = markers.get(*marker) else { continue };
-            let force: SharedLoad = std::sync::Arc::new(PointForce::dead(
-                marker.point.clone(),
-                *force_global,
-                History::Constant,
-            ));
+            let force: SharedLoad =
+                std::sync::Arc::new(PointForce::dead(marker.point.clone(), *force_global, History::Constant));
             let moment: SharedLoad = std::sync::Arc::new(PointMoment {
                 rotation: marker.turning.clone(),
                 moment: *moment_global,
@@ -215,8 +211,11 @@ impl<'a> Checker<'a> {
         let of_model = model.iter().map(|mode| mode.circular_frequency).filter(|omega| *omega > floor);
         let of_full = full.iter().map(|mode| mode.circular_frequency).filter(|omega| *omega > floor);
         let compared = of_model.zip(of_full).take(FREQUENCIES.min(self.model.body.natural_modes));
-        let compared = compared
-            .map(|(model, full)| FrequencyCheck { model: model / tau, full: full / tau, error: model / full - 1.0 });
+        let compared = compared.map(|(model, full)| FrequencyCheck {
+            model: model / tau,
+            full: full / tau,
+            error: model / full - 1.0,
+        });
         // Growth that is more than rounding.
         let growth = full.iter().map(|mode| mode.growth).fold(0.0, f64::max);
         let scale = full.iter().map(|mode| mode.circular_frequency).fold(0.0, f64::max);

@@ -173,17 +173,7 @@ pub(crate) fn on_mesh(
                 _ => None,
             };
             let (follows, is_gravity) = (follows(load), is_gravity(load));
-            Ok(MeshLoad {
-                name,
-                action,
-                size: amplitude.abs(),
-                history,
-                follows,
-                turning,
-                dofs,
-                attitude,
-                is_gravity,
-            })
+            Ok(MeshLoad { name, action, size: amplitude.abs(), history, follows, turning, dofs, attitude, is_gravity })
         })
         .collect()
 }
@@ -331,7 +321,11 @@ impl MeshLoad {
             Action::Force { force: vector, .. }
             | Action::Weight { force: vector, .. }
             | Action::Moment { moment: vector, .. } => {
-                if self.follows { *vector } else { attitude.to_body(vector) }
+                if self.follows {
+                    *vector
+                } else {
+                    attitude.to_body(vector)
+                }
             }
             Action::Field { .. } => Vector3::zeros(),
         }

@@ -78,9 +78,7 @@ impl Rotation {
         let of = |moved: &dyn Fn(u32) -> Vector3<f64>| -> Matrix3<f64> {
             patch.nodes.iter().map(|node| moved(*node) * (position(node) - mean).transpose()).sum()
         };
-        let shape = |node: u32, k: usize| {
-            Vector3::from_fn(|axis, _| modes.shapes[(dofs * node as usize + axis, k)])
-        };
+        let shape = |node: u32, k: usize| Vector3::from_fn(|axis, _| modes.shapes[(dofs * node as usize + axis, k)]);
         let of_modes = (0..modes.shapes.ncols()).map(|k| of(&|node| shape(node, k))).collect();
         PatchTurn::new(of(&|node| position(&node) - mean), of_modes)
     }

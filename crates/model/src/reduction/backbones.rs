@@ -12,7 +12,11 @@ use crate::structure::kept::{OwnSecondOrder, SecondOrder};
 ///
 /// The static modal derivative `Θ = −K⁻¹ g` is made M-orthogonal to its mode φ, so that the modal coordinate stays what
 /// it is: with c = φᵀMΘ, its inertia is ΘᵀMΘ − c², its energy −g·Θ − ω²c².
-pub(crate) fn backbones(model: &MeshModel<'_, '_>, modes: &Modes, advice: &Advice) -> Result<Vec<Option<Backbone>>, BuildError> {
+pub(crate) fn backbones(
+    model: &MeshModel<'_, '_>,
+    modes: &Modes,
+    advice: &Advice,
+) -> Result<Vec<Option<Backbone>>, BuildError> {
     let structure = model.structure;
     let natural = modes.natural().min(modes.shapes.ncols());
     let may_matter = |k: &usize| advice.modes.get(*k).is_some_and(|mode| mode.strain_bound >= advice.tolerance);

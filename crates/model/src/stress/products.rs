@@ -20,8 +20,7 @@ impl ProductStrains {
     pub fn new(manifold: &Manifold, shapes: MatRef<'_, f64>) -> Self {
         let (bent, products) = (manifold.bent(), manifold.products());
         let second: Vec<&Vec<usize>> = products.iter().filter(|product| product.len() == 2).collect();
-        let coefficients =
-            MatRef::from_column_major_slice(manifold.of_products(), shapes.ncols(), products.len());
+        let coefficients = MatRef::from_column_major_slice(manifold.of_products(), shapes.ncols(), products.len());
         let of_second = shapes * coefficients.get(.., ..second.len());
         let fields = Mat::from_fn(shapes.nrows(), bent.len() + second.len(), |i, j| match j.checked_sub(bent.len()) {
             None => shapes[(i, bent[j])],

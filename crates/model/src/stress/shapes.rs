@@ -19,8 +19,8 @@ use scene::Output;
 use crate::error::{BuildError, refuse};
 use crate::reduction::mesh_model::MeshModel;
 use crate::stress::left_out::LeftOut;
-use crate::stress::site::{SiteStress, combined};
 use crate::stress::products::ProductStrains;
+use crate::stress::site::{SiteStress, combined};
 use crate::structure::Structure;
 
 /// The stress of a body in its coordinates ([`BodyStress::coordinates`]), force per area, body axes, in the order of

@@ -40,7 +40,10 @@ pub(crate) const DATASETS: [ShapeDataset; 9] = [
         "body",
         "displacement of each node in a unit of each coordinate: flexible modes, static shapes, shapes that follow large modes",
     ),
-    whole(FACTORS, "coordinates of each product of large modes, from 0; one more than there are stands for a factor of 1"),
+    whole(
+        FACTORS,
+        "coordinates of each product of large modes, from 0; one more than there are stands for a factor of 1",
+    ),
     numbers(
         PRODUCTS,
         "1/(length mass^(1/2))",

@@ -32,7 +32,8 @@ impl Monomials {
         for degree in 3..=5 {
             ends[degree] = factors.partition_point(|product| product.len() <= degree);
         }
-        let places: BTreeMap<_, _> = factors.iter().cloned().enumerate().map(|(place, product)| (product, place)).collect();
+        let places: BTreeMap<_, _> =
+            factors.iter().cloned().enumerate().map(|(place, product)| (product, place)).collect();
         let step = |product: &Vec<usize>| {
             let (last, before) = product.split_last()?;
             Some([*places.get(before)? as u32, *last as u32])
@@ -116,9 +117,9 @@ impl Energy {
         for (product, energy) in products.iter().zip(energies) {
             coefficients[monomials.place(product) - first] += energy;
         }
-        let factors = monomials.factors[first..].iter().map(|product| {
-            [0, 1, 2, 3, 4].map(|i| product.get(i).map_or(one, |k| *k as u8))
-        });
+        let factors = monomials.factors[first..]
+            .iter()
+            .map(|product| [0, 1, 2, 3, 4].map(|i| product.get(i).map_or(one, |k| *k as u8)));
         Self { coefficients, factors: factors.collect(), ends: [3, 4, 5].map(|degree| monomials.count(degree) - first) }
     }
 

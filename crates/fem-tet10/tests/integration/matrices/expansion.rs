@@ -43,11 +43,8 @@ fn of_homogeneous_fields_they_are_those_of_the_whole_strain() {
         let g0 = if bent { Matrix3::from_row_slice(&REFERENCE) } else { Matrix3::zeros() };
         let of_reference = linear(&g0);
         let reference = Mat::from_fn(of_reference.len(), 1, |i, _| of_reference[i]);
-        let expansion = Expansion {
-            products: &of_products,
-            fields: fields.as_ref(),
-            reference: bent.then(|| reference.as_ref()),
-        };
+        let expansion =
+            Expansion { products: &of_products, fields: fields.as_ref(), reference: bent.then(|| reference.as_ref()) };
         let f0 = Matrix3::identity() + g0;
         let s0 = stress(&strain(&f0));
         let all = products(2, 8);

@@ -1,9 +1,7 @@
 //! The reduced geometric stiffness against closed forms, rotated forces, and an assembly written out in plain loops.
 
 use faer::Mat;
-use fem_tet10::{
-    AssemblyError, AssemblyFault, Mesh, assemble, reduced_geometric_stiffness, shape_gradients,
-};
+use fem_tet10::{AssemblyError, AssemblyFault, Mesh, assemble, reduced_geometric_stiffness, shape_gradients};
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::fixtures::{
@@ -15,12 +13,7 @@ fn columns(fields: &[Vec<f64>]) -> Mat<f64> {
 }
 
 fn reduced(mesh: &Mesh, displacements: &[Vec<f64>], shapes: &[Vec<f64>]) -> Vec<Mat<f64>> {
-    reduced_geometric_stiffness(
-        mesh,
-        &aluminium(),
-        columns(displacements).as_ref(),
-        columns(shapes).as_ref())
-    .unwrap()
+    reduced_geometric_stiffness(mesh, &aluminium(), columns(displacements).as_ref(), columns(shapes).as_ref()).unwrap()
 }
 
 /// Displacements with no symmetry and no order, of about the size given.
@@ -232,12 +225,7 @@ fn the_number_of_threads_does_not_change_a_bit_of_it() {
     let with_threads = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            reduced_geometric_stiffness(
-                &mesh,
-                &aluminium(),
-                displacements.as_ref(),
-                shapes.as_ref())
-            .unwrap()
+            reduced_geometric_stiffness(&mesh, &aluminium(), displacements.as_ref(), shapes.as_ref()).unwrap()
         })
     };
     let one = with_threads(1);
@@ -256,7 +244,8 @@ fn no_shapes_and_no_fields_cost_no_error() {
             &mesh,
             &aluminium(),
             Mat::<f64>::zeros(n, fields).as_ref(),
-            Mat::<f64>::zeros(n, shapes).as_ref())
+            Mat::<f64>::zeros(n, shapes).as_ref(),
+        )
         .unwrap()
     };
     assert!(of(0, 3).is_empty());

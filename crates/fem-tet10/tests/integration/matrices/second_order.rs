@@ -2,8 +2,8 @@
 
 use faer::Mat;
 use fem_tet10::{
-    Material, Materials, Mesh, assemble, geometric_stiffness_product, quadrature,
-    reduced_geometric_stiffness, second_order_energies, second_order_forces, shape_gradients,
+    Material, Materials, Mesh, assemble, geometric_stiffness_product, quadrature, reduced_geometric_stiffness,
+    second_order_energies, second_order_forces, shape_gradients,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -93,12 +93,7 @@ fn the_product_with_the_geometric_stiffness_is_the_reduced_one() {
         let u = columns(&[smooth(&mesh)]);
         let shapes =
             columns(&[field(&mesh, |[x, y, z]| [y * z, x * x, x * y]), field(&mesh, |[x, y, z]| [z, x * y, y * y])]);
-        let reduced = &reduced_geometric_stiffness(
-            &mesh,
-            &aluminium(),
-            u.as_ref(),
-            shapes.as_ref())
-        .unwrap()[0];
+        let reduced = &reduced_geometric_stiffness(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap()[0];
         let product = geometric_stiffness_product(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap();
         let found = shapes.transpose() * &product;
         for i in 0..2 {
