@@ -76,7 +76,6 @@ pub use review::{Broken, Detuning, Review};
 pub use step::{ModeError, StepEstimate, step_estimate};
 pub use strain::backbone::{Backbone, DETUNED};
 pub use strain::error::StrainError;
-pub use strain::error_bound::LargeModes;
 pub use strain::fourth_order::FourthOrder;
 pub use strain::stress::{StressField, StressInfluence, StressSource, stress, stress_row};
 pub use table::completed::Findings;

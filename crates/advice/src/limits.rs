@@ -218,7 +218,9 @@ pub(crate) fn refusal(
     speed: f64,
     effects: &EffectMap<bool>,
 ) -> Result<Option<Refusal>, AdviceError> {
-    if !(effects[Effect::Rotation] && effects[Effect::DeformedInertia]) || case.body.flexible() == 0 {
+    // Of large modes, what a spin does follows from where it bends them to.
+    let is_small = case.manifold.is_none();
+    if !(effects[Effect::Rotation] && effects[Effect::DeformedInertia] && is_small) || case.body.flexible() == 0 {
         return Ok(None);
     }
     let critical = SteadySpin::new(case.body, axis, effects).critical_speed()?;

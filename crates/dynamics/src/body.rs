@@ -6,6 +6,7 @@ pub(crate) mod effect;
 pub(crate) mod initial;
 pub(crate) mod model;
 pub(crate) mod motion_state;
+pub(crate) mod patch_turn;
 pub(crate) mod physics;
 pub(crate) mod second_order;
 pub(crate) mod shapes;

@@ -343,7 +343,12 @@ impl<'a> Applied<'a> {
         }
         self.moment_body += moment_body;
         self.push(place.second_order(), &moment_body);
-        let columns = &place.columns()[self.coordinates.first..];
+        let Coordinates { first, displacement, on_manifold, .. } = self.coordinates;
+        let turn = place.patch().filter(|_| on_manifold.is_some() && first == 6);
+        if let Some(forces) = turn.and_then(|turn| turn.forces(&moment_body, displacement)) {
+            return self.project(forces);
+        }
+        let columns = &place.columns()[first..];
         self.project(columns.iter().map(|rotation| rotation.dot(&moment_body)));
     }
 

@@ -76,8 +76,10 @@ pub enum ModalError {
         "node {node} (counted from 0) has node {end} at an end of its edge, which is no corner: a corner has itself twice"
     )]
     NoCorner { node: usize, end: u32 },
-    /// Numbers of large modes that do not rise, or of modes that there are not.
-    #[error("the large modes are {found:?}; expected rising numbers below {count}, the number of shapes")]
+    /// Numbers of large or following modes that do not rise, that are twice there, or of modes that there are not.
+    #[error(
+        "the large modes, and those that follow, are {found:?}; expected rising numbers of each below {count}, the number of shapes"
+    )]
     LargeModes { found: Vec<usize>, count: usize },
     /// Weights of a point that do not sum to one.
     #[error("the weights of a point sum to {sum}; expected 1, as of shape functions")]

@@ -45,9 +45,10 @@ pub use reduction::body::{BodyPoint, Constants, ReducedBody};
 pub use reduction::fields::{acceleration_fields, centrifugal_fields, turning_field};
 pub use solve::{Modes, SolveStats, Solver};
 pub use statics::buckling::BucklingAccuracy;
+pub use statics::large_shapes::{LargeShapes, Products};
 pub use statics::mass_left_out::mass_left_out;
 pub use statics::response::StaticAccuracy;
-pub use statics::second_order::SecondOrderShapes;
+
 pub use support::constraints::Constraints;
 pub use support::held_problem::{HeldMatrix, HeldProblem};
 pub use support::motion::{RigidMotion, Support, Twist};

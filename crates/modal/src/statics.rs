@@ -1,7 +1,7 @@
-//! Static responses, buckling, and shapes of second order.
+//! Static responses, buckling, and shapes of large modes.
 
 pub(crate) mod buckling;
 pub(crate) mod inertia_relief;
+pub(crate) mod large_shapes;
 pub(crate) mod mass_left_out;
 pub(crate) mod response;
-pub(crate) mod second_order;

@@ -49,6 +49,7 @@ pub use mesh::doubt::{Doubt, doubts};
 pub use mesh::given::MatrixChecks;
 pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes, BuildWork};
+pub use stress::products::ProductStrains;
 pub use stress::shapes::{BodyStress, StressPeak};
 pub use support::reactions::SupportRows;
 pub use tie::body_marker::{BodyMarker, MarkerPart, UnknownTurns};

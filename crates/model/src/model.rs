@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
 use dynamics::{
-    ConservativeBody, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, Physics, PointShapes, Rows,
-    Setup, SharedLoad, Simulation, StepControl,
+    ConservativeBody, Equations, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, MotionState, Physics,
+    PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl,
 };
 use faer::Mat;
 use fem_tet10::Mesh;
@@ -145,6 +145,23 @@ impl Model {
         let body = ConservativeBody::new(&self.body, &self.damping_ratios, steady, &physics)?;
         let amplitudes: Vec<f64> = self.size.peaks.iter().map(|peak| SMALL * self.size.length / peak).collect();
         body.loaded_modes(&self.initial(scene), &amplitudes)
+    }
+
+    /// The motion in which the body rests in its frame under its loads and its drive as they are at time 0, held to its first
+    /// attitude.
+    ///
+    /// # Errors
+    /// [`LoadedError`].
+    pub fn rest(&self, scene: &Scene) -> Result<MotionState, LoadedError> {
+        let Self { body, loads, damping_ratios, physics, .. } = self;
+        let initial = self.initial(scene);
+        let body = ConservativeBody::new(body, damping_ratios, loads.clone(), physics)?.beginning_at(&initial);
+        let amplitudes: Vec<f64> = self.size.peaks.iter().map(|peak| SMALL * self.size.length / peak).collect();
+        let modal_displacement = body.loaded_rest(&initial, &amplitudes)?;
+        let modal_velocity = vec![0.0; modal_displacement.len()];
+        let at_rest = Initial { modal_displacement, modal_velocity, ..initial };
+        let state = body.start(&at_rest)?;
+        Ok(body.motion_state(&state).map_err(|error| error.in_step(0.0, 0.0))?)
     }
 
     /// How many static shapes follow the natural modes.

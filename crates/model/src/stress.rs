@@ -1,14 +1,13 @@
 //! Stress of loads and of a drive, and the stiffness by it.
 
 pub(crate) mod left_out;
+pub(crate) mod products;
 pub(crate) mod shapes;
 pub(crate) mod site;
-pub(crate) mod spin;
 
 use advice::{Row, StressField, StressSource, stress, stress_row};
 use dynamics::Effect;
 use faer::{Mat, MatRef, Scale};
-use fem_tet10::GeometricTerms;
 use modal::{BucklingAccuracy, Modes};
 use scene::Choice;
 
@@ -19,12 +18,6 @@ use crate::reduction::modal_model::ModalModel;
 use crate::reduction::physics;
 use crate::structure::statics::Statics;
 
-/// A load across a slender body bends it by more than its thickness long before it stresses it much, and the terms of the
-/// initial displacement are wrong there: see [`fem_tet10::reduced_geometric_stiffness`]. They are taken where none of them
-/// exceeds this part of √(λ_k λ_l): what they get wrong is of the size of its square.
-const SMALL: f64 = 0.03;
-/// Terms of the stress of a drive, and of a base that is accelerated alike.
-pub(crate) const DRIVE: GeometricTerms = GeometricTerms::InitialStress;
 /// Loads of which less than this part is at which the body buckles are far from it: an estimate will do.
 const FAR: f64 = 0.1;
 
@@ -42,19 +35,26 @@ pub(crate) struct Stress {
 }
 
 impl Stress {
-    /// By the static responses to the loads and to the drive.
+    /// By the static responses to the loads and to the drive, of which those of `stressing` do not move with the modes `bent`:
+    /// between two of these there is no stiffness, since the manifold has it.
     pub fn new(
         model: &MeshModel<'_, '_>,
         statics: &Statics,
+        stressing: &Statics,
         modes: &Modes,
         body: &ModalModel,
+        bent: &[usize],
     ) -> Result<Self, BuildError> {
         if !physics::may_stress(model.scene) || modes.shapes.ncols() == 0 {
             return Ok(Self::default());
         }
         let mut found = Self { buckling_ratio: buckling_ratio(model, statics, modes)?, ..Self::default() };
         let (mut names, mut shown) = (Vec::new(), Vec::new());
-        if let Some(of_loads) = &statics.of_loads {
+        let stiffness = |responses: MatRef<'_, f64>| -> Result<Vec<Mat<f64>>, BuildError> {
+            let found = model.structure.stress_stiffness(responses, modes, &[])?;
+            Ok(found.into_iter().map(|k| beside(k, bent)).collect())
+        };
+        if let Some(of_loads) = &stressing.of_loads {
             for (i, load) in model.loads.iter().enumerate() {
                 let (response, size) = (of_loads.of_unit(i), load.size());
                 // Gravity stresses no body that falls.
@@ -62,11 +62,7 @@ impl Stress {
                     found.of_loads.push(Vec::new());
                     continue;
                 }
-                let (of_unit, terms) = if load.is_base_acceleration {
-                    (model.structure.stress_stiffness(response, modes, DRIVE, &[])?, DRIVE)
-                } else {
-                    of_load(model, response, modes, size * load.history.largest(model.scene.time.end))?
-                };
+                let of_unit = stiffness(response)?;
                 let mut directed = Vec::new();
                 for (unit, of_unit) in of_loads.vectors(i, load).into_iter().zip(of_unit) {
                     let (vector, stiffness) = (unit * size, of_unit * Scale(size));
@@ -76,14 +72,14 @@ impl Stress {
                         Some(change) => &stiffness - change.load_stiffness,
                         None => stiffness.clone(),
                     });
-                    directed.push(Directed { vector, stiffness, terms });
+                    directed.push(Directed { vector, stiffness });
                 }
                 found.of_loads.push(directed);
             }
         }
-        if let Some(response) = &statics.of_drive {
+        if let Some(response) = &stressing.of_drive {
             names.push((StressSource::Drive, "the acceleration of the drive".to_owned()));
-            found.of_drive = model.structure.stress_stiffness(response.as_ref(), modes, DRIVE, &[])?.pop();
+            found.of_drive = stiffness(response.as_ref())?.pop();
             shown.extend(found.of_drive.clone());
         }
         found.decided(model, body, &names, &shown)
@@ -125,25 +121,18 @@ impl Stress {
     }
 }
 
-/// The stiffness by each static response to a load of amplitude 1 that is `largest` at most: the initial stress, and the
-/// initial displacement where it is small.
-fn of_load(
-    model: &MeshModel<'_, '_>,
-    responses: MatRef<'_, f64>,
-    modes: &Modes,
-    largest: f64,
-) -> Result<(Vec<Mat<f64>>, GeometricTerms), BuildError> {
-    let all = model.structure.stress_stiffness(responses, modes, GeometricTerms::All, &[])?;
-    let stress = model.structure.stress_stiffness(responses, modes, GeometricTerms::InitialStress, &[])?;
-    let is_small = all.iter().zip(&stress).all(|(all, stress)| {
-        (0..all.ncols()).all(|l| {
-            (0..=l).all(|k| {
-                let scale = (modes.eigenvalues[k] * modes.eigenvalues[l]).sqrt();
-                largest * (all[(k, l)] - stress[(k, l)]).abs() <= SMALL * scale
-            })
-        })
-    });
-    Ok(if is_small { (all, GeometricTerms::All) } else { (stress, GeometricTerms::InitialStress) })
+/// A stiffness without what it has between two of the modes `bent`.
+pub(crate) fn beside(mut stiffness: Mat<f64>, bent: &[usize]) -> Mat<f64> {
+    for (a, b) in bent.iter().flat_map(|a| bent.iter().map(move |b| (*a, *b))) {
+        stiffness[(a, b)] = 0.0;
+    }
+    stiffness
+}
+
+/// A stiffness on the first of so many shapes.
+pub(crate) fn in_shapes(stiffness: &Mat<f64>, shapes: usize) -> Mat<f64> {
+    let count = stiffness.ncols();
+    Mat::from_fn(shapes, shapes, |a, b| if a < count && b < count { stiffness[(a, b)] } else { 0.0 })
 }
 
 /// The steady dead loads over those at which the body buckles, on the whole mesh: the modes that are kept do not hold the

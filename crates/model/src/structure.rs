@@ -12,12 +12,12 @@ use std::path::{Path, PathBuf};
 use dynamics::DrivenMotion;
 use faer::{ColRef, Mat, MatRef, Scale};
 use fem_tet10::{
-    AssemblyError, GeometricTerms, StressRecovery, StressSites, extended_geometric_stiffness,
-    geometric_stiffness_product, second_order_energies, second_order_forces,
+    AssemblyError, Expansion, StressRecovery, StressSites, extended_geometric_stiffness, geometric_stiffness_product,
+    second_order_energies, second_order_forces,
 };
 use keys::{Key, Keyed};
 use modal::{
-    BucklingAccuracy, ModalError, Modes, NoCycles, ReducedBody, Solver, StaticAccuracy, acceleration_fields,
+    BucklingAccuracy, ModalError, Modes, NoCycles, Products, ReducedBody, Solver, StaticAccuracy, acceleration_fields,
     centrifugal_fields, mass_left_out, turning_field,
 };
 use nalgebra::Vector3;
@@ -393,18 +393,24 @@ impl Structure<'_> {
         })
     }
 
-    /// The energies of second order of quadruples of some modes, and the forces of pairs of them with the static responses.
-    /// Pairs and quadruples are numbered within the list.
-    pub fn second_order(
-        &self,
-        modes: &Modes,
-        list: &[usize],
-        pairs: &[[usize; 2]],
-        quadruples: &[[usize; 4]],
-    ) -> Result<SecondOrder, BuildError> {
-        let asked = self.of_held_body("second order").with_natural(modes).with("list", list).with("pairs", pairs);
-        self.ask(asked.with("quadruples", quadruples), [self.rows(), pairs.len(), quadruples.len()], || {
-            self.find_second_order(modes, shapes_of(modes, list).as_ref(), pairs, quadruples)
+    /// The part of the strain energy of second order of each pair of some modes that each of these relieves: pairs j ≤ k within
+    /// modes.
+    pub fn relieved(&self, modes: &Modes, list: &[usize]) -> Result<Vec<f64>, BuildError> {
+        let pairs: Vec<[usize; 2]> = (0..list.len()).flat_map(|j| (j..list.len()).map(move |k| [j, k])).collect();
+        let asked = self.of_held_body("relieved energies").with_natural(modes).with("list", list);
+        self.ask(asked, list.len() * pairs.len(), || {
+            let (mesh, materials, shapes) = (&self.assembled.mesh, self.assembled.materials()?, shapes_of(modes, list));
+            let quadruples: Vec<[usize; 4]> = pairs.iter().map(|[j, k]| [*j, *k, *j, *k]).collect();
+            self.pass_elements();
+            let energies = second_order_energies(mesh, materials, shapes.as_ref(), &quadruples)?;
+            self.pass_elements();
+            let forces = second_order_forces(mesh, materials, shapes.as_ref(), &pairs)?;
+            let along = shapes.transpose() * forces;
+            let part = |a: usize, pair: usize| along[(a, pair)].powi(2) / (modes.eigenvalues[list[a]] * energies[pair]);
+            Ok((0..list.len())
+                .flat_map(|a| (0..pairs.len()).map(move |pair| (a, pair)))
+                .map(|(a, p)| part(a, p))
+                .collect())
         })
     }
 
@@ -424,21 +430,54 @@ impl Structure<'_> {
         Ok(SecondOrder { forces, responses, energies })
     }
 
-    /// The shapes that follow large modes, by the forces of second order and the static responses to them.
-    pub fn second_order_shapes(
+    /// The shapes of large modes and of those that follow them, the body in the extended shapes, and the strain energies.
+    pub fn large_shapes(&self, modes: &Modes, large: &[usize], following: &[usize]) -> Result<Extended, BuildError> {
+        let asked = self.of_held_body("large shapes").with_modes(modes).with("natural", &modes.natural());
+        let asked = asked.with("large", large).with("following", following);
+        self.ask(asked, (modes, large, following), || self.find_large_shapes(modes, large, following))
+    }
+
+    fn find_large_shapes(&self, modes: &Modes, large: &[usize], following: &[usize]) -> Result<Extended, BuildError> {
+        let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
+        let bent = shapes_of(modes, &[large, following].concat());
+        let products = Products { large: large.len(), following: following.len() };
+        let mut known: Vec<Vec<usize>> = (0..products.coordinates()).map(|k| vec![k]).collect();
+        let mut fields = bent.clone();
+        for wanted in [products.second(), products.third()] {
+            let expansion = Expansion { products: &known, fields: fields.as_ref(), reference: None };
+            self.pass_elements();
+            let forces = expansion.forces(mesh, materials, &wanted)?;
+            let answers = self.solve(modes, forces.as_ref(), StaticAccuracy::Shapes)? * Scale(-1.0);
+            let freed =
+                |of: MatRef<'_, f64>| self.solver()?.freed(answers.as_ref(), of).map_err(|error| self.modal(error));
+            let (of_large, of_all) = (freed(bent.subcols(0, large.len()))?, freed(bent.as_ref())?);
+            let first = fields.ncols();
+            fields = Mat::from_fn(fields.nrows(), first + wanted.len(), |i, j| match j.checked_sub(first) {
+                None => fields[(i, j)],
+                Some(k) if products.follows(&wanted[k]) => of_all[(i, k)],
+                Some(k) => of_large[(i, k)],
+            });
+            known.extend(wanted);
+        }
+        let expansion = Expansion { products: &known, fields: fields.as_ref(), reference: None };
+        self.pass_elements();
+        let energies = expansion.energies(mesh, materials, &products.of_energy())?;
+        let of_products = fields.get(.., products.coordinates()..);
+        let shapes = self.solver()?.large_shapes(modes.clone(), large, following, of_products);
+        let shapes = shapes.map_err(|error| self.modal(error))?;
+        Ok(Extended { body: self.reduced(&shapes.modes)?, shapes, energies })
+    }
+
+    /// Fields (3n×k) without their parts along some modes.
+    pub fn without_parts(
         &self,
         modes: &Modes,
-        large: &[usize],
-        forces: MatRef<'_, f64>,
-        responses: MatRef<'_, f64>,
-    ) -> Result<Extended, BuildError> {
-        // The last bits of the responses depend on those that were computed with them.
-        let asked = self.of_held_body("shapes of second order").with_modes(modes).with("large", large);
-        self.ask(asked.with("forces", &forces).with("responses", &responses), (modes, large), || {
-            let momenta = self.solver()?.mass().product(shapes_of(modes, large).as_ref());
-            let shapes = self.solver()?.second_order_shapes(modes.clone(), large, forces, responses);
-            let shapes = shapes.map_err(|error| self.modal(error))?;
-            Ok(Extended { body: self.reduced(&shapes.modes)?, shapes, momenta })
+        list: &[usize],
+        fields: MatRef<'_, f64>,
+    ) -> Result<Mat<f64>, BuildError> {
+        let asked = self.of_body("fields without parts").with_modes(modes).with("list", list).with("fields", &fields);
+        self.ask(asked, [fields.nrows(), fields.ncols()], || {
+            self.solver()?.freed(fields, shapes_of(modes, list).as_ref()).map_err(|error| self.modal(error))
         })
     }
 
@@ -448,20 +487,14 @@ impl Structure<'_> {
         &self,
         displacements: MatRef<'_, f64>,
         modes: &Modes,
-        terms: GeometricTerms,
         known: &[Mat<f64>],
     ) -> Result<Vec<Mat<f64>>, BuildError> {
         let shapes = modes.shapes.as_ref();
-        let terms_name = match terms {
-            GeometricTerms::All => "all",
-            GeometricTerms::InitialStress => "initial stress",
-        };
-        let asked = self.of_body("stress stiffness").with("displacements", &displacements).with("shapes", &shapes);
-        let asked = asked.with("terms", terms_name).with("known", known);
-        self.ask(asked, [displacements.ncols(), shapes.ncols()], || {
+        let asked = self.of_body("initial stress").with("displacements", &displacements).with("shapes", &shapes);
+        self.ask(asked.with("known", known), [displacements.ncols(), shapes.ncols()], || {
             self.pass_elements();
             let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
-            Ok(extended_geometric_stiffness(mesh, materials, displacements, shapes, terms, known)?)
+            Ok(extended_geometric_stiffness(mesh, materials, displacements, shapes, known)?)
         })
     }
 

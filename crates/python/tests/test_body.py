@@ -53,7 +53,7 @@ def test_displacements_follow_large_modes(bent):
     body, file = bent
     q = 3.0 * np.linspace(1.0, 0.1, len(body.frequencies)) * body.mass**0.5
     large = file["large_deflection"]
-    products = np.prod(q[large["pairs"][:]], axis=1)
+    products = np.prod(np.append(q, 1.0)[large["factors"][:]], axis=1)
     xi = np.append(q, np.zeros(len(large["shapes"]))) + products @ large["products"][:]
     u = np.tensordot(xi, np.concatenate([body.shapes, large["shapes"]]), 1)
     found = body.displacements(q)

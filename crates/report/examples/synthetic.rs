@@ -118,7 +118,7 @@ fn patch() -> Report {
             vec![[0.0, 0.0, 0.0, 30.0, 0.0, 0.0]; 4],
             vec![[0.0, 0.0, 0.0, 0.0, 25.0, 0.0]; 4],
         ],
-        products: vec![[0, 1]],
+        products: vec![vec![0, 1]],
     });
     body.motion.origins = vec![[0.0; 3]; 3];
     body.motion.attitudes = vec![[1.0, 0.0, 0.0, 0.0]; 3];

@@ -98,11 +98,11 @@ fn check_shapes(body: &Body) -> Result<(), ReportError> {
         if stress.shapes.len() > MAX_SHAPES {
             return Err(ReportError::TooManyShapes { found: stress.shapes.len(), most: MAX_SHAPES });
         }
-        if let Some(coordinate) = stress.products.as_flattened().iter().find(|k| **k >= body.shapes.len()) {
+        if let Some(coordinate) = stress.products.iter().flatten().find(|k| **k >= body.shapes.len()) {
             return Err(ReportError::NoSuchShape { coordinate: *coordinate, count: body.shapes.len() });
         }
         let names = body.shapes.iter().map(|shape| format!("shape \"{}\"", shape.name));
-        let products = stress.products.iter().map(|[j, k]| format!("the product of the shapes {j} and {k}"));
+        let products = stress.products.iter().map(|factors| format!("the product of the shapes {factors:?}"));
         for (name, stresses) in names.chain(products).zip(&stress.shapes) {
             let what = format!("stress of {name}");
             length(&what, stresses.len(), vertices)?;

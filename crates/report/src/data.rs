@@ -77,7 +77,7 @@ struct StressData<'a> {
     peak: f64,
     /// Stresses of the shapes, then of the products.
     shapes: Vec<Numbers>,
-    products: &'a [[usize; 2]],
+    products: &'a [Vec<usize>],
 }
 
 #[derive(Debug, Serialize)]
@@ -246,7 +246,9 @@ impl<'a> StressData<'a> {
     fn new(stress: &'a StressField, motion: &Motion) -> Self {
         let shapes: Vec<&[[f32; 6]]> = stress.shapes.iter().map(Vec::as_slice).collect();
         let rows = motion.coordinates.chunks_exact((shapes.len() - stress.products.len()).max(1));
-        let products = |q: &[f64]| stress.products.iter().map(|[j, k]| q[*j] * q[*k]).collect::<Vec<_>>();
+        let products = |q: &[f64]| {
+            stress.products.iter().map(|factors| factors.iter().map(|k| q[*k]).product()).collect::<Vec<f64>>()
+        };
         let coordinates: Vec<f64> = rows.flat_map(|q| q.iter().copied().chain(products(q))).collect();
         Self {
             unit: &stress.unit,

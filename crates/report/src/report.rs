@@ -113,7 +113,7 @@ pub enum ShapeKind {
     SecondOrder,
 }
 
-/// Stresses on the surface: the sum over the shapes, each times its coordinate, and over products of two coordinates.
+/// Stresses on the surface: the sum over the shapes, each times its coordinate, and over products of two or three coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StressField {
     /// Unit of stress, such as MPa.
@@ -122,7 +122,7 @@ pub struct StressField {
     /// zz, xy, yz, zx in body axes.
     pub shapes: Vec<Vec<[f32; 6]>>,
     /// The coordinates of each product, numbered from 0; none where stress is linear in the coordinates.
-    pub products: Vec<[usize; 2]>,
+    pub products: Vec<Vec<usize>>,
 }
 
 /// The rows of a body. A vertex X is at `origin` + attitude (X + Σ coordinate × shape).

@@ -173,7 +173,7 @@ fn what_does_not_fit_together_is_refused_with_its_place() {
     let of_no_shape = |r: &mut Report| {
         let stress = r.bodies[0].stress.as_mut().unwrap();
         stress.shapes.push(stress.shapes[0].clone());
-        stress.products.push([0, 5]);
+        stress.products.push(vec![0, 5]);
     };
     assert!(matches!(refused(&of_no_shape), ReportError::NoSuchShape { coordinate: 5, .. }));
     assert!(

@@ -27,9 +27,10 @@ pub struct Shapes {
     pub faces: Vec<[u32; 6]>,
     /// Displacement ψ of each node in a unit of each coordinate ξ (c lists of N).
     pub displacements: Vec<Vec<[f64; 3]>>,
-    /// Pairs j ≤ k of the large modes, by their places among the coordinates q, from 0 (p).
-    pub pairs: Vec<[u32; 2]>,
-    /// T: what a unit of the product of each pair adds to each coordinate (p lists of c).
+    /// Factors of each product of modes that bend the body, by their places among the coordinates q, from 0; one more than
+    /// there are stands for a factor of 1 (p).
+    pub factors: Vec<[u32; 3]>,
+    /// What a unit of each product adds to each coordinate (p lists of c).
     pub products: Vec<Vec<f64>>,
     /// Stress, where the elements are known.
     pub stress: Option<StressShapes>,
@@ -40,7 +41,7 @@ pub struct Shapes {
 pub struct StressShapes {
     /// Node of each stress, by its place in the list of nodes, ascending (s).
     pub nodes: Vec<u32>,
-    /// Stress xx, yy, zz, xy, yz, zx in a unit of each coordinate ξ, and then of the product of each pair (c + p lists of s).
+    /// Stress xx, yy, zz, xy, yz, zx in a unit of each coordinate ξ, and then of each product (c + p lists of s).
     pub shapes: Vec<Vec<[f64; 6]>>,
 }
 
@@ -55,7 +56,7 @@ impl Shapes {
         xi
     }
 
-    /// The coordinates of the stress: ξ, and then the products of the pairs.
+    /// The coordinates of the stress: ξ, and then the products.
     pub fn stress_coordinates(&self, q: &[f64]) -> Vec<f64> {
         let mut coordinates = self.coordinates(q);
         coordinates.extend(self.products_of(q));
@@ -70,10 +71,15 @@ impl Shapes {
     /// Bytes of all numbers.
     pub fn bytes(&self) -> u64 {
         let numbers = |lists: usize, count: usize, each: usize| (lists as u64) * (count as u64) * (each as u64);
-        let (n, c, p) = (self.nodes.len(), self.displacements.len(), self.pairs.len());
+        let (n, c, p) = (self.nodes.len(), self.displacements.len(), self.factors.len());
         let stress =
             self.stress.as_ref().map_or(0, |s| 4 * s.nodes.len() as u64 + 8 * numbers(c + p, s.nodes.len(), 6));
-        28 * n as u64 + 24 * self.faces.len() as u64 + 8 * numbers(c, n, 3) + 8 * numbers(p, c + 1, 1) + stress
+        28 * n as u64
+            + 24 * self.faces.len() as u64
+            + 8 * numbers(c, n, 3)
+            + 12 * p as u64
+            + 8 * numbers(p, c, 1)
+            + stress
     }
 
     /// True if its lists fit together and its numbers are finite.
@@ -82,20 +88,20 @@ impl Shapes {
     }
 
     fn products_of<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let coordinate = |k: u32| q.get(k as usize).copied().unwrap_or_default();
-        self.pairs.iter().map(move |[j, k]| coordinate(*j) * coordinate(*k))
+        let factor = |k: &u32| q.get(*k as usize).copied().unwrap_or(1.0);
+        self.factors.iter().map(move |factors| factors.iter().map(factor).product())
     }
 
     /// Refuses lists that do not fit together, and numbers that are not finite.
     pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
-        let Self { nodes, positions, faces, displacements, pairs, products, stress } = self;
+        let Self { nodes, positions, faces, displacements, factors, products, stress } = self;
         let (count, coordinates) = (nodes.len(), displacements.len());
         check_length(path, "model/mesh/positions", count, positions.len())?;
-        check_length(path, "model/large_deflection/products", pairs.len(), products.len())?;
+        check_length(path, "model/large_deflection/products", factors.len(), products.len())?;
         lists(path, "model/shapes", displacements, count)?;
         lists(path, "model/large_deflection/products", products, coordinates)?;
         below(path, "model/mesh/surface_triangles", faces.as_flattened(), count)?;
-        below(path, "model/large_deflection/pairs", pairs.as_flattened(), coordinates)?;
+        below(path, "model/large_deflection/factors", factors.as_flattened(), coordinates + 1)?;
         let finite = |quantity: &str, values: &[f64]| match values.iter().find(|value| !value.is_finite()) {
             Some(&value) => {
                 Err(FileError::ConstantNotFinite { path: path.to_path_buf(), quantity: quantity.to_owned(), value })
@@ -106,7 +112,7 @@ impl Shapes {
         displacements.iter().try_for_each(|shape| finite("model/shapes", shape.as_flattened()))?;
         products.iter().try_for_each(|adds| finite("model/large_deflection/products", adds))?;
         if let Some(StressShapes { nodes, shapes }) = stress {
-            check_length(path, "model/stress/shapes", coordinates + pairs.len(), shapes.len())?;
+            check_length(path, "model/stress/shapes", coordinates + factors.len(), shapes.len())?;
             lists(path, "model/stress/shapes", shapes, nodes.len())?;
             below(path, "model/stress/nodes", nodes, count)?;
             shapes.iter().try_for_each(|shape| finite("model/stress/shapes", shape.as_flattened()))?;
@@ -161,7 +167,7 @@ mod tests {
             positions: vec![[0.0; 3], [1.0, 0.0, 0.0]],
             faces: vec![[0, 1, 0, 1, 0, 1]],
             displacements: vec![vec![[0.0; 3], [0.0, 2.0, 0.0]], vec![[0.0; 3], [-1.0, 0.0, 0.0]]],
-            pairs: vec![[0, 0]],
+            factors: vec![[0, 0, 1]],
             products: vec![vec![0.0, 0.5]],
             stress: Some(StressShapes {
                 nodes: vec![0, 0],
@@ -192,8 +198,8 @@ mod tests {
         };
         refused(|s| s.nodes.push(7), "model/mesh/positions has 2 values where 3 are expected");
         refused(|s| s.faces[0][5] = 2, "model/mesh/surface_triangles names the place 2 in a list of 2");
-        refused(|s| s.pairs[0][1] = 2, "model/large_deflection/pairs names the place 2");
-        refused(|s| s.pairs.clear(), "model/large_deflection/products");
+        refused(|s| s.factors[0][1] = 3, "model/large_deflection/factors names the place 3");
+        refused(|s| s.factors.clear(), "model/large_deflection/products");
         refused(|s| s.displacements[1].truncate(1), "model/shapes has 1 values where 2 are expected");
         refused(|s| s.displacements[0][1][2] = f64::NAN, "model/shapes is NaN");
         refused(|s| s.positions[1][0] = f64::INFINITY, "model/mesh/positions is inf");

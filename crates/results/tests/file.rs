@@ -429,7 +429,7 @@ fn the_shapes_of_the_body_come_back_bit_for_bit() {
     let stress = shapes.stress.as_ref().unwrap();
     assert_eq!(whole("body/mesh/nodes"), shapes.nodes);
     assert_eq!(whole("body/mesh/surface_triangles"), shapes.faces.as_flattened());
-    assert_eq!(whole("body/large_deflection/pairs"), [0, 0]);
+    assert_eq!(whole("body/large_deflection/factors"), [0, 0, 2]);
     assert_eq!(whole("body/stress/nodes"), stress.nodes);
     assert_eq!(numbers("body/mesh/positions", &[3, 3]), shapes.positions.as_flattened());
     assert_eq!(numbers("body/shapes", &[3, 3, 3]), shapes.displacements.concat().as_flattened());
@@ -440,7 +440,7 @@ fn the_shapes_of_the_body_come_back_bit_for_bit() {
     assert_eq!(unit.as_str(), "1/Mg^(1/2)");
 
     // Without large deflection and without elements.
-    let plain = Shapes { faces: Vec::new(), pairs: Vec::new(), products: Vec::new(), stress: None, ..shapes.clone() };
+    let plain = Shapes { faces: Vec::new(), factors: Vec::new(), products: Vec::new(), stress: None, ..shapes.clone() };
     let other = path.with_file_name("plain.h5");
     Writer::create(&other, &metadata, &[Some(plain.clone())], &COLUMNS, expected).unwrap().finish().unwrap();
     assert_eq!(read(&other), plain);

@@ -87,6 +87,7 @@ pub(crate) struct ModesSection {
     #[serde(default)]
     pub static_correction: Choice,
     pub large: Option<CountOrList>,
+    pub following: Option<usize>,
 }
 
 #[derive(Deserialize)]

@@ -15,6 +15,8 @@ pub(crate) struct Response {
     pub displacement: Vec<f64>,
     pub velocity: Vec<f64>,
     pub acceleration: Vec<f64>,
+    /// Part of `displacement` to which the spin and the loads hold the modes, about (nf).
+    pub steady: Vec<f64>,
     /// Part of `displacement` that gravity makes (nf).
     pub of_gravity: Vec<f64>,
     /// Lower bound on max |q| over the run.
@@ -42,6 +44,7 @@ impl Response {
             displacement: start.clone(),
             velocity: (0..nf).map(|k| start[k] * omega[k]).collect(),
             acceleration: (0..nf).map(|k| start[k] * omega[k] * omega[k]).collect(),
+            steady: vec![0.0; nf],
             of_gravity: vec![0.0; nf],
             scale: norm(&start),
             certain_deflection: 0.0,
@@ -54,6 +57,7 @@ impl Response {
             let z: Vec<_> = (0..nf).map(|k| swing(source, spin, omega[k], zeta[k], response.memory[k])).collect();
             for k in 0..nf {
                 let q = source.modal[k] * z[k].0 / omega[k];
+                response.steady[k] += source.modal[k] * source.course.largest / (omega[k] * omega[k]);
                 response.displacement[k] += q;
                 response.velocity[k] += source.modal[k] * z[k].0;
                 response.acceleration[k] += source.modal[k] * z[k].1;
@@ -103,6 +107,7 @@ impl Response {
             let gain = if unsteady { (omega * self.memory[k]).max(2.0) } else { 2.0 };
             let force = spin.largest * spin.largest * c[k];
             self.displacement[k] += gain * force / (omega * omega);
+            self.steady[k] += force / (omega * omega);
             self.velocity[k] += 0.5 * gain * force / omega;
             self.acceleration[k] += 0.5 * gain * force;
             let entries = std::array::from_fn(|ij| case.body.inertia_first[ij][k]);

@@ -3,8 +3,6 @@
 //! With the mode's [`Backbone`] that is known; without it, it is that of a slender bar or arch: a free bar bent by u at its
 //! ends has its frequency lower by about 20 (u/L)², and the force that holds an L in another shape differs by about u/L.
 
-use dynamics::MAX_LARGE;
-
 use crate::motion::case::Case;
 use crate::motion::response::Response;
 use crate::strain::backbone::Backbone;
@@ -20,15 +18,12 @@ const OF_BAR: f64 = 22.0;
 const OF_ARCH: f64 = 3.0;
 /// Deflection over the length of the body up to which bounds are believed: runs that come there are stopped or warn.
 const BELIEVED: f64 = 0.3;
-
-/// The modes that `large_deflection = "auto"` makes large, numbered from 0, ascending.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct LargeModes {
-    /// Modes that it takes.
-    pub taken: Vec<usize>,
-    /// Modes that it would take if there could be more than [`MAX_LARGE`].
-    pub left_out: Vec<usize>,
-}
+/// A mode is large where its coordinate reaches this part of the largest.
+const PART: f64 = 0.3;
+/// Most modes that are large by themselves: with more of them the motion is worse.
+const MOST: usize = 2;
+/// Modes whose frequencies differ by less than this part are a pair: their shapes are any two of those that they span.
+const PAIR: f64 = 0.01;
 
 /// The expected amplitudes as a part of the bounds. Bounds of bodies that are driven or stiffened by their spin may be
 /// far above all that could happen; what they say of the modes beside each other is kept.
@@ -42,7 +37,9 @@ pub(crate) fn screen(case: &Case, response: &Response, k: usize, amplitude: f64)
     let lowest = omega.iter().copied().fold(f64::INFINITY, f64::min);
     let deflection = amplitude * case.peaks[k] / case.length;
     let shift = OF_BAR * deflection * deflection * omega[k] / lowest;
-    relative((shift * (omega[k] * response.memory[k]).max(1.0)).max(OF_ARCH * deflection), 1.0)
+    let steady = OF_ARCH * response.steady[k].min(amplitude) * case.peaks[k] / case.length;
+    let swings = omega[k] * response.memory[k];
+    relative((shift * swings.max(1.0)).max(OF_ARCH * deflection).max(0.5 * steady * swings), 1.0)
 }
 
 /// Error of linear strain in mode `k` by its backbone.
@@ -57,7 +54,10 @@ pub(crate) fn by_backbone(
     StrainError {
         deflection: amplitude * case.peaks[k] / case.length,
         frequency,
-        phase: frequency.abs() * case.body.circular_frequencies[k] * response.memory[k],
+        // Where it is held to one side, its frequency changes by a first order.
+        phase: (frequency.abs() + 0.5 * (backbone.cubic * response.steady[k].min(amplitude)).abs())
+            * case.body.circular_frequencies[k]
+            * response.memory[k],
         statics: backbone.static_error(amplitude),
     }
 }
@@ -69,20 +69,33 @@ impl Worth {
     }
 }
 
-/// The modes whose strain is not to be linear, of the first `keep`: those with the largest influence.
-pub(crate) fn large_modes(modes: &[Worth], keep: usize, tolerance: f64) -> LargeModes {
-    let influence = |k: &usize| modes[*k].strain_influence();
-    let mut wanted: Vec<usize> = (0..modes.len().min(keep)).filter(|k| influence(k) >= tolerance).collect();
+/// The modes whose strain is not to be linear, of the first `keep`, numbered from 0, ascending: none where linear strain is
+/// right within the tolerance.
+pub(crate) fn large_modes(modes: &[Worth], keep: usize, tolerance: f64) -> Vec<usize> {
+    let matters = modes.iter().take(keep).any(|mode| mode.strain_influence() >= tolerance);
+    if matters { furthest_modes(modes, keep) } else { Vec::new() }
+}
+
+/// The modes that move furthest of the first `keep`, numbered from 0, ascending: those whose coordinates reach a part of the
+/// largest, two at most, and both of a pair with one frequency.
+pub(crate) fn furthest_modes(modes: &[Worth], keep: usize) -> Vec<usize> {
+    let displacement = |k: &usize| modes[*k].displacement;
+    let mut order: Vec<usize> = (0..modes.len().min(keep)).filter(|k| displacement(k) > 0.0).collect();
     // The sort is stable: of equals, the lower modes first.
-    wanted.sort_by(|a, b| influence(b).total_cmp(&influence(a)));
-    let mut left_out = wanted.split_off(wanted.len().min(MAX_LARGE));
-    wanted.sort_unstable();
-    left_out.sort_unstable();
-    LargeModes { taken: wanted, left_out }
+    order.sort_by(|a, b| displacement(b).total_cmp(&displacement(a)));
+    let Some(first) = order.first().copied() else { return order };
+    let omega = |k: usize| modes[k].circular_frequency;
+    let is_pair = |k: &usize| *k != first && (omega(*k) - omega(first)).abs() <= PAIR * omega(first);
+    let mut large = match (0..modes.len().min(keep)).find(is_pair) {
+        Some(other) => vec![first, other],
+        None => order.into_iter().filter(|k| displacement(k) >= PART * displacement(&first)).take(MOST).collect(),
+    };
+    large.sort_unstable();
+    large
 }
 
 /// The row of [`dynamics::Effect::LargeDeflection`].
-pub(crate) fn large_deflection(modes: &[Worth], large: &LargeModes, deflection: f64) -> Estimate {
+pub(crate) fn large_deflection(modes: &[Worth], deflection: f64) -> Estimate {
     let worst = modes.iter().enumerate().filter_map(|(k, mode)| Some((k, mode.strain?, mode.strain_influence())));
     let worst = worst.max_by(|a, b| a.2.total_cmp(&b.2));
     let Some((k, error, influence)) = worst else {
@@ -110,18 +123,7 @@ pub(crate) fn large_deflection(modes: &[Worth], large: &LargeModes, deflection: 
         why += " A slender bar does not stiffen so with its amplitude: where the body is one, the elements along it are too long \
                 for its thickness (membrane locking), and a finer mesh shows what is right.";
     }
-    if !large.left_out.is_empty() {
-        why += &format!(
-            " Modes {} would be large, too, but {MAX_LARGE} are the most that can be.",
-            numbers(&large.left_out)
-        );
-    }
     Estimate { value: frequency.abs(), influence, why }
-}
-
-/// "1, 2, 5" of modes that are numbered from 0.
-fn numbers(modes: &[usize]) -> String {
-    modes.iter().map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
@@ -142,22 +144,20 @@ mod tests {
     }
 
     #[test]
-    fn of_more_modes_than_can_be_large_those_with_the_largest_errors_are_taken() {
-        // From 0.1 to 1.1 rad, the largest in the middle.
-        let mut modes: Vec<Worth> = [0.1, 0.3, 0.5, 0.7, 0.9, 1.0, 0.8, 0.6, 0.4, 0.2].map(out_of_phase).into();
-        let found = large_modes(&modes, 10, 1e-3);
-        assert_eq!((found.taken, found.left_out), (vec![1, 2, 3, 4, 5, 6, 7, 8], vec![0, 9]));
-        let row = large_deflection(&modes, &large_modes(&modes, 10, 1e-3), 0.2).row(1e-3);
-        assert!(
-            row.on && row.why.contains("Mode 6 bends") && row.why.contains("Modes 1, 10 would be large"),
-            "{row:?}"
-        );
-        // With fewer modes, and with a tolerance above the others: 0.5 of 0.8 rad.
-        assert_eq!(large_modes(&modes, 3, 1e-3).taken, [0, 1, 2]);
-        assert_eq!(large_modes(&modes, 10, 0.39), LargeModes { taken: vec![4, 5, 6], left_out: vec![] });
-        // A mode that hardly moves may be out of phase; it is not worth it.
-        modes[5].share = 1e-4;
-        assert!(!large_modes(&modes, 10, 1e-3).taken.contains(&5));
+    fn the_modes_that_move_furthest_are_large_and_both_of_a_pair() {
+        let moved =
+            |omega: f64, displacement: f64| Worth { circular_frequency: omega, displacement, ..out_of_phase(0.5) };
+        let modes = [moved(1.0, 0.2), moved(3.0, 1.0), moved(7.0, 0.5), moved(9.0, 0.4)];
+        assert_eq!(large_modes(&modes, 4, 1e-3), [1, 2]);
+        assert_eq!(large_modes(&modes[..2], 2, 1e-3), [1]);
+        // With fewer modes, and with a tolerance above the influence of all: 0.5 of 0.5 rad.
+        assert_eq!(large_modes(&modes, 1, 1e-3), [0]);
+        assert_eq!(large_modes(&modes, 4, 0.26), [] as [usize; 0]);
+        assert_eq!(furthest_modes(&modes, 4), [1, 2]);
+        // Any two shapes of a pair will do: one of them may hardly move.
+        let pair = [moved(1.0, 1.0), moved(1.003, 0.0), moved(7.0, 0.5)];
+        assert_eq!(large_modes(&pair, 3, 1e-3), [0, 1]);
+        assert_eq!(furthest_modes(&[moved(1.0, 0.0)], 1), [] as [usize; 0]);
     }
 
     /// A free rod of slenderness 100 in five elements of second order stiffens by 22 % where it is bent by 5 % of its length;
@@ -167,7 +167,7 @@ mod tests {
         let why = |frequency: f64| {
             let mut mode = out_of_phase(1.0);
             mode.strain = mode.strain.map(|strain| StrainError { deflection: 0.05, frequency, ..strain });
-            large_deflection(&[mode], &LargeModes::default(), 0.05).row(1e-3).why
+            large_deflection(&[mode], 0.05).row(1e-3).why
         };
         assert!(why(0.22).contains("too long for its thickness"), "{}", why(0.22));
         assert!(!why(-0.008).contains("too long") && !why(0.01).contains("too long"));

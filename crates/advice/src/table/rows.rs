@@ -10,7 +10,7 @@ use crate::motion::case::{AdviceError, Case};
 use crate::motion::excitation::{Source, Spin};
 use crate::motion::response::{Response, norm};
 use crate::motion::{rigid, tensor};
-use crate::strain::error_bound::{self, LargeModes};
+use crate::strain::error_bound;
 use crate::table::estimate::Estimate;
 use crate::table::relative::relative;
 use crate::table::row::{Row, Subject, Worth};
@@ -50,9 +50,14 @@ impl Advice {
         Effect::ALL.into_iter().map(|effect| (Subject::Effect(effect), &self.effects[effect])).chain(others)
     }
 
-    /// Which of the first `keep` modes are to be large.
-    pub fn large_modes(&self, keep: usize) -> LargeModes {
+    /// Which of the first `keep` modes are to be large, numbered from 0.
+    pub fn large_modes(&self, keep: usize) -> Vec<usize> {
         error_bound::large_modes(&self.modes, keep, self.tolerance)
+    }
+
+    /// Which of the first `keep` modes move furthest, whether or not linear strain gets them wrong; none where none moves.
+    pub fn furthest_modes(&self, keep: usize) -> Vec<usize> {
+        error_bound::furthest_modes(&self.modes, keep)
     }
 
     /// Error of the model that the loads make known, if there is one.
@@ -125,7 +130,6 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
     });
     let keep = shares.len() - negligible.count();
     let stretch = stretch(case, &spin, &response);
-    let large = error_bound::large_modes(&modes, modes.len(), tolerance);
     let estimate = |effect| match effect {
         Effect::Flexibility => flexibility(&spin, &sources, &response, deflection),
         Effect::Damping => damping(case, &response),
@@ -133,7 +137,7 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         Effect::DeformedInertia => deformed_inertia(case, &spin, &response, &second, stiffness.as_ref(), stretch),
         Effect::Coriolis => coriolis(case, &spin, &response, &coupling),
         Effect::GeometricStiffening => stiffening(case, &spin, &response, stiffness.as_ref()),
-        Effect::LargeDeflection => error_bound::large_deflection(&modes, &large, deflection),
+        Effect::LargeDeflection => error_bound::large_deflection(&modes, deflection),
         Effect::Translation => rigid::translation(case, &sources),
         Effect::Rotation => rigid::rotation(case, &spin, &sources, &response),
     };

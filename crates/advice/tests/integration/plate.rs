@@ -7,9 +7,7 @@ use dynamics::{
     EffectMap, History, Initial, Method, Observation, Physics, PointForce, PointShapes, Rows, Setup, SharedLoad,
     Simulation, StepControl,
 };
-use fem_tet10::{
-    GeometricTerms, Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness,
-};
+use fem_tet10::{Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness};
 use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
 use nalgebra::Vector3;
 
@@ -57,9 +55,7 @@ impl Plate {
         let body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
         let fields = centrifugal_fields(solver.mass(), mesh.positions(), &body.origin).unwrap();
         let answers = solver.static_response(fields.as_ref()).unwrap();
-        let reduced =
-            reduced_geometric_stiffness(&mesh, &material, answers.as_ref(), modes.shapes.as_ref(), GeometricTerms::All)
-                .unwrap();
+        let reduced = reduced_geometric_stiffness(&mesh, &material, answers.as_ref(), modes.shapes.as_ref()).unwrap();
         let body = body.with_stress_stiffness(Some(reduced.try_into().unwrap())).unwrap();
         let nodes = mesh.positions().len();
         let peak = |k: usize| {

@@ -6,6 +6,7 @@ use modal::{BodyPoint, ReducedBody};
 use nalgebra::Vector3;
 
 use crate::body::components::{Components, ComponentsFrom};
+use crate::body::patch_turn::PatchTurn;
 use crate::body::second_order::SecondOrder;
 
 /// A point with its rows of all mode shapes, rigid and flexible.
@@ -94,6 +95,8 @@ pub struct RotationShapes {
     /// Column k is the rotation vector of the place in mode k (6+nf columns).
     columns: Vec<Vector3<f64>>,
     second_order: Option<SecondOrder>,
+    /// How far it turns, where large modes turn it.
+    patch: Option<PatchTurn>,
 }
 
 impl RotationShapes {
@@ -101,13 +104,25 @@ impl RotationShapes {
     pub fn new(body: &ReducedBody, flexible: MatRef<'_, f64>) -> Self {
         let rigid = (0..3).map(|_| Vector3::zeros()).chain((0..3).map(|i| body.rotation_basis.column(i).into()));
         let columns = rigid.chain(flexible.col_iter().map(|c| Vector3::new(c[0], c[1], c[2]))).collect();
-        Self { columns, second_order: None }
+        Self { columns, second_order: None, patch: None }
     }
 
     /// The place with its rotation to second order: a moment on it then stiffens the body.
     #[must_use]
     pub fn with_second_order(self, second_order: SecondOrder) -> Self {
         Self { second_order: Some(second_order), ..self }
+    }
+
+    /// The place with the turn of its nodes: on large modes a moment then does its work on their best rotation.
+    #[must_use]
+    pub fn with_patch(self, patch: Option<PatchTurn>) -> Self {
+        let fits = |patch: &PatchTurn| patch.flexible() == self.flexible();
+        Self { patch: patch.filter(fits), ..self }
+    }
+
+    /// The turn of its nodes, if it is known.
+    pub(crate) fn patch(&self) -> Option<&PatchTurn> {
+        self.patch.as_ref()
     }
 
     /// The rotation of second order, if it is known.
@@ -124,7 +139,8 @@ impl RotationShapes {
     pub fn truncated(&self, flexible: usize) -> Self {
         let kept = self.columns.len().min(6 + flexible);
         let second_order = self.second_order.as_ref().map(|second_order| second_order.truncated(flexible));
-        Self { columns: self.columns[..kept].to_vec(), second_order }
+        let patch = self.patch.as_ref().map(|patch| patch.truncated(flexible));
+        Self { columns: self.columns[..kept].to_vec(), second_order, patch }
     }
 
     /// Columns of all modes, rigid and flexible (6+nf).
@@ -143,7 +159,8 @@ impl Keyed for PointShapes {
 
 impl Keyed for RotationShapes {
     fn key(&self, key: Key) -> Key {
-        let Self { columns, second_order } = self;
-        key.of("rotation", 1).with("columns", columns.as_slice()).with("second order", second_order)
+        let Self { columns, second_order, patch } = self;
+        let key = key.of("rotation", 2).with("columns", columns.as_slice()).with("second order", second_order);
+        key.with("patch", patch)
     }
 }

@@ -4,23 +4,18 @@ use faer::Mat;
 
 use crate::conservative::manifold::Manifold;
 
-/// The K_ij of [`ReducedBody::PAIRS`](modal::ReducedBody::PAIRS) of a body.
-pub(crate) struct SpinStiffness {
-    /// Stiffness on the coordinates of the shapes (nf × nf): all, but on a manifold the parts between a large mode and
-    /// another.
-    pub on_shapes: [Mat<f64>; 6],
-    /// Stiffness on the modal coordinates themselves: on a manifold, the parts between modes that are not large.
-    pub on_modes: Option<[Mat<f64>; 6]>,
-}
+/// The K_ij of [`ReducedBody::PAIRS`](modal::ReducedBody::PAIRS) on the modal coordinates (nf × nf), of a manifold, too: what
+/// only follows is without it.
+pub(crate) struct SpinStiffness([Mat<f64>; 6]);
 
 impl SpinStiffness {
     pub fn new(stiffness: &[Mat<f64>; 6], manifold: Option<&Manifold>) -> Self {
-        let Some(manifold) = manifold else { return Self { on_shapes: stiffness.clone(), on_modes: None } };
-        let is_large = |i: usize, j: usize| [i, j].iter().any(|k| manifold.large().contains(k));
-        let part = |size: usize, of_large: bool| {
-            let entry = |k: &Mat<f64>, i, j| if is_large(i, j) == of_large { k[(i, j)] } else { 0.0 };
-            stiffness.each_ref().map(|k| Mat::from_fn(size, size, |i, j| entry(k, i, j)))
-        };
-        Self { on_shapes: part(manifold.body().flexible(), true), on_modes: Some(part(manifold.modes(), false)) }
+        let Some(manifold) = manifold else { return Self(stiffness.clone()) };
+        let modes = manifold.modes();
+        Self(stiffness.each_ref().map(|k| k.get(..modes, ..modes).to_owned()))
+    }
+
+    pub fn of_pairs(&self) -> &[Mat<f64>; 6] {
+        &self.0
     }
 }

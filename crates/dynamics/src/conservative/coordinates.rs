@@ -28,14 +28,12 @@ impl InCoordinates<'_> {
     /// Σ weight · (N − K) (n × n), with K of the stress of the spin.
     pub fn inertia_second(&self, weights: &[f64; 6], stiffness: Option<&SpinStiffness>) -> Mat<f64> {
         let shapes = self.body.flexible();
-        let mut second = self.matrix(Mat::from_fn(shapes, shapes, |i, j| {
-            weighted(&self.body.inertia_second, weights, i, j)
-                - stiffness.map_or(0.0, |stiffness| weighted(&stiffness.on_shapes, weights, i, j))
-        }));
-        if let Some(on_modes) = stiffness.and_then(|stiffness| stiffness.on_modes.as_ref()) {
-            let modes = on_modes[0].nrows();
+        let of_shapes = |i, j| weighted(&self.body.inertia_second, weights, i, j);
+        let mut second = self.matrix(Mat::from_fn(shapes, shapes, of_shapes));
+        if let Some(of_pairs) = stiffness.map(SpinStiffness::of_pairs) {
+            let modes = of_pairs[0].nrows();
             for (i, j) in (0..modes).flat_map(|j| (0..modes).map(move |i| (i, j))) {
-                second[(i, j)] -= weighted(on_modes, weights, i, j);
+                second[(i, j)] -= weighted(of_pairs, weights, i, j);
             }
         }
         second

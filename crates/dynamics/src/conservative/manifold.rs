@@ -1,55 +1,48 @@
-//! Large deflection: modes that bend the body, on a curved (quadratic) manifold.
+//! Large deflection: modes that bend the body, on a curved manifold.
 //!
 //! ```text
-//! u = Ψ_ext ξ(q)        ξ_a = q_a + s_a,   s_a = ½ Σ_jk T_a,jk q_j q_k   (j, k of the large modes; zero for a among them)
-//! D = ∂ξ/∂q = [I; 0] + T q        ν = D q̇        M = DᵀD
-//! V = ½ qᵀΛq + V_n,   V_n = ⅙ Σ g_ijk q_i q_j q_k + ⅛ Σ w_ijkl q_i q_j q_k q_l
+//! u = Ψ_ext ξ(q)        ξ = q + Σ_α a_α q^α        D = ∂ξ/∂q        M = DᵀD
+//! V = ½ qᵀΛq + Σ_α V_α q^α
 //! ```
 //!
 //! The extended shapes Ψ_ext are the modes q of the motion and, after them, shapes that only follow: what a large mode
-//! draws in, twists or stretches. T, g and w are constants of the mesh ([`modal::SecondOrderShapes`]).
+//! draws in, twists or stretches. α are products of the large modes to the third order, of a large and a following one, and of
+//! two following ones; in the energy V to the fifth order, with two following ones at most. a and V are constants of the mesh
+//! ([`modal::LargeShapes`], `fem_tet10::Expansion`).
 //!
-//! The equations of motion are in coordinates z that hold ξ without a sum in the time loop: the modes, and the products m
-//! of the large ones.
+//! The equations of motion are in coordinates z that hold ξ without a sum in the time loop: the modes, and the products m.
 //!
 //! ```text
-//! z = (q, m),   m_jk = q_j q_k (j ≤ k)        ξ = E z,   E = [1 T'],   T'_jk = T_jk, and ½ T_jj of squares
+//! z = (q, m),   m_α = q^α        ξ = E z,   E = [1 a]
 //! ∂z/∂q = [1; B],   B x = the products' rates at q̇ = x
 //! ```
 //!
-//! B has two entries in a row. A matrix A of the extended shapes, EᵀAE of these coordinates, is made once.
+//! B has two or three entries in a row. A matrix A of the extended shapes, EᵀAE of these coordinates, is made once. M, the
+//! slopes of the manifold and the forces of V are polynomials of the large and following modes.
+
+mod monomials;
 
 use std::sync::Arc;
 
 use faer::{Mat, MatRef};
 use keys::{Hash, Key, Keyed};
-use modal::{ReducedBody, SecondOrderShapes};
+use modal::{LargeShapes, Products, ReducedBody};
 
+use crate::conservative::manifold::monomials::{Energy, Monomials, Polynomials};
 use crate::error::SetupError;
 use crate::matrix::blocked_matrix::BlockedMatrix;
-use crate::matrix::column_major::{add_product, columns, dot};
+use crate::matrix::column_major::{columns, dot};
 
 /// Most modes that may be large.
-pub const MAX_LARGE: usize = 8;
+pub const MAX_LARGE: usize = 4;
+/// Most modes that may follow them.
+pub const MAX_FOLLOWING: usize = 7;
 
-/// Most products of them.
-const MAX_PAIRS: usize = MAX_LARGE * (MAX_LARGE + 1) / 2;
+/// Most large and following modes.
+const MAX_BENT: usize = MAX_LARGE + MAX_FOLLOWING;
 
-/// A call of a function for as many large modes as there are: their number is known to the compiler in it.
-macro_rules! by_count {
-    ($count:expr, $name:ident($($argument:expr),*)) => {
-        match $count {
-            1 => $name::<1>($($argument),*),
-            2 => $name::<2>($($argument),*),
-            3 => $name::<3>($($argument),*),
-            4 => $name::<4>($($argument),*),
-            5 => $name::<5>($($argument),*),
-            6 => $name::<6>($($argument),*),
-            7 => $name::<7>($($argument),*),
-            _ => $name::<MAX_LARGE>($($argument),*),
-        }
-    };
-}
+/// Coordinates of the large modes, then of those that follow, then a one: each product has three of these as factors.
+type Bent = [f64; MAX_BENT + 1];
 
 /// The manifold that a body with large modes moves on.
 #[derive(Debug, Clone)]
@@ -63,133 +56,122 @@ struct Constants {
     hash: Hash,
     /// Number of modes of the motion.
     modes: usize,
-    /// Which of them are large.
+    /// The large ones among them, and those that follow.
     large: Vec<usize>,
-    /// Products j ≤ k of the large modes, numbered among these.
-    pairs: Vec<[usize; 2]>,
-    /// T', column by column (extended shapes × pairs), and ready for products with it and with its transpose.
+    following: Vec<usize>,
+    /// All of these.
+    bent: Vec<usize>,
+    /// Factors of each product, numbered among them; a one where there are two.
+    factors: Vec<[usize; 3]>,
+    monomials: Monomials,
+    /// a, column by column (extended shapes × products), and ready for products with it and with its transpose.
     shapes: Vec<f64>,
     to_shapes: BlockedMatrix,
     from_shapes: BlockedMatrix,
-    /// E, column by column (extended shapes × (modes + pairs)).
+    /// E (extended shapes × (modes + products)).
     shapes_by_coordinates: Mat<f64>,
-    /// T'ᵀE (pairs × (modes + pairs)): rows of the mass of the products in z; and the same columns, by −.
+    /// aᵀE (products × (modes + products)): rows of the mass of the products in z; and the same columns, by −.
     mass: BlockedMatrix,
     negative_mass: BlockedMatrix,
-    /// T_jk of the modes by large modes k: large modes j within modes, then modes within large modes j.
-    slopes: BlockedMatrix,
-    /// M − 1 of the large modes, by products (entries i ≥ j × pairs).
-    locked: BlockedMatrix,
-    /// ∂V_n/∂q by products: ½ Σ g_ijk q_j q_k, then the ½ Σ w_ijkl q_k q_l for i ≥ j.
-    forces: BlockedMatrix,
+    /// ∂ξ/∂q beside 1 of the other modes by the bent ones: modes within bent ones.
+    slopes: Polynomials,
+    /// M − 1 of the bent modes without what the other modes have of it: entries i ≥ j.
+    locked: Polynomials,
+    /// V beyond ½ qᵀΛq, and its derivatives.
+    energy: Energy,
+    forces: Polynomials,
 }
 
 /// The place on the manifold.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ManifoldPoint {
-    /// The large ones of q and q̇.
-    displacement: [f64; MAX_LARGE],
-    rate: [f64; MAX_LARGE],
-    /// T q of the modes: large modes within modes, then modes within large modes.
+    /// The bent ones of q, and a one; of q̇, and zero.
+    displacement: Bent,
+    rate: Bent,
+    monomials: Vec<f64>,
+    /// B by its entries: the derivative of each product by each factor; and its rate.
+    partials: Vec<[f64; 3]>,
+    partial_rates: Vec<[f64; 3]>,
+    /// Slopes of the other modes: modes within bent ones.
     slopes: Vec<f64>,
-    /// Cholesky factor of what M leaves to the large modes: entries i ≥ j, row by row, with the reciprocals of the diagonal.
+    /// Cholesky factor of what M leaves to the bent modes: entries i ≥ j, row by row, with the reciprocals of the diagonal.
     factor: Vec<f64>,
 }
 
 impl Manifold {
-    /// By the shapes of second order, the body in the extended shapes, and `energies`: the `∫ ε₂(i,j):C:ε₂(k,l) dV` of the
-    /// large modes, for each pair of pairs (i ≤ j, k ≤ l) as in [`SecondOrderShapes::pairs`], row by row.
+    /// By the shapes, the body in the extended shapes, and the strain `energies` of [`Products::of_energy`].
     ///
     /// # Errors
-    /// [`SetupError`] for more large modes than [`MAX_LARGE`], sizes that do not fit together, and numbers that are not
-    /// finite.
-    pub fn new(body: ReducedBody, shapes: &SecondOrderShapes, energies: &[f64]) -> Result<Self, SetupError> {
-        let SecondOrderShapes { dynamic, large, slopes, cubic, relief, .. } = shapes;
-        let key = Key::new().of("manifold", 1).with("body", &body).with("modes", dynamic).with("large", large);
-        let key = key.with("slopes", slopes).with("cubic", cubic).with("relief", relief).with("energies", energies);
-        let (count, pairs) = (large.len(), SecondOrderShapes::pairs(large.len()));
+    /// [`SetupError`] for more modes than [`MAX_LARGE`] and [`MAX_FOLLOWING`], sizes that do not fit together, and numbers that
+    /// are not finite.
+    pub fn new(body: ReducedBody, shapes: &LargeShapes, energies: &[f64]) -> Result<Self, SetupError> {
+        let LargeShapes { dynamic, large, following, coefficients, .. } = shapes;
+        let (dynamic, extended) = (*dynamic, body.flexible());
+        let key = Key::new().of("manifold", 2).with("body", &body).with("modes", &dynamic).with("large", large);
+        let key = key.with("following", following).with("coefficients", coefficients).with("energies", energies);
+        let products = shapes.products();
+        let of_energy = products.of_energy();
+        for (what, found, least, most, expected) in [
+            ("the number of large modes", large.len(), 1, MAX_LARGE, "1 to 4"),
+            ("the number of modes that follow large ones", following.len(), 0, MAX_FOLLOWING, "7 at most"),
+        ] {
+            if found < least || found > most {
+                return Err(SetupError::Value { what, found: found as f64, expected });
+            }
+        }
+        let of_displacement = products.of_displacement();
         for (what, found, expected) in [
-            ("the list of energies of second order", energies.len(), pairs.len() * pairs.len()),
-            ("the body in the extended shapes", body.flexible(), shapes.modes.shapes.ncols()),
-            ("the slopes of the manifold", slopes.ncols(), pairs.len()),
+            ("the list of strain energies", energies.len(), of_energy.len()),
+            ("the body in the extended shapes", extended, shapes.modes.shapes.ncols()),
+            ("the rows of the shapes of products", coefficients.nrows(), extended),
+            ("the shapes of products", coefficients.ncols(), of_displacement.len()),
         ] {
             if found != expected {
                 return Err(SetupError::Length { what, expected, found });
             }
         }
-        if count == 0 || count > MAX_LARGE {
-            let expected = "1 to 8";
-            return Err(SetupError::Value { what: "the number of large modes", found: count as f64, expected });
-        }
         if let Some(found) = energies.iter().copied().find(|energy| !energy.is_finite()) {
-            let what = "an energy of second order";
-            return Err(SetupError::Value { what, found, expected: "a finite number" });
+            return Err(SetupError::Value { what: "a strain energy", found, expected: "a finite number" });
         }
-        let pair = |i: usize, j: usize| pairs.iter().position(|p| *p == [i.min(j), i.max(j)]).unwrap_or_default();
-        // The energy of a pair of pairs, less what the shapes that follow relieve; symmetric in all four.
-        let of_pairs = |a: usize, b: usize| energies[a * pairs.len() + b] - relief[(a, b)];
-        let quartic = |i: usize, j: usize, k: usize, l: usize| {
-            [[i, j, k, l], [i, k, j, l], [i, l, j, k]]
-                .map(|[a, b, c, d]| 0.5 * (of_pairs(pair(a, b), pair(c, d)) + of_pairs(pair(c, d), pair(a, b))))
-                .iter()
-                .sum::<f64>()
-                / 3.0
-        };
-        let cubic = |i: usize, j: usize, k: usize| {
-            (cubic[(i, pair(j, k))] + cubic[(j, pair(i, k))] + cubic[(k, pair(i, j))]) / 3.0
-        };
-        let mut forces = Vec::new();
-        for [k, l] in &pairs {
-            // A sum over all ordered pairs has the product twice, but for squares.
-            let twice = if k == l { 0.5 } else { 1.0 };
-            forces.extend((0..count).map(|i| twice * cubic(i, *k, *l)));
-            forces.extend(triangle(count).map(|[i, j]| twice * quartic(i, j, *k, *l)));
-        }
-        let extended = body.flexible();
-        let of_products = |i: usize, a: usize| {
-            let [j, k] = pairs[a];
-            if j == k { 0.5 * slopes[(i, a)] } else { slopes[(i, a)] }
-        };
-        let shapes_by_coordinates =
-            Mat::from_fn(extended, dynamic + pairs.len(), |i, a| match a.checked_sub(*dynamic) {
-                None => f64::from(u8::from(i == a)),
-                Some(a) => of_products(i, a),
-            });
-        let shapes = shapes_by_coordinates.get(.., *dynamic..);
-        let mass = shapes.transpose() * &shapes_by_coordinates;
-        let slope = |i: usize, j: usize, k: usize| slopes[(i, pair(j, k))];
-        let follow = |a: [usize; 2], b: [usize; 2]| -> f64 {
-            (*dynamic..extended).map(|i| slope(i, a[0], a[1]) * slope(i, b[0], b[1])).sum()
-        };
-        let mut locked = Vec::new();
-        for [j, k] in &pairs {
-            locked.extend(triangle(count).map(|[a, b]| {
-                let both = if j == k { 0.0 } else { follow([a, *k], [b, *j]) };
-                follow([a, *j], [b, *k]) + both
-            }));
-        }
-        let of_modes = (0..*dynamic).flat_map(|i| (0..count).map(move |j| [i, j]));
-        let by_modes = (0..count).flat_map(|j| (0..*dynamic).map(move |i| [i, j]));
-        let of_slopes: Vec<[usize; 2]> = of_modes.chain(by_modes).collect();
-        let by_products = |entries: &[f64]| {
-            BlockedMatrix::new(MatRef::from_column_major_slice(entries, entries.len() / pairs.len(), pairs.len()))
-        };
+        let monomials = Monomials::new(products);
+        let bent: Vec<usize> = large.iter().chain(following).copied().collect();
+        let one = bent.len();
+        let factors = of_displacement.iter().map(|product| [0, 1, 2].map(|i| product.get(i).copied().unwrap_or(one)));
+        let count = of_displacement.len();
+        let shapes_by_coordinates = Mat::from_fn(extended, dynamic + count, |i, a| match a.checked_sub(dynamic) {
+            None => f64::from(u8::from(i == a)),
+            Some(product) => coefficients[(i, product)],
+        });
+        let mass = coefficients.transpose() * &shapes_by_coordinates;
+        let slopes = Polynomials::new(&monomials, bent.len() * dynamic, [1, 2], |add| {
+            for (product, column) in of_displacement.iter().zip(coefficients.col_iter()) {
+                for a in 0..bent.len() {
+                    let Some((times, rest)) = Monomials::derivative(product, a) else { continue };
+                    for k in (0..dynamic).filter(|k| !bent.contains(k)) {
+                        add(a * dynamic + k, &rest, times * column[k]);
+                    }
+                }
+            }
+        });
+        let energy = Energy::new(&monomials, &of_energy, energies);
         Ok(Self(Arc::new(Constants {
             hash: key.finish(),
-            slopes: BlockedMatrix::new(
-                Mat::from_fn(of_slopes.len(), count, |row, k| slope(of_slopes[row][0], of_slopes[row][1], k)).as_ref(),
-            ),
-            modes: *dynamic,
+            modes: dynamic,
             large: large.clone(),
-            to_shapes: BlockedMatrix::new(shapes),
-            from_shapes: BlockedMatrix::new(shapes.transpose()),
-            shapes: columns(shapes),
+            following: following.clone(),
+            factors: factors.collect(),
+            shapes: columns(coefficients.as_ref()),
+            to_shapes: BlockedMatrix::new(coefficients.as_ref()),
+            from_shapes: BlockedMatrix::new(coefficients.transpose()),
             negative_mass: BlockedMatrix::new((-mass.transpose()).as_ref()),
             mass: BlockedMatrix::new(mass.as_ref()),
-            locked: by_products(&locked),
-            forces: by_products(&forces),
-            pairs,
+            slopes,
+            locked: locked_mass(&monomials, &of_displacement, coefficients.as_ref(), &bent, dynamic),
+            forces: energy.forces(&monomials),
+            energy,
             shapes_by_coordinates,
+            monomials,
+            bent,
             body,
         })))
     }
@@ -209,25 +191,45 @@ impl Manifold {
         &self.0.large
     }
 
-    /// ξ of a unit of q_j q_k, for each pair of large modes as in [`SecondOrderShapes::pairs`]: T', pair by pair.
+    /// Which modes follow the large ones, numbered from 0.
+    pub fn following(&self) -> &[usize] {
+        &self.0.following
+    }
+
+    /// The large modes, then those that follow.
+    pub fn bent(&self) -> &[usize] {
+        &self.0.bent
+    }
+
+    /// The products of the modes that are in the displacement, each by the numbers of its two or three modes.
+    pub fn products(&self) -> Vec<Vec<usize>> {
+        let Constants { large, following, bent, .. } = &*self.0;
+        let products = Products { large: large.len(), following: following.len() };
+        let of_modes = |product: Vec<usize>| product.into_iter().map(|k| bent[k]).collect();
+        products.of_displacement().into_iter().map(of_modes).collect()
+    }
+
+    /// ξ of a unit of each of the [`products`](Self::products), product by product.
     pub fn of_products(&self) -> &[f64] {
         &self.0.shapes
     }
 
     /// ξ(q) in the extended shapes, as many as the body has.
     pub fn coordinates(&self, q: &[f64], xi: &mut [f64]) {
-        let Constants { large, pairs, modes, shapes, .. } = &*self.0;
+        let Constants { bent, factors, modes, shapes, .. } = &*self.0;
         xi[..*modes].copy_from_slice(q);
         xi[*modes..].fill(0.0);
-        for ([j, k], shape) in pairs.iter().zip(shapes.chunks_exact(xi.len().max(1))) {
-            let product = q[large[*j]] * q[large[*k]];
+        let mut x = Bent::default();
+        bent_of(bent, q, 1.0, &mut x);
+        for (factors, shape) in factors.iter().zip(shapes.chunks_exact(xi.len().max(1))) {
+            let product = value(factors, &x);
             xi.iter_mut().zip(shape).for_each(|(xi, shape)| *xi += shape * product);
         }
     }
 
     /// Number of coordinates z.
     pub(crate) fn size(&self) -> usize {
-        self.0.modes + self.0.pairs.len()
+        self.0.modes + self.0.factors.len()
     }
 
     /// E, by which ξ = E z.
@@ -236,54 +238,68 @@ impl Manifold {
     }
 
     pub(crate) fn place(&self) -> ManifoldPoint {
-        let Constants { large, modes, .. } = &*self.0;
+        let Constants { bent, modes, factors, monomials, .. } = &*self.0;
         ManifoldPoint {
-            slopes: vec![0.0; 2 * large.len() * modes],
-            factor: vec![0.0; large.len() * (large.len() + 1) / 2],
+            monomials: vec![0.0; monomials.count(4)],
+            partials: vec![[0.0; 3]; factors.len()],
+            partial_rates: vec![[0.0; 3]; factors.len()],
+            slopes: vec![0.0; bent.len() * modes],
+            factor: vec![0.0; bent.len() * (bent.len() + 1) / 2],
             ..ManifoldPoint::default()
         }
     }
 
     /// Goes to q: z there, and M.
     pub(crate) fn go(&self, q: &[f64], place: &mut ManifoldPoint, z: &mut [f64]) {
-        let Constants { large, modes, slopes, locked, .. } = &*self.0;
-        let ManifoldPoint { displacement: x, slopes: at_q, factor, .. } = place;
-        large_of(large, q, x);
+        let Constants { bent, modes, factors, monomials, slopes, locked, .. } = &*self.0;
+        let ManifoldPoint { displacement: x, monomials: values, partials, slopes: at_q, factor, .. } = place;
+        bent_of(bent, q, 1.0, x);
         let (of_modes, products) = z.split_at_mut(*modes);
         of_modes.copy_from_slice(q);
-        by_count!(large.len(), find_products(x, products));
-        slopes.multiply(&x[..large.len()], at_q);
-        // Of M, the modes that are not large leave to the large ones 1 + tᵀt of the shapes that only follow.
-        locked.multiply(products, factor);
-        by_count!(large.len(), factorize(factor));
+        for ((product, partials), [i, j, k]) in products.iter_mut().zip(partials).zip(factors) {
+            let (a, b, c) = (x[*i], x[*j], x[*k]);
+            *partials = [b * c, a * c, a * b];
+            *product = a * b * c;
+        }
+        monomials.find(x, values);
+        slopes.find(values, at_q);
+        // Of M, the other modes leave to the bent ones what is here.
+        locked.find(values, factor);
+        factorize(bent.len(), factor);
     }
 
     /// Goes along with q̇: ż.
     pub(crate) fn go_along(&self, rate: &[f64], place: &mut ManifoldPoint, z_rate: &mut [f64]) {
-        large_of(&self.0.large, rate, &mut place.rate);
-        self.extend(place, rate, z_rate);
+        let Constants { bent, modes, factors, .. } = &*self.0;
+        let ManifoldPoint { displacement: x, rate: v, partials, partial_rates, .. } = place;
+        bent_of(bent, rate, 0.0, v);
+        let (of_modes, products) = z_rate.split_at_mut(*modes);
+        of_modes.copy_from_slice(rate);
+        let rows = products.iter_mut().zip(partials).zip(partial_rates);
+        for (((product, [da, db, dc]), rates), [i, j, k]) in rows.zip(factors) {
+            let ([a, b, c], [u, v, w]) = ([x[*i], x[*j], x[*k]], [v[*i], v[*j], v[*k]]);
+            *rates = [v * c + b * w, u * c + a * w, u * b + a * v];
+            *product = *da * u + *db * v + *dc * w;
+        }
     }
 
     /// ∂z/∂q x of modal velocities or accelerations x.
     pub(crate) fn extend(&self, place: &ManifoldPoint, x: &[f64], out: &mut [f64]) {
-        let Constants { large, modes, .. } = &*self.0;
+        let Constants { bent, modes, factors, .. } = &*self.0;
         let (of_modes, products) = out.split_at_mut(*modes);
         of_modes.copy_from_slice(x);
-        let mut of_large = [0.0; MAX_LARGE];
-        large_of(large, x, &mut of_large);
-        for ((products, q), j) in rows_mut(products, &place.displacement[..large.len()]).zip(0..) {
-            let x = &of_large[j..];
-            for ((product, of_q), of_x) in products.iter_mut().zip(q).zip(x) {
-                *product = q[0] * of_x + of_q * x[0];
-            }
+        let mut of_bent = Bent::default();
+        bent_of(bent, x, 0.0, &mut of_bent);
+        for ((product, partials), factors) in products.iter_mut().zip(&place.partials).zip(factors) {
+            *product = along(partials, factors, &of_bent);
         }
     }
 
     /// Adds what z̈ has without q̈ to out, one number for each coordinate z.
     pub(crate) fn add_curvature(&self, place: &ManifoldPoint, out: &mut [f64]) {
-        let Constants { large, modes, .. } = &*self.0;
-        for (out, rate) in rows_mut(&mut out[*modes..], &place.rate[..large.len()]) {
-            out.iter_mut().zip(rate).for_each(|(out, other)| *out += 2.0 * rate[0] * other);
+        let Constants { modes, factors, .. } = &*self.0;
+        for ((out, rates), factors) in out[*modes..].iter_mut().zip(&place.partial_rates).zip(factors) {
+            *out += along(rates, factors, &place.rate);
         }
     }
 
@@ -307,18 +323,23 @@ impl Manifold {
     pub(crate) fn add_projection(&self, place: &ManifoldPoint, y: &[f64], out: &mut [f64]) {
         let (of_modes, products) = y.split_at(self.0.modes);
         out.iter_mut().zip(of_modes).for_each(|(out, y)| *out += y);
-        self.add_products(&place.displacement, products, out);
+        self.add_products(&place.partials, products, out);
     }
 
     /// Adds Ḋᵀ of momenta of the products.
     pub(crate) fn add_projected_rate(&self, place: &ManifoldPoint, momenta: &[f64], out: &mut [f64]) {
-        self.add_products(&place.rate, momenta, out);
+        self.add_products(&place.partial_rates, momenta, out);
     }
 
-    fn add_products(&self, x: &[f64; MAX_LARGE], of_products: &[f64], out: &mut [f64]) {
-        let large = &self.0.large;
-        let sums = by_count!(large.len(), sums_of_products(x, of_products));
-        for (mode, sum) in large.iter().zip(sums) {
+    fn add_products(&self, partials: &[[f64; 3]], of_products: &[f64], out: &mut [f64]) {
+        let Constants { bent, factors, .. } = &*self.0;
+        let mut sums = Bent::default();
+        for ((partials, factors), y) in partials.iter().zip(factors).zip(of_products) {
+            for (partial, factor) in partials.iter().zip(factors) {
+                sums[*factor] += partial * y;
+            }
+        }
+        for (mode, sum) in bent.iter().zip(sums) {
             out[*mode] += sum;
         }
     }
@@ -339,101 +360,106 @@ impl Manifold {
         self.substitute_back(place, y);
     }
 
-    /// L⁻¹ y in place (modes), of the Cholesky factor M = L Lᵀ that has the large modes last.
+    /// L⁻¹ y in place (modes), of the Cholesky factor M = L Lᵀ that has the bent modes last.
     pub(crate) fn substitute_forward(&self, place: &ManifoldPoint, y: &mut [f64]) {
-        let large = &self.0.large;
-        by_count!(large.len(), forward(large, &place.slopes, &place.factor, y));
+        let Constants { bent, modes, .. } = &*self.0;
+        let mut x = Bent::default();
+        // The slopes are zero along the bent modes, so that these rows of y stay out of the sums.
+        for (i, (mode, slopes)) in bent.iter().zip(place.slopes.chunks_exact(*modes)).enumerate() {
+            let mut rest = y[*mode] - dot(slopes, y);
+            for k in 0..i {
+                rest -= place.factor[entry(i, k)] * x[k];
+            }
+            x[i] = rest * place.factor[entry(i, i)];
+        }
+        bent.iter().zip(x).for_each(|(mode, x)| y[*mode] = x);
     }
 
     /// L⁻ᵀ y in place.
     pub(crate) fn substitute_back(&self, place: &ManifoldPoint, y: &mut [f64]) {
-        let large = &self.0.large;
-        let x = by_count!(large.len(), backward(large, &place.factor, y));
-        let negative = x.map(|x| -x);
-        add_product(&place.slopes[large.len() * y.len()..], y.len(), &negative[..large.len()], y);
-        for (x, mode) in x.iter().zip(large) {
-            y[*mode] = *x;
+        let Constants { bent, modes, .. } = &*self.0;
+        let mut x = Bent::default();
+        for i in (0..bent.len()).rev() {
+            let mut rest = y[bent[i]];
+            for k in i + 1..bent.len() {
+                rest -= place.factor[entry(k, i)] * x[k];
+            }
+            x[i] = rest * place.factor[entry(i, i)];
         }
+        for (slopes, x) in place.slopes.chunks_exact(*modes).zip(x) {
+            y.iter_mut().zip(slopes).for_each(|(y, slope)| *y -= slope * x);
+        }
+        bent.iter().zip(x).for_each(|(mode, x)| y[*mode] = x);
     }
 
-    /// Subtracts ∂V_n/∂q from modal forces, at z.
-    pub(crate) fn subtract_force(&self, place: &ManifoldPoint, z: &[f64], force: &mut [f64]) {
-        let [cubic, quartic] = self.forces(&place.displacement, &z[self.0.modes..]);
-        for (mode, (cubic, quartic)) in self.0.large.iter().zip(cubic.iter().zip(quartic)) {
-            force[*mode] -= cubic + quartic;
-        }
+    /// Subtracts the derivatives of V beyond ½ qᵀΛq from modal forces.
+    pub(crate) fn subtract_force(&self, place: &ManifoldPoint, force: &mut [f64]) {
+        let Constants { bent, forces, .. } = &*self.0;
+        let mut of_bent = Bent::default();
+        forces.find(&place.monomials, &mut of_bent[..bent.len()]);
+        bent.iter().zip(of_bent).for_each(|(mode, of_bent)| force[*mode] -= of_bent);
     }
 
-    /// V_n: the strain energy beyond ½ qᵀΛq.
+    /// The strain energy beyond ½ qᵀΛq.
     pub fn energy(&self, q: &[f64]) -> f64 {
-        let Constants { large, pairs, .. } = &*self.0;
-        let mut x = [0.0; MAX_LARGE];
-        large_of(large, q, &mut x);
-        let mut products = [0.0; MAX_PAIRS];
-        products.iter_mut().zip(pairs).for_each(|(product, [j, k])| *product = x[*j] * x[*k]);
-        let [cubic, quartic] = self.forces(&x, &products[..pairs.len()]);
-        // Of third and of fourth degree.
-        dot(&cubic, &x) / 3.0 + dot(&quartic, &x) / 4.0
+        self.energy_by_degree(q).iter().sum()
     }
 
-    /// ∂V_n/∂q of third and of fourth order, by the large modes and their products.
-    fn forces(&self, x: &[f64; MAX_LARGE], products: &[f64]) -> [[f64; MAX_LARGE]; 2] {
-        let count = self.0.large.len();
-        let mut rows = [0.0; MAX_LARGE + MAX_PAIRS];
-        let rows = &mut rows[..count + products.len()];
-        self.0.forces.multiply(products, rows);
-        let (of_third, of_fourth) = rows.split_at(count);
-        let mut cubic = [0.0; MAX_LARGE];
-        cubic[..count].copy_from_slice(of_third);
-        [cubic, by_count!(count, symmetric_product(of_fourth, x))]
+    /// Its parts of the third, fourth and fifth degree.
+    pub fn energy_by_degree(&self, q: &[f64]) -> [f64; 3] {
+        let mut x = Bent::default();
+        bent_of(&self.0.bent, q, 1.0, &mut x);
+        self.0.energy.by_degree(&x)
     }
 }
 
-/// The entries i ≥ j of a triangle, row by row.
-fn triangle(size: usize) -> impl Iterator<Item = [usize; 2]> {
-    (0..size).flat_map(|i| (0..=i).map(move |j| [i, j]))
-}
-
-/// The products j ≤ k of each large mode j with itself and those after it, and the list `x` of the large modes from j on.
-fn rows_mut<'a>(products: &'a mut [f64], x: &'a [f64]) -> impl Iterator<Item = (&'a mut [f64], &'a [f64])> {
-    let mut rest = products;
-    (0..x.len()).map(move |j| {
-        let (row, after) = std::mem::take(&mut rest).split_at_mut(x.len() - j);
-        rest = after;
-        (row, &x[j..])
+/// M − 1 of the bent modes without what the other modes have of it, entries i ≥ j: of the derivatives of ξ along the bent modes
+/// and along the shapes that only follow.
+fn locked_mass(
+    monomials: &Monomials,
+    products: &[Vec<usize>],
+    coefficients: MatRef<'_, f64>,
+    bent: &[usize],
+    dynamic: usize,
+) -> Polynomials {
+    let count = bent.len();
+    let rows: Vec<usize> = bent.iter().copied().chain(dynamic..coefficients.nrows()).collect();
+    let both = |p: usize, q: usize| rows.iter().map(|k| coefficients[(*k, p)] * coefficients[(*k, q)]).sum::<f64>();
+    Polynomials::new(monomials, count * (count + 1) / 2, [1, 4], |add| {
+        for (p, first) in products.iter().enumerate() {
+            for a in 0..count {
+                let Some((times, rest)) = Monomials::derivative(first, a) else { continue };
+                // Both orders of an entry off the diagonal are one; on it they count twice.
+                for (b, mode) in bent.iter().enumerate() {
+                    let twice = if a == b { 2.0 } else { 1.0 };
+                    add(entry(a.max(b), a.min(b)), &rest, twice * times * coefficients[(*mode, p)]);
+                }
+                for (q, second) in products.iter().enumerate() {
+                    for b in 0..=a {
+                        let Some((other_times, other)) = Monomials::derivative(second, b) else { continue };
+                        let mut product = [&rest[..], &other[..]].concat();
+                        product.sort_unstable();
+                        add(entry(a, b), &product, times * other_times * both(p, q));
+                    }
+                }
+            }
+        }
     })
 }
 
-/// The products j ≤ k of large modes.
-fn find_products<const C: usize>(x: &[f64; MAX_LARGE], products: &mut [f64]) {
-    let products = &mut products[..C * (C + 1) / 2];
-    let mut a = 0;
-    for j in 0..C {
-        for k in j..C {
-            products[a] = x[j] * x[k];
-            a += 1;
-        }
-    }
+/// A product of three factors.
+fn value([i, j, k]: &[usize; 3], x: &Bent) -> f64 {
+    x[*i] * x[*j] * x[*k]
 }
 
-/// Bᵀ y of a number for each product.
-fn sums_of_products<const C: usize>(x: &[f64; MAX_LARGE], of_products: &[f64]) -> [f64; MAX_LARGE] {
-    let y = &of_products[..C * (C + 1) / 2];
-    let (mut sums, mut a) = ([0.0; MAX_LARGE], 0);
-    for j in 0..C {
-        for k in j..C {
-            sums[j] += y[a] * x[k];
-            sums[k] += y[a] * x[j];
-            a += 1;
-        }
-    }
-    sums
+/// A row of B, or of its rate, times x.
+fn along(partials: &[f64; 3], factors: &[usize; 3], x: &Bent) -> f64 {
+    partials[0] * x[factors[0]] + partials[1] * x[factors[1]] + partials[2] * x[factors[2]]
 }
 
 /// Turns the entries i ≥ j of M − 1 into those of the Cholesky factor of M, with the reciprocals of the diagonal.
-fn factorize<const C: usize>(factor: &mut [f64]) {
-    let factor = &mut factor[..C * (C + 1) / 2];
-    for i in 0..C {
+fn factorize(count: usize, factor: &mut [f64]) {
+    for i in 0..count {
         for j in 0..=i {
             let mut sum = f64::from(u8::from(i == j)) + factor[entry(i, j)];
             for k in 0..j {
@@ -444,56 +470,10 @@ fn factorize<const C: usize>(factor: &mut [f64]) {
     }
 }
 
-/// L⁻¹ y in place, by the slopes of the large modes within all modes and the factor of what M leaves to the large ones.
-fn forward<const C: usize>(large: &[usize], slopes: &[f64], factor: &[f64], y: &mut [f64]) {
-    let (slopes, factor) = (slopes.as_chunks::<C>().0, &factor[..C * (C + 1) / 2]);
-    // The slopes are zero along the large modes, so that these rows of y stay out of the sums.
-    let mut sums = [0.0; C];
-    for (slopes, y) in slopes.iter().zip(y.iter()) {
-        sums.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum += slope * y);
-    }
-    let mut x = [0.0; C];
-    for i in 0..C {
-        let mut rest = y[large[i]] - sums[i];
-        for k in 0..i {
-            rest -= factor[entry(i, k)] * x[k];
-        }
-        x[i] = rest * factor[entry(i, i)];
-    }
-    large.iter().zip(x).for_each(|(mode, x)| y[*mode] = x);
-}
-
-/// L⁻ᵀ y along the large modes, of the factor of what M leaves to them.
-fn backward<const C: usize>(large: &[usize], factor: &[f64], y: &[f64]) -> [f64; MAX_LARGE] {
-    let factor = &factor[..C * (C + 1) / 2];
-    let mut x = [0.0; MAX_LARGE];
-    for i in (0..C).rev() {
-        let mut rest = y[large[i]];
-        for k in i + 1..C {
-            rest -= factor[entry(k, i)] * x[k];
-        }
-        x[i] = rest * factor[entry(i, i)];
-    }
-    x
-}
-
-/// A x, of a symmetric matrix by its entries i ≥ j, row by row.
-fn symmetric_product<const C: usize>(entries: &[f64], x: &[f64; MAX_LARGE]) -> [f64; MAX_LARGE] {
-    let entries = &entries[..C * (C + 1) / 2];
-    let mut product = [0.0; MAX_LARGE];
-    for i in 0..C {
-        for j in 0..i {
-            product[i] += entries[entry(i, j)] * x[j];
-            product[j] += entries[entry(i, j)] * x[i];
-        }
-        product[i] += entries[entry(i, i)] * x[i];
-    }
-    product
-}
-
-/// The large ones of q, then zeros.
-fn large_of(large: &[usize], q: &[f64], x: &mut [f64; MAX_LARGE]) {
-    x.iter_mut().zip(large).for_each(|(x, k)| *x = q[*k]);
+/// The bent ones of q, then the number that stands for a missing factor.
+fn bent_of(bent: &[usize], q: &[f64], last: f64, x: &mut Bent) {
+    x.iter_mut().zip(bent).for_each(|(x, k)| *x = q[*k]);
+    x[bent.len()] = last;
 }
 
 /// Where a triangle row by row has the entry i ≥ j.

@@ -6,10 +6,9 @@
 //! J = J0 + 2 c_ij·ξ + ξᵀ N_ij ξ − qᵀ K_ij q,   J' = 2 (c_ij + N_ij ξ)·ν − 2 (K_ij q)·q̇,   S_i = b_i + G_i ξ
 //! ```
 //!
-//! c and a_c are the centre of mass and its acceleration, ξ and ν the coordinates of the shapes and their rates. What of K_ij
-//! acts on ξ is in N_ij ([`SpinStiffness`]). These are the momenta of the motion and their rates about all three axes, with
-//! the same terms as in the equations of motion: along what is left free F and M vanish, and what a drive does is along its
-//! axis.
+//! c and a_c are the centre of mass and its acceleration, ξ and ν the coordinates of the shapes and their rates. These are the
+//! momenta of the motion and their rates about all three axes, with the same terms as in the equations of motion: along what is
+//! left free F and M vanish, and what a drive does is along its axis.
 
 use faer::Mat;
 use modal::ReducedBody;
@@ -70,7 +69,7 @@ pub(crate) struct Held {
     first: Vec<Vec<f64>>,
     /// N_ij of the same, column by column (nf × nf each).
     second: Vec<Vec<f64>>,
-    /// K_ij of the modes, column by column (each of as many rows as there are modes); none but on a manifold.
+    /// K_ij of the modes, column by column (each of as many rows as there are modes); none without the stress of the spin.
     stress: Vec<Vec<f64>>,
     /// b_i (nf each).
     coupling: [Vec<f64>; 3],
@@ -107,18 +106,14 @@ impl Held {
             return None;
         }
         let follows = effects[Effect::DeformedInertia] && body.flexible() > 0;
-        let second = |pair: usize| match stiffness {
-            Some(stiffness) => columns((&body.inertia_second[pair] - &stiffness.on_shapes[pair]).as_ref()),
-            None => columns(body.inertia_second[pair].as_ref()),
-        };
         let matrices = |list: &[Mat<f64>]| list.iter().map(|matrix| columns(matrix.as_ref())).collect();
         Some(Self {
             mass: body.mass,
             inertia: body.inertia,
             first: if follows { body.inertia_first.to_vec() } else { Vec::new() },
-            second: if follows { (0..6).map(second).collect() } else { Vec::new() },
-            stress: match stiffness.and_then(|stiffness| stiffness.on_modes.as_ref()) {
-                Some(on_modes) if follows => matrices(on_modes),
+            second: if follows { matrices(&body.inertia_second) } else { Vec::new() },
+            stress: match stiffness {
+                Some(stiffness) if follows => matrices(stiffness.of_pairs()),
                 _ => Vec::new(),
             },
             coupling: body.rotation_first.clone(),

@@ -6,7 +6,7 @@ use dynamics::{
     ConservativeBody, History, Initial, Joint, JointDrive, Marker, MotionState, Observation, Physics, PointForce,
     PointShapes, RotationShapes, Rows, SecondOrder, SharedLoad, Simulation, StepControl, System, SystemMotion, Table,
 };
-use fem_tet10::{GeometricTerms, Material, Materials, Mesh, Patch, assemble, read_msh, reduced_geometric_stiffness};
+use fem_tet10::{Material, Materials, Mesh, Patch, assemble, read_msh, reduced_geometric_stiffness};
 use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, StaticAccuracy, Support};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
@@ -37,9 +37,9 @@ impl Jointed {
         }
         let body = ReducedBody::new(&modes, m, x).unwrap();
         let second_orders = responses.iter().map(|responses| {
-            let (shapes, terms) = (modes.shapes.as_ref(), GeometricTerms::InitialStress);
+            let shapes = modes.shapes.as_ref();
             let materials = Materials::Uniform(material);
-            let found = reduced_geometric_stiffness(&mesh, &materials, responses.as_ref(), shapes, terms).unwrap();
+            let found = reduced_geometric_stiffness(&mesh, &materials, responses.as_ref(), shapes).unwrap();
             let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
             [0, 3]
                 .map(|first| SecondOrder::new(axes.into_iter().zip(found[first..].iter().cloned()).collect()).unwrap())

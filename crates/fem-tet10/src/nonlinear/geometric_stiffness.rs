@@ -1,13 +1,8 @@
-//! Geometric stiffness: what a small displacement u adds to the tangent stiffness, reduced to a few shapes.
+//! Geometric stiffness: what the stress of a small displacement u adds to the tangent stiffness, reduced to a few shapes.
 //!
 //! ```text
-//! K(u)_ab = ∫ ε(u):C:ε₂(a,b) + ε(a):C:ε₂(u,b) + ε(b):C:ε₂(u,a) dV        reduced: Ψᵀ K(u) Ψ
+//! K(u)_ab = ∫ ε(u):C:ε₂(a,b) dV        reduced: Ψᵀ K(u) Ψ
 //! ```
-//!
-//! The first term is the initial stress, the other two are the initial displacement: together the third derivative of the
-//! strain energy of a St. Venant–Kirchhoff body along u. The terms of the initial displacement couple bending to
-//! stretching, where their effect is of second order in u and others of that order, which are not there, balance it: a
-//! body that u bends by more than its thickness may lose all stiffness by them.
 //!
 //! K(u) of the whole body is never made. In an element its rows sum to zero over the nodes, so only displacements
 //! *against the element's first node* count. With those, a translation of the element drops out exactly, and rounding is
@@ -19,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::element::deformation::check_field;
 use crate::element::integration::Rules;
-use crate::element::lanes::{Group, GroupPoint, LANES, Lame, Lanes, PARTS, Rows, Tensors};
+use crate::element::lanes::{Group, GroupPoint, LANES, Lanes, PARTS, Rows, Tensors};
 use crate::element::vectorized::vectorized;
 use crate::error::AssemblyError;
 use crate::material::{Material, Materials};
@@ -28,24 +23,15 @@ use crate::mesh::checked::Mesh;
 /// Groups of elements that are multiplied at once.
 const BLOCK: usize = 2;
 
-/// Which terms of K(u) are computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum GeometricTerms {
-    /// The initial stress.
-    InitialStress,
-    /// The initial stress and the initial displacement.
-    All,
-}
-
 /// For each displacement field u (column of `displacements`, N×s with N = 3n, length) the matrix `Ψᵀ K(u) Ψ` (f×f, force
 /// per length), where Ψ is `shapes` (N×f, row `3·node + axis`). Symmetric to the last bit, and the same for any number of
-/// threads. `v·K(u)·b` is also `u·g_vb` of [`second_order_forces`](crate::second_order_forces).
+/// threads.
 ///
-/// With the gradients at the integration points, K(u)_ab is `Σ P_a : ∇b` with
-/// `P_a = ∇a C:ε(u) + ∇u C:ε(a) + C:ε₂(u,a)`: gradients and stresses of the shapes are found once for all u.
+/// With the gradients at the integration points, K(u)_ab is `Σ P_a : ∇b` with `P_a = ∇a C:ε(u)`: gradients of the shapes are
+/// found once for all u.
 ///
 /// Exact on straight elements. On curved ones by the rule that [`assemble`](crate::assemble) has for them, so that
-/// `K(u) (θ × X) = θ × K u − K (θ × u)`, of the initial stress alone `θ × K u`, holds at every node there too, for any small rotation θ.
+/// `K(u) (θ × X) = θ × K u` holds at every node there too, for any small rotation θ.
 ///
 /// It holds 64·s·f² numbers, and for each thread the gradients in 8 elements: no more for a larger mesh.
 ///
@@ -57,9 +43,8 @@ pub fn reduced_geometric_stiffness(
     materials: &Materials,
     displacements: MatRef<'_, f64>,
     shapes: MatRef<'_, f64>,
-    terms: GeometricTerms,
 ) -> Result<Vec<Mat<f64>>, AssemblyError> {
-    extended_geometric_stiffness(mesh, materials, displacements, shapes, terms, &[])
+    extended_geometric_stiffness(mesh, materials, displacements, shapes, &[])
 }
 
 /// The same where the matrices `known` of the first of the shapes are known, one for each displacement field; none for no
@@ -75,7 +60,6 @@ pub fn extended_geometric_stiffness(
     materials: &Materials,
     displacements: MatRef<'_, f64>,
     shapes: MatRef<'_, f64>,
-    terms: GeometricTerms,
     known: &[Mat<f64>],
 ) -> Result<Vec<Mat<f64>>, AssemblyError> {
     check_field(mesh, "displacements", displacements)?;
@@ -110,9 +94,9 @@ pub fn extended_geometric_stiffness(
                 for (u, sum) in sums.iter_mut().enumerate() {
                     vectorized(
                         #[inline(always)]
-                        || here.products(u, terms, first, &mut products),
+                        || here.products(u, first, &mut products),
                     );
-                    let rows = here.lame.len();
+                    let rows = here.count;
                     let (gradients, products) = (matrix(&here.gradients, rows), matrix(&products, rows));
                     matmul(sum.as_mut(), Accum::Add, gradients.transpose(), products, 1.0, Par::Seq);
                 }
@@ -150,13 +134,12 @@ fn matrix(tensors: &[[[Lanes; 3]; 3]], points: usize) -> MatRef<'_, f64> {
 /// The fields at the points of a few groups of elements. All lists of matrices are by field, then point.
 #[derive(Default)]
 struct Block {
-    /// At each point.
-    lame: Vec<Lame>,
-    /// ∇a and C:ε(a) of the shapes.
+    /// Number of points.
+    count: usize,
+    /// ∇a of the shapes.
     gradients: Vec<[[Lanes; 3]; 3]>,
-    stresses: Vec<Tensors>,
-    /// ∇u and C:ε(u) of the displacements, times the volume of the point.
-    of_displacements: Vec<[Tensors; 2]>,
+    /// C:ε(u) of the displacements, times the volume of the point.
+    of_displacements: Vec<Tensors>,
 }
 
 impl Block {
@@ -170,51 +153,37 @@ impl Block {
         shapes: &Rows,
         displacements: &Rows,
     ) {
-        let count: usize = groups.iter().map(|group| group.cubic_points(rules).len()).sum();
-        self.lame.clear();
-        self.gradients.resize(count * shapes.columns, Tensors::ZERO.0);
-        self.stresses.resize(count * shapes.columns, Tensors::ZERO);
-        self.of_displacements.resize(count * displacements.columns, [Tensors::ZERO; 2]);
-        let (mut of_shapes, mut of_displacements) = (Vec::new(), Vec::new());
+        self.count = groups.iter().map(|group| group.cubic_points(rules).len()).sum();
+        self.gradients.resize(self.count * shapes.columns, Tensors::ZERO.0);
+        self.of_displacements.resize(self.count * displacements.columns, Tensors::ZERO);
+        let (mut of_shapes, mut of_displacements, mut row) = (Vec::new(), Vec::new(), 0);
         for group in groups {
             let (lame, positions) = (group.lame(materials), group.positions(mesh));
             shapes.relative(mesh, group, &mut of_shapes);
             displacements.relative(mesh, group, &mut of_displacements);
             for rule in group.cubic_points(rules) {
                 let point = GroupPoint::new(&positions, rule, group.count);
-                let row = self.lame.len();
                 for (a, relative) in of_shapes.iter().enumerate() {
-                    let [gradient, stress] = point.gradient(relative).with_stress(&lame);
-                    self.gradients[count * a + row] = gradient.0;
-                    self.stresses[count * a + row] = stress;
+                    self.gradients[self.count * a + row] = point.gradient(relative).0;
                 }
                 for (u, relative) in of_displacements.iter().enumerate() {
-                    self.of_displacements[count * u + row] =
-                        point.gradient(relative).scaled(&point.volume).with_stress(&lame);
+                    let [_, stress] = point.gradient(relative).scaled(&point.volume).with_stress(&lame);
+                    self.of_displacements[self.count * u + row] = stress;
                 }
-                self.lame.push(lame);
+                row += 1;
             }
         }
     }
 
     /// P_a of the shapes from `first` on for the displacement `u`, laid out as the gradients.
     #[inline(always)]
-    fn products(&self, u: usize, terms: GeometricTerms, first: usize, out: &mut Vec<[[Lanes; 3]; 3]>) {
-        let count = self.lame.len();
-        let of_u = &self.of_displacements[count * u..][..count];
-        out.resize(self.gradients.len() - count * first, Tensors::ZERO.0);
-        let shapes = self.gradients.chunks_exact(count).zip(self.stresses.chunks_exact(count)).skip(first);
-        for (out, (gradients, stresses)) in out.chunks_exact_mut(count).zip(shapes) {
-            for (row, out) in out.iter_mut().enumerate() {
-                let (a, of_a, [u, of_u]) = (&Tensors(gradients[row]), &stresses[row], &of_u[row]);
-                let initial_stress = a.times(of_u);
-                let product = match terms {
-                    GeometricTerms::InitialStress => initial_stress,
-                    GeometricTerms::All => {
-                        initial_stress.plus(&u.times(of_a)).plus(&u.second_strain(a).stress(&self.lame[row]))
-                    }
-                };
-                *out = product.0;
+    fn products(&self, u: usize, first: usize, out: &mut Vec<[[Lanes; 3]; 3]>) {
+        let of_u = &self.of_displacements[self.count * u..][..self.count];
+        out.resize(self.gradients.len() - self.count * first, Tensors::ZERO.0);
+        let shapes = self.gradients.chunks_exact(self.count).skip(first);
+        for (out, gradients) in out.chunks_exact_mut(self.count).zip(shapes) {
+            for ((out, gradient), stress) in out.iter_mut().zip(gradients).zip(of_u) {
+                *out = Tensors(*gradient).times(stress).0;
             }
         }
     }

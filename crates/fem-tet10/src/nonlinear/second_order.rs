@@ -20,10 +20,7 @@ use crate::element::vectorized::vectorized;
 use crate::error::AssemblyError;
 use crate::material::Materials;
 use crate::mesh::checked::Mesh;
-
-/// Groups of elements whose forces are held at once, before they are added in the order of the groups: the sums are the same
-/// for any number of threads.
-const BLOCK: usize = 256;
+use crate::nonlinear::element_sums::sum_of_forces;
 
 /// The forces g_ab (N×p, force per squared unit of the fields) of each pair (a, b) of columns of `fields` (N×k, length,
 /// row `3·node + axis`): the second derivatives of the internal forces of a St. Venant–Kirchhoff body at rest.
@@ -180,25 +177,5 @@ fn element_forces(
         );
         sums
     };
-    let mut result = vec![0.0; rows * pairs.len()];
-    let mut add = |node: u32, axis: usize, pair: usize, force: f64| {
-        result[pairs.len() * (3 * node as usize + axis) + pair] += force;
-    };
-    for block in groups.chunks(BLOCK) {
-        let parts: Vec<Vec<[[Lanes; 3]; OTHERS]>> = block.par_iter().map(of_group).collect();
-        for (group, sums) in block.iter().zip(parts) {
-            for (lane, element) in group.elements[..group.count].iter().enumerate() {
-                let nodes = &mesh.elements()[*element];
-                for (place, node) in nodes[1..].iter().enumerate() {
-                    for axis in 0..3 {
-                        for (pair, sums) in sums.iter().enumerate() {
-                            add(*node, axis, pair, sums[place][axis][lane]);
-                            add(nodes[0], axis, pair, -sums[place][axis][lane]);
-                        }
-                    }
-                }
-            }
-        }
-    }
-    Ok(Mat::from_fn(rows, pairs.len(), |row, pair| result[row * pairs.len() + pair]))
+    Ok(sum_of_forces(mesh, &groups, pairs.len(), of_group))
 }

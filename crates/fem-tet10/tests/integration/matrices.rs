@@ -1,5 +1,6 @@
 //! Mass, stiffness and forces.
 
+pub(crate) mod expansion;
 pub(crate) mod finite_strain;
 pub(crate) mod geometric_stiffness;
 pub(crate) mod mass;

@@ -29,8 +29,8 @@ pub(super) fn read(file: &SealedFile, volume: bool) -> Result<(Shapes, Vec<[u32;
     }
     let mut shapes =
         Shapes { positions: at_nodes(&all).ok_or_else(no_node)?, faces, displacements, ..Shapes::default() };
-    if file.has("large_deflection/pairs") {
-        shapes.pairs = file.read::<u32>("large_deflection/pairs")?.values.as_chunks().0.to_vec();
+    if file.has("large_deflection/factors") {
+        shapes.factors = file.read::<u32>("large_deflection/factors")?.values.as_chunks().0.to_vec();
         let products = file.read::<f64>("large_deflection/products")?.values;
         shapes.products = products.chunks_exact(shapes.displacements.len().max(1)).map(<[f64]>::to_vec).collect();
     }

@@ -3,8 +3,7 @@
 use dynamics::Manifold;
 use faer::Mat;
 use fem_tet10::{AssemblyError, Mesh, StressRecovery};
-use modal::SecondOrderShapes;
-use model::{Meshed, Model};
+use model::{Meshed, Model, ProductStrains};
 use results::{Shapes, StressShapes};
 
 /// A body without elements is drawn by so many of its nodes at the most.
@@ -35,7 +34,6 @@ pub(crate) fn shapes_of(meshed: &Meshed, manifold: Option<&Manifold>) -> Shapes 
     let at_nodes = |shape: faer::ColRef<'_, f64>| -> Vec<[f64; 3]> {
         nodes.iter().map(|node| [0, 1, 2].map(|axis| shape[dofs * *node as usize + axis])).collect()
     };
-    let (large, pairs) = large_modes(manifold);
     let all = meshed.modes.shapes.col_iter().chain(meshed.following.col_iter());
     let displacements: Vec<_> = all.map(at_nodes).collect();
     let products = manifold.map_or(&[][..], Manifold::of_products).chunks_exact(displacements.len().max(1));
@@ -43,7 +41,7 @@ pub(crate) fn shapes_of(meshed: &Meshed, manifold: Option<&Manifold>) -> Shapes 
         positions: nodes.iter().map(|node| mesh.positions()[*node as usize]).collect(),
         faces,
         products: products.map(<[f64]>::to_vec).collect(),
-        pairs: pairs.iter().map(|pair| pair.map(|k| large[k] as u32)).collect(),
+        factors: manifold.map_or_else(Vec::new, factors),
         displacements,
         stress: None,
         nodes,
@@ -68,13 +66,13 @@ fn spread_nodes(mesh: &Mesh) -> Vec<u32> {
     (0..kept).map(|i| (i * count / kept) as u32).collect()
 }
 
-/// The large modes, numbered from 0, and pairs of them, numbered among these.
-fn large_modes(manifold: Option<&Manifold>) -> (&[usize], Vec<[usize; 2]>) {
-    let large = manifold.map_or(&[][..], Manifold::large);
-    (large, SecondOrderShapes::pairs(large.len()))
+/// Factors of each product: one more than the coordinates of the motion stands for a factor of 1.
+fn factors(manifold: &Manifold) -> Vec<[u32; 3]> {
+    let factor = |product: &Vec<usize>, i: usize| product.get(i).copied().unwrap_or(manifold.modes()) as u32;
+    manifold.products().iter().map(|product| [0, 1, 2].map(|i| factor(product, i))).collect()
 }
 
-/// The stress in each coordinate, and in the product of each pair: Eq. (S2) of `docs/method/stress.md`.
+/// The stress in each coordinate, and in each product: Eq. (S2) of `docs/method/stress.md`.
 fn stress(
     recovery: &StressRecovery<'_>,
     meshed: &Meshed,
@@ -85,18 +83,16 @@ fn stress(
     if meshed.following.ncols() > 0 {
         shapes.extend(lists(&recovery.nodal_stress(meshed.following.as_ref())?));
     }
-    let (large, pairs) = large_modes(manifold);
-    let of_large = Mat::from_fn(meshed.modes.shapes.nrows(), large.len(), |i, j| meshed.modes.shapes[(i, large[j])]);
-    let second = if pairs.is_empty() {
-        Vec::new()
-    } else {
-        lists(&recovery.second_order_nodal_stress(of_large.as_ref(), &pairs)?)
-    };
-    for (mut product, [j, k]) in second.into_iter().zip(pairs) {
-        // A product of two modes stands for both orders of its pair.
-        let factor = if j == k { 1.0 } else { 2.0 };
-        product.as_flattened_mut().iter_mut().for_each(|s| *s *= factor);
-        shapes.push(product);
+    if let Some(manifold) = manifold {
+        let (modes, following) = (meshed.modes.shapes.as_ref(), meshed.following.as_ref());
+        let count = modes.ncols();
+        let extended = Mat::from_fn(modes.nrows(), count + following.ncols(), |i, j| match j.checked_sub(count) {
+            None => modes[(i, j)],
+            Some(k) => following[(i, k)],
+        });
+        let strains = ProductStrains::new(manifold, extended.as_ref());
+        let of_pairs = recovery.second_order_nodal_stress(strains.fields.as_ref(), &strains.pairs)?;
+        shapes.extend(lists(&strains.stress(of_pairs.as_ref())));
     }
     let place = |node: u32| nodes.partition_point(|n| *n < node) as u32;
     Ok(StressShapes { nodes: recovery.nodes().map(place).collect(), shapes })

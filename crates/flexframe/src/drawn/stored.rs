@@ -73,6 +73,6 @@ fn bytes(model: &Model) -> u64 {
     let Some(meshed) = model.meshed.as_ref().filter(|meshed| meshed.mesh.has_elements()) else { return 0 };
     let nodes = surface(&meshed.mesh).0.len() as u64;
     let shapes = (meshed.modes.shapes.ncols() + meshed.following.ncols()) as u64;
-    let large = model.large_modes().len() as u64;
-    8 * nodes * (9 * shapes + 3 * large * (large + 1))
+    let products = model.physics.large_deflection.as_ref().map_or(0, |manifold| manifold.products().len()) as u64;
+    8 * nodes * (9 * shapes + 6 * products)
 }

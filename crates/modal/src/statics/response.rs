@@ -40,7 +40,7 @@ pub enum StaticAccuracy {
     /// To rounding.
     Full,
     /// As well as shapes need that are made of the answers, and whose coordinates come from the forces anew, as those of
-    /// [`SecondOrderShapes`](crate::SecondOrderShapes): what is missing of the answers counts with its square.
+    /// [`LargeShapes`](crate::LargeShapes): what is missing of the answers counts with its square.
     Shapes,
 }
 

@@ -305,19 +305,16 @@ fn what_does_not_fit_is_refused_wherever_it_is_given() {
     assert!(matches!(point([1.0, 1.0]), Err(ModalError::Weights { sum: 2.0 })));
     assert!(point([-0.5, 1.5]).is_ok());
 
-    let second = |large: &[usize], rows: usize, pairs: usize, number: f64| {
-        let forces = Mat::from_fn(rows, pairs, |_, _| number);
-        solver.second_order_shapes(modes.clone(), large, forces.as_ref(), Mat::zeros(3 * nodes, pairs).as_ref())
+    let shapes = |large: &[usize], following: &[usize], rows: usize, count: usize, number: f64| {
+        let fields = Mat::from_fn(rows, count, |_, _| number);
+        solver.large_shapes(modes.clone(), large, following, fields.as_ref())
     };
-    assert!(matches!(second(&[0], 3 * nodes, 2, 0.0), Err(ModalError::Length { expected: 1, found: 2, .. })));
-    assert!(matches!(second(&[0], 3 * nodes + 1, 1, 0.0), Err(ModalError::Size { .. })));
-    assert!(matches!(second(&[0], 3 * nodes, 1, f64::NAN), Err(ModalError::NotFinite { place: "column", .. })));
-    for large in [[90, 1], [1, 0], [1, 1], [0, 3]] {
-        assert!(matches!(second(&large, 3 * nodes, 3, 0.0), Err(ModalError::LargeModes { count: 3, .. })), "{large:?}");
+    assert!(matches!(shapes(&[0], &[], 3 * nodes, 1, 0.0), Err(ModalError::Length { expected: 2, found: 1, .. })));
+    assert!(matches!(shapes(&[0], &[], 3 * nodes + 1, 2, 0.0), Err(ModalError::Size { .. })));
+    assert!(matches!(shapes(&[0], &[], 3 * nodes, 2, f64::NAN), Err(ModalError::NotFinite { place: "column", .. })));
+    for [large, following] in [[90, 1], [1, 1], [0, 3]] {
+        let found = shapes(&[large], &[following], 3 * nodes, 4, 0.0);
+        assert!(matches!(found, Err(ModalError::LargeModes { count: 3, .. })), "{large:?}");
     }
-    let mut unstable = modes.clone();
-    unstable.eigenvalues[2] *= -1.0;
-    let none = Mat::zeros(3 * nodes, 1);
-    let error = solver.second_order_shapes(unstable, &[0], none.as_ref(), none.as_ref()).unwrap_err();
-    assert!(matches!(error, ModalError::NotPositiveDefinite { matrix: "stiffness", size: 2 }), "{error}");
+    assert!(matches!(shapes(&[1, 0], &[], 3 * nodes, 7, 0.0), Err(ModalError::LargeModes { count: 3, .. })));
 }

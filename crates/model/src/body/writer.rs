@@ -8,7 +8,7 @@ use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatRef};
 use fem_tet10::Mesh;
 use keys::Hash;
-use modal::{Modes, SecondOrderShapes};
+use modal::Modes;
 use scene::{Body, Scene};
 use sealed::{Declared, Kind, Number, SealedError, SealedFile, Writer};
 use whole_file::TemporaryFolder;
@@ -338,25 +338,26 @@ impl Named<'_> {
     /// Adds the terms by which the coordinates of all shapes follow from those of the modes: see [`Manifold`].
     fn add_large_deflection(&mut self, manifold: &Manifold, following: MatRef<'_, f64>) {
         let (mass, length) = (self.scene.units.mass.clone(), self.scene.units.length.clone());
-        let large = manifold.large();
-        let pairs = SecondOrderShapes::pairs(large.len());
-        let list = pairs.iter().flatten().map(|j| large[*j] as u32).collect();
+        let products = manifold.products();
+        let factor = |product: &Vec<usize>, i: usize| product.get(i).copied().unwrap_or(manifold.modes()) as u32;
+        let list = products.iter().flat_map(|product| [0, 1, 2].map(|i| factor(product, i))).collect();
         let mut add = |name: &str, shape: &[usize], unit: &str, frame: &str, description: &str, numbers: Numbers| {
             self.add(&format!("large_deflection/{name}"), shape, unit, frame, description, numbers);
         };
         add(
-            "pairs",
-            &[pairs.len(), 2],
+            "factors",
+            &[products.len(), 3],
             "1",
             "none",
-            "coordinates j <= k of the large modes, from 0",
+            "coordinates of each product, from 0; one more than there are stands for a factor of 1",
             Numbers::U32(list),
         );
-        let products = manifold.of_products().to_vec();
-        let description = "what a unit of q_j q_k of each pair adds to the coordinates of the modes, the static shapes and the \
-                           shapes that follow";
-        let shape = [pairs.len(), manifold.body().flexible()];
-        add("products", &shape, &format!("{mass}^-0.5 {length}^-1"), "none", description, Numbers::F64(products));
+        let of_products = Numbers::F64(manifold.of_products().to_vec());
+        let description = "what a unit of each product adds to the coordinates of the modes, the static shapes and the shapes that \
+                           follow";
+        let shape = [products.len(), manifold.body().flexible()];
+        // Products of two have this unit, those of three (mass^0.5 length)^-2.
+        add("products", &shape, &format!("{mass}^-0.5 {length}^-1"), "none", description, of_products);
         let description =
             "displacement of each node in a unit of the coordinate of each shape that only follows large modes";
         let shape = [following.ncols(), following.nrows() / 3, 3];
@@ -373,18 +374,17 @@ impl Named<'_> {
         let sites = nodes.len();
         let description = "node of each row of the stresses; a node between materials has a row for each";
         self.add("stress/nodes", &[sites], "1", "none", description, Numbers::U32(nodes.to_vec()));
-        let large = model.large_modes().len();
-        let pairs = SecondOrderShapes::pairs(large);
-        let (linear, second) = of_coordinates.split_at(of_coordinates.len() - pairs.len());
+        let products = model.physics.large_deflection.as_ref().map_or(0, |manifold| manifold.products().len());
+        let (linear, second) = of_coordinates.split_at(of_coordinates.len() - products);
         let order = "xx, yy, zz, xy, yz, zx";
         let description =
             format!("stress of a unit of each coordinate of modes, static shapes, shapes that follow: {order}");
         let unit = format!("{mass}^0.5 {length}^-2 {time}^-2");
         let numbers = Numbers::F64(linear.concat());
         self.add("stress/shapes", &[linear.len(), sites, 6], &unit, "mesh", &description, numbers);
-        if large > 0 {
+        if products > 0 {
             let numbers = Numbers::F64(second.concat());
-            let description = format!("stress of a unit of q_j q_k of each of large_deflection/pairs: {order}");
+            let description = format!("stress of a unit of each of the products of large_deflection/factors: {order}");
             let (shape, unit) = ([second.len(), sites, 6], format!("{length}^-3 {time}^-2"));
             self.add("stress/products", &shape, &unit, "mesh", &description, numbers);
         }

@@ -1,7 +1,6 @@
 //! The stress stiffness of a load in a direction.
 
 use faer::Mat;
-use fem_tet10::GeometricTerms;
 use nalgebra::Vector3;
 
 /// A force or moment in body axes, where the history of the load is 1, and the stiffness by its stress. A field of forces
@@ -9,6 +8,4 @@ use nalgebra::Vector3;
 pub(crate) struct Directed {
     pub vector: Vector3<f64>,
     pub stiffness: Mat<f64>,
-    /// Terms that the stiffness has.
-    pub terms: GeometricTerms,
 }

@@ -41,8 +41,6 @@ pub(crate) struct MeshLoad {
     /// Attitude of the body at the beginning.
     attitude: Attitude,
     is_gravity: bool,
-    /// True if it is the acceleration of the base, which stresses the body as that of a drive does.
-    pub is_base_acceleration: bool,
 }
 
 /// Loads on a body, each with whether it is gravity.
@@ -175,19 +173,7 @@ pub(crate) fn on_mesh(
                 _ => None,
             };
             let (follows, is_gravity) = (follows(load), is_gravity(load));
-            let is_base_acceleration = matches!(load, Load::BaseAcceleration(_));
-            Ok(MeshLoad {
-                name,
-                action,
-                size: amplitude.abs(),
-                history,
-                follows,
-                turning,
-                dofs,
-                attitude,
-                is_gravity,
-                is_base_acceleration,
-            })
+            Ok(MeshLoad { name, action, size: amplitude.abs(), history, follows, turning, dofs, attitude, is_gravity })
         })
         .collect()
 }
@@ -488,6 +474,7 @@ impl MeshLoad {
                     Some(second_order) => rotation.with_second_order(second_order),
                     None => rotation,
                 };
+                let rotation = rotation.with_patch(patch.patch_turn(mesh, self.dofs, modes));
                 Arc::new(PointMoment { rotation, moment: moment * self.size, frame, history })
             }
             Action::Field { nodes, forces, .. } => {

@@ -1,10 +1,10 @@
 //! Small rotations of the material at places of the mesh.
 
-use dynamics::RotationShapes;
+use dynamics::{PatchTurn, RotationShapes};
 use faer::{ColMut, Mat};
 use fem_tet10::{Location, MeanRotation, Mesh};
 use modal::{Modes, ReducedBody};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use scene::Scene;
 
 use crate::error::{BuildError, refuse};
@@ -68,5 +68,18 @@ impl Rotation {
         };
         let turned: Vec<Vector3<f64>> = (0..body.flexible()).map(of_mode).collect();
         RotationShapes::new(body, Mat::from_fn(3, turned.len(), |axis, k| turned[k][axis]).as_ref())
+    }
+
+    /// The turn of the nodes of a patch in the modes, however far it goes.
+    pub fn patch_turn(&self, mesh: &Mesh, dofs: usize, modes: &Modes) -> Option<PatchTurn> {
+        let Self::Mean(patch) = self else { return None };
+        let position = |node: &u32| Vector3::from(mesh.positions()[*node as usize]);
+        let mean = patch.nodes.iter().map(position).sum::<Vector3<f64>>() / patch.nodes.len().max(1) as f64;
+        let of = |moved: &dyn Fn(u32) -> Vector3<f64>| -> Matrix3<f64> {
+            patch.nodes.iter().map(|node| moved(*node) * (position(node) - mean).transpose()).sum()
+        };
+        let shape = |node: u32, k: usize| Vector3::from_fn(|axis, _| modes.shapes[(dofs * node as usize + axis, k)]);
+        let of_modes = (0..modes.shapes.ncols()).map(|k| of(&|node| shape(node, k))).collect();
+        PatchTurn::new(of(&|node| position(&node) - mean), of_modes)
     }
 }

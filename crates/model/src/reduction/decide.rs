@@ -3,6 +3,7 @@
 use dynamics::{Effect, EffectMap};
 use scene::{Choice, Flexible, Scene};
 
+use crate::reduction::manifold::Bent;
 use crate::reduction::physics;
 use crate::reduction::survey::Survey;
 
@@ -15,8 +16,8 @@ pub(crate) struct Decision {
     /// Remainder of the static responses to the spin beside the modes (6), where static shapes for it are missing.
     pub lacks: Option<Vec<f64>>,
     pub effects: EffectMap<bool>,
-    /// Which of the modes that are kept are large, numbered from 0.
-    pub large: Vec<usize>,
+    /// Which of the modes that are kept bend the body far.
+    pub bent: Bent,
 }
 
 impl Decision {
@@ -36,13 +37,13 @@ impl Decision {
                 Choice::Auto => advice.static_correction.on || !scene.markers.is_empty() && statics.of_spin.is_some(),
             };
         let of_spin = statics.of_spin.as_ref().filter(|_| keep > 0 && !has_static_shapes);
-        let large = physics::large_modes(scene, advice, keep);
+        let bent = physics::bent_modes(scene, advice, keep, modal.body.natural_modes);
         Self {
             keep,
             has_static_shapes,
             lacks: of_spin.map(|of_spin| of_spin.remainders.clone()),
-            effects: physics::with_large_modes(scene, physics::effects(scene, advice, &modal.body, keep), &large),
-            large,
+            effects: physics::with_large_modes(scene, physics::effects(scene, advice, &modal.body, keep), &bent),
+            bent,
         }
     }
 }

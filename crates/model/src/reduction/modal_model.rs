@@ -2,6 +2,7 @@
 
 use advice::Case;
 use dynamics::Initial;
+use faer::Mat;
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 
@@ -12,7 +13,6 @@ use crate::model::Size;
 use crate::model::initial::initial;
 use crate::reduction::damping::damping_ratios;
 use crate::reduction::mesh_model::MeshModel;
-use crate::stress::spin::SpinStress;
 
 /// A body and its loads in the coordinates of some modes.
 pub(crate) struct ModalModel {
@@ -45,9 +45,9 @@ impl ModalModel {
     pub fn with_stress_stiffness(
         self,
         model: &MeshModel<'_, '_>,
-        spin: Option<&SpinStress>,
+        spin: Option<&[Mat<f64>; 6]>,
     ) -> Result<Self, BuildError> {
-        let body = self.body.with_stress_stiffness(spin.map(SpinStress::stiffness)).map_err(modal(model.scene))?;
+        let body = self.body.with_stress_stiffness(spin.cloned()).map_err(modal(model.scene))?;
         Ok(Self { body, ..self })
     }
 

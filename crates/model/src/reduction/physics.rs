@@ -3,10 +3,11 @@
 use advice::Advice;
 use dynamics::{Drive, Effect, EffectMap, Method};
 use modal::{ReducedBody, RigidMotion};
-use scene::{Choice, Constraint, Large, Load, Scene};
+use scene::{Choice, Large, Load, Scene};
 
 use crate::load::mesh_load::MeshLoad;
 use crate::load::turning::{Turning, turning};
+use crate::reduction::manifold::Bent;
 
 /// True if anything may set the body spinning.
 pub(crate) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
@@ -91,37 +92,41 @@ fn bears_weight(scene: &Scene, mass: f64) -> bool {
 }
 
 /// How many modes are large where the scene asks for large deflection and does not say of which.
-const DEFAULT_LARGE: usize = 4;
+const DEFAULT_LARGE: usize = 1;
+/// Modes up to so many times the lowest frequency follow the large ones.
+const FOLLOWING: f64 = 25.0;
 
-/// Which of the modes that are kept are large, numbered from 0: those that the scene names, or what is advised. The paper's
-/// formulation has none, and nothing is advised for a body that is not to stiffen: the manifold stiffens its modes. Nor for one
-/// that is driven, whose expected amplitudes are bounds of hundreds of its length.
-pub(crate) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<usize> {
+/// Which of the modes that are kept bend the body far: those that the scene names, or what is advised. The paper's formulation
+/// has none, and nothing is advised for a body that is not to stiffen: the manifold stiffens its modes.
+pub(crate) fn bent_modes(scene: &Scene, advice: &Advice, keep: usize, natural: usize) -> Bent {
     let first = |count: usize| (0..keep.min(count)).collect();
-    match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
+    let large: Vec<usize> = match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
         (Choice::Off, _) => Vec::new(),
         _ if !scene.body.has_elements() => Vec::new(),
         (Choice::Auto, _) if !scene.time.method.abilities.large_deflection => Vec::new(),
         (_, Some(Large::Count(count))) => first(*count),
         (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),
-        (Choice::On, None) => first(DEFAULT_LARGE),
+        (Choice::On, None) => match advice.furthest_modes(keep) {
+            none if none.is_empty() => first(DEFAULT_LARGE),
+            furthest => furthest,
+        },
         (Choice::Auto, None) if scene.effects.choices[Effect::GeometricStiffening] == Choice::Off => Vec::new(),
-        (Choice::Auto, None) if is_driven(scene) || !scene.markers.is_empty() => Vec::new(),
-        (Choice::Auto, None) => advice.large_modes(keep).taken,
+        (Choice::Auto, None) if !scene.markers.is_empty() => Vec::new(),
+        (Choice::Auto, None) => advice.large_modes(keep),
+    };
+    if large.is_empty() {
+        return Bent::default();
     }
-}
-
-fn is_driven(scene: &Scene) -> bool {
-    matches!(
-        scene.constraint,
-        Some(Constraint::Hinge { motion: Some(_), .. } | Constraint::Slider { motion: Some(_), .. })
-    )
+    let omega = |k: usize| advice.modes[k].circular_frequency;
+    let count = advice.modes.len().min(keep).min(natural);
+    let follows = |k: &usize| !large.contains(k) && omega(*k) <= FOLLOWING * omega(0);
+    Bent { following: (0..count).filter(follows).take(scene.modes.following).collect(), large }
 }
 
 /// The effects with what large modes need: what follows them moves along the body, where turning acts on it.
-pub(crate) fn with_large_modes(scene: &Scene, mut effects: EffectMap<bool>, large: &[usize]) -> EffectMap<bool> {
+pub(crate) fn with_large_modes(scene: &Scene, mut effects: EffectMap<bool>, bent: &Bent) -> EffectMap<bool> {
     for effect in [Effect::Coriolis, Effect::DeformedInertia] {
-        effects[effect] |= !large.is_empty() && scene.effects.choices[effect] == Choice::Auto;
+        effects[effect] |= !bent.large.is_empty() && scene.effects.choices[effect] == Choice::Auto;
     }
     effects
 }

@@ -3,18 +3,16 @@
 use advice::{Advice, Backbone, Findings, advise};
 use dynamics::Effect;
 use faer::Mat;
-use fem_tet10::GeometricTerms;
 use modal::Modes;
 
 use crate::error::BuildError;
-use crate::reduction::backbones::Backbones;
 use crate::reduction::decide::Decision;
 use crate::reduction::manifold::LargeDeflection;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
 use crate::reduction::physics;
 use crate::reduction::survey::Survey;
-use crate::stress::Stress;
+use crate::stress::{Stress, beside};
 use crate::structure::kept::Basis;
 use crate::tie::mesh_marker::warps;
 use crate::tie::warp::Warp;
@@ -45,7 +43,7 @@ impl Reduction {
         let Survey { modes, modal, spin, statics, of_markers, backbones, advice } = survey;
         let of_markers = of_markers.filter(|_| decision.keep > 0);
         let warps = of_markers.as_ref().map_or_else(Vec::new, |of| warps(&model.markers, model.mesh, of.as_ref()));
-        let Backbones { of_modes: mut backbones, derivatives } = backbones;
+        let mut backbones = backbones;
         let tolerance = model.scene.effects.tolerance;
         backbones.truncate(decision.keep);
         let stiffens = decision.effects[Effect::GeometricStiffening];
@@ -58,31 +56,38 @@ impl Reduction {
             let Basis { modes, body } = model.structure.basis(&modes.truncated(decision.keep), &responses)?;
             let modal = ModalModel::new(model, body, &modes)?;
             let deflection = advise(&modal.case(model), tolerance)?.deflection;
-            let known = spin.map_or_else(Default::default, |spin| spin.of_first(decision.keep));
+            let keep = decision.keep;
+            let first = |spin: [Mat<f64>; 6]| spin.map(|k| k.get(..keep, ..keep).to_owned()).to_vec();
+            let known = spin.map_or_else(Vec::new, first);
             let spin = if stiffens { statics.stress_stiffness(model, &modes, &known)? } else { None };
             (modes, modal, spin, deflection)
         };
         let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
-        let stress = Stress::new(model, &statics, &modes, &modal)?;
-        let (modal, stress, large) = if !decision.large.is_empty() {
-            let large = LargeDeflection::new(model, &modes, &decision.large, &derivatives, &statics, spin.as_ref())?;
-            // The frequencies of these follow their amplitudes. What others draw in is none of them.
-            for k in large.manifold.large() {
+        let bent = decision.bent.clone().settled(model, &modes)?;
+        let (modal, stress, large) = if !bent.large.is_empty() {
+            let all = bent.all();
+            let stressing = statics.without_parts(model, &modes, &all)?;
+            let stress = Stress::new(model, &statics, &stressing, &modes, &modal, &all)?;
+            let of_spin = if stiffens { stressing.stress_stiffness(model, &modes, &[])? } else { None };
+            let of_spin = of_spin.map(|of_spin| of_spin.map(|k| beside(k, &all)));
+            let large = LargeDeflection::new(model, &modes, &bent, of_spin.as_ref())?;
+            // The frequencies of these follow their amplitudes.
+            for k in large.manifold.bent() {
                 if let Some(backbone) = backbones.get_mut(*k) {
                     *backbone = None;
                 }
             }
-            let stress = large.stressed(model, &modes, &statics, stress)?;
+            let stress = large.stressed(stress);
             let modal = modal.with_stress(model, Some(large.manifold.body()), large.modes(), &stress.of_loads)?;
             (modal, stress, Some(large))
-        } else if stress.any() {
-            (modal.with_stress(model, None, &modes, &stress.of_loads)?, stress, None)
         } else {
+            let stress = Stress::new(model, &statics, &statics, &modes, &modal, &[])?;
+            let modal = if stress.any() { modal.with_stress(model, None, &modes, &stress.of_loads)? } else { modal };
             (modal, stress, None)
         };
         let of_markers = match &of_markers {
             Some(responses) if physics::may_stress(model.scene) => {
-                model.structure.stress_stiffness(responses.as_ref(), &modes, GeometricTerms::InitialStress, &[])?
+                model.structure.stress_stiffness(responses.as_ref(), &modes, &[])?
             }
             _ => Vec::new(),
         };

@@ -1,6 +1,6 @@
 //! First stage: what is known of a body with all the modes that were searched for.
 
-use advice::{Advice, Case, advise, screen};
+use advice::{Advice, Backbone, Case, advise, screen};
 use dynamics::Effect;
 use faer::Mat;
 use modal::Modes;
@@ -8,11 +8,10 @@ use scene::Choice;
 
 use crate::error::BuildError;
 use crate::progress::BuildProgress;
-use crate::reduction::backbones::{Backbones, backbones};
+use crate::reduction::backbones::backbones;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
 use crate::reduction::physics;
-use crate::stress::spin::SpinStress;
 use crate::structure::StaticForces;
 use crate::structure::statics::{Asked, Statics};
 use crate::tie::mesh_marker::unit_forces;
@@ -23,11 +22,12 @@ pub(crate) struct Survey {
     /// With the stress stiffness of the spin where it may matter.
     pub modal: ModalModel,
     /// The stress stiffness of the spin.
-    pub spin: Option<SpinStress>,
+    pub spin: Option<[Mat<f64>; 6]>,
     pub statics: Statics,
     /// Static responses to unit forces and moments on the markers (3n×k).
     pub of_markers: Option<Mat<f64>>,
-    pub backbones: Backbones,
+    /// The backbone of each natural mode that linear strain may get wrong by the bounds of the advice.
+    pub backbones: Vec<Option<Backbone>>,
     /// On all of the modes.
     pub advice: Advice,
 }
@@ -55,7 +55,7 @@ impl Survey {
         }
         let statics = Statics::new(model, &modes, &modal.body.origin, asked)?;
         let of_markers = if has_markers { Some(to_markers(model, &modes, &modal)?) } else { None };
-        let spin = if stiffens { statics.stress_stiffness(model, &modes, &Default::default())? } else { None };
+        let spin = if stiffens { statics.stress_stiffness(model, &modes, &[])? } else { None };
         let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
 
         let case = Case {
@@ -65,8 +65,8 @@ impl Survey {
         };
         let first = advise(&case, tolerance)?;
         let backbones = backbones(model, &modes, &first)?;
-        let advice = if backbones.of_modes.iter().any(Option::is_some) {
-            advise(&Case { backbones: &backbones.of_modes, ..case }, tolerance)?
+        let advice = if backbones.iter().any(Option::is_some) {
+            advise(&Case { backbones: &backbones, ..case }, tolerance)?
         } else {
             first
         };

@@ -1,26 +1,27 @@
 //! The stress of a body in its modal coordinates.
 //!
 //! ```text
-//! σ = Σ_a ξ_a σ(ψ_a) + Σ_jk q_j q_k C:½ε₂(φ_j, φ_k)        j, k of the large modes
+//! σ = Σ_a ξ_a σ(ψ_a) + Σ_α q^α Σ_{β+γ=α} C:½ε₂(u_β, u_γ)        α: products of large modes and of those that follow
 //! ```
 //!
 //! Without large modes ξ is q, and the second sum is not there. With them the strain of the displacement alone is wrong:
 //! what draws a bent body in would count as compression, which the rotations of its parts balance. So the sum is the second
-//! Piola–Kirchhoff stress, complete to second order in the large modes; as long as strains are small, it is the true stress
+//! Piola–Kirchhoff stress, complete to third order in the large modes; as long as strains are small, it is the true stress
 //! in axes that turn with the material.
 
 use dynamics::{Manifold, Observation};
 use faer::Mat;
 use fem_tet10::{StressSites, von_mises};
-use modal::{Modes, SecondOrderShapes};
+use modal::Modes;
 use nalgebra::Vector3;
 use scene::Output;
 
 use crate::error::{BuildError, refuse};
 use crate::reduction::mesh_model::MeshModel;
 use crate::stress::left_out::LeftOut;
+use crate::stress::products::ProductStrains;
 use crate::stress::site::{SiteStress, combined};
-use crate::structure::{Structure, shapes_of};
+use crate::structure::Structure;
 
 /// The stress of a body in its coordinates ([`BodyStress::coordinates`]), force per area, body axes, in the order of
 /// [`fem_tet10::COMPONENTS`]: Eq. (S2) of `docs/method/stress.md`.
@@ -131,15 +132,13 @@ impl BodyStress {
     }
 
     /// The coordinates of the stress: those of the modes and of the shapes that follow them
-    /// ([`Model::coordinates`](crate::Model::coordinates)), then the products of the large modes.
+    /// ([`Model::coordinates`](crate::Model::coordinates)), then the products of the modes that bend the body.
     pub fn coordinates(&self, modal_displacement: &[f64]) -> Vec<f64> {
         let q = modal_displacement;
         let Some(manifold) = &self.manifold else { return q.to_vec() };
         let mut coordinates = vec![0.0; manifold.body().flexible()];
         manifold.coordinates(q, &mut coordinates);
-        let large = manifold.large();
-        let product = |[i, j]: [usize; 2]| q[large[i]] * q[large[j]];
-        coordinates.extend(SecondOrderShapes::pairs(large.len()).into_iter().map(product));
+        coordinates.extend(manifold.products().iter().map(|product| product.iter().map(|k| q[*k]).product::<f64>()));
         coordinates
     }
 }
@@ -158,13 +157,10 @@ fn of_coordinates(
     let Some((manifold, extended)) = large else {
         return structure.nodal_stress(modes.shapes.as_ref(), modes.shapes.get(.., ..0), &[]);
     };
-    let large = manifold.large();
-    let pairs = SecondOrderShapes::pairs(large.len());
-    let mut stress = structure.nodal_stress(extended.shapes.as_ref(), shapes_of(modes, large).as_ref(), &pairs)?;
-    // A product of two modes stands for both orders of its pair.
-    let first = extended.shapes.ncols();
-    for (j, _) in pairs.iter().enumerate().filter(|(_, [j, k])| j != k) {
-        stress.col_mut(first + j).iter_mut().for_each(|stress| *stress *= 2.0);
-    }
-    Ok(stress)
+    let strains = ProductStrains::new(manifold, extended.shapes.as_ref());
+    let found = structure.nodal_stress(extended.shapes.as_ref(), strains.fields.as_ref(), &strains.pairs)?;
+    let shapes = extended.shapes.ncols();
+    let of_products = strains.stress(found.get(.., shapes..));
+    let entry = |i: usize, j: usize| if j < shapes { found[(i, j)] } else { of_products[(i, j - shapes)] };
+    Ok(Mat::from_fn(found.nrows(), shapes + of_products.ncols(), entry))
 }

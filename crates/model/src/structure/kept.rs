@@ -1,7 +1,7 @@
 //! Modes, shapes and the reduced body as they are kept in files.
 
 use faer::Mat;
-use modal::{Constants, ModalError, Modes, ReducedBody, RigidModes, RigidMotion, SecondOrderShapes, SolveStats};
+use modal::{Constants, LargeShapes, ModalError, Modes, Products, ReducedBody, RigidModes, RigidMotion, SolveStats};
 use nalgebra::{Matrix3, Vector3};
 use sealed::SealedError;
 
@@ -199,43 +199,37 @@ impl Keep for OwnSecondOrder {
     }
 }
 
-/// The shapes of second order of large modes, and the body in the extended shapes.
+/// The shapes of large modes and of those that follow them, the body in the extended shapes, and the strain energies of
+/// [`Products::of_energy`].
 #[derive(Debug)]
 pub(crate) struct Extended {
-    pub shapes: SecondOrderShapes,
+    pub shapes: LargeShapes,
     pub body: ReducedBody,
-    /// M φ of each large mode (3n × …).
-    pub momenta: Mat<f64>,
+    pub energies: Vec<f64>,
 }
 
-/// By the modes and the large ones among them.
+/// By the modes, and the large and the following ones among them.
 impl Keep for Extended {
-    type Known<'k> = (&'k Modes, &'k [usize]);
+    type Known<'k> = (&'k Modes, &'k [usize], &'k [usize]);
 
     fn write(&self, to: &mut Arrays) {
-        let SecondOrderShapes { modes, dynamic, large: _, slopes, cubic, relief } = &self.shapes;
+        let LargeShapes { modes, dynamic, coefficients, .. } = &self.shapes;
         write_added(modes, *dynamic, to);
-        to.matrix("slopes", slopes.as_ref());
-        to.matrix("cubic", cubic.as_ref());
-        to.matrix("relief", relief.as_ref());
-        to.matrix("momenta", self.momenta.as_ref());
+        to.matrix("coefficients", coefficients.as_ref());
+        to.list("energies", &self.energies);
         self.body.write(to);
     }
 
-    fn read(from: &Kept<'_>, (modes, large): Self::Known<'_>) -> Result<Self, SealedError> {
-        let (rows, dynamic) = (modes.shapes.nrows(), modes.shapes.ncols());
-        let pairs = SecondOrderShapes::pairs(large.len()).len();
+    fn read(from: &Kept<'_>, (modes, large, following): Self::Known<'_>) -> Result<Self, SealedError> {
+        let dynamic = modes.shapes.ncols();
+        let products = Products { large: large.len(), following: following.len() };
         let modes = read_added(from, modes, dynamic)?;
         let body = ReducedBody::read(from, &modes)?;
-        let shapes = SecondOrderShapes {
-            slopes: from.matrix("slopes", modes.shapes.ncols(), Some(pairs))?,
-            cubic: from.matrix("cubic", large.len(), Some(pairs))?,
-            relief: from.matrix("relief", pairs, Some(pairs))?,
-            modes,
-            dynamic,
-            large: large.to_vec(),
-        };
-        Ok(Self { shapes, body, momenta: from.matrix("momenta", rows, Some(large.len()))? })
+        let coefficients = from.matrix("coefficients", modes.shapes.ncols(), Some(products.of_displacement().len()))?;
+        let energies = from.list("energies", Some(products.of_energy().len()))?;
+        let (large, following) = (large.to_vec(), following.to_vec());
+        let shapes = LargeShapes { modes, dynamic, large, following, coefficients };
+        Ok(Self { shapes, body, energies })
     }
 }
 

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use advice::StaticCompliance;
 use faer::{Col, Mat, MatRef, Scale};
-use fem_tet10::GeometricTerms;
 use modal::Modes;
 use nalgebra::Vector3;
 
@@ -13,7 +12,6 @@ use crate::load::mesh_load::MeshLoad;
 use crate::load::turning;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::physics;
-use crate::stress::spin::SpinStress;
 use crate::structure::StaticForces;
 use crate::structure::kept::StaticResponses;
 
@@ -117,18 +115,37 @@ impl Statics {
     }
 
     /// K_ij of each pair of spins in the modes; none where the responses to the spin are not known. `known` are those in the
-    /// first of the modes, by all terms and by the initial stress.
+    /// first of the modes.
     pub fn stress_stiffness(
         &self,
         model: &MeshModel<'_, '_>,
         modes: &Modes,
-        known: &[Vec<Mat<f64>>; 2],
-    ) -> Result<Option<SpinStress>, BuildError> {
+        known: &[Mat<f64>],
+    ) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
-        let by = |terms, known| model.structure.stress_stiffness(of_spin.responses.as_ref(), modes, terms, known);
-        let all = by(GeometricTerms::All, &known[0])?.try_into().ok();
-        let initial = by(GeometricTerms::InitialStress, &known[1])?.try_into().ok();
-        Ok(all.zip(initial).map(|(all, initial)| SpinStress::new([all, initial], &modes.eigenvalues)))
+        Ok(model.structure.stress_stiffness(of_spin.responses.as_ref(), modes, known)?.try_into().ok())
+    }
+
+    /// The responses without their parts along some modes: what stresses the body whatever these do.
+    pub fn without_parts(&self, model: &MeshModel<'_, '_>, modes: &Modes, list: &[usize]) -> Result<Self, BuildError> {
+        let freed = |fields: &Mat<f64>| model.structure.without_parts(modes, list, fields.as_ref());
+        Ok(Self {
+            of_loads: match &self.of_loads {
+                Some(of_loads) => Some(OfLoads {
+                    responses: freed(&of_loads.responses)?,
+                    compliances: of_loads.compliances.clone(),
+                    columns: of_loads.columns.clone(),
+                }),
+                None => None,
+            },
+            of_spin: match &self.of_spin {
+                Some(of_spin) => {
+                    Some(OfSpin { responses: freed(&of_spin.responses)?, remainders: of_spin.remainders.clone() })
+                }
+                None => None,
+            },
+            of_drive: self.of_drive.as_ref().map(freed).transpose()?,
+        })
     }
 
     /// The response to all dead loads together that stay as they are, seen from the body (3n × 1), over the amplitude's size of

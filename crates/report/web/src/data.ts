@@ -17,7 +17,7 @@ export interface BodyData {
     surface: { vertices: Numbers; triangles: Numbers; edges: Numbers } | null;
     shapes: Shape[];
     displacement_peak: number;
-    stress: { unit: string; peak: number; shapes: Numbers[]; products: [number, number][] } | null;
+    stress: { unit: string; peak: number; shapes: Numbers[]; products: number[][] } | null;
     motion: { origins: Numbers; attitudes: Numbers; coordinates: Numbers };
     effects: [string, string, string, string][];
 }

@@ -23,7 +23,7 @@ const NODES: &str = "model/mesh/nodes";
 const POSITIONS: &str = "model/mesh/positions";
 const FACES: &str = "model/mesh/surface_triangles";
 const SHAPES: &str = "model/shapes";
-const PAIRS: &str = "model/large_deflection/pairs";
+const FACTORS: &str = "model/large_deflection/factors";
 const PRODUCTS: &str = "model/large_deflection/products";
 const STRESS_NODES: &str = "model/stress/nodes";
 const STRESS_SHAPES: &str = "model/stress/shapes";
@@ -40,12 +40,15 @@ pub(crate) const DATASETS: [ShapeDataset; 9] = [
         "body",
         "displacement of each node in a unit of each coordinate: flexible modes, static shapes, shapes that follow large modes",
     ),
-    whole(PAIRS, "coordinates j <= k of the large modes, from 0"),
+    whole(
+        FACTORS,
+        "coordinates of each product of large modes, from 0; one more than there are stands for a factor of 1",
+    ),
     numbers(
         PRODUCTS,
         "1/(length mass^(1/2))",
         "none",
-        "amount that a unit of q_j q_k of each pair adds to each coordinate of shapes",
+        "amount that a unit of each product adds to each coordinate of shapes; of three factors the unit is squared",
     ),
     whole(STRESS_NODES, "node of each stress, by its place in nodes; one between materials is there for each"),
     numbers(
@@ -58,7 +61,7 @@ pub(crate) const DATASETS: [ShapeDataset; 9] = [
         STRESS_PRODUCTS,
         "1/(length^3 time^2)",
         "body",
-        "stress in a unit of q_j q_k of each of large_deflection/pairs: xx, yy, zz, xy, yz, zx",
+        "stress in a unit of each of the products of large_deflection/factors: xx, yy, zz, xy, yz, zx",
     ),
 ];
 
@@ -122,8 +125,8 @@ pub(crate) trait Datasets {
 impl Shapes {
     /// The datasets: their kinds, their shapes and their numbers.
     pub(crate) fn stored(&self) -> Vec<(&'static str, Vec<usize>, Lists<'_>)> {
-        let Self { nodes, positions, faces, displacements, pairs, products, stress } = self;
-        let (n, c, p) = (nodes.len(), displacements.len(), pairs.len());
+        let Self { nodes, positions, faces, displacements, factors, products, stress } = self;
+        let (n, c, p) = (nodes.len(), displacements.len(), factors.len());
         let mut stored = vec![
             (NODES, vec![n], Lists::Whole(nodes)),
             (POSITIONS, vec![n, 3], Lists::Numbers(vec![positions.as_flattened()])),
@@ -131,7 +134,7 @@ impl Shapes {
             (SHAPES, vec![c, n, 3], Lists::Numbers(flat(displacements))),
         ];
         if p > 0 {
-            stored.push((PAIRS, vec![p, 2], Lists::Whole(pairs.as_flattened())));
+            stored.push((FACTORS, vec![p, 3], Lists::Whole(factors.as_flattened())));
             stored.push((PRODUCTS, vec![p, c], Lists::Numbers(products.iter().map(Vec::as_slice).collect())));
         }
         if let Some(StressShapes { nodes, shapes }) = stress {
@@ -150,13 +153,13 @@ impl Shapes {
     pub(crate) fn read(file: &impl Datasets) -> Result<Option<Self>, SealedError> {
         let last = |path: &str, last: &[usize]| file.shape(path).is_some_and(|shape| shape.ends_with(last));
         let lists = |path: &str, rank: usize| file.shape(path).is_some_and(|shape| shape.len() == rank);
-        let has_large = file.shape(PAIRS).is_some();
+        let has_large = file.shape(FACTORS).is_some();
         let has_stress = file.shape(STRESS_NODES).is_some();
         let fits = lists(NODES, 1)
             && (lists(POSITIONS, 2) && last(POSITIONS, &[3]))
             && (lists(FACES, 2) && last(FACES, &[6]))
             && (lists(SHAPES, 3) && last(SHAPES, &[3]))
-            && (!has_large || (lists(PAIRS, 2) && last(PAIRS, &[2]) && lists(PRODUCTS, 2)))
+            && (!has_large || (lists(FACTORS, 2) && last(FACTORS, &[3]) && lists(PRODUCTS, 2)))
             && (!has_stress || (lists(STRESS_NODES, 1) && lists(STRESS_SHAPES, 3) && last(STRESS_SHAPES, &[6])))
             && (!(has_stress && has_large) || (lists(STRESS_PRODUCTS, 3) && last(STRESS_PRODUCTS, &[6])));
         if !fits {
@@ -170,7 +173,7 @@ impl Shapes {
             ..Self::default()
         };
         if has_large {
-            shapes.pairs = file.whole(PAIRS)?.as_chunks().0.to_vec();
+            shapes.factors = file.whole(FACTORS)?.as_chunks().0.to_vec();
             shapes.products = file.numbers(PRODUCTS)?;
         }
         if has_stress {

@@ -66,7 +66,7 @@ pub fn shapes(modes: usize) -> Shapes {
         positions: vec![[0.0; 3], [1.0, 0.5, 0.0], [0.0, 2.0, -3.0]],
         faces: vec![[0, 1, 2, 2, 1, 0]],
         displacements: (0..=modes).map(|k| (0..3).map(|i| [value(i, k), -1.0, 0.5]).collect()).collect(),
-        pairs: vec![[0, 0]],
+        factors: vec![[0, 0, modes as u32]],
         products: vec![(0..=modes).map(|k| value(5, k)).collect()],
         stress: Some(StressShapes {
             nodes: vec![0, 1, 1, 2],

@@ -15,14 +15,16 @@ pub struct Modes {
     pub static_correction: Choice,
     /// Which modes may bend the body far.
     pub large: Option<Large>,
+    /// Most modes that follow the large ones.
+    pub following: usize,
 }
 
 /// Which modes may bend the body far.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Large {
-    /// The number of first modes, 1 to 8.
+    /// The number of first modes, 1 to 4.
     Count(usize),
-    /// These, numbered from 1, ascending, 1 to 8 of them.
+    /// These, numbered from 1, ascending, 1 to 4 of them.
     List(Vec<usize>),
 }
 

@@ -1,6 +1,6 @@
 //! The rules on `[modes]`.
 
-use dynamics::MAX_LARGE;
+use dynamics::{MAX_FOLLOWING, MAX_LARGE};
 
 use super::Check;
 use crate::body::effects::Choice;
@@ -11,6 +11,8 @@ use crate::section::{CountOrAuto, CountOrList, ModesSection, NumberOrList};
 
 /// The largest number of modes with `flexible = "auto"`, where the scene gives none.
 const DEFAULT_MOST: usize = 40;
+/// The most modes that follow large ones where the scene says nothing.
+const DEFAULT_FOLLOWING: usize = 3;
 
 impl Check<'_> {
     pub fn modes(&self, section: Option<ModesSection>, body: &Body) -> Result<Modes, SceneError> {
@@ -22,6 +24,7 @@ impl Check<'_> {
                     damping: Damping::Uniform(0.0),
                     static_correction: Choice::Auto,
                     large: None,
+                    following: DEFAULT_FOLLOWING,
                 }),
                 false => Err(self.missing("", "modes")),
             };
@@ -44,7 +47,14 @@ impl Check<'_> {
         }
         let damping = self.damping(section.damping_ratio, section.damping_table, section.rayleigh, flexible)?;
         let large = self.large(section.large, flexible.most())?;
-        Ok(Modes { flexible, damping, static_correction, large })
+        let following = section.following.unwrap_or(DEFAULT_FOLLOWING);
+        self.require(
+            following <= MAX_FOLLOWING,
+            "modes.following",
+            &format!("a whole number from 0 to {MAX_FOLLOWING}"),
+            "give the most modes that follow the large ones; three are enough for most bodies",
+        )?;
+        Ok(Modes { flexible, damping, static_correction, large, following })
     }
 
     fn large(&self, large: Option<CountOrList>, flexible: usize) -> Result<Option<Large>, SceneError> {

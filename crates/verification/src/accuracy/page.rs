@@ -46,7 +46,10 @@ pub fn accuracy_page(
     for scene in scenes {
         let folder = lists.join(name_of(&scene.path));
         let settings = CostSettings::with_patience(patience);
-        reports.push((scene, price_list(&System::from(Scene::clone(scene)), &Builder::default(), &folder, settings, |_| ())?));
+        reports.push((
+            scene,
+            price_list(&System::from(Scene::clone(scene)), &Builder::default(), &folder, settings, |_| ())?,
+        ));
     }
     let spin = match fastest(&reports) {
         Some((scene, report)) if initial_spin(report) > 0.0 => spin_rates(scene)?,

@@ -59,7 +59,7 @@ impl ConservativeBody {
         (Lists { groups: &e.products, width: self.lists(), first }, &mut e.change)
     }
 
-    /// On a manifold, adds Dᵀ of the forces on z, Ḋᵀμ and −∂V_n/∂q to p'.
+    /// On a manifold, adds Dᵀ of the forces on z, Ḋᵀμ and the forces of the strain energy beyond ½ qᵀΛq to p'.
     #[inline(always)]
     pub(in crate::conservative) fn project_forces(&self, speed: f64, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else { return };
@@ -68,7 +68,7 @@ impl ConservativeBody {
         self.find_momenta_of_products(speed, e);
         let [_, momentum] = e.rates.modes_mut();
         manifold.add_projected_rate(&e.place, &e.momenta_of_products, momentum);
-        manifold.subtract_force(&e.place, &e.coordinates, momentum);
+        manifold.subtract_force(&e.place, momentum);
     }
 
     /// μ of the products.

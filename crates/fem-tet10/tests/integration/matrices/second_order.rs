@@ -2,8 +2,8 @@
 
 use faer::Mat;
 use fem_tet10::{
-    GeometricTerms, Material, Materials, Mesh, assemble, geometric_stiffness_product, quadrature,
-    reduced_geometric_stiffness, second_order_energies, second_order_forces, shape_gradients,
+    Material, Materials, Mesh, assemble, geometric_stiffness_product, quadrature, reduced_geometric_stiffness,
+    second_order_energies, second_order_forces, shape_gradients,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -93,14 +93,7 @@ fn the_product_with_the_geometric_stiffness_is_the_reduced_one() {
         let u = columns(&[smooth(&mesh)]);
         let shapes =
             columns(&[field(&mesh, |[x, y, z]| [y * z, x * x, x * y]), field(&mesh, |[x, y, z]| [z, x * y, y * y])]);
-        let reduced = &reduced_geometric_stiffness(
-            &mesh,
-            &aluminium(),
-            u.as_ref(),
-            shapes.as_ref(),
-            GeometricTerms::InitialStress,
-        )
-        .unwrap()[0];
+        let reduced = &reduced_geometric_stiffness(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap()[0];
         let product = geometric_stiffness_product(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap();
         let found = shapes.transpose() * &product;
         for i in 0..2 {
@@ -166,7 +159,7 @@ fn each_element_has_its_own_material() {
         let by_group = mesh.groups().iter().cloned().zip(factors.map(scaled)).collect();
         let materials = Materials::ByGroup(by_group);
         let u = fields.subcols(0, 1);
-        let k = reduced_geometric_stiffness(&mesh, &materials, u, fields.as_ref(), GeometricTerms::All).unwrap();
+        let k = reduced_geometric_stiffness(&mesh, &materials, u, fields.as_ref()).unwrap();
         let forces = second_order_forces(&mesh, &materials, fields.as_ref(), &[[0, 1]]).unwrap();
         let energies = second_order_energies(&mesh, &materials, fields.as_ref(), &[[0, 0, 1, 1]]).unwrap();
         vec![k[0][(0, 1)], (fields.col(0).transpose() * forces.col(0)), energies[0]]

@@ -158,18 +158,22 @@ fn described(shapes: &Shapes, body: &BodyProperties) -> Vec<Shape> {
     shapes.displacements.iter().enumerate().map(shape).collect()
 }
 
-/// The stress of each shape, and of each product of two large modes; at a node between materials, of the one whose von Mises
+/// The stress of each shape, and of each product of large modes and of those that follow; at a node between materials, of the one whose von Mises
 /// stress is largest in all rows.
 fn stress(shapes: &Shapes, of: BodyResults<'_>, results: &Results) -> Option<StressField> {
     let stress = shapes.stress.as_ref().filter(|_| !shapes.displacements.is_empty())?;
     let modal = of.table("modal/displacement")?;
     let rows: Vec<_> = (0..results.rows()).filter_map(|row| Some(shapes.stress_coordinates(modal.row(row)?))).collect();
     let sites = most_stressed(stress, &rows);
+    let count = modal.row(0).map_or(0, <[f64]>::len);
+    let is_coordinate = |k: &usize| *k < count;
+    let products =
+        shapes.factors.iter().map(|factors| factors.iter().map(|k| *k as usize).filter(is_coordinate).collect());
     let results::Units { length, mass, time } = &results.metadata.units;
     Some(StressField {
         unit: UnitLabels { length, mass, time }.stress(),
         shapes: stress.shapes.iter().map(|shape| sites.iter().map(|i| shape[*i].map(|s| s as f32)).collect()).collect(),
-        products: shapes.pairs.iter().map(|pair| pair.map(|k| k as usize)).collect(),
+        products: products.collect(),
     })
 }
 

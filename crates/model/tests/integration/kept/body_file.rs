@@ -121,11 +121,14 @@ fn what_is_bent_far_and_its_stress_follow_from_what_others_read() {
     let (meshed, stress) = (model.meshed.as_ref().unwrap(), model.stress.as_ref().unwrap());
     let file = SealedFile::open(&path, Format::BODY).unwrap();
     let read = |name: &str| file.read::<f64>(name).unwrap();
-    let pairs = file.read::<u32>("large_deflection/pairs").unwrap();
-    assert_eq!((pairs.shape, &pairs.values[..]), (vec![3, 2], &[0, 0, 0, 1, 1, 1][..]));
+    let factors = file.read::<u32>("large_deflection/factors").unwrap();
+    let one = model.body.flexible() as u32;
+    // Two large modes and three that follow: 15 products of two, and four of three.
+    assert_eq!((factors.shape[..].to_vec(), &factors.values[..6]), (vec![19, 3], &[0, 0, one, 0, 1, one][..]));
     let q: Vec<f64> = (0..model.body.flexible()).map(|k| 1e-3 * (1.0 + k as f64).sin()).collect();
+    let factor = |k: &u32| if *k == one { 1.0 } else { q[*k as usize] };
     let products: Vec<f64> =
-        pairs.values.as_chunks::<2>().0.iter().map(|[j, k]| q[*j as usize] * q[*k as usize]).collect();
+        factors.values.as_chunks::<3>().0.iter().map(|factors| factors.iter().map(factor).product()).collect();
     // The coordinates of all shapes.
     let of_products = read("large_deflection/products");
     let all = of_products.shape[1];
@@ -155,7 +158,7 @@ fn what_is_bent_far_and_its_stress_follow_from_what_others_read() {
     let nodes = file.read::<u32>("stress/nodes").unwrap().values;
     assert_eq!(nodes.len(), meshed.mesh.positions().len());
     let (linear, second) = (read("stress/shapes"), read("stress/products"));
-    assert_eq!((&linear.shape[..], &second.shape[..]), (&[all, nodes.len(), 6][..], &[3, nodes.len(), 6][..]));
+    assert_eq!((&linear.shape[..], &second.shape[..]), (&[all, nodes.len(), 6][..], &[19, nodes.len(), 6][..]));
     let coordinates = stress.coordinates(&q);
     let mut of_products = 0.0_f64;
     for (site, node) in nodes.iter().enumerate() {

@@ -127,7 +127,7 @@ export class Body {
     readonly hasFacets: boolean;
     private readonly factors: number[];
     private readonly stressFactors: number[] = [];
-    private readonly products: [number, number][] = [];
+    private readonly products: number[][] = [];
     private readonly count: number;
 
     constructor(data: BodyData) {
@@ -241,7 +241,7 @@ export class Body {
             factors.forEach((factor, k) => vectors[k >> 2].setComponent(k & 3, coordinate(k) * factor));
         };
         set("weights", this.factors, (k) => q[k]);
-        const product = ([j, k]: [number, number]) => (small ? 0 : q[j] * q[k]);
+        const product = (factors: number[]) => (small ? 0 : factors.reduce((value, k) => value * q[k], 1));
         set("stressWeights", this.stressFactors, (k) => (k < this.count ? q[k] : product(this.products[k - this.count])));
         this.uniforms.exaggeration.value = exaggeration;
     }

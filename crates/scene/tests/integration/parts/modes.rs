@@ -58,7 +58,7 @@ fn large_modes() {
     assert_eq!(large("large = [1, 6]"), Some(Large::List(vec![1, 6])));
     for (written, found) in [("0", "0"), ("7", "7"), ("[]", "[]"), ("[2, 1]", "[2, 1]"), ("[0]", "[0]"), ("[7]", "[7]")]
     {
-        let words = format!("found {found}, expected a number from 1 to 6, or a list");
+        let words = format!("found {found}, expected a number from 1 to 4, or a list");
         refused(
             &format!("flexible = 6\nlarge = {written}"),
             &format!("{written}\n\n[frame]"),

@@ -1,0 +1,134 @@
+//! The rotation of a patch of nodes that large modes turn far, and the work of a moment on it.
+//!
+//! ```text
+//! G(ξ) = Σ (d + u) dᵀ = G₀ + Σ_k Q_k ξ_k      G = R P,  R a rotation, P symmetric
+//! δφ = R (tr P − P)⁻¹ axial(Rᵀ δG)            m·δφ = (R [n×]) : δG,   n = (tr P − P)⁻¹ Rᵀ m
+//! ```
+//!
+//! d are the places of the nodes from their mean, u their displacements. R is the rotation of the patch that fits them best;
+//! its small change is that of `fem_tet10::MeanRotation` where u is small. axial(A) is the vector of A − Aᵀ.
+
+use keys::{Key, Keyed};
+use nalgebra::Matrix3;
+use nalgebra::Vector3;
+
+/// Iterations to the polar decomposition: each squares the error, from a turn of less than half a right angle in four.
+const MOST: usize = 30;
+const ROUNDING: f64 = 1e-14;
+
+/// A patch of nodes with what the modes do to it.
+#[derive(Debug, Clone)]
+pub struct PatchTurn {
+    /// G₀ = Σ d dᵀ, squared length.
+    rest: Matrix3<f64>,
+    /// Q_k = Σ ψ_k dᵀ of each flexible mode.
+    modes: Vec<Matrix3<f64>>,
+}
+
+impl PatchTurn {
+    /// By Σ d dᵀ, and Σ ψ dᵀ of each flexible mode; `None` where the nodes lie on a line.
+    pub fn new(rest: Matrix3<f64>, modes: Vec<Matrix3<f64>>) -> Option<Self> {
+        let turn = Self { rest, modes };
+        turn.polar(&rest)?;
+        Some(turn)
+    }
+
+    /// Number of flexible modes.
+    pub(crate) fn flexible(&self) -> usize {
+        self.modes.len()
+    }
+
+    /// The first of the modes only.
+    pub(crate) fn truncated(&self, modes: usize) -> Self {
+        Self { rest: self.rest, modes: self.modes[..modes.min(self.modes.len())].to_vec() }
+    }
+
+    /// Forces of a moment on the flexible modes where these have the displacements ξ; `None` of a patch that is torn flat.
+    pub(crate) fn forces(&self, moment: &Vector3<f64>, xi: &[f64]) -> Option<impl Iterator<Item = f64> + '_> {
+        let g = self.modes.iter().zip(xi).fold(self.rest, |sum, (q, x)| sum + q * *x);
+        let r = self.polar(&g)?;
+        let p = r.transpose() * g;
+        let n = (Matrix3::from_diagonal_element(p.trace()) - p).try_inverse()? * r.tr_mul(moment);
+        let turned = r * n.cross_matrix();
+        Some(self.modes.iter().map(move |q| turned.dot(q)))
+    }
+
+    /// R of G, by the iteration of Newton: the mean of a matrix and its transposed inverse.
+    fn polar(&self, g: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+        // A patch may be flat: out of its plane it has the size that makes it a rotation.
+        let normal = self.normal();
+        let mut r = match normal {
+            Some(normal) => {
+                let [a, b] = across(&normal);
+                let (a, b) = (g * a, g * b);
+                let out = a.cross(&b).try_normalize(0.0)? * g.norm();
+                g + out * normal.transpose()
+            }
+            None => *g,
+        } / g.norm();
+        for _ in 0..MOST {
+            let next = (r + r.try_inverse()?.transpose()) * 0.5;
+            let change = (next - r).norm();
+            r = next;
+            if change < ROUNDING {
+                break;
+            }
+        }
+        (r.determinant() > 0.0).then_some(r)
+    }
+
+    /// The normal of a flat patch.
+    fn normal(&self) -> Option<Vector3<f64>> {
+        let eigen = self.rest.symmetric_eigen();
+        let least = eigen.eigenvalues.imin();
+        (eigen.eigenvalues[least] < FLAT * eigen.eigenvalues.max()).then(|| eigen.eigenvectors.column(least).into())
+    }
+}
+
+/// A patch whose nodes lie this much closer to a plane than to its middle is flat.
+const FLAT: f64 = 1e-9;
+
+/// Two unit vectors across a third one, right-handed before it.
+fn across(normal: &Vector3<f64>) -> [Vector3<f64>; 2] {
+    let axis = Vector3::ith(normal.iamin(), 1.0);
+    let a = axis.cross(normal).normalize();
+    [a, normal.cross(&a)]
+}
+
+impl Keyed for PatchTurn {
+    fn key(&self, key: Key) -> Key {
+        let key = key.of("patch turn", 1).with("rest", &self.rest).with("modes", &self.modes.len());
+        self.modes.iter().fold(key, |key, q| key.with("mode", q))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Closed form: of a rigid turn by φ about z, the forces on modes that turn it further are those of the moment about z, however far it
+    /// has turned; of a shape that stretches it, none.
+    #[test]
+    fn a_moment_works_on_the_angle_however_large_it_is() {
+        let nodes = [Vector3::new(1.0, 0.0, 0.0), Vector3::new(-1.0, 0.5, 0.0), Vector3::new(0.0, -0.5, 0.0)];
+        for lift in [0.0, 0.3] {
+            let nodes = [nodes[0] + Vector3::z() * lift, nodes[1] - Vector3::z() * lift, nodes[2]];
+            let sum = |of: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| -> Matrix3<f64> {
+                nodes.iter().map(|d| of(d) * d.transpose()).sum()
+            };
+            let rest = sum(&|d| *d);
+            // ξ₀ and ξ₁ are cos φ − 1 and sin φ of a turn about z.
+            let modes = vec![sum(&|d| Vector3::new(d.x, d.y, 0.0)), sum(&|d| Vector3::z().cross(d))];
+            let patch = PatchTurn::new(rest, modes).unwrap();
+            for phi in [0.0_f64, 0.4, 1.3, 2.0] {
+                let xi = [phi.cos() - 1.0, phi.sin()];
+                let forces: Vec<f64> = patch.forces(&Vector3::new(0.0, 0.0, 5.0), &xi).unwrap().collect();
+                let along = -phi.sin() * forces[0] + phi.cos() * forces[1];
+                let stretched = phi.cos() * forces[0] + phi.sin() * forces[1];
+                // Of nodes out of the plane, a stretch in it turns the best fit about other axes.
+                let is_still = lift > 0.0 || stretched.abs() < 1e-12;
+                assert!((along - 5.0).abs() < 1e-12 && is_still, "{phi}: {along} {stretched}");
+            }
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Shapes of large modes and of the modes that follow them: what bending draws in, twists and stretches.
+//!
+//! ```text
+//! u = Ψ q + Σ_α u_α q^α      α: products of two or three large modes, of a large and a following one, of two following ones
+//! K u_α = −g_α,  then freed of its parts along the large modes, those with a following factor along these, too
+//! Ψ_ext = [Ψ, H]      u_α = Ψ_ext a_α,  a_α = Ψ_extᵀ M u_α
+//! ```
+//!
+//! g_α are the forces of lower products (`fem_tet10::Expansion`), H M-orthonormal vectors of what the u_α have beside the modes
+//! Ψ. To free them is a choice of what the coordinates mean.
+
+use faer::{Mat, MatRef};
+
+use crate::error::ModalError;
+use crate::input::{check_finite_columns, check_rows};
+use crate::matrix::tall;
+use crate::memory_estimate::of_vectors;
+use crate::solve::{Modes, Solver};
+
+/// Smallest part of a static response beside the modes with which it is added: less is rounding.
+const DEPENDENT: f64 = 1e-6;
+/// Factors of following modes in a product, at most: the body is linear in these about the large ones.
+const MOST_FOLLOWING: usize = 2;
+
+/// The products of the coordinates of some large modes and of modes that follow them. The large ones are numbered first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Products {
+    /// Number of large modes.
+    pub large: usize,
+    /// Number of modes that follow.
+    pub following: usize,
+}
+
+impl Products {
+    /// Number of both.
+    pub fn coordinates(&self) -> usize {
+        self.large + self.following
+    }
+
+    /// Products of two, by their factors, ascending.
+    pub fn second(&self) -> Vec<Vec<usize>> {
+        self.with(2, MOST_FOLLOWING)
+    }
+
+    /// Products of three large modes.
+    pub fn third(&self) -> Vec<Vec<usize>> {
+        self.with(3, 0)
+    }
+
+    /// All products that have a displacement: those of two, then those of three.
+    pub fn of_displacement(&self) -> Vec<Vec<usize>> {
+        [self.second(), self.third()].concat()
+    }
+
+    /// The products in the strain energy beyond the linear one, to the fifth: of three all, since a load holds the modes that
+    /// follow to one side, too, and that changes their stiffness by a first order.
+    pub fn of_energy(&self) -> Vec<Vec<usize>> {
+        let factors = [(3, 3), (4, MOST_FOLLOWING), (5, MOST_FOLLOWING)];
+        factors.into_iter().flat_map(|(factors, following)| self.with(factors, following)).collect()
+    }
+
+    /// Products of so many factors, of which so many follow at most, in ascending order.
+    fn with(&self, factors: usize, following: usize) -> Vec<Vec<usize>> {
+        let mut products: Vec<Vec<usize>> = vec![Vec::new()];
+        for _ in 0..factors {
+            let longer = |product: Vec<usize>| {
+                let first = product.last().copied().unwrap_or(0);
+                let followers = product.iter().filter(|k| **k >= self.large).count();
+                let end = if followers < following { self.coordinates() } else { self.large };
+                (first..end).map(move |k| [&product[..], &[k]].concat())
+            };
+            products = products.into_iter().flat_map(longer).collect();
+        }
+        products
+    }
+
+    /// True if a product has a factor that follows.
+    pub fn follows(&self, product: &[usize]) -> bool {
+        product.iter().any(|k| *k >= self.large)
+    }
+}
+
+/// Large modes, modes that follow them, and the shapes of their products.
+#[derive(Debug, Clone)]
+pub struct LargeShapes {
+    /// The modes of the motion, then the vectors H; K-orthogonality is lost.
+    pub modes: Modes,
+    /// Number of shapes that are coordinates of the motion.
+    pub dynamic: usize,
+    /// The large modes, numbered from 0, ascending.
+    pub large: Vec<usize>,
+    /// The modes that follow, numbered from 0, ascending.
+    pub following: Vec<usize>,
+    /// a_α (extended shapes × [`Products::of_displacement`]).
+    pub coefficients: Mat<f64>,
+}
+
+impl LargeShapes {
+    /// The products of their coordinates.
+    pub fn products(&self) -> Products {
+        Products { large: self.large.len(), following: self.following.len() }
+    }
+}
+
+impl Solver<'_> {
+    /// Fields (N×k) without their parts along M-orthonormal `shapes` (N×s).
+    ///
+    /// # Errors
+    /// [`ModalError::Size`].
+    pub fn freed(&self, fields: MatRef<'_, f64>, shapes: MatRef<'_, f64>) -> Result<Mat<f64>, ModalError> {
+        check_rows("fields", fields.nrows(), shapes.nrows())?;
+        let parts = tall::inner(shapes, self.mass.product(fields).as_ref());
+        Ok(fields - shapes * parts)
+    }
+
+    /// The shapes of the `large` ones of `modes` and of those that follow them, by the `fields` (N×products) of
+    /// [`Products::of_displacement`], which have been freed.
+    ///
+    /// # Errors
+    /// [`ModalError::Length`], [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::LargeModes`],
+    /// [`ModalError::Memory`].
+    pub fn large_shapes(
+        &self,
+        modes: Modes,
+        large: &[usize],
+        following: &[usize],
+        fields: MatRef<'_, f64>,
+    ) -> Result<LargeShapes, ModalError> {
+        let (size, dynamic) = (modes.shapes.nrows(), modes.shapes.ncols());
+        let products = Products { large: large.len(), following: following.len() };
+        let of_displacement = products.of_displacement();
+        if fields.ncols() != of_displacement.len() {
+            let (expected, found) = (of_displacement.len(), fields.ncols());
+            return Err(ModalError::Length { what: "fields of products", expected, found });
+        }
+        check_rows("fields of products", fields.nrows(), size)?;
+        check_finite_columns("fields of products", fields)?;
+        let is_list = |list: &[usize]| list.is_sorted_by(|a, b| a < b) && list.last().is_none_or(|k| *k < dynamic);
+        if !is_list(large) || !is_list(following) || following.iter().any(|k| large.contains(k)) {
+            let found = [large, following].concat();
+            return Err(ModalError::LargeModes { found, count: dynamic });
+        }
+        memory::check("shapes of large modes", of_vectors(size, 3 * (dynamic + fields.ncols())))?;
+        let beside = self.beside(&modes, fields, DEPENDENT)?;
+        let shapes = tall::side_by_side(modes.shapes.as_ref(), beside.as_ref());
+        let momenta = self.mass.product(fields);
+        let mut coefficients = tall::inner(shapes.as_ref(), momenta.as_ref());
+        for (column, product) in of_displacement.iter().enumerate() {
+            let freed_of = large.iter().chain(following.iter().filter(|_| products.follows(product)));
+            freed_of.for_each(|k| coefficients[(*k, column)] = 0.0);
+        }
+        let stiff = self.stiffness.product(beside.as_ref());
+        let of_beside = (0..beside.ncols()).map(|k| beside.col(k).transpose() * stiff.col(k));
+        let mut modes = modes;
+        modes.eigenvalues.extend(of_beside);
+        modes.shapes = shapes;
+        Ok(LargeShapes { modes, dynamic, large: large.to_vec(), following: following.to_vec(), coefficients })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_are_those_of_the_theory() {
+        let products = Products { large: 2, following: 1 };
+        assert_eq!(products.second(), [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]]);
+        assert_eq!(products.third(), [[0, 0, 0], [0, 0, 1], [0, 1, 1], [1, 1, 1]]);
+        assert_eq!(products.follows(&[0, 2]), true);
+        // Of one large and three following modes, all fields take eleven solutions.
+        let products = Products { large: 1, following: 3 };
+        assert_eq!(products.of_displacement().len(), 11);
+        // q³, q² r, q r r and so on to the fifth.
+        assert_eq!(products.of_energy().len(), 10 + 3 * (1 + 3 + 6));
+    }
+}
