@@ -367,8 +367,8 @@ impl Manifold {
         // The slopes are zero along the bent modes, so that these rows of y stay out of the sums.
         for (i, (mode, slopes)) in bent.iter().zip(place.slopes.chunks_exact(*modes)).enumerate() {
             let mut rest = y[*mode] - dot(slopes, y);
-            for k in 0..i {
-                rest -= place.factor[entry(i, k)] * x[k];
+            for (k, x) in x.iter().enumerate().take(i) {
+                rest -= place.factor[entry(i, k)] * x;
             }
             x[i] = rest * place.factor[entry(i, i)];
         }
@@ -381,8 +381,8 @@ impl Manifold {
         let mut x = Bent::default();
         for i in (0..bent.len()).rev() {
             let mut rest = y[bent[i]];
-            for k in i + 1..bent.len() {
-                rest -= place.factor[entry(k, i)] * x[k];
+            for (k, x) in x.iter().enumerate().take(bent.len()).skip(i + 1) {
+                rest -= place.factor[entry(k, i)] * x;
             }
             x[i] = rest * place.factor[entry(i, i)];
         }

@@ -227,9 +227,12 @@ struct ForceTerms {
     own: Option<usize>,
 }
 
+/// The field of a product, if it has one of its own, and the pairs of fields that make it.
+type Makers = (Option<usize>, Vec<[usize; 2]>);
+
 impl Strains {
     fn new(fields: &[Vec<usize>], is_wanted: impl Fn(&Vec<usize>) -> bool) -> Self {
-        let mut found: BTreeMap<Vec<usize>, (Option<usize>, Vec<[usize; 2]>)> = BTreeMap::new();
+        let mut found: BTreeMap<Vec<usize>, Makers> = BTreeMap::new();
         for (k, product) in fields.iter().enumerate() {
             if is_wanted(product) {
                 found.entry(product.clone()).or_default().0 = Some(k);

@@ -167,7 +167,7 @@ mod tests {
         let products = Products { large: 2, following: 1 };
         assert_eq!(products.second(), [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]]);
         assert_eq!(products.third(), [[0, 0, 0], [0, 0, 1], [0, 1, 1], [1, 1, 1]]);
-        assert_eq!(products.follows(&[0, 2]), true);
+        assert!(products.follows(&[0, 2]));
         // Of one large and three following modes, all fields take eleven solutions.
         let products = Products { large: 1, following: 3 };
         assert_eq!(products.of_displacement().len(), 11);

@@ -29,8 +29,8 @@ impl Monomials {
         let mut of_energy = products.of_energy();
         of_energy.sort_by_key(Vec::len);
         factors.extend(of_energy);
-        for degree in 3..=5 {
-            ends[degree] = factors.partition_point(|product| product.len() <= degree);
+        for (degree, end) in ends.iter_mut().enumerate().skip(3) {
+            *end = factors.partition_point(|product| product.len() <= degree);
         }
         let places: BTreeMap<_, _> =
             factors.iter().cloned().enumerate().map(|(place, product)| (product, place)).collect();
