@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use faer::Mat;
+use faer::{Mat, Scale};
 use flexframe::columns::COLUMNS;
 use flexframe::fem_tet10::{self, Materials, StressRecovery};
 use flexframe::model::Model;
@@ -172,12 +172,25 @@ fn a_results_file_becomes_a_table_and_fields() {
         let field = Mat::from_fn(mesh.modes.shapes.nrows(), 1, |i, _| {
             shapes().zip(&coordinates).map(|(shape, xi)| xi * shape[i]).sum::<f64>()
         });
-        // Of the second order, that of the large modes together.
-        let of_large = Mat::from_fn(field.nrows(), 1, |i, _| {
-            model.large_modes().iter().map(|k| coordinates[*k] * mesh.modes.shapes[(i, *k)]).sum::<f64>()
+        // To the third order, that of the modes that bend the body: ½ε₂(u₁, u₁) + ε₂(u₁, u₂) of their displacements of first and
+        // second order.
+        let modal = results.table("modal/displacement").unwrap().row(4 * step).unwrap();
+        let manifold = model.physics.large_deflection.as_ref().unwrap();
+        let products = manifold.products();
+        let mut of_second = vec![0.0; coordinates.len()];
+        for (product, shape) in products.iter().zip(manifold.of_products().chunks_exact(coordinates.len())) {
+            if let [j, k] = product[..] {
+                of_second.iter_mut().zip(shape).for_each(|(xi, shape)| *xi += shape * modal[j] * modal[k]);
+            }
+        }
+        let of_bent = Mat::from_fn(field.nrows(), 2, |i, order| match order {
+            0 => manifold.bent().iter().map(|k| modal[*k] * mesh.modes.shapes[(i, *k)]).sum::<f64>(),
+            _ => shapes().zip(&of_second).map(|(shape, xi)| xi * shape[i]).sum::<f64>(),
         });
+        let of_pairs = recovery.second_order_nodal_stress(of_bent.as_ref(), &[[0, 0], [0, 1]]).unwrap();
         let stress = recovery.nodal_stress(field.as_ref()).unwrap()
-            + recovery.second_order_nodal_stress(of_large.as_ref(), &[[0, 0]]).unwrap();
+            + of_pairs.get(.., 0..1)
+            + of_pairs.get(.., 1..2) * Scale(2.0);
         let scale = stress.norm_max();
         largest = largest.max(scale);
         for (i, found) in von_mises[step * n..(step + 1) * n].iter().enumerate() {

@@ -1,6 +1,6 @@
 //! How far the manifold of large modes holds.
 //!
-//! It has the displacement to second order in the large modes q and the strain energy to fourth:
+//! It has the displacement to third order in the large modes, and the strain energy to fifth; with q the large and following modes:
 //!
 //! ```text
 //! V = V₂ + V_n      V₂ = ½ Σ ω_k² q_k²      u = Ψ q + Ψ_ext s(q)
@@ -34,14 +34,14 @@ impl<'a> FourthOrder<'a> {
         Self { manifold, circular_frequencies, xi: vec![0.0; manifold.body().flexible()] }
     }
 
-    /// Relative error of the forces on the large modes by the orders left out, about; infinite where the strain energy is
-    /// negative,
+    /// Relative error of the forces on these modes by the orders left out, about; infinite where the strain energy is negative,
     /// which no body has. `q` are all modal coordinates.
     pub fn error(&mut self, q: &[f64]) -> f64 {
         let Self { manifold, circular_frequencies: omega, xi } = self;
-        let large = manifold.large();
-        let square: f64 = large.iter().map(|k| q[*k] * q[*k]).sum();
-        let quadratic: f64 = large.iter().map(|k| 0.5 * (omega[*k] * q[*k]).powi(2)).sum();
+        // Of following modes, too: where the large ones pass through zero, the energy beyond V₂ is theirs.
+        let bent = manifold.bent();
+        let square: f64 = bent.iter().map(|k| q[*k] * q[*k]).sum();
+        let quadratic: f64 = bent.iter().map(|k| 0.5 * (omega[*k] * q[*k]).powi(2)).sum();
         if square == 0.0 {
             return 0.0;
         }

@@ -14,6 +14,8 @@ pub struct Findings {
     pub stress: Option<Row>,
     /// True if the body has no static shapes for the stretch by the spin.
     pub lacks_stretch: bool,
+    /// True if modes bend the body far.
+    pub has_large_modes: bool,
 }
 
 impl Advice {
@@ -25,6 +27,15 @@ impl Advice {
         if let Some(stress) = findings.stress.filter(|stress| stiffening.influence <= stress.influence) {
             *stiffening = stress;
         }
+        if findings.has_large_modes {
+            let influence = advice.effects[Effect::LargeDeflection].influence;
+            for effect in [Effect::Coriolis, Effect::DeformedInertia] {
+                let row = &mut advice.effects[effect];
+                row.influence = row.influence.max(influence);
+                row.on = row.influence >= advice.tolerance;
+                row.why += OF_LARGE_MODES;
+            }
+        }
         if findings.lacks_stretch && advice.stretch >= advice.tolerance {
             advice.static_correction.why += LACKS_STRETCH;
         }
@@ -32,5 +43,6 @@ impl Advice {
     }
 }
 
+const OF_LARGE_MODES: &str = " What follows the large modes moves along the body, where turning acts on it.";
 const LACKS_STRETCH: &str = " The answer lacks what the spin stretches beyond the modes: take static_correction = true \
      with the scheme exponential, or more modes.";

@@ -17,7 +17,7 @@ fn spun(speed: f64) -> Advice {
 }
 
 fn found(advice: &Advice) -> Findings {
-    Findings { deflection: advice.deflection, stress: None, lacks_stretch: false }
+    Findings { deflection: advice.deflection, stress: None, lacks_stretch: false, has_large_modes: false }
 }
 
 fn stiffening(influence: f64) -> Row {

@@ -3,7 +3,7 @@
 use dynamics::{Effect, EffectMap};
 use scene::{Choice, Flexible, Scene};
 
-use crate::reduction::manifold::Bent;
+use crate::reduction::bent::Bent;
 use crate::reduction::physics;
 use crate::reduction::survey::Survey;
 

@@ -5,6 +5,7 @@ use faer::Mat;
 use modal::{LargeShapes, Modes};
 
 use crate::error::{BuildError, modal};
+use crate::reduction::bent::Bent;
 use crate::reduction::mesh_model::MeshModel;
 use crate::stress::{Stress, in_shapes};
 use crate::structure::kept::Extended;
@@ -16,19 +17,7 @@ const DRAWN_IN: f64 = 0.02;
 /// bending of the plate in its plane relieves 9 % of its twist with its bending out of it.
 const STIFFER: f64 = 4.0;
 
-/// The modes that bend the body far, numbered from 0, and those that follow them.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct Bent {
-    pub large: Vec<usize>,
-    pub following: Vec<usize>,
-}
-
 impl Bent {
-    /// All of them: the large ones first.
-    pub fn all(&self) -> Vec<usize> {
-        [&self.large[..], &self.following].concat()
-    }
-
     /// Without large modes that others draw in, which follow by themselves: as large modes of their own they would not relieve
     /// the others as they should, and the motion would blow up.
     ///

@@ -7,7 +7,7 @@ use scene::{Choice, Large, Load, Scene};
 
 use crate::load::mesh_load::MeshLoad;
 use crate::load::turning::{Turning, turning};
-use crate::reduction::manifold::Bent;
+use crate::reduction::bent::Bent;
 
 /// True if anything may set the body spinning.
 pub(crate) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {

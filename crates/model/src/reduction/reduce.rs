@@ -91,7 +91,12 @@ impl Reduction {
             }
             _ => Vec::new(),
         };
-        let findings = Findings { deflection, stress: stress.row.clone(), lacks_stretch: decision.lacks.is_some() };
+        let findings = Findings {
+            deflection,
+            stress: stress.row.clone(),
+            lacks_stretch: decision.lacks.is_some(),
+            has_large_modes: large.is_some(),
+        };
         let mut advice = advice.completed(findings);
         if !model.scene.body.has_elements() {
             for effect in [Effect::GeometricStiffening, Effect::LargeDeflection] {

@@ -101,7 +101,7 @@ fn an_energy_of_fourth_order_leaves_a_part_of_the_elastica() {
     }
 }
 
-const LARGE: &str = "[modes]\nflexible = 8\nlarge = 8\nstatic_correction = false\n";
+const LARGE: &str = "[modes]\nflexible = 8\nlarge = 2\nfollowing = 6\nstatic_correction = false\n";
 
 /// Where the tip of the column comes to rest, over its length: in eight bending modes, four in each plane, all of them large;
 /// and the estimate of what is left out beyond fourth order there.
