@@ -172,22 +172,27 @@ fn a_results_file_becomes_a_table_and_fields() {
         let field = Mat::from_fn(mesh.modes.shapes.nrows(), 1, |i, _| {
             shapes().zip(&coordinates).map(|(shape, xi)| xi * shape[i]).sum::<f64>()
         });
-        // To the third order, that of the modes that bend the body: ½ε₂(u₁, u₁) + ε₂(u₁, u₂) of their displacements of first and
-        // second order.
+        // Beyond the first order, ½ε₂(u₁, u₁) of the modes that bend the body, and ε₂(u₁, u₂) of the displacements of first and
+        // second order of the large ones.
         let modal = results.table("modal/displacement").unwrap().row(4 * step).unwrap();
         let manifold = model.physics.large_deflection.as_ref().unwrap();
-        let products = manifold.products();
+        let large = manifold.large();
         let mut of_second = vec![0.0; coordinates.len()];
-        for (product, shape) in products.iter().zip(manifold.of_products().chunks_exact(coordinates.len())) {
-            if let [j, k] = product[..] {
-                of_second.iter_mut().zip(shape).for_each(|(xi, shape)| *xi += shape * modal[j] * modal[k]);
+        for (product, shape) in manifold.products().iter().zip(manifold.of_products().chunks_exact(coordinates.len())) {
+            match product[..] {
+                [j, k] if large.contains(&j) && large.contains(&k) => {
+                    of_second.iter_mut().zip(shape).for_each(|(xi, shape)| *xi += shape * modal[j] * modal[k]);
+                }
+                _ => {}
             }
         }
-        let of_bent = Mat::from_fn(field.nrows(), 2, |i, order| match order {
-            0 => manifold.bent().iter().map(|k| modal[*k] * mesh.modes.shapes[(i, *k)]).sum::<f64>(),
+        let in_modes = |modes: &[usize], i| modes.iter().map(|k| modal[*k] * mesh.modes.shapes[(i, *k)]).sum::<f64>();
+        let of_bent = Mat::from_fn(field.nrows(), 3, |i, order| match order {
+            0 => in_modes(manifold.bent(), i),
+            1 => in_modes(large, i),
             _ => shapes().zip(&of_second).map(|(shape, xi)| xi * shape[i]).sum::<f64>(),
         });
-        let of_pairs = recovery.second_order_nodal_stress(of_bent.as_ref(), &[[0, 0], [0, 1]]).unwrap();
+        let of_pairs = recovery.second_order_nodal_stress(of_bent.as_ref(), &[[0, 0], [1, 2]]).unwrap();
         let stress = recovery.nodal_stress(field.as_ref()).unwrap()
             + of_pairs.get(.., 0..1)
             + of_pairs.get(.., 1..2) * Scale(2.0);
