@@ -58,7 +58,7 @@ pub struct Tangent<'a> {
     /// [E, K*C, M R] on the rows that are not held, and A⁻¹ of it (3n×m).
     border: Mat<f64>,
     through: Mat<f64>,
-    /// What is left beside A, inverted (m×m), and the number of its negative eigenvalues.
+    /// The Schur complement beside A, inverted (m×m), and the number of its negative eigenvalues.
     inverse: DMatrix<f64>,
     negative: usize,
     /// Columns of E.

@@ -13,7 +13,7 @@ use crate::scene::Scene;
 
 /// All bodies of a scene with the joints between them: their meshes are read, their modes are found, and they are reduced.
 ///
-/// What takes long is kept in the user's cache, as for Body. A Simulation of it steps all bodies together.
+/// Results that take long are kept in the user's cache, as for Body. A Simulation of it steps all bodies together.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct System {
     scene: Py<Scene>,

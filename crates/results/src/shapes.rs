@@ -30,7 +30,7 @@ pub struct Shapes {
     /// Factors of each product of modes that bend the body, by their places among the coordinates q, from 0; one more than
     /// there are stands for a factor of 1 (p).
     pub factors: Vec<[u32; 3]>,
-    /// What a unit of each product adds to each coordinate (p lists of c).
+    /// Part that a unit of each product adds to each coordinate (p lists of c).
     pub products: Vec<Vec<f64>>,
     /// Stress, where the elements are known.
     pub stress: Option<StressShapes>,

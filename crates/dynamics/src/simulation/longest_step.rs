@@ -17,7 +17,7 @@ pub(crate) struct LongestStep {
 }
 
 impl LongestStep {
-    /// Of a run to `end`.
+    /// The longest steps of a run to `end`.
     pub(crate) fn new<'a>(
         loads: &[SharedLoad],
         drives: impl IntoIterator<Item = &'a History>,

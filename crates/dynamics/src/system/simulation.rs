@@ -367,7 +367,7 @@ impl SystemSimulation {
         if self.plan.is_over(next) { (!self.plan.is_over(last)).then_some(self.end) } else { Some(next) }
     }
 
-    /// What has come within the step that has been done, or at its end, and is still to be told.
+    /// The next row or event within the step that has been done, or at its end.
     fn next_due(&mut self) -> Result<Option<Reached>, StepError> {
         let (now, same) = (self.motion.time(), self.plan.same());
         self.due.within = None;

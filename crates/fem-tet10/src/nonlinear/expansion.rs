@@ -270,7 +270,7 @@ struct AtPoint {
     /// F₀ and S₀.
     f: Tensors,
     stress: Tensors,
-    /// Of each field.
+    /// Gradient of each field.
     gradients: Vec<Tensors>,
     /// E_α, E_α' and C:E_α.
     strains: Vec<Tensors>,

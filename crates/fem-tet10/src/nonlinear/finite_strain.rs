@@ -55,7 +55,7 @@ impl Stresses {
     }
 }
 
-/// What is known of a group of elements at one of its points.
+/// State of a group of elements at one of its points.
 struct Here<'a> {
     point: &'a GroupPoint,
     lame: &'a Lame,

@@ -69,7 +69,7 @@ pub struct Moving {
 }
 
 impl Beginning {
-    /// That of a scene with a model of each body; `None` without bodies.
+    /// Beginning of a scene with a model of each body; `None` without bodies.
     pub fn of(system: &System, models: &[&Model]) -> Option<Self> {
         let Scene { time, output, .. } = system.bodies.first()?;
         let forces = |model: &&Model| BodyForces {

@@ -41,7 +41,7 @@ pub struct IndefiniteFactor<'a> {
 }
 
 impl IndefiniteOrder {
-    /// Of the pairs of coupled nodes: where the nodes that each node is coupled to begin (n + 1), and these in rising order.
+    /// Pairs of coupled nodes: where the nodes that each node is coupled to begin (n + 1), and these in rising order.
     ///
     /// # Errors
     /// [`ModalError`] for lists that are no pattern, or too large ones.

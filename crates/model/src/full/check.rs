@@ -44,7 +44,7 @@ pub struct StateCheck {
     pub negative_directions: Option<usize>,
     /// Largest growth of a vibration of the full body about the state, 1 per time: positive where it is unstable.
     pub growth: f64,
-    /// What would make the error smaller.
+    /// Means that would make the error smaller.
     pub mends: Vec<Mend>,
     /// Factors of the tangent that were made.
     pub factors: usize,
@@ -68,9 +68,9 @@ pub struct PointCheck {
 /// A frequency.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct FrequencyCheck {
-    /// Of the model, cycles per time.
+    /// Frequency of the model, cycles per time.
     pub model: f64,
-    /// Of the full body, cycles per time.
+    /// Frequency of the full body, cycles per time.
     pub full: f64,
     /// Relative error of the model's.
     pub error: f64,

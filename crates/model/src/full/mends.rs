@@ -39,7 +39,7 @@ pub(crate) struct Parts {
     pub error: f64,
     pub within: f64,
     pub beside: f64,
-    /// Of the part beside the modes, that of the linear answer: 0 to 1.
+    /// Share of the linear answer in the part beside the modes: 0 to 1.
     pub linear: f64,
 }
 

@@ -9,7 +9,7 @@ use crate::tie::ends::EndAtStart;
 /// Largest distance of two places of a pair, over the size of the end.
 const APART: f64 = 1e-2;
 
-/// Why the places of two ends are not pairs.
+/// Reason that the places of two ends are not pairs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Unpaired {
     /// The ends have different numbers of places.

@@ -29,7 +29,7 @@ impl Warp {
         Some(enough.map_or(self.left_out.len(), |place| place + 1))
     }
 
-    /// Of faces in responses of the mesh to forces on them (N×k). None where the faces extend as far in two directions.
+    /// Warp of faces in responses of the mesh to forces on them (N×k). None where the faces extend as far in two directions.
     pub fn new(mesh: &Mesh, faces: &[[u32; 6]], dofs: usize, responses: MatRef<'_, f64>) -> Option<Self> {
         let along = mesh.longest(faces)?;
         let field =

@@ -237,7 +237,7 @@ class Reached:
 class System:
     """All bodies of a scene with the joints between them: their meshes are read, their modes are found, and they are reduced.
 
-    What takes long is kept in the user's cache, as for Body. A Simulation of it steps all bodies together.
+    Results that take long are kept in the user's cache, as for Body. A Simulation of it steps all bodies together.
     """
 
     def __new__(cls, scene: Scene) -> System: ...
@@ -274,7 +274,7 @@ class JointForce:
 class Simulation:
     """A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
 
-    Of a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, and states are dicts from
+    For a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, and states are dicts from
     names of bodies; all bodies are stepped together, also those that nothing ties.
 
     An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event ends the

@@ -63,7 +63,7 @@ impl Reached {
 
 /// A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
 ///
-/// Of a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, and states are dicts from names
+/// For a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, and states are dicts from names
 /// of bodies; all bodies are stepped together, also those that nothing ties.
 ///
 /// An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event

@@ -5,13 +5,13 @@ use fem_tet10::Material;
 /// A body under a load or a spin.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// What it is.
+    /// Its name.
     pub name: String,
     /// Its mesh.
     pub mesh: &'static str,
     /// Its material.
     pub material: Material,
-    /// What holds, drives and loads it. `SPIN` stands for a spin of `parameter` of the first frequency, `FORCE` for a force
+    /// Supports, drives and loads. `SPIN` stands for a spin of `parameter` of the first frequency, `FORCE` for a force
     /// that would bend a linear body by about that part of a metre.
     pub text: String,
     /// The part that `SPIN`, `FORCE` and `GRAVITY` stand for,
@@ -31,7 +31,7 @@ pub struct Case {
 pub enum Truth {
     /// Its rest under the loads and the spin, from the undeformed body.
     Rest,
-    /// That under the accelerations of the row, by the iteration of the check to its end: a drive that speeds up leaves no rest.
+    /// Rest under the accelerations of the row, by the iteration of the check to its end: a drive that speeds up leaves no rest.
     OfRow,
 }
 

@@ -11,7 +11,7 @@ use crate::nonlinear::{Motion, NodalState, Solid, bodies, mean_axes};
 /// A body that is let go from its first mode.
 #[derive(Debug, Clone, Copy)]
 pub struct LetGo {
-    /// What it is.
+    /// Its name.
     pub name: &'static str,
     mesh: &'static str,
     material: Material,

@@ -43,11 +43,11 @@ pub struct Motions {
 /// Largest distances of a system from the joined mesh.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Off {
-    /// Of attitudes, rad.
+    /// Difference of attitudes, rad.
     pub attitude: f64,
-    /// Of centres of mass.
+    /// Difference of centres of mass.
     pub center: f64,
-    /// Of elastic displacements, over their peak.
+    /// Difference of elastic displacements, over their peak.
     pub elastic: f64,
     /// The peak.
     pub peak: f64,

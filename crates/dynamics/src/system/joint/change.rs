@@ -39,7 +39,7 @@ impl WrenchChange {
         Self { force: Vector3::zeros(), moments: [moment, -moment] }
     }
 
-    /// Of half the difference of a·b and c·d.
+    /// Change of half the difference of a·b and c·d.
     fn held([a, b, c, d]: [Axis; 4]) -> Self {
         Self::turning(0.5 * (cross_change(a, b) - cross_change(c, d)))
     }

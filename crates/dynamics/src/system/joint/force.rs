@@ -57,7 +57,7 @@ pub(crate) struct Forces {
     pub spring: f64,
     /// Of dampers and friction.
     pub friction: f64,
-    /// Of a motor and of laws from outside.
+    /// Part of a motor and of laws from outside.
     pub motor: f64,
 }
 

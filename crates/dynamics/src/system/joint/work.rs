@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 /// Works at a joint since the beginning.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct JointWork {
-    /// What its drive and its motors have put in.
+    /// Work of its drive and its motors.
     pub drive: f64,
-    /// What its springs, stops and preload have given back; negative for what they hold.
+    /// Work of its springs, stops and preload; negative while they hold energy.
     pub spring: f64,
-    /// What friction and dampers have taken out.
+    /// Energy that friction and dampers have taken out.
     pub loss: f64,
 }

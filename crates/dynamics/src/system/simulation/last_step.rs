@@ -18,7 +18,7 @@ pub(super) struct LastStep {
     pub end: f64,
     /// The motion at times within it.
     pub probe: SystemMotion,
-    /// What events see of that.
+    /// The motion that events see there.
     observation: SystemObservation,
 }
 

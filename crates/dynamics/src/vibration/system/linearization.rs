@@ -79,7 +79,7 @@ impl Linearization {
         })
     }
 
-    /// What holds elastic energy beside the bodies, in the order of [`SystemMode::elastic`](crate::SystemMode).
+    /// Holders of elastic energy beside the bodies, in the order of [`SystemMode::elastic`](crate::SystemMode).
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
         self.springs.iter().map(|(spring, _)| *spring)
     }

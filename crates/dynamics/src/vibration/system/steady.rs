@@ -23,7 +23,7 @@ const AGAINST: f64 = 1e-6;
 /// How far a steady state is from balance: the accelerations that are left, along motions that deform no body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unbalance {
-    /// Of the origin of each body, in its axes.
+    /// Acceleration of the origin of each body, in its axes.
     pub accelerations: Vec<Vector3<f64>>,
     /// Angular, in its axes.
     pub angular_accelerations: Vec<Vector3<f64>>,
@@ -36,7 +36,7 @@ pub struct SteadyState {
     pub(crate) terms: Terms,
     /// The linearised equations.
     pub linear: Linearization,
-    /// What is left of balance.
+    /// The forces that do not balance.
     pub unbalance: Unbalance,
     spin: CommonSpin,
 }

@@ -232,7 +232,7 @@ fn inertia_of(mass: &Mat<f64>) -> Inertia {
     inertia
 }
 
-/// What holds elastic energy beside the bodies: springs of joints, then force elements, by their numbers.
+/// Holders of elastic energy beside the bodies: springs of joints, then force elements, by their numbers.
 pub(crate) fn springs(system: &System, at: &Configuration) -> Vec<(Spring, Tie)> {
     let of_joints = system.connections.joint_forces().map(|(number, coordinate, force)| {
         let joint = &system.joints()[number];
@@ -252,7 +252,7 @@ pub(crate) fn springs(system: &System, at: &Configuration) -> Vec<(Spring, Tie)>
 /// A spring by the number of its joint or its element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spring {
-    /// Of a joint.
+    /// The spring of a joint.
     Joint(usize),
     /// A force element.
     Element(usize),

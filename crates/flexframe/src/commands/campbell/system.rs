@@ -96,7 +96,7 @@ pub fn campbell_of_system(
     Ok(report)
 }
 
-/// Why there is no axis.
+/// Reason that there is no axis.
 enum Found {
     Nothing(String),
     NoDirection(CampbellError),

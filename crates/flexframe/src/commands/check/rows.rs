@@ -14,7 +14,7 @@ use super::error::CheckError;
 pub enum CheckRows {
     /// The rows at which a model is most likely to be wrong: the largest strain energy, the largest stress, the largest spin, the last.
     Worst,
-    /// Of these the first alone.
+    /// The first of these alone.
     First,
     /// Rows by their numbers, from 0.
     Given(Vec<usize>),

@@ -15,17 +15,17 @@ const RIGID: f64 = 0.01;
 pub struct SystemAdvice {
     /// Names of the bodies.
     pub bodies: Vec<String>,
-    /// What is told of them.
+    /// Sentences about them.
     pub sentences: Vec<String>,
 }
 
 /// Reports on each body of a scene, and advice on its systems.
 #[derive(Debug, Serialize)]
 pub struct AdviceOnSystems<R: Serialize> {
-    /// Of each body, with its name.
+    /// Advice on each body, with its name.
     #[serde(serialize_with = "crate::report::list_of_named")]
     pub bodies: Vec<(Option<String>, R)>,
-    /// Of bodies that are tied together.
+    /// Advice on bodies that are tied together.
     pub systems: Vec<SystemAdvice>,
 }
 

@@ -165,9 +165,9 @@ impl SystemModesReport {
 /// Reports of the systems of a scene, and of its bodies that nothing ties.
 #[derive(Debug, Serialize)]
 pub struct ModesOfSystems {
-    /// Of bodies that are tied together.
+    /// Modes of bodies that are tied together.
     pub systems: Vec<SystemModesReport>,
-    /// Of bodies that move alone, with their names.
+    /// Modes of bodies that move alone, with their names.
     #[serde(serialize_with = "crate::report::list_of_named")]
     pub bodies: Vec<(Option<String>, ModesReport)>,
 }
