@@ -9,9 +9,9 @@
 //!   with the material.
 //! * [`Tangent`] is K* factored, with a stress S that stands beside the displacements: it solves, and counts its negative
 //!   eigenvalues.
-//! * [`equilibrium`] finds the rest under steady forces and a steady spin by Newton's iteration with the stress as an unknown of
+//! * [`equilibrium()`] finds the rest under steady forces and a steady spin by Newton's iteration with the stress as an unknown of
 //!   its own (Magisano, Leonetti and Garcea 2017).
-//! * [`state_error`] tells how far a displacement is from that of the full body, and [`true_frequencies`] the frequencies about
+//! * [`state_error()`] tells how far a displacement is from that of the full body, and [`true_frequencies`] the frequencies about
 //!   it.
 //!
 //! Displacements and forces are lists of 3n numbers, row `3·node + axis`, in the axes of the body's frame. Equations and their
