@@ -35,8 +35,8 @@ impl Constraints {
     /// `dofs` is the number of degrees of freedom of a node, 3 or 6.
     ///
     /// # Errors
-    /// [`ModalError::HeldNode`], [`ModalError::HeldFreedom`], [`ModalError::Underheld`], and what
-    /// [`RigidMotion::check`] refuses.
+    /// [`ModalError::HeldNode`], [`ModalError::HeldFreedom`], [`ModalError::Underheld`], and the errors of points
+    /// that are not finite and directions that are not unit vectors.
     pub fn new(support: &Support, positions: &[[f64; 3]], dofs: usize) -> Result<Self, ModalError> {
         support.motion.check()?;
         check_held(&support.nodes, &support.dofs, positions.len(), dofs)?;
