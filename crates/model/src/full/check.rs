@@ -115,7 +115,7 @@ impl<'a> Checker<'a> {
         settings: &StateErrorSettings,
         frequencies: bool,
     ) -> Result<StateCheck, FullError> {
-        let moving = self.moving(joints, &self.model.damping_ratios)?;
+        let moving = self.moving(joints)?;
         let observed = moving.observed_at(motion, &[])?;
         let state = self.state(&observed, joints)?;
         let found = state_error(self.body, &self.at_rest, &state, settings)?;
@@ -135,7 +135,7 @@ impl<'a> Checker<'a> {
         };
         let follows = state.forces.follow();
         let (frequencies, growth) = match frequencies && self.spin_is_held(&state) {
-            true => self.frequencies(joints, motion, &state, &found)?,
+            true => self.frequencies(&moving, motion, &state, &found)?,
             false => (Vec::new(), 0.0),
         };
         Ok(StateCheck {
@@ -166,8 +166,9 @@ impl<'a> Checker<'a> {
         Ok(self.model.full_state(observed, forces).ok_or_else(without_mesh)?)
     }
 
-    /// The model's equations with the forces of joints as loads.
-    fn moving(&self, joints: &[MarkerForce], damping_ratios: &[f64]) -> Result<ConservativeBody, FullError> {
+    /// The model's equations with the forces of joints as loads. They are without damping, which the full body does not have: its
+    /// force would be taken for an error.
+    fn moving(&self, joints: &[MarkerForce]) -> Result<ConservativeBody, FullError> {
         let Model { body, loads, physics, markers, .. } = self.model;
         let mut loads = loads.clone();
         for MarkerForce { marker, force_global, moment_global } in joints {
@@ -182,8 +183,9 @@ impl<'a> Checker<'a> {
             });
             loads.extend([force, moment]);
         }
+        let undamped = vec![0.0; self.model.damping_ratios.len()];
         let initial = self.model.initial(self.scene);
-        Ok(ConservativeBody::new(body, damping_ratios, loads, physics)?.beginning_at(&initial))
+        Ok(ConservativeBody::new(body, &undamped, loads, physics)?.beginning_at(&initial))
     }
 
     /// True if the spin is given, or next to none.
@@ -195,7 +197,7 @@ impl<'a> Checker<'a> {
 
     fn frequencies(
         &self,
-        joints: &[MarkerForce],
+        moving: &ConservativeBody,
         motion: &MotionState,
         state: &FullState,
         found: &nonlinear::StateError<'_>,
@@ -204,9 +206,7 @@ impl<'a> Checker<'a> {
         let full = true_frequencies(self.body, state, found, shapes.as_ref())?;
         let amplitudes: Vec<f64> =
             self.model.size.peaks.iter().map(|peak| 1e-4 * self.model.size.length / peak).collect();
-        // Without damping, which the full body does not have.
-        let undamped = vec![0.0; self.model.damping_ratios.len()];
-        let model = self.moving(joints, &undamped)?.vibrations_at(motion, &amplitudes)?;
+        let model = moving.vibrations_at(motion, &amplitudes)?;
         // Those of the frame itself, of a body that turns freely.
         let floor = 1e-3 * self.model.body.circular_frequencies.first().copied().unwrap_or(0.0);
         let tau = std::f64::consts::TAU;
