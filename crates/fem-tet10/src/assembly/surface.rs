@@ -77,9 +77,7 @@ impl Mesh {
         displacement: ColRef<'_, f64>,
     ) -> Result<(Vec<u32>, Vec<Vector3<f64>>), MeshError> {
         let surface = self.outer_surface(group)?;
-        let moved =
-            |face: &Face| face.nodes.map(|node| Vector3::from_fn(|axis, _| displacement[3 * node as usize + axis]));
-        Ok(self.integrate_with(surface, moved, |x, u, slopes| {
+        Ok(self.integrate_with(surface, of_nodes(displacement), |x, u, slopes| {
             let (xs, xt) = (tangent(x, slopes, 0), tangent(x, slopes, 1));
             -(tangent(u, slopes, 0).cross(&xt) + xs.cross(&tangent(u, slopes, 1)))
         }))
@@ -100,9 +98,7 @@ impl Mesh {
         displacement: ColRef<'_, f64>,
     ) -> Result<(Vec<u32>, Vec<Vector3<f64>>), MeshError> {
         let surface = self.outer_surface(group)?;
-        let moved =
-            |face: &Face| face.nodes.map(|node| Vector3::from_fn(|axis, _| displacement[3 * node as usize + axis]));
-        Ok(self.integrate_with(surface, moved, |x, u, slopes| {
+        Ok(self.integrate_with(surface, of_nodes(displacement), |x, u, slopes| {
             let along = |direction: usize| tangent(x, slopes, direction) + tangent(u, slopes, direction);
             -along(0).cross(&along(1))
         }))
@@ -171,6 +167,11 @@ impl<T: Default + AddAssign + Mul<f64, Output = T> + Copy> Summand for T {}
 
 /// Slopes of the six shape functions along L₁ and L₂.
 pub(crate) type Slopes = [[f64; 2]; 6];
+
+/// The displacements (row `3·node + axis`) of the nodes of a face.
+fn of_nodes(displacement: ColRef<'_, f64>) -> impl Fn(&Face) -> [Vector3<f64>; 6] + '_ {
+    move |face| face.nodes.map(|node| Vector3::from_fn(|axis, _| displacement[3 * node as usize + axis]))
+}
 
 /// ∂x/∂s or ∂x/∂t of a field with these values at the nodes of a face.
 pub(crate) fn tangent(values: &[Vector3<f64>; 6], slopes: &Slopes, direction: usize) -> Vector3<f64> {
