@@ -323,6 +323,14 @@ enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
+    /// Print the JSON schema of scene files, by which editors complete and explain keys.
+    ///
+    /// flexframe schema > flexframe.schema.json
+    ///
+    /// Visual Studio Code with the extension Even Better TOML uses it in a scene whose first line is
+    /// #:schema ./flexframe.schema.json
+    #[command(verbatim_doc_comment)]
+    Schema,
     /// Draw a scene or a results file as an animated GIF.
     ///
     /// A scene is run for it; of a results file (.h5) each frame is a row, and no mesh is needed. Colours are the displacement by deformation, from 0 to the largest of the frames that are shown. A warning says
@@ -449,6 +457,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             clap_complete::generate(shell, &mut Cli::command(), "flexframe", &mut script);
             Ok(output::written(std::io::stdout().write_all(&script))?)
         }
+        Command::Schema => Ok(output::text(&format!("{:#}\n", flexframe::scene::json_schema()))?),
         Command::Run { scene: SceneArgs { scene, json }, output, files, large, no_check, solver } => {
             output::require_file("--output", output.as_deref())?;
             let system = read_system(scene)?;

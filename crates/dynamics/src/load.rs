@@ -94,6 +94,7 @@ pub type SharedLoad = Arc<dyn Load>;
 
 /// The axes that the direction of a load is fixed in.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum LoadFrame {
     /// Global axes: a dead load.

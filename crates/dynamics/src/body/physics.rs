@@ -26,6 +26,7 @@ pub struct Drive {
 /// A speed over time: the amplitude times the history. As data, tables and expressions have other types `T` and `E` than
 /// those that can be evaluated, as in [`History`].
 #[derive(Debug, Clone, PartialEq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DrivenSpeed<T = Table, E = Expression> {
     /// Angular velocity, rad/time, or velocity, length/time, where the history is 1.

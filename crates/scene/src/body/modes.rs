@@ -1,5 +1,6 @@
 //! The modes kept and their damping.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::body::effects::Choice;
@@ -65,7 +66,7 @@ pub enum Damping {
 }
 
 /// Damping in proportion to mass and stiffness.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rayleigh {
     /// Factor α ≥ 0 of the mass matrix, 1 per time.
