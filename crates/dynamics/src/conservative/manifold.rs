@@ -145,8 +145,9 @@ impl Manifold {
         if found != expected {
             return Err(SetupError::Length { what: "the body in the extended shapes", expected, found });
         }
-        let LargeShapes { dynamic, large, following, coefficients, .. } = shapes.clone();
-        Self::of_parts(Parts { body, dynamic, large, following, coefficients, energies: energies.to_vec() })
+        let LargeShapes { dynamic, large, following, coefficients, .. } = shapes;
+        let (large, following, coefficients) = (large.clone(), following.clone(), coefficients.clone());
+        Self::of_parts(Parts { body, dynamic: *dynamic, large, following, coefficients, energies: energies.to_vec() })
     }
 
     fn of_parts(parts: Parts) -> Result<Self, SetupError> {

@@ -27,7 +27,8 @@ impl Matrices for Mat<f64> {
 
     fn of_data((rows, entries): Self::Data) -> Option<Self> {
         let columns = entries.len().checked_div(rows).unwrap_or_default();
-        (rows.checked_mul(columns)? == entries.len()).then(|| Self::from_fn(rows, columns, |i, j| entries[rows * j + i]))
+        (rows.checked_mul(columns)? == entries.len())
+            .then(|| Self::from_fn(rows, columns, |i, j| entries[rows * j + i]))
     }
 }
 
