@@ -29,6 +29,7 @@ use slepc::files_of_folder;
 use crate::cli_error::{self, CliError};
 use crate::progress::Bar;
 use crate::scene_input::SceneInput;
+use crate::served::Served;
 use crate::signals::Signals;
 use crate::solver_input::{SolverInput, WriteOnly};
 use crate::{output, threads};
@@ -285,8 +286,20 @@ enum Command {
         /// The page to write, or - for standard output [default: the results file's name with .html].
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
+        /// Put the run itself into the page: it computes the motion, lets it be changed, and be pulled at with the pointer.
+        /// The bodies are built again from the scene in the file, with their meshes.
+        #[arg(long)]
+        live: bool,
         #[command(flatten)]
         files: FileArgs,
+    },
+    /// Run a scene and show its live page at an address of this machine alone, until it is stopped (Ctrl-C).
+    Play {
+        #[command(flatten)]
+        scene: SceneInput,
+        /// The port; 0 takes one that is free.
+        #[arg(long, value_name = "N", default_value_t = 0)]
+        port: u16,
     },
     /// Run a scene with many values of its keys, and write a table of parameters and results (docs/reference/cli.md).
     ///
@@ -696,18 +709,37 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             }
             Ok(())
         }
-        Command::Report { file, output, files } => {
+        Command::Report { file, output, live, files } => {
             GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
+            let mut contents = || match live {
+                true => html_report::live_contents(&file, &builder, |p| bar.build(p)),
+                false => html_report::contents(&file),
+            };
             if output.as_deref().is_some_and(output::is_standard) {
-                let page = html_report::page(&file)?;
+                let page = html_report::page(&contents()?)?;
                 drop(bar);
                 return Ok(output::text(&page)?);
             }
             let output = output.unwrap_or_else(|| file.with_extension("html"));
             outputs_of_results(&file, files.overwrite).claim_as(&Written::PAGE, &output)?;
-            html_report::write(&file, &output)?;
+            html_report::write(&contents()?, &output)?;
             drop(bar);
             output::list(&[output])
+        }
+        Command::Play { scene, port } => {
+            let system = read_system(scene)?;
+            let served = Served::new(port)?;
+            let folder = tempfile::tempdir().map_err(CliError::Folder)?;
+            let settings = RunSettings { check: false, ..settings(&signals, true, &builder) };
+            let (_, report) = run::run(&system, folder.path(), &settings, |p| {
+                signals.heard(p);
+                bar.run(p);
+            })?;
+            let contents = html_report::live_contents(&report.results, &builder, |p| bar.build(p))?;
+            let page = html_report::page(&contents)?;
+            drop((bar, contents));
+            output::line(&format!("  page     {} (Ctrl-C ends it)", served.address()))?;
+            Ok(served.serve(&page, &signals.stop())?)
         }
         Command::Sweep { sweep: file, output, shard, merge, slurm, files: FileArgs { overwrite }, large, json } => {
             GivenFile::expect(&file, &[GivenFile::Sweep], "the file of a sweep (docs/reference/cli.md)")?;

@@ -1,11 +1,18 @@
 //! The report as the page reads it. `web/src/data.ts` has the same fields.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
 use crate::numbers::Numbers;
 use crate::peak::{length, peak, von_mises};
-use crate::report::{Body, Component, Fact, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface};
+use crate::report::{
+    Body, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface,
+};
 use crate::thin::{Thinning, spread};
+
+/// The crate `live` for a browser, which `just live-page` builds.
+const PROGRAM: &[u8] = include_bytes!("../web/live.wasm.gz");
 
 /// Bytes of the rows of the motion, before base64.
 const MOTION_BYTES: usize = 1 << 20;
@@ -32,6 +39,27 @@ pub(crate) struct Data<'a> {
     balances: Vec<BalanceData<'a>>,
     scene: [&'a str; 2],
     warnings: &'a [String],
+    live: Option<LiveData<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct LiveData<'a> {
+    /// The program of the page and the data of the run, in base64; the program is packed by gzip.
+    program: String,
+    run: String,
+    masses: Vec<f64>,
+    controls: Vec<ControlData<'a>>,
+    units: &'a [String; 4],
+}
+
+#[derive(Debug, Serialize)]
+struct ControlData<'a> {
+    group: &'a str,
+    name: &'a str,
+    unit: &'a str,
+    change: [usize; 3],
+    range: [f64; 2],
+    recorded: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -167,6 +195,23 @@ impl<'a> Data<'a> {
                 .collect(),
             scene: [&report.scene.file, &report.scene.text],
             warnings: &report.warnings,
+            live: report.live.as_ref().map(LiveData::new),
+        }
+    }
+}
+
+impl<'a> LiveData<'a> {
+    fn new(live: &'a Live) -> Self {
+        let control = |control: &'a Control| {
+            let Control { group, name, unit, change, range, recorded } = control;
+            ControlData { group, name, unit, change: *change, range: *range, recorded: *recorded }
+        };
+        Self {
+            program: STANDARD.encode(PROGRAM),
+            run: STANDARD.encode(&live.run),
+            masses: live.bodies.iter().map(|body| body.mass).collect(),
+            controls: live.controls.iter().map(control).collect(),
+            units: &live.units,
         }
     }
 }

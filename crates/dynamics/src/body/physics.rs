@@ -13,19 +13,20 @@ use crate::load::signal::Signal;
 
 /// A motion that something forces on the held part of a body. The body's own modes are those of the part held still
 /// ([`modal::RigidMotion::clamp`]).
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Drive {
     /// How it moves.
     pub motion: DrivenMotion,
     /// How fast.
     pub speed: DrivenSpeed,
     /// A speed that a program adds from outside. It must not jump; its rate may.
+    #[serde(skip)]
     pub added: Option<Signal>,
 }
 
 /// A speed over time: the amplitude times the history. As data, tables and expressions have other types `T` and `E` than
 /// those that can be evaluated, as in [`History`].
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DrivenSpeed<T = Table, E = Expression> {
@@ -36,7 +37,7 @@ pub struct DrivenSpeed<T = Table, E = Expression> {
 }
 
 /// How a driven part moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum DrivenMotion {
     /// Turning about an axis through the body's origin.
     Turn {
@@ -98,7 +99,7 @@ pub(crate) fn check_unit(what: &'static str, direction: &Vector3<f64>) -> Result
 }
 
 /// Physics of a motion in the conservative form beside modes, damping and loads.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Physics {
     /// Which effects are computed; all by default. Flexibility, damping and gravity are the matter of the body, its
     /// damping ratios and its loads: what these do not hold is not computed.
@@ -107,6 +108,7 @@ pub struct Physics {
     pub drive: Option<Drive>,
     /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static response to the forces `M (1⊗e)` of a unit
     /// acceleration of a driven slide along e, or `M (I⊗[a×]) X` of a driven turn about a.
+    #[serde(with = "modal::as_data")]
     pub drive_stiffness: Option<Mat<f64>>,
     /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that
     /// of the modes counts.

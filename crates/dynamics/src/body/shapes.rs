@@ -10,7 +10,8 @@ use crate::body::patch_turn::PatchTurn;
 use crate::body::second_order::SecondOrder;
 
 /// A point with its rows of all mode shapes, rigid and flexible.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+#[serde(into = "Columns", from = "Columns")]
 pub struct PointShapes {
     position_body: Vector3<f64>,
     /// Column k is the displacement of the point in mode k (6+nf columns).
@@ -89,8 +90,24 @@ impl PointShapes {
     }
 }
 
+/// A point as serde has it.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Columns(Vector3<f64>, Vec<Vector3<f64>>, Option<SecondOrder>);
+
+impl From<PointShapes> for Columns {
+    fn from(PointShapes { position_body, columns, second_order, components: _ }: PointShapes) -> Self {
+        Self(position_body, columns, second_order)
+    }
+}
+
+impl From<Columns> for PointShapes {
+    fn from(Columns(position_body, columns, second_order): Columns) -> Self {
+        Self { second_order, ..Self::of_columns(position_body, columns) }
+    }
+}
+
 /// A place of the body with the small rotations that all modes, rigid and flexible, give it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct RotationShapes {
     /// Column k is the rotation vector of the place in mode k (6+nf columns).
     columns: Vec<Vector3<f64>>,

@@ -1,11 +1,15 @@
 //! `flexframe report`: a results file as one HTML page.
 
 mod contents;
+mod led_on;
 mod quantities;
 
 use std::path::{Path, PathBuf};
 
+use live::LiveError;
+use model::{BuildError, BuildProgress, Builder};
 use report::{Report, ReportError};
+use scene::SceneError;
 
 use crate::drawn::{Drawn, DrawnError, Part};
 
@@ -24,25 +28,68 @@ pub enum HtmlReportError {
     /// The page cannot be written.
     #[error("{0}")]
     Page(#[from] ReportError),
+    /// The scene in the results file cannot be read.
+    #[error("{0}")]
+    Scene(#[from] SceneError),
+    /// A body of the scene cannot be built again.
+    #[error("{0}")]
+    Build(#[from] BuildError),
+    /// A scene that is not that of the results any more.
+    #[error("{}: {what} has changed since this run; run its scene again with --overwrite, then make its live page", results.display())]
+    Changed {
+        /// The results file.
+        results: PathBuf,
+        /// The part that is another one.
+        what: &'static str,
+    },
+    /// A run that a page cannot lead on.
+    #[error("{}: no live page can be made of this run: {source}", results.display())]
+    Live {
+        /// The results file.
+        results: PathBuf,
+        /// The reason.
+        source: LiveError,
+    },
 }
 
-/// Reads a results file, finished or not, and writes a page about it to `path`.
+/// What the page about a results file, finished or not, shows.
 ///
 /// # Errors
 /// [`HtmlReportError`].
-pub fn write(file: &Path, path: &Path) -> Result<(), HtmlReportError> {
-    Ok(report::write(&contents_of(file)?, path)?)
-}
-
-/// The same page as a text.
-///
-/// # Errors
-/// [`HtmlReportError`].
-pub fn page(file: &Path) -> Result<String, HtmlReportError> {
-    Ok(report::html(&contents_of(file)?)?)
-}
-
-fn contents_of(file: &Path) -> Result<Report, HtmlReportError> {
+pub fn contents(file: &Path) -> Result<Report, HtmlReportError> {
     let Drawn { results, bodies } = Drawn::open(file, Part::Surface)?;
     contents::contents(file, &results, bodies).ok_or_else(|| HtmlReportError::NoColumns { results: file.to_owned() })
+}
+
+/// The same with the run itself: the page computes the motion, and lets it be changed. The bodies are built again from the scene
+/// in the results file, with their meshes, which have to be there as they were.
+///
+/// # Errors
+/// [`HtmlReportError`].
+pub fn live_contents(
+    file: &Path,
+    builder: &Builder,
+    progress: impl FnMut(BuildProgress),
+) -> Result<Report, HtmlReportError> {
+    let Drawn { results, bodies } = Drawn::open(file, Part::Surface)?;
+    let led_on = led_on::led_on(file, &results, builder, progress)?;
+    let no_columns = || HtmlReportError::NoColumns { results: file.to_owned() };
+    let contents = contents::contents(file, &results, bodies).ok_or_else(no_columns)?;
+    Ok(Report { live: Some(led_on), ..contents })
+}
+
+/// The page as a text.
+///
+/// # Errors
+/// [`HtmlReportError::Page`].
+pub fn page(report: &Report) -> Result<String, HtmlReportError> {
+    Ok(report::html(report)?)
+}
+
+/// Writes the page to `path`, whole or not at all.
+///
+/// # Errors
+/// [`HtmlReportError::Page`].
+pub fn write(report: &Report, path: &Path) -> Result<(), HtmlReportError> {
+    Ok(report::write(report, path)?)
 }

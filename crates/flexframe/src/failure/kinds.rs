@@ -450,7 +450,11 @@ impl Fault for ExportError {
 
 impl Fault for HtmlReportError {
     fn known(&self) -> Known {
-        if let Self::NoColumns { results } = self { Kind::Input.of(results) } else { Known::default() }
+        match self {
+            Self::NoColumns { results } | Self::Changed { results, .. } => Kind::Input.of(results),
+            Self::Live { results, .. } => Kind::Usage.of(results),
+            Self::Drawn(_) | Self::Page(_) | Self::Scene(_) | Self::Build(_) => Known::default(),
+        }
     }
 }
 
