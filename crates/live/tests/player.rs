@@ -122,7 +122,7 @@ fn of_system() -> (LiveRun, RunOfSystem) {
 }
 
 /// Numbers of a body of the page.
-fn of<'a>(player: &'a Player, body: usize) -> &'a [f64] {
+fn of(player: &Player, body: usize) -> &[f64] {
     let before: usize = 1 + (0..body).map(|body| BODY_NUMBERS + player.coordinates(body)).sum::<usize>();
     &player.numbers()[before..before + BODY_NUMBERS + player.coordinates(body)]
 }
