@@ -13,6 +13,7 @@
 //! | `support`, `load`, `stress` | what holds the body, what acts on it, and the stress of that |
 //! | `reduction` | `survey` (what the scene may need), `decide` (what it gets), `reduce` (make it) |
 //! | `model` | the reduced body with its points, markers and loads |
+//! | `reference` | the bent body that modes are about |
 //! | `full` | the full nonlinear body of the scene, and the check of a model's state by it |
 //! | `tie` | markers, and the systems of the bodies that joints connect |
 
@@ -29,6 +30,7 @@ mod load;
 mod mesh;
 mod model;
 mod progress;
+mod reference;
 mod reduction;
 mod stress;
 mod structure;

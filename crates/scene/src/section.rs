@@ -125,6 +125,34 @@ pub(crate) struct ModesSection {
     pub large: Option<CountOrList>,
     /// The most other modes that follow the large ones (0 to 7); default 3.
     pub following: Option<usize>,
+    pub about: Option<AboutSection>,
+}
+
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "\"spin\", \"loads\", \"auto\", or a table with `angular_velocity` and `loads`"
+)]
+pub(crate) enum AboutSection {
+    Named(AboutName),
+    Given(AboutGiven),
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum AboutName {
+    Spin,
+    Loads,
+    Auto,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AboutGiven {
+    #[serde(default)]
+    pub angular_velocity: [f64; 3],
+    #[serde(default)]
+    pub loads: bool,
 }
 
 #[derive(Deserialize, JsonSchema)]

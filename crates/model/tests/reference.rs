@@ -1,0 +1,137 @@
+//! Modes about a bent body, against the full nonlinear body of the same mesh.
+
+use std::path::Path;
+
+use model::{Builder, Checker, Model, StateCheck};
+use nonlinear::StateErrorSettings;
+use scene::Scene;
+
+/// A body of a mesh of the verification in SI, clamped at its root.
+#[derive(Clone, Copy)]
+struct Body {
+    mesh: &'static str,
+    tip: [f64; 3],
+    /// Axis of the spin through the origin.
+    axis: [f64; 3],
+}
+
+const CONED: Body = Body { mesh: "rod", tip: [1.0, 0.0, 0.0], axis: [0.05, 0.0, 0.998749] };
+const BLADE: Body = Body { mesh: "swept_blade", tip: [0.0, 0.917722, 0.289357], axis: [1.0, 0.0, 0.0] };
+const ARC: Body = Body { mesh: "quarter_arc", tip: [0.0, 0.8, 0.8], axis: [1.0, 0.0, 0.0] };
+
+const CLAMP: &str = "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n";
+
+impl Body {
+    fn parse(&self, modes: &str, rest: &str) -> Result<Scene, String> {
+        let Self { mesh, tip, .. } = self;
+        let text = format!(
+            "title = \"Bent\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n[body]\n\
+             mesh = \"meshes/{mesh}.msh\"\n\
+             material = {{ young_modulus = 2e9, poisson_ratio = 0.3, density = 1000.0 }}\n\
+             [modes]\nflexible = 8\nstatic_correction = true\n{modes}\n[effects]\nrefuse = false\n{rest}\n\
+             [output.points]\ntip = {tip:?}\n[time]\nend = 1.0\nstep = 1e-4\n"
+        );
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../verification/scene.toml");
+        Scene::parse(&text, path).map_err(|error| error.to_string())
+    }
+
+    fn scene(&self, modes: &str, rest: &str) -> Scene {
+        self.parse(modes, rest).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// Its first circular frequency at rest.
+    fn first(&self) -> f64 {
+        built(&self.scene("", CLAMP)).body.circular_frequencies[0]
+    }
+
+    /// In a spin, with modes about another one along its axis.
+    fn spinning(&self, modes: &str, spin: f64, about: f64) -> Scene {
+        let axis = self.axis;
+        let about = axis.map(|a| about * a);
+        self.scene(
+            &format!("about = {{ angular_velocity = {about:?} }}\n{modes}"),
+            &format!(
+                "[[constraints]]\nkind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = {axis:?}\ngroup = \"root\"\n\
+                 motion = {{ amplitude = {spin:e}, history = {{ kind = \"constant\" }} }}\n"
+            ),
+        )
+    }
+
+    /// Under a constant dead force at its tip, that the modes are about, and a change of it.
+    fn pushed(&self, modes: &str, force: [f64; 3], change: f64) -> Scene {
+        let amplitude = force.iter().map(|f| f * f).sum::<f64>().sqrt();
+        let direction = force.map(|f| f / amplitude);
+        let (tip, added) = (self.tip, amplitude * change);
+        let load = |amplitude: f64, history: &str| {
+            format!(
+                "[[loads]]\nkind = \"force\"\nat = {tip:?}\ndirection = {direction:?}\namplitude = {amplitude:e}\n\
+                 history = {history}\n"
+            )
+        };
+        let change = load(added, "{ kind = \"table\", times = [0.0, 10.0], values = [1.0, 1.0] }");
+        let steady = load(amplitude, "{ kind = \"constant\" }");
+        self.scene(&format!("about = {{ loads = true }}\n{modes}"), &format!("{CLAMP}{steady}{change}"))
+    }
+}
+
+fn built(scene: &Scene) -> Model {
+    Model::build(scene, |_| ()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The rest of a model, checked by the full body.
+fn rest(scene: &Scene) -> (Model, StateCheck) {
+    let model = built(scene);
+    let motion = model.rest(scene).unwrap();
+    let full = Builder::default().full(scene, |_| ()).unwrap().unwrap();
+    let full_body = full.body().unwrap();
+    let checker = Checker::new(&full, scene, &model, &full_body).unwrap();
+    let check = checker.check(&motion, &[], &StateErrorSettings::converged(), true).unwrap();
+    (model, check)
+}
+
+/// Errors of the tip and of the first frequency, in percent.
+fn errors(name: &str, scene: &Scene) -> [f64; 2] {
+    let (model, check) = rest(scene);
+    let tip = &check.points[0];
+    let moved = tip.displacement.iter().map(|u| u * u).sum::<f64>().sqrt();
+    let frequencies: Vec<String> = check.frequencies.iter().map(|f| format!("{:+.4}", 100.0 * f.error)).collect();
+    println!(
+        "{name}: large {:?}, tip {moved:.3} m off by {:.5} %, frequencies {} %",
+        model.large_modes(),
+        100.0 * tip.relative,
+        frequencies.join(" ")
+    );
+    [100.0 * tip.relative, 100.0 * check.frequencies.first().map_or(0.0, |f| f.error.abs())]
+}
+
+#[track_caller]
+fn is_within(name: &str, scene: &Scene, [tip, frequency]: [f64; 2]) {
+    let found = errors(name, scene);
+    assert!(found[0] <= tip && found[1] <= frequency, "{name}: {found:?} % instead of {tip} and {frequency}");
+}
+
+/// Independent reference: the full nonlinear body of the same mesh. At the reference the model rests where this does, and its
+/// vibrations are those about this rest.
+#[test]
+fn at_the_reference_the_rest_is_exact() {
+    for (name, body, part) in [("blade", BLADE, 1.0), ("blade", BLADE, 2.0), ("arc", ARC, 1.0), ("coned", CONED, 2.0)] {
+        let spin = part * body.first();
+        for large in ["large = 1", ""] {
+            is_within(&format!("{name} at {part} {large}"), &body.spinning(large, spin, spin), [1e-6, 1e-2]);
+        }
+    }
+    is_within("arc under 35 N", &ARC.pushed("large = 1", [0.0, 0.0, 35.0], 0.0), [1e-6, 1e-2]);
+}
+
+#[test]
+fn table() {
+    for (name, body, part) in [("blade", BLADE, 1.0), ("blade", BLADE, 2.0), ("arc", ARC, 1.0), ("coned", CONED, 2.0)] {
+        let spin = part * body.first();
+        for change in [-0.5, -0.3, -0.1, 0.1, 0.3, 0.5] {
+            errors(&format!("{name} at {part} changed by {change}"), &body.spinning("", (1.0 + change) * spin, spin));
+        }
+    }
+    for change in [-0.5, -0.3, -0.1, 0.1, 0.3, 0.5] {
+        errors(&format!("arc under 35 N changed by {change}"), &ARC.pushed("", [0.0, 0.0, 35.0], change));
+    }
+}
