@@ -158,7 +158,10 @@ impl Assembly {
         let initial = matches!(scene.constraint, Some(Constraint::Support { .. })).then_some(&scene.initial);
         // So is the rest that modes are about.
         let about = scene.modes.about.map(|about| (about, &scene.loads, scene.initial.attitude, scene.time.end));
-        format!("{:?} {:?} {:?} {flexibility:?} {initial:?} {about:?}", scene.body, scene.constraint, scene.modes.flexible)
+        format!(
+            "{:?} {:?} {:?} {flexibility:?} {initial:?} {about:?}",
+            scene.body, scene.constraint, scene.modes.flexible
+        )
     }
 
     /// The same without the matrices, which are assembled again where they are needed, for who keeps it for long.

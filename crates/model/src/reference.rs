@@ -17,7 +17,7 @@ use keys::Hash;
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 use nonlinear::{EquilibriumSettings, ExternalForces, FullBody, NonlinearError, equilibrium};
-use scene::{About, Scene, SceneError};
+use scene::{About, SceneError};
 
 use crate::assembly::AssembledMesh;
 use crate::error::BuildError;
@@ -69,7 +69,11 @@ impl Reference {
             Some(store) => {
                 let key = store.key().of("reference", 1).with("support", &assembled.support);
                 let key = key.with("spin", &steady.omega_body);
-                let loads = if steady.loads { format!("{:?} {:?}", scene.loads, scene.initial.attitude) } else { String::new() };
+                let loads = if steady.loads {
+                    format!("{:?} {:?}", scene.loads, scene.initial.attitude)
+                } else {
+                    String::new()
+                };
                 let key = key.with("loads", &*loads).finish();
                 match store.recall(&key, 6 * nodes)? {
                     Some(found) => found,
@@ -120,6 +124,12 @@ impl Reference {
         nodes.iter().zip(weights).map(|(node, weight)| of_node(*node) * *weight).sum()
     }
 
+    /// True if the reference is under this load.
+    pub fn carries(&self, model: &MeshModel<'_, '_>, load: &MeshLoad) -> bool {
+        let MeshModel { scene, support, drive, .. } = model;
+        self.steady.loads && load.size() > 0.0 && physics::is_steady(scene, support.motion, drive.as_ref(), load)
+    }
+
     /// The stiffness by the stress of the spin and the loads that the reference has already (nf×nf), of those that the motion adds.
     pub fn stress_stiffness(
         &self,
@@ -138,19 +148,16 @@ impl Reference {
         for (stiffness, (i, j)) in of_spin.into_iter().flatten().zip(ReducedBody::PAIRS) {
             add(stiffness, if i == j { 1.0 } else { 2.0 } * omega[i] * omega[j]);
         }
-        for (load, directed) in model.loads.iter().zip(of_loads).filter(|_| self.steady.loads) {
-            if acts(model.scene, load, model) {
-                let vectors: Vec<Vector3<f64>> = directed.iter().map(|directed| directed.vector / load.size()).collect();
+        for (load, directed) in model.loads.iter().zip(of_loads) {
+            if self.carries(model, load) {
+                let vectors: Vec<Vector3<f64>> =
+                    directed.iter().map(|directed| directed.vector / load.size()).collect();
                 let parts = if directed.len() > 1 { load.parts(&vectors) } else { vec![1.0] };
                 directed.iter().zip(parts).for_each(|(directed, part)| add(&directed.stiffness, part));
             }
         }
         sum
     }
-}
-
-fn acts(scene: &Scene, load: &MeshLoad, model: &MeshModel<'_, '_>) -> bool {
-    load.size() > 0.0 && physics::is_steady(scene, model.support.motion, model.drive.as_ref(), load)
 }
 
 /// Refuses bodies of which modes about a bent one are not made.
@@ -166,7 +173,11 @@ fn fits(assembled: &AssembledMesh) -> Result<(), SceneError> {
         return refuse("a body with markers", "one without joints", help);
     }
     if !scene.time.method.abilities.geometric_stiffening {
-        return refuse("a scheme of the paper's formulation", "the conservative form", "set `formulation = \"conservative\"`");
+        return refuse(
+            "a scheme of the paper's formulation",
+            "the conservative form",
+            "set `formulation = \"conservative\"`",
+        );
     }
     Ok(())
 }
@@ -202,7 +213,8 @@ fn found(assembled: &AssembledMesh, steady: Steady) -> Result<Vec<f64>, BuildErr
         let help = "take less of the spin or the load, or modes about the undeformed body (remove `about`)";
         scene.refuse(KEY, error.to_string(), "an equilibrium of the bent body", help).into()
     };
-    let body = FullBody::new(Arc::clone(mesh), assembled.materials()?, Cow::Borrowed(matrices), support).map_err(fails)?;
+    let body =
+        FullBody::new(Arc::clone(mesh), assembled.materials()?, Cow::Borrowed(matrices), support).map_err(fails)?;
     let mut dead = vec![0.0; body.dofs()];
     if steady.loads {
         let masses: Vec<f64> = body.momentum(&vec![1.0; body.dofs()]).chunks_exact(3).map(|m| m[0]).collect();

@@ -1,5 +1,6 @@
 //! Stress of loads and of a drive, and the stiffness by it.
 
+pub(crate) mod about;
 pub(crate) mod left_out;
 pub(crate) mod products;
 pub(crate) mod shapes;

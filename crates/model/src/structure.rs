@@ -33,6 +33,7 @@ use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{MatrixChecks, refuse_matrix};
 use crate::progress::{BuildProgress, BuildWork};
 use crate::reference::Reference;
+use crate::stress::about::stress_about;
 use crate::structure::kept::{Basis, Extended, Found, OwnSecondOrder, SecondOrder, StaticResponses};
 
 /// The finite-element side of a body.
@@ -265,6 +266,12 @@ impl<'a> Structure<'a> {
                 "a body file of a body that is held otherwise".to_owned(),
                 "one with the constraints of the scene".to_owned(),
             )
+        } else if origin.reference != self.reference().map(|reference| reference.hash.to_string()) {
+            let found = match origin.reference {
+                Some(_) => "a body file with modes about a bent body that is not that of the scene",
+                None => "a body file with modes about the undeformed body",
+            };
+            (found.to_owned(), "one with the modes of `about` in [modes]".to_owned())
         } else {
             (format!("a body file with {} modes", origin.modes), format!("one with {flexible}, as [modes] asks"))
         };
@@ -534,7 +541,11 @@ impl Structure<'_> {
         let asked = self.of_body("nodal stress").with("displacements", &displacements);
         let size = [6 * recovery.sites().len(), displacements.ncols() + pairs.len()];
         self.ask(asked.with("others", &others).with("pairs", pairs), size, || {
-            let linear = recovery.nodal_stress(displacements)?;
+            let linear = match self.reference() {
+                Some(Reference { displacement, .. }) => stress_about(recovery, displacement.as_ref(), displacements)?,
+                None => recovery.nodal_stress(displacements)?,
+            };
+            let linear = linear.get(.., ..displacements.ncols()).to_owned();
             if pairs.is_empty() {
                 return Ok(linear);
             }
@@ -543,6 +554,17 @@ impl Structure<'_> {
             let entry = |i: usize, j: usize| if j < first { linear[(i, j)] } else { second[(i, j - first)] };
             Ok(Mat::from_fn(size[0], size[1], entry))
         })
+    }
+
+    /// The stress (6m×1) of the bent body that the modes are about; none of the undeformed one.
+    pub fn reference_stress(&self) -> Result<Option<Mat<f64>>, BuildError> {
+        let Some(Reference { displacement, .. }) = self.reference() else { return Ok(None) };
+        let recovery = self.recovery()?;
+        let asked = self.of_body("stress of the reference");
+        let found = self.ask(asked, [6 * recovery.sites().len(), 1], || {
+            Ok(stress_about(recovery, displacement.as_ref(), displacement.get(.., ..0))?)
+        });
+        Ok(Some(found?))
     }
 
     /// The stress (6m×k) of static responses (3n×k) that modes and static shapes leave out.

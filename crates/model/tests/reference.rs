@@ -68,7 +68,7 @@ impl Body {
                  history = {history}\n"
             )
         };
-        let change = load(added, "{ kind = \"table\", times = [0.0, 10.0], values = [1.0, 1.0] }");
+        let change = load(added, "{ kind = \"table\", points = [[0.0, 1.0], [10.0, 1.0]] }");
         let steady = load(amplitude, "{ kind = \"constant\" }");
         self.scene(&format!("about = {{ loads = true }}\n{modes}"), &format!("{CLAMP}{steady}{change}"))
     }
@@ -85,7 +85,9 @@ fn rest(scene: &Scene) -> (Model, StateCheck) {
     let full = Builder::default().full(scene, |_| ()).unwrap().unwrap();
     let full_body = full.body().unwrap();
     let checker = Checker::new(&full, scene, &model, &full_body).unwrap();
-    let check = checker.check(&motion, &[], &StateErrorSettings::converged(), true).unwrap();
+    // Two factors at least: after the first one the tangent is that of the linear stress.
+    let settings = StateErrorSettings { small: 0.0, most_factors: 12, ..StateErrorSettings::converged() };
+    let check = checker.check(&motion, &[], &settings, true).unwrap();
     (model, check)
 }
 
@@ -113,25 +115,103 @@ fn is_within(name: &str, scene: &Scene, [tip, frequency]: [f64; 2]) {
 /// Independent reference: the full nonlinear body of the same mesh. At the reference the model rests where this does, and its
 /// vibrations are those about this rest.
 #[test]
-fn at_the_reference_the_rest_is_exact() {
+fn at_the_reference_rest_and_vibrations_are_exact() {
     for (name, body, part) in [("blade", BLADE, 1.0), ("blade", BLADE, 2.0), ("arc", ARC, 1.0), ("coned", CONED, 2.0)] {
         let spin = part * body.first();
-        for large in ["large = 1", ""] {
-            is_within(&format!("{name} at {part} {large}"), &body.spinning(large, spin, spin), [1e-6, 1e-2]);
+        for large in ["", "large = 2"] {
+            is_within(&format!("{name} at {part} {large}"), &body.spinning(large, spin, spin), [1e-8, 0.01]);
         }
     }
-    is_within("arc under 35 N", &ARC.pushed("large = 1", [0.0, 0.0, 35.0], 0.0), [1e-6, 1e-2]);
+    is_within("arc under 35 N", &ARC.pushed("", [0.0, 0.0, 35.0], 0.0), [1e-8, 0.01]);
+}
+
+/// Independent reference: as above. Without a reference the tip is off by 0.15 to 2.7 %, and with one that nothing follows by up
+/// to 57 %.
+#[test]
+fn about_the_reference_the_spin_and_the_load_may_change() {
+    // Errors of tip and first frequency, percent, at changes by 10, 30, 50 % either way.
+    let cases = [
+        ("blade", BLADE, 1.0, [[0.008, 0.02], [0.06, 0.1], [0.5, 0.4]]),
+        ("blade", BLADE, 2.0, [[0.004, 0.05], [0.25, 0.7], [3.0, 3.0]]),
+        ("arc", ARC, 1.0, [[0.014, 0.1], [0.3, 0.6], [2.2, 1.3]]),
+        ("coned", CONED, 2.0, [[0.01, 0.02], [0.02, 0.06], [0.1, 0.2]]),
+    ];
+    for (name, body, part, bounds) in cases {
+        let spin = part * body.first();
+        for (change, bounds) in [0.1, 0.3, 0.5].into_iter().zip(bounds) {
+            for change in [-change, change] {
+                let scene = body.spinning("", (1.0 + change) * spin, spin);
+                is_within(&format!("{name} at {part} changed by {change}"), &scene, bounds);
+            }
+        }
+    }
+    for (change, bounds) in [0.1, 0.3, 0.5].into_iter().zip([[0.002, 0.01], [0.01, 0.03], [0.05, 0.2]]) {
+        for change in [-change, change] {
+            let scene = ARC.pushed("", [0.0, 0.0, 35.0], change);
+            is_within(&format!("arc under 35 N changed by {change}"), &scene, bounds);
+        }
+    }
+}
+
+/// What is seen is counted from the undeformed body, and the motion begins in the reference.
+#[test]
+fn a_motion_begins_in_the_reference_and_stays_there() {
+    let spin = BLADE.first();
+    let scene = BLADE.spinning("", spin, spin).without_rows();
+    let model = built(&scene);
+    let (_, check) = rest(&scene);
+    let mut simulation = model.start(&scene).unwrap();
+    let mut last = simulation.next().unwrap().unwrap();
+    let moved = |o: &dynamics::Observation| o.points[0].elastic_displacement_body;
+    let (first, expected) = (moved(&last), nalgebra::Vector3::from(check.points[0].displacement));
+    // Independent reference: the full body.
+    assert!((first - expected).norm() < 1e-8 * expected.norm(), "{first} {expected}");
+    for row in simulation.take(200) {
+        last = row.unwrap();
+    }
+    // Conserved: a steady state.
+    assert!((moved(&last) - expected).norm() < 1e-8 * expected.norm(), "{}", moved(&last));
+}
+
+/// `"spin"` is the spin of the drive, `"auto"` takes what bends the body far.
+#[test]
+fn the_spin_of_the_drive_is_the_reference_by_its_name() {
+    let spin = BLADE.first();
+    let drive = |spin: f64, about: &str| {
+        let motion = format!(
+            "[[constraints]]\nkind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [1.0, 0.0, 0.0]\ngroup = \"root\"\n\
+             motion = {{ amplitude = {spin:e}, history = {{ kind = \"constant\" }} }}\n"
+        );
+        built(&BLADE.scene(about, &motion))
+    };
+    let by_name = drive(spin, "about = \"spin\"");
+    let given = built(&BLADE.spinning("", spin, spin));
+    assert_eq!(by_name.body.circular_frequencies, given.body.circular_frequencies);
+    let auto = drive(spin, "about = \"auto\"");
+    assert_eq!(auto.body.circular_frequencies, given.body.circular_frequencies);
+    // At a tenth of the spin it hardly bends.
+    assert!(drive(0.1 * spin, "about = \"auto\"").meshed.unwrap().reference.is_none());
 }
 
 #[test]
-fn table() {
-    for (name, body, part) in [("blade", BLADE, 1.0), ("blade", BLADE, 2.0), ("arc", ARC, 1.0), ("coned", CONED, 2.0)] {
-        let spin = part * body.first();
-        for change in [-0.5, -0.3, -0.1, 0.1, 0.3, 0.5] {
-            errors(&format!("{name} at {part} changed by {change}"), &body.spinning("", (1.0 + change) * spin, spin));
-        }
+fn a_body_without_a_reference_is_refused_in_words() {
+    let force = |kind: &str| {
+        format!(
+            "[[loads]]\nkind = \"{kind}\"\nat = [0.0, 0.8, 0.8]\ndirection = [0.0, 0.0, -1.0]\namplitude = 1e5\n\
+             history = {{ kind = \"constant\" }}\n"
+        )
+    };
+    let (push, twist) = (force("force"), force("moment"));
+    for (about, rest, expected) in [
+        ("\"loads\"", String::new(), "expected one that is clamped, or whose spin is given"),
+        ("\"spin\"", CLAMP.to_owned(), "expected a driven hinge"),
+        ("\"loads\"", format!("{CLAMP}{twist}"), "expected forces and gravity"),
+        ("\"loads\"", format!("{CLAMP}{push}"), "expected an equilibrium of the bent body"),
+    ] {
+        let scene = ARC.scene(&format!("about = {about}"), &rest);
+        let refused = Model::build(&scene, |_| ()).unwrap_err().to_string();
+        assert!(refused.contains("`modes.about`") && refused.contains(expected), "{refused}");
     }
-    for change in [-0.5, -0.3, -0.1, 0.1, 0.3, 0.5] {
-        errors(&format!("arc under 35 N changed by {change}"), &ARC.pushed("", [0.0, 0.0, 35.0], change));
-    }
+    let nothing = ARC.parse("about = { loads = false }", CLAMP).unwrap_err();
+    assert!(nothing.contains("expected one of them, or both"), "{nothing}");
 }

@@ -129,10 +129,7 @@ pub(crate) struct ModesSection {
 }
 
 #[derive(Deserialize)]
-#[serde(
-    untagged,
-    expecting = "\"spin\", \"loads\", \"auto\", or a table with `angular_velocity` and `loads`"
-)]
+#[serde(untagged, expecting = "\"spin\", \"loads\", \"auto\", or a table with `angular_velocity` and `loads`")]
 pub(crate) enum AboutSection {
     Named(AboutName),
     Given(AboutGiven),

@@ -91,7 +91,13 @@ pub(crate) fn reduce(
     let following = large.as_ref().map_or_else(Mat::new, LargeDeflection::following);
     let large_deflection = large.map(|large| large.manifold);
     let mut model = Model {
-        physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive, large_deflection, reference: forces },
+        physics: Physics {
+            effects,
+            drive: model.drive,
+            drive_stiffness: stress.of_drive,
+            large_deflection,
+            reference: forces,
+        },
         points,
         markers,
         paper: Paper { reference_points },

@@ -67,8 +67,9 @@ impl SupportRows {
         let Basis { modes: extended, body } = structure.with_motions(modes, motions.as_ref())?;
         let acting = model.loads.iter().filter(|load| has_gravity || !load.is_gravity());
         // No stress, but the turn of a pressure with its surface, which the reaction of all supports has, too.
-        let loads =
-            acting.map(|load| load.reduced(scene, (mesh, model.positions), &body, &extended, &[], true)).collect::<Result<Vec<_>, _>>()?;
+        let loads = acting
+            .map(|load| load.reduced(scene, (mesh, model.positions), &body, &extended, &[], true))
+            .collect::<Result<Vec<_>, _>>()?;
         let reactions = SupportReactions::new(&body, shapes, loads, manifold.cloned(), effects);
         Ok(Some(Self { names: (1..=parts.len()).map(|i| i.to_string()).collect(), components, reactions }))
     }
