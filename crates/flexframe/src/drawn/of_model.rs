@@ -70,10 +70,6 @@ pub(super) fn surface(mesh: &Mesh) -> (Vec<u32>, Vec<[u32; 6]>) {
     let mut nodes: Vec<u32> = on_mesh.iter().flatten().copied().collect();
     nodes.sort_unstable();
     nodes.dedup();
-    if meshed.reference.is_some() {
-        // Of the product without factors.
-        shapes.push(vec![[0.0; 6]; recovery.nodes().count()]);
-    }
     let place = |node: u32| nodes.partition_point(|n| *n < node) as u32;
     let faces = on_mesh.iter().map(|face| face.map(place)).collect();
     (nodes, faces)
@@ -123,6 +119,10 @@ fn stress(
         let strains = ProductStrains::new(manifold, extended.as_ref());
         let of_pairs = recovery.second_order_nodal_stress(strains.fields.as_ref(), &strains.pairs)?;
         shapes.extend(lists(&strains.stress(of_pairs.as_ref())));
+    }
+    if meshed.reference.is_some() {
+        // Of the product without factors.
+        shapes.push(vec![[0.0; 6]; recovery.nodes().count()]);
     }
     let place = |node: u32| nodes.partition_point(|n| *n < node) as u32;
     Ok(StressShapes { nodes: recovery.nodes().map(place).collect(), shapes })
