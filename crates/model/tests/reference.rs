@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use model::{Builder, Checker, Model, StateCheck};
-use nonlinear::StateErrorSettings;
+use nonlinear::{EquilibriumSettings, ExternalForces, StateErrorSettings, equilibrium, spin_vibrations};
 use scene::Scene;
 
 /// A body of a mesh of the verification in SI, clamped at its root.
@@ -149,6 +149,29 @@ fn about_the_reference_the_spin_and_the_load_may_change() {
         for change in [-change, change] {
             let scene = ARC.pushed("", [0.0, 0.0, 35.0], change);
             is_within(&format!("arc under 35 N changed by {change}"), &scene, bounds);
+        }
+    }
+}
+
+/// Independent reference: a second implementation, the subspace iteration of `campbell` on the full body, from modes of the body at
+/// rest, against the eight modes and static shapes about the reference.
+#[test]
+fn vibrations_of_the_full_body_are_those_of_the_modes_about_it() {
+    for (name, body, part) in [("blade", BLADE, 2.0), ("arc", ARC, 1.0)] {
+        let spin = part * body.first();
+        let (_, check) = rest(&body.spinning("", spin, spin));
+        let at_rest = built(&body.scene("", CLAMP)).meshed.unwrap().modes.shapes;
+        let full = Builder::default().full(&body.scene("", CLAMP), |_| ()).unwrap().unwrap();
+        let full = full.body().unwrap();
+        let omega = nalgebra::Vector3::from(body.axis) * spin;
+        let state =
+            equilibrium(&full, &ExternalForces::default(), &omega, None, &EquilibriumSettings::default()).unwrap();
+        let found = spin_vibrations(&full, &state, &omega, at_rest.as_ref(), 6).unwrap();
+        assert_eq!(found.len(), 6);
+        for (expected, found) in check.frequencies.iter().zip(&found) {
+            let frequency = found.circular_frequency / std::f64::consts::TAU;
+            println!("{name}: {frequency:.5} Hz, {:.5} about the reference", expected.model);
+            assert!((frequency - expected.model).abs() < 2e-4 * frequency && found.growth == 0.0);
         }
     }
 }

@@ -95,8 +95,7 @@ impl<'a> BentSpin<'a> {
         let size = |u: &[f64]| Vector3::from_column_slice(u).norm();
         let deflection = rest.displacement.chunks_exact(3).map(size).fold(0.0, f64::max);
         self.deflections.borrow_mut().push((speed, deflection));
-        let found =
-            spin_vibrations(&self.body, &rest, &omega, self.shapes.as_ref(), self.count).map_err(failed)?;
+        let found = spin_vibrations(&self.body, &rest, &omega, self.shapes.as_ref(), self.count).map_err(failed)?;
         let mut modes: Vec<SpinMode> = found.iter().map(|vibration| self.seen(vibration)).collect();
         modes.sort_by(|a, b| a.circular_frequency.total_cmp(&b.circular_frequency));
         Ok(modes)

@@ -30,11 +30,18 @@ impl fmt::Display for CampbellReport {
         writeln!(f, "  effects  {}", self.effects)?;
         let time = &self.time_unit;
         if let Some(most) = self.deflection.iter().copied().reduce(f64::max) {
-            writeln!(f, "  rest     bent by up to {} {}: vibrations about the rest at each speed", quantity(most), self.length_unit)?;
+            writeln!(
+                f,
+                "  rest     bent by up to {} {}: vibrations about the rest at each speed",
+                quantity(most),
+                self.length_unit
+            )?;
         }
         match self.stable_below {
             Some(speed) => writeln!(f, "  stable   below {} rad/{time}", quantity(speed))?,
-            None if !self.bodies.is_empty() || !self.deflection.is_empty() => writeln!(f, "  stable   at all speeds of this range")?,
+            None if !self.bodies.is_empty() || !self.deflection.is_empty() => {
+                writeln!(f, "  stable   at all speeds of this range")?
+            }
             None => writeln!(f, "  stable   no frequency falls to zero at any speed")?,
         }
         self.write_branches(f)?;
