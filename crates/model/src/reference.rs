@@ -4,7 +4,7 @@
 //! f_int(u₀) = f + M W (X + u₀)        K → K_T(u₀),   X → X + u₀
 //! ```
 //!
-//! Eqs. (P1)–(P4) of `docs/method/reference.md`. It takes the place of the undeformed body in all that follows: modes, static
+//! Eqs. (B1)–(B4) of `docs/method/reference.md`. It takes the place of the undeformed body in all that follows: modes, static
 //! responses, large and following modes, constants of the motion.
 
 use std::borrow::Cow;

@@ -111,7 +111,7 @@ impl PointShapes {
 struct Columns(Vector3<f64>, Vec<Vector3<f64>>, Option<SecondOrder>);
 
 impl From<PointShapes> for Columns {
-    fn from(PointShapes { position_body, columns, second_order, components: _ }: PointShapes) -> Self {
+    fn from(PointShapes { position_body, columns, second_order, .. }: PointShapes) -> Self {
         Self(position_body, columns, second_order)
     }
 }
