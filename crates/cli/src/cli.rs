@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, MAX_FRAMES, animate, animate_results};
-use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds, SystemCampbellSettings};
+use flexframe::campbell::{self, AboutRest, CampbellError, CampbellSettings, Speeds, SystemCampbellSettings};
 use flexframe::check::{self, CheckRows};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
@@ -207,6 +207,10 @@ enum Command {
             value_parser = positive
         )]
         orders: Vec<f64>,
+        /// Vibrations about the rest of the full nonlinear body at each speed: auto (where the spin bends the body so far that a low
+        /// frequency at the highest speed is off by 1 % without), always, or never.
+        #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = about_rest)]
+        about_rest: AboutRest,
         /// Number of flexible modes, instead of the scene's.
         #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
         flexible: Option<usize>,
@@ -610,6 +614,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             joint,
             speeds,
             orders,
+            about_rest,
             flexible,
             output,
             files,
@@ -638,7 +643,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                     expected: "the axis of the spin, in the axes of the mesh".to_owned(),
                     help: "give x, y, z, or three numbers such as 0,0.6,0.8".to_owned(),
                 })?;
-                let settings = CampbellSettings { axis, speeds, orders };
+                let settings = CampbellSettings { axis, speeds, orders, about_rest };
                 campbell::campbell(scene, &builder, &folder, &settings, |p| bar.campbell(p))
             };
             let report = report.map_err(|error| of_option(error, flexible))?;
@@ -877,6 +882,16 @@ fn view(text: &str) -> Result<View, String> {
                 Err("expected x, y, z, or two angles in degrees, the second from -90 to 90, such as -60,25".to_owned())
             }
         },
+    }
+}
+
+/// About what the vibrations of a spinning body are.
+fn about_rest(text: &str) -> Result<AboutRest, String> {
+    match text {
+        "auto" => Ok(AboutRest::Auto),
+        "always" => Ok(AboutRest::Always),
+        "never" => Ok(AboutRest::Never),
+        _ => Err("expected auto, always or never".to_owned()),
     }
 }
 

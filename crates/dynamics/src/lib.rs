@@ -32,7 +32,7 @@ pub use body::initial::Initial;
 pub use body::model::check_model;
 pub use body::motion_state::MotionState;
 pub use body::patch_turn::PatchTurn;
-pub use body::physics::{Drive, DrivenMotion, DrivenSpeed, Physics};
+pub use body::physics::{Drive, DrivenMotion, DrivenSpeed, Physics, ReferenceForces};
 pub use body::second_order::SecondOrder;
 pub use body::shapes::{PointShapes, RotationShapes};
 pub use conservative::manifold::{MAX_FOLLOWING, MAX_LARGE, Manifold};

@@ -156,6 +156,9 @@ impl RunDescription {
             if let Some(load) = body.loads.iter().find(|load| loads::data(&***load).is_none()) {
                 return Err(DescriptionError::Load { load: format!("{load:?}") });
             }
+            if body.physics.reference.is_some() {
+                return Err(DescriptionError::Reference);
+            }
             if body.physics.drive.as_ref().is_some_and(|drive| drive.added.is_some()) {
                 return Err(DescriptionError::AddedSpeed);
             }

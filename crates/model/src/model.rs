@@ -49,6 +49,8 @@ pub struct Meshed {
     /// Shapes on the mesh that only follow large modes (3n × …), none without: what the extended shapes have after the
     /// modes.
     pub following: Mat<f64>,
+    /// Displacement of the bent body that the modes are about (3n × 1); none of modes about the undeformed one.
+    pub reference: Option<Mat<f64>>,
 }
 
 /// The body of a scene in modal coordinates, with its mesh, its points and its loads.

@@ -32,6 +32,8 @@ use crate::error::{BuildError, modal, too_many_modes};
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{MatrixChecks, refuse_matrix};
 use crate::progress::{BuildProgress, BuildWork};
+use crate::reference::Reference;
+use crate::stress::about::stress_about;
 use crate::structure::kept::{Basis, Extended, Found, OwnSecondOrder, SecondOrder, StaticResponses};
 
 /// The finite-element side of a body.
@@ -93,6 +95,7 @@ impl<'a> Structure<'a> {
             element_passes: Cell::default(),
             computing: RefCell::default(),
         };
+        assembled.reference()?;
         if assembled.store.is_none() {
             structure.solver()?;
         }
@@ -106,7 +109,11 @@ impl<'a> Structure<'a> {
 
     /// The key of a value of the body whatever holds it.
     fn of_body(&self, what: &str) -> Asked {
-        Asked(self.assembled.store.as_ref().map(|store| store.key().of(what, 1)))
+        let start = self.assembled.store.as_ref().map(|store| store.key().of(what, 1));
+        match self.reference() {
+            Some(reference) => Asked(start).with("reference", &reference.hash),
+            None => Asked(start),
+        }
     }
 
     /// The key of a value of the body with its support.
@@ -146,7 +153,7 @@ impl<'a> Structure<'a> {
             return Ok(found);
         }
         let AssembledMesh { mesh, support, builder, .. } = self.assembled;
-        let solver = self.matrices()?.solver(mesh.positions(), support).map_err(|error| self.refuse(error))?;
+        let solver = self.matrices()?.solver(self.positions()?, support).map_err(|error| self.refuse(error))?;
         let edge_ends = if mesh.has_elements() { mesh.edge_ends() } else { None };
         let solver = match edge_ends {
             Some(edge_ends) => solver.with_edge_ends(edge_ends).map_err(|error| self.refuse(error))?,
@@ -159,8 +166,20 @@ impl<'a> Structure<'a> {
         Ok(self.solver.get_or_init(|| solver))
     }
 
+    /// About the reference.
     fn matrices(&self) -> Result<&'a FeMatrices, BuildError> {
-        self.assembled.matrices()
+        self.assembled.tangent()
+    }
+
+    /// The nodes of the reference.
+    fn positions(&self) -> Result<&'a [[f64; 3]], BuildError> {
+        self.assembled.positions()
+    }
+
+    /// The bent body that the modes are about.
+    pub fn reference(&self) -> Option<&'a Reference> {
+        // It was found when this was made.
+        self.assembled.reference().ok().flatten()
     }
 
     fn recovery(&self) -> Result<&StressRecovery<'a>, BuildError> {
@@ -191,7 +210,7 @@ impl<'a> Structure<'a> {
 
     /// The body in the coordinates of its modes.
     fn reduced(&self, modes: &Modes) -> Result<ReducedBody, BuildError> {
-        let positions = self.assembled.mesh.positions();
+        let positions = self.positions()?;
         ReducedBody::of_mass(modes, self.solver()?.mass(), positions).map_err(|error| self.modal(error))
     }
 
@@ -247,6 +266,12 @@ impl<'a> Structure<'a> {
                 "a body file of a body that is held otherwise".to_owned(),
                 "one with the constraints of the scene".to_owned(),
             )
+        } else if origin.reference != self.reference().map(|reference| reference.hash.to_string()) {
+            let found = match origin.reference {
+                Some(_) => "a body file with modes about a bent body that is not that of the scene",
+                None => "a body file with modes about the undeformed body",
+            };
+            (found.to_owned(), "one with the modes of `about` in [modes]".to_owned())
         } else {
             (format!("a body file with {} modes", origin.modes), format!("one with {flexible}, as [modes] asks"))
         };
@@ -310,7 +335,7 @@ impl Structure<'_> {
             if forces.count() == of_loads.ncols() {
                 return Ok(StaticResponses { fields: solve(*of_loads)?, remainders: Vec::new() });
             }
-            let (mass, positions) = (solver.mass(), self.assembled.mesh.positions());
+            let (mass, positions) = (solver.mass(), self.positions()?);
             let mut all = Mat::zeros(of_loads.nrows(), forces.count());
             all.as_mut().subcols_mut(0, of_loads.ncols()).copy_from(of_loads);
             let mut next = of_loads.ncols();
@@ -441,10 +466,11 @@ impl Structure<'_> {
         let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
         let bent = shapes_of(modes, &[large, following].concat());
         let products = Products { large: large.len(), following: following.len() };
+        let reference = self.reference().map(|reference| reference.displacement.as_ref());
         let mut known: Vec<Vec<usize>> = (0..products.coordinates()).map(|k| vec![k]).collect();
         let mut fields = bent.clone();
         for wanted in [products.second(), products.third()] {
-            let expansion = Expansion { products: &known, fields: fields.as_ref(), reference: None };
+            let expansion = Expansion { products: &known, fields: fields.as_ref(), reference };
             self.pass_elements();
             let forces = expansion.forces(mesh, materials, &wanted)?;
             let answers = self.solve(modes, forces.as_ref(), StaticAccuracy::Shapes)? * Scale(-1.0);
@@ -459,7 +485,7 @@ impl Structure<'_> {
             });
             known.extend(wanted);
         }
-        let expansion = Expansion { products: &known, fields: fields.as_ref(), reference: None };
+        let expansion = Expansion { products: &known, fields: fields.as_ref(), reference };
         self.pass_elements();
         let energies = expansion.energies(mesh, materials, &products.of_energy())?;
         let of_products = fields.get(.., products.coordinates()..);
@@ -494,7 +520,8 @@ impl Structure<'_> {
         self.ask(asked.with("known", known), [displacements.ncols(), shapes.ncols()], || {
             self.pass_elements();
             let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
-            Ok(extended_geometric_stiffness(mesh, materials, displacements, shapes, known)?)
+            let reference = self.reference().map(|reference| reference.displacement.as_ref());
+            Ok(extended_geometric_stiffness(mesh, materials, displacements, shapes, known, reference)?)
         })
     }
 
@@ -514,7 +541,11 @@ impl Structure<'_> {
         let asked = self.of_body("nodal stress").with("displacements", &displacements);
         let size = [6 * recovery.sites().len(), displacements.ncols() + pairs.len()];
         self.ask(asked.with("others", &others).with("pairs", pairs), size, || {
-            let linear = recovery.nodal_stress(displacements)?;
+            let linear = match self.reference() {
+                Some(Reference { displacement, .. }) => stress_about(recovery, displacement.as_ref(), displacements)?,
+                None => recovery.nodal_stress(displacements)?,
+            };
+            let linear = linear.get(.., ..displacements.ncols()).to_owned();
             if pairs.is_empty() {
                 return Ok(linear);
             }
@@ -523,6 +554,17 @@ impl Structure<'_> {
             let entry = |i: usize, j: usize| if j < first { linear[(i, j)] } else { second[(i, j - first)] };
             Ok(Mat::from_fn(size[0], size[1], entry))
         })
+    }
+
+    /// The stress (6m×1) of the bent body that the modes are about; none of the undeformed one.
+    pub fn reference_stress(&self) -> Result<Option<Mat<f64>>, BuildError> {
+        let Some(Reference { displacement, .. }) = self.reference() else { return Ok(None) };
+        let recovery = self.recovery()?;
+        let asked = self.of_body("stress of the reference");
+        let found = self.ask(asked, [6 * recovery.sites().len(), 1], || {
+            Ok(stress_about(recovery, displacement.as_ref(), displacement.get(.., ..0))?)
+        });
+        Ok(Some(found?))
     }
 
     /// The stress (6m×k) of static responses (3n×k) that modes and static shapes leave out.

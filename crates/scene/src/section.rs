@@ -125,6 +125,37 @@ pub(crate) struct ModesSection {
     pub large: Option<CountOrList>,
     /// The most other modes that follow the large ones (0 to 7); default 3.
     pub following: Option<usize>,
+    /// The bent rest that all modes are about; default the undeformed body.
+    pub about: Option<AboutSection>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "\"spin\", \"loads\", \"auto\", or a table with `angular_velocity` and `loads`")]
+pub(crate) enum AboutSection {
+    Named(AboutName),
+    Given(AboutGiven),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum AboutName {
+    /// In the largest spin of the drive.
+    Spin,
+    /// Under the steady forces and gravity.
+    Loads,
+    /// Both, where they bend the body far.
+    Auto,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AboutGiven {
+    /// A steady spin, radians per time, axes of the body.
+    #[serde(default)]
+    pub angular_velocity: [f64; 3],
+    /// True if the steady forces and gravity act.
+    #[serde(default)]
+    pub loads: bool,
 }
 
 #[derive(Deserialize, JsonSchema)]

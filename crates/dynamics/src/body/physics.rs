@@ -63,7 +63,7 @@ impl DrivenSpeed {
     }
 
     /// The amplitude times the largest factor up to a time.
-    pub(crate) fn largest(&self, end: f64) -> f64 {
+    pub fn largest(&self, end: f64) -> f64 {
         self.amplitude * self.history.largest(end)
     }
 }
@@ -113,12 +113,41 @@ pub struct Physics {
     /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that
     /// of the modes counts.
     pub large_deflection: Option<Manifold>,
+    /// What holds the bent body that the modes are about, where that is not the undeformed one. Data of a run do not have it
+    /// ([`crate::DescriptionError`]).
+    #[serde(skip)]
+    pub reference: Option<ReferenceForces>,
+}
+
+/// The strain energy g·q + ½ qᵀBq that a body has beside its stiffness and its manifold where its modes are about a bent
+/// reference. g are the internal forces there, which loads and spin of the reference balance; B takes from the stiffness what the
+/// stress of these would count twice, and adds the work of g on displacements of second order.
+#[derive(Debug, Clone)]
+pub struct ReferenceForces {
+    /// g (nf).
+    pub force: Vec<f64>,
+    /// B (nf×nf), symmetric.
+    pub stiffness: Mat<f64>,
+}
+
+impl ReferenceForces {
+    /// Refuses sizes other than `nf`, and numbers that are not finite.
+    pub(crate) fn check(&self, nf: usize) -> Result<(), SetupError> {
+        let Self { force, stiffness } = self;
+        for found in [force.len(), stiffness.nrows(), stiffness.ncols()] {
+            if found != nf {
+                return Err(SetupError::Length { what: "the forces of a reference", expected: nf, found });
+            }
+        }
+        let numbers = force.iter().chain(stiffness.col_iter().flat_map(|column| column.iter()));
+        numbers.copied().try_for_each(|value| finite("a force of a reference", value))
+    }
 }
 
 impl Default for Physics {
     /// All effects; nothing drives or stresses the body.
     fn default() -> Self {
-        Self { effects: EffectMap::all(), drive: None, drive_stiffness: None, large_deflection: None }
+        Self { effects: EffectMap::all(), drive: None, drive_stiffness: None, large_deflection: None, reference: None }
     }
 }
 
@@ -140,13 +169,20 @@ impl Keyed for DrivenMotion {
     }
 }
 
+impl Keyed for ReferenceForces {
+    fn key(&self, key: Key) -> Key {
+        key.of("reference forces", 1).with("force", &self.force).with("stiffness", &self.stiffness)
+    }
+}
+
 impl Keyed for Physics {
     fn key(&self, key: Key) -> Key {
-        let Self { effects, drive, drive_stiffness, large_deflection } = self;
-        key.of("physics", 1)
+        let Self { effects, drive, drive_stiffness, large_deflection, reference } = self;
+        key.of("physics", 2)
             .with("effects", effects)
             .with("drive", drive)
             .with("drive stiffness", drive_stiffness)
             .with("large deflection", large_deflection)
+            .with("reference", reference)
     }
 }

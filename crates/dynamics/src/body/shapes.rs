@@ -14,6 +14,8 @@ use crate::body::second_order::SecondOrder;
 #[serde(into = "Columns", from = "Columns")]
 pub struct PointShapes {
     position_body: Vector3<f64>,
+    /// Displacement that the position has already: of a bent reference.
+    of_reference: Vector3<f64>,
     /// Column k is the displacement of the point in mode k (6+nf columns).
     columns: Vec<Vector3<f64>>,
     /// The same by components, a list of all modes each.
@@ -33,7 +35,20 @@ impl PointShapes {
     }
 
     fn of_columns(position_body: Vector3<f64>, columns: Vec<Vector3<f64>>) -> Self {
-        Self { position_body, components: Components::new(&columns), columns, second_order: None }
+        let of_reference = Vector3::zeros();
+        Self { position_body, of_reference, components: Components::new(&columns), columns, second_order: None }
+    }
+
+    /// The point of a bent reference, which has moved it by a displacement already: what is seen is counted from the
+    /// undeformed body.
+    #[must_use]
+    pub fn moved_by(self, of_reference: Vector3<f64>) -> Self {
+        Self { of_reference, ..self }
+    }
+
+    /// Displacement that its position has already: zero but about a bent reference.
+    pub fn of_reference(&self) -> Vector3<f64> {
+        self.of_reference
     }
 
     /// The point with its displacement to second order: a load on it then stiffens the body.
@@ -47,7 +62,7 @@ impl PointShapes {
         self.second_order.as_ref()
     }
 
-    /// X: undeformed position from the body's origin, body axes.
+    /// X: position from the body's origin without deformation, or in the bent reference that the modes are about, body axes.
     pub fn position_body(&self) -> Vector3<f64> {
         self.position_body
     }
@@ -61,7 +76,8 @@ impl PointShapes {
     pub fn truncated(&self, flexible: usize) -> Self {
         let kept = self.columns.len().min(6 + flexible);
         let second_order = self.second_order.as_ref().map(|second_order| second_order.truncated(flexible));
-        Self { second_order, ..Self::of_columns(self.position_body, self.columns[..kept].to_vec()) }
+        let of_reference = self.of_reference;
+        Self { second_order, of_reference, ..Self::of_columns(self.position_body, self.columns[..kept].to_vec()) }
     }
 
     /// Modal expansion at the point, (28): Σ_k Ψ_k c_k.
@@ -95,7 +111,7 @@ impl PointShapes {
 struct Columns(Vector3<f64>, Vec<Vector3<f64>>, Option<SecondOrder>);
 
 impl From<PointShapes> for Columns {
-    fn from(PointShapes { position_body, columns, second_order, components: _ }: PointShapes) -> Self {
+    fn from(PointShapes { position_body, columns, second_order, .. }: PointShapes) -> Self {
         Self(position_body, columns, second_order)
     }
 }
@@ -168,9 +184,9 @@ impl RotationShapes {
 
 impl Keyed for PointShapes {
     fn key(&self, key: Key) -> Key {
-        let Self { position_body, columns, second_order, components: _ } = self;
-        let key = key.of("point", 1).with("position", position_body).with("columns", columns.as_slice());
-        key.with("second order", second_order)
+        let Self { position_body, of_reference, columns, second_order, components: _ } = self;
+        let key = key.of("point", 2).with("position", position_body).with("columns", columns.as_slice());
+        key.with("second order", second_order).with("of reference", of_reference)
     }
 }
 

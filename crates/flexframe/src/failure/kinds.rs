@@ -463,7 +463,8 @@ impl Fault for CampbellError {
         match self {
             Self::Build(_) | Self::System(_) | Self::Figure(_) | Self::Write(_) => Known::default(),
             Self::Eigen { scene, .. } | Self::Steady { scene, .. } => Kind::Run.of(scene),
-            Self::NoAxis { scene, .. } => Kind::Usage.of(scene),
+            Self::Full { scene, .. } | Self::Bent { scene, .. } => Kind::Run.of(scene),
+            Self::NoAxis { scene, .. } | Self::NoFullBody { scene } => Kind::Usage.of(scene),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
         }
     }

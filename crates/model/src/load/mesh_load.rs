@@ -429,11 +429,12 @@ impl MeshLoad {
     }
 
     /// The load on the modes of a body, with the stiffness by its stress. A pressure turns with its surface: its resultant does
-    /// always, what it does along the modes where `has_load_stiffness` says so.
+    /// always, what it does along the modes where `has_load_stiffness` says so. The `positions` are those of the nodes in the body
+    /// that the modes are about.
     pub(crate) fn reduced(
         &self,
         scene: &Scene,
-        mesh: &Mesh,
+        (mesh, positions): (&Mesh, &[[f64; 3]]),
         body: &ReducedBody,
         modes: &Modes,
         stress: &[Directed],
@@ -464,7 +465,7 @@ impl MeshLoad {
         };
         Ok(match &self.action {
             Action::Force { nodes, weights, force } => {
-                let point = BodyPoint::new(modes, mesh.positions(), nodes, weights).map_err(modal(scene))?;
+                let point = BodyPoint::new(modes, positions, nodes, weights).map_err(modal(scene))?;
                 at(&point, force * self.size)?
             }
             Action::Weight { weight, force } => at(&weight.point(body, modes), force * self.size)?,

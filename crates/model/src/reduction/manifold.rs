@@ -49,6 +49,8 @@ impl Bent {
 /// The manifold of the large modes, and the shapes that it is made of.
 pub(crate) struct LargeDeflection {
     pub manifold: Manifold,
+    /// B (modes × modes): the work of the internal forces of a bent reference on displacements of second order is ½ qᵀBq.
+    pub reference_work: Option<Mat<f64>>,
     shapes: LargeShapes,
 }
 
@@ -61,10 +63,14 @@ impl LargeDeflection {
         Bent { large, following }: &Bent,
         spin: Option<&[Mat<f64>; 6]>,
     ) -> Result<Self, BuildError> {
-        let Extended { shapes, body, energies } = model.structure.large_shapes(modes, large, following)?;
+        let Extended { shapes, body, mut energies } = model.structure.large_shapes(modes, large, following)?;
+        let reference_work = model.reference.map(|reference| {
+            let forces = reference.modal_forces(&shapes.modes);
+            reference_work(&shapes, &forces, &mut energies)
+        });
         let extended = spin.map(|spin| spin.each_ref().map(|k| in_shapes(k, body.flexible())));
         let body = body.with_stress_stiffness(extended).map_err(modal(model.scene))?;
-        Ok(Self { manifold: Manifold::new(body, &shapes, &energies)?, shapes })
+        Ok(Self { manifold: Manifold::new(body, &shapes, &energies)?, reference_work, shapes })
     }
 
     /// The extended shapes.
@@ -87,6 +93,24 @@ impl LargeDeflection {
         stress.of_drive = stress.of_drive.map(|k| in_shapes(&k, count));
         stress
     }
+}
+
+/// The work of forces in the extended shapes on the displacements of products: that of third order is added to the energies, that of
+/// second order is given as a stiffness.
+fn reference_work(shapes: &LargeShapes, forces: &[f64], energies: &mut [f64]) -> Mat<f64> {
+    let (products, of_energy) = (shapes.products(), shapes.products().of_energy());
+    let bent = [&shapes.large[..], &shapes.following].concat();
+    let mut stiffness = Mat::zeros(shapes.dynamic, shapes.dynamic);
+    for (product, displacement) in products.of_displacement().iter().zip(shapes.coefficients.col_iter()) {
+        let work: f64 = displacement.iter().zip(forces).map(|(a, force)| a * force).sum();
+        if let [j, k] = product[..] {
+            stiffness[(bent[j], bent[k])] += work;
+            stiffness[(bent[k], bent[j])] += work;
+        } else if let Some(place) = of_energy.iter().position(|other| other == product) {
+            energies[place] += work;
+        }
+    }
+    stiffness
 }
 
 /// Refuses a list of large modes, numbered from 0, with one that others draw in.

@@ -93,7 +93,10 @@ fn loads(
     let reduced = |(i, load): (usize, &MeshLoad)| {
         let of_load = stress.get(i).map_or(&[][..], |of_load| of_load);
         let has_load_stiffness = !of_load.is_empty();
-        Ok((load.reduced(model.scene, model.mesh, body, modes, of_load, has_load_stiffness)?, load.is_gravity()))
+        Ok((
+            load.reduced(model.scene, (model.mesh, model.positions), body, modes, of_load, has_load_stiffness)?,
+            load.is_gravity(),
+        ))
     };
     model.loads.iter().enumerate().map(reduced).collect()
 }

@@ -25,6 +25,8 @@ pub(crate) struct LeftOut {
     pub stress: SiteStress,
     /// Parts of the first columns of `stress`; those of the spin and of its change follow.
     loads: Vec<LoadPart>,
+    /// The spin of a bent reference, whose stress is known to the end.
+    carried: Vector3<f64>,
 }
 
 /// A load, or one of its directions in the body.
@@ -52,7 +54,7 @@ impl LeftOut {
         let mut loads = Vec::new();
         if let Some(of_loads) = &statics.of_loads {
             for (i, load) in model.loads.iter().enumerate() {
-                if load.is_gravity() && !has_gravity {
+                if load.is_gravity() && !has_gravity || model.reference.is_some_and(|r| r.carries(model, load)) {
                     continue;
                 }
                 columns.push(of_loads.of_unit(i).to_owned());
@@ -81,7 +83,8 @@ impl LeftOut {
             stress.subcols_mut(first, beside.ncols()).copy_from(&beside);
             first += beside.ncols();
         }
-        Ok(Self { stress: SiteStress::new(&stress), loads })
+        let carried = model.reference.map(|reference| reference.steady.omega_body).unwrap_or_default();
+        Ok(Self { stress: SiteStress::new(&stress), loads, carried })
     }
 
     /// How much there is of each now.
@@ -94,7 +97,10 @@ impl LeftOut {
             part.size * factor * direction
         };
         let omega = &now.omega_body;
-        let of_pair = |(i, j): (usize, usize)| if i == j { 1.0 } else { 2.0 } * omega[i] * omega[j];
+        let of_pair = |(i, j): (usize, usize)| {
+            let times = if i == j { 1.0 } else { 2.0 };
+            times * (omega[i] * omega[j] - self.carried[i] * self.carried[j])
+        };
         let spin = ReducedBody::PAIRS.into_iter().map(of_pair);
         self.loads.iter().map(of_load).chain(spin).chain(now.alpha_body.iter().map(|alpha| -alpha)).collect()
     }
