@@ -1,7 +1,11 @@
 //! The report as the page reads it. `web/src/data.ts` has the same fields.
 
+use std::io::Read;
+
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::read::GzEncoder;
 use serde::Serialize;
 
 use crate::numbers::Numbers;
@@ -44,7 +48,7 @@ pub(crate) struct Data<'a> {
 
 #[derive(Debug, Serialize)]
 struct LiveData<'a> {
-    /// The program of the page and the data of the run, in base64; the program is packed by gzip.
+    /// The program of the page and the data of the run, packed by gzip, in base64.
     program: String,
     run: String,
     masses: Vec<f64>,
@@ -208,12 +212,20 @@ impl<'a> LiveData<'a> {
         };
         Self {
             program: STANDARD.encode(PROGRAM),
-            run: STANDARD.encode(&live.run),
+            run: STANDARD.encode(packed(&live.run)),
             masses: live.bodies.iter().map(|body| body.mass).collect(),
             controls: live.controls.iter().map(control).collect(),
             units: &live.units,
         }
     }
+}
+
+/// The bytes, packed by gzip.
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut packed = Vec::new();
+    // Reading from a list of bytes does not fail.
+    let _ = GzEncoder::new(bytes, Compression::best()).read_to_end(&mut packed);
+    packed
 }
 
 fn facts(facts: &[Fact]) -> Vec<[&str; 2]> {

@@ -5,7 +5,6 @@ use std::sync::{Mutex, PoisonError};
 pub(crate) use metis_sys::idx_t;
 
 use crate::error::ModalError;
-use crate::factor::ordering::ordering_bytes;
 
 /// METIS has one random number generator for the whole process: two calls at a time would race for it, and the
 /// ordering, with it the last digits of the modes, would differ from run to run.
@@ -34,7 +33,6 @@ pub(crate) fn dissect(
     let mut sizes = [0];
     // A poisoned lock is as good: METIS seeds its generator anew in every call.
     let _one_at_a_time = METIS.lock().unwrap_or_else(PoisonError::into_inner);
-    memory::check("the ordering", ordering_bytes(order.len(), neighbours.len()))?;
     // SAFETY: METIS has no other interface than C. The arrays are a valid compressed graph of n nodes (start has n + 1
     // entries, the last of them neighbours.len(), every neighbour is below n and has the node for a neighbour), the two
     // results have room for n numbers and `sizes` for one, null pointers stand for "no weights" and "default options" as

@@ -106,6 +106,7 @@ fn order_nodes(start: &[idx_t], neighbours: &[idx_t]) -> Result<Vec<idx_t>, Moda
         start.push(neighbours.len() as idx_t);
     }
     let (mut order, mut place) = (vec![0; leading.len()], vec![0; leading.len()]);
+    memory::check("the ordering", ordering_bytes(order.len(), neighbours.len()))?;
     dissect(&mut start, &mut neighbours, &mut order, &mut place)?;
 
     // What follows a node that follows another follows that one, too: so each has a leading one among its own.

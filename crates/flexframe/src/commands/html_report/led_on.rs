@@ -10,7 +10,7 @@ use report::{Control, Live, LiveBody};
 use results::Results;
 use scene::Load;
 
-use super::HtmlReportError;
+use super::error::HtmlReportError;
 use crate::commands::run::{bodies, metadata, system_of};
 use crate::motion::Beginning;
 use crate::motion::described::{DescribeError, Described, describe};

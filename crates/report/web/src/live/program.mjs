@@ -15,10 +15,10 @@ async function unpacked(bytes) {
 }
 
 export class Program {
-    /// Begins a run; both are bytes, the program packed by gzip. Systems are seen at least every `frame` of their time.
+    /// Begins a run; both are bytes packed by gzip. Systems are seen at least every `frame` of their time.
     static async begin(program, run, frame) {
         const { instance } = await WebAssembly.instantiate(await unpacked(program), {});
-        return new Program(instance.exports, run, frame);
+        return new Program(instance.exports, new Uint8Array(await unpacked(run)), frame);
     }
 
     constructor(exports, run, frame) {
