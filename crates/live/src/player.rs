@@ -28,7 +28,7 @@ pub struct Player {
     /// Work and impulses of each body of the page before its motion was made anew.
     done: Vec<Work>,
     time: f64,
-    /// True as long as all is as it was recorded.
+    /// True as long as nothing was changed.
     is_recorded: bool,
     numbers: Vec<f64>,
 }
@@ -56,7 +56,7 @@ impl Player {
         self.time
     }
 
-    /// True as long as nothing was changed: the motion is the recorded one.
+    /// True as long as nothing was changed: up to its end the motion is the recorded one.
     pub fn is_recorded(&self) -> bool {
         self.is_recorded
     }
@@ -115,7 +115,9 @@ impl Player {
         if value != change.recorded() {
             self.changes.push((change, value));
         }
-        self.begin_anew(motion, None, self.time).inspect_err(|_| self.changes = before)
+        self.begin_anew(motion, None, self.time).inspect_err(|_| self.changes = before)?;
+        self.is_recorded = false;
+        Ok(())
     }
 
     /// Sets the magnitude of a body's angular velocity. A body that does not turn is turned about its z axis. Joints let the
@@ -131,7 +133,9 @@ impl Player {
         let mut states = self.motions[motion].states()?;
         let omega = &mut states[own].omega_body;
         *omega = omega.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector3::z) * spin;
-        self.begin_anew(motion, Some(&states), self.time)
+        self.begin_anew(motion, Some(&states), self.time)?;
+        self.is_recorded = false;
+        Ok(())
     }
 
     /// Begins to pull at a place of a body: at `position_body` from its origin, where its flexible modes have the `shapes`, three
@@ -162,7 +166,9 @@ impl Player {
         let point = PointShapes::new(body_of_shapes, &BodyPoint { position_body, shapes });
         self.let_go()?;
         self.pull = Some((body, Pull::new(point, spring_and_damper, target_global)));
-        self.begin_anew(motion, None, self.time).inspect_err(|_| self.pull = None)
+        self.begin_anew(motion, None, self.time).inspect_err(|_| self.pull = None)?;
+        self.is_recorded = false;
+        Ok(())
     }
 
     /// Moves the place that is pulled to.
@@ -269,7 +275,6 @@ impl Player {
         for (body, (before, after)) in of_page.iter().zip(seen) {
             self.done[*body] = carried(&self.done[*body], before, after);
         }
-        self.is_recorded = false;
         self.write_numbers();
         Ok(())
     }

@@ -230,6 +230,10 @@ fn changes_are_those_of_a_run_that_has_them_from_its_beginning() {
     twice.lead_to(4.0).unwrap();
     assert!(of(&twice, 0)[13] > 0.0, "damping takes energy");
 
+    let mut longer = Player::new(of_body(alone(control, 1)), 0.02).unwrap();
+    longer.lead_to(3.0).unwrap();
+    assert!(longer.is_recorded() && !twice.is_recorded(), "to go on beyond the end changes nothing");
+
     twice.restart().unwrap();
     assert!(twice.is_recorded() && twice.time() == 0.0);
     assert_eq!(twice.value(Change::Damping { body: 0 }), 0.0);

@@ -8,10 +8,11 @@ use nalgebra::Vector3;
 use crate::body::components::{Components, ComponentsFrom};
 use crate::body::patch_turn::PatchTurn;
 use crate::body::second_order::SecondOrder;
+use crate::error::SetupError;
 
 /// A point with its rows of all mode shapes, rigid and flexible.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-#[serde(into = "Columns", from = "Columns")]
+#[serde(into = "Columns", try_from = "Columns")]
 pub struct PointShapes {
     position_body: Vector3<f64>,
     /// Displacement that the position has already: of a bent reference.
@@ -116,20 +117,49 @@ impl From<PointShapes> for Columns {
     }
 }
 
-impl From<Columns> for PointShapes {
-    fn from(Columns(position_body, columns, second_order): Columns) -> Self {
-        Self { second_order, ..Self::of_columns(position_body, columns) }
+impl TryFrom<Columns> for PointShapes {
+    type Error = SetupError;
+
+    fn try_from(Columns(position_body, columns, second_order): Columns) -> Result<Self, SetupError> {
+        check_rigid(&columns)?;
+        Ok(Self { second_order, ..Self::of_columns(position_body, columns) })
     }
+}
+
+/// Refuses columns without those of the six rigid modes.
+fn check_rigid(columns: &[Vector3<f64>]) -> Result<(), SetupError> {
+    let (what, found) = ("the list of the shapes of a place", columns.len());
+    if found < 6 { Err(SetupError::Entries { what, found, expected: "6 or more".to_owned() }) } else { Ok(()) }
 }
 
 /// A place of the body with the small rotations that all modes, rigid and flexible, give it.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+#[serde(into = "Rotations", try_from = "Rotations")]
 pub struct RotationShapes {
     /// Column k is the rotation vector of the place in mode k (6+nf columns).
     columns: Vec<Vector3<f64>>,
     second_order: Option<SecondOrder>,
     /// How far it turns, where large modes turn it.
     patch: Option<PatchTurn>,
+}
+
+/// A place as serde has it.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Rotations(Vec<Vector3<f64>>, Option<SecondOrder>, Option<PatchTurn>);
+
+impl From<RotationShapes> for Rotations {
+    fn from(RotationShapes { columns, second_order, patch }: RotationShapes) -> Self {
+        Self(columns, second_order, patch)
+    }
+}
+
+impl TryFrom<Rotations> for RotationShapes {
+    type Error = SetupError;
+
+    fn try_from(Rotations(columns, second_order, patch): Rotations) -> Result<Self, SetupError> {
+        check_rigid(&columns)?;
+        Ok(Self { columns, second_order, patch: None }.with_patch(patch))
+    }
 }
 
 impl RotationShapes {

@@ -175,6 +175,10 @@ impl Manifold {
                 return Err(SetupError::Length { what, expected, found });
             }
         }
+        if let Some(mode) = large.iter().chain(following).find(|mode| **mode >= dynamic.min(extended)) {
+            let what = "the number of a mode that bends";
+            return Err(SetupError::Value { what, found: *mode as f64, expected: "that of a mode, from 0" });
+        }
         if let Some(found) = energies.iter().copied().find(|energy| !energy.is_finite()) {
             return Err(SetupError::Value { what: "a strain energy", found, expected: "a finite number" });
         }

@@ -110,4 +110,12 @@ fn bytes_that_are_no_run_are_refused_and_every_cut_one_too() {
         assert!(of(&bytes[..cut]).is_err(), "{cut}");
     }
     assert!(of(&[&bytes[..], &[0]].concat()).is_err());
+    // Whatever is damaged, it is read or refused.
+    for at in (0..bytes.len()).step_by(3) {
+        for to in [0, 1, 6, 0x7f, 0xff] {
+            let mut damaged = bytes.clone();
+            damaged[at] = to;
+            let _ = of(&damaged);
+        }
+    }
 }

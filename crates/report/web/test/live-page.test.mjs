@@ -123,6 +123,7 @@ test("it goes on beyond the end of the recorded run, and the recorded run is one
     await page.keyboard.press("Space");
     await frame(page);
     assert.ok((await pixels(page)).body.part > 0.002, "the body is still in the picture");
+    assert.match(await state(page), /recorded run is over/);
     await picture(page, "thrown-beyond");
     await page.keyboard.press("l");
     assert.ok(await page.evaluate(() => window.reportPage.clock.time <= 1));
@@ -137,7 +138,7 @@ test("stress is live: colours and the greatest stress are those of the computed 
     const page = await open(t, "bent_rod");
     if (await page.locator('#colour option[value="stress"]').count()) await page.selectOption("#colour", "stress");
     await page.keyboard.press("Space");
-    await page.waitForFunction(() => window.reportPage.live.time > 0);
+    await page.waitForFunction(() => window.reportPage.live.time > 0.15, null, { timeout: 60000 });
     await page.waitForFunction(() => /greatest von Mises stress[^0-9]*[1-9]/.test(document.getElementById("live-numbers").textContent));
     await page.keyboard.press("Space");
     await picture(page, "rod-stress");

@@ -1,6 +1,6 @@
 // What the reader does with the live run: its switches, its sliders, its numbers.
 
-import type { Control, Report } from "../data";
+import { double, type Control, type Report } from "../data";
 import { number, withUnit } from "../format";
 import type { LiveRun } from "./run";
 
@@ -15,9 +15,12 @@ export class LivePanel {
     /// Factor on the stiffness of a pull.
     strength = 1;
     private last = -Infinity;
+    /// Time at which the recorded run ends.
+    private readonly end: number;
     private readonly sliders: (() => void)[] = [];
 
     constructor(private readonly report: Report, private readonly run: LiveRun, private readonly stress: () => number | null, switched: () => void) {
+        this.end = double(report.times).at(-1)!;
         element("live").hidden = false;
         document.querySelectorAll<HTMLElement>(".of-live").forEach((part) => (part.hidden = false));
         const on = element<HTMLInputElement>("live-on");
@@ -102,7 +105,9 @@ export class LivePanel {
         const state = element("live-state");
         state.classList.toggle("warning", run.failure !== null);
         const slow = run.pace < 0.9 ? ` This machine keeps up with ${number(100 * run.pace, 2)} % of the speed.` : "";
-        const words = run.program.isRecorded ? "Nothing is changed: this is the recorded motion, computed again." : "Changed: this motion is its own.";
+        const words = !run.program.isRecorded ? "Changed: this motion is its own."
+            : run.time > this.end ? "Nothing is changed: the recorded run is over, and goes on here."
+            : "Nothing is changed: this is the recorded motion, computed again.";
         state.textContent = run.failure ?? (run.active ? words + slow : "The recorded run is shown.");
         const rows = run.active ? this.numbers() : [];
         element("live-numbers").replaceChildren(...rows.flatMap(([name, value]) => {
