@@ -43,6 +43,7 @@
 //!     peaks: &[100.0; 4], // the largest of each column of `modes.shapes`
 //!     static_compliances: &[],
 //!     centrifugal_remainders: &[],
+//!     drive_remainder: None,
 //!     backbones: &[],
 //!     manifold: None,
 //! };

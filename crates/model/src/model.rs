@@ -83,10 +83,26 @@ pub struct Model {
     /// The damping that the scene does not switch off, where it does not call for it, too (nf).
     pub(crate) all_damping_ratios: Vec<f64>,
     pub(crate) size: Size,
-    /// Remainder of the static responses to the spin beside the modes (6), where that is to be watched.
-    pub(crate) left_out: Vec<f64>,
+    /// What the modes leave out of static responses, where that is to be watched.
+    pub(crate) left_out: Remainders,
     /// Backbones of the modes that may bend the body far.
     pub(crate) backbones: Vec<Option<Backbone>>,
+}
+
+/// Remainders of static responses beside the modes, √(uᵀMu − Σ(Φ_kᵀMu)²).
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Remainders {
+    /// To the centrifugal field of each pair of spins (6); none where they are not known.
+    pub of_spin: Vec<f64>,
+    /// To the inertia of a unit acceleration of the drive.
+    pub of_drive: Option<f64>,
+}
+
+impl Remainders {
+    /// True if any is known.
+    pub fn any(&self) -> bool {
+        !self.of_spin.is_empty() || self.of_drive.is_some()
+    }
 }
 
 /// The size of a body and of its modes.
@@ -217,7 +233,8 @@ impl Model {
             length: self.size.length,
             peaks: &self.size.peaks,
             static_compliances: &[],
-            centrifugal_remainders: &self.left_out,
+            centrifugal_remainders: &self.left_out.of_spin,
+            drive_remainder: self.left_out.of_drive,
             backbones: &self.backbones,
             manifold: self.physics.large_deflection.as_ref(),
         }

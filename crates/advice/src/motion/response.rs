@@ -1,6 +1,8 @@
 //! How far each mode is moved, bounded above, and how a small force from one mode on another moves it.
 
-use dynamics::DrivenMotion;
+use dynamics::{Drive, DrivenMotion};
+use modal::ReducedBody;
+use nalgebra::Vector3;
 
 use crate::motion::case::Case;
 use crate::motion::course::{Course, Swing};
@@ -75,10 +77,7 @@ impl Response {
             response.forced.push((source.modal.clone(), z.iter().map(|z| z.0).collect()));
         }
         if let Some(drive) = case.drive {
-            let (unit, coupling) = match drive.motion {
-                DrivenMotion::Turn { axis } => (axis, &case.body.rotation_first),
-                DrivenMotion::Slide { direction } => (direction, &case.body.translation_first),
-            };
+            let (unit, coupling) = of_drive(case.body, drive);
             let course = Course::new(&drive.speed.history, case.end, case.costly_histories()).risen();
             let z: Vec<_> = (0..nf).map(|k| course.swing(omega[k], zeta[k])).collect();
             let force: Vec<f64> = (0..nf)
@@ -203,6 +202,14 @@ fn swing(source: &Source, spin: &Spin, omega: f64, zeta: f64, memory: f64) -> (f
 /// 1 + ∫|a'| of the direction of a load, as far back as a mode remembers.
 fn turning(source: &Source, spin: &Spin, memory: f64) -> f64 {
     if source.dead { 1.0 + spin.turn.min(spin.largest * memory) } else { 1.0 }
+}
+
+/// The direction of a drive, and how its acceleration along each axis pushes the modes.
+pub(crate) fn of_drive<'a>(body: &'a ReducedBody, drive: &Drive) -> (Vector3<f64>, &'a [Vec<f64>; 3]) {
+    match drive.motion {
+        DrivenMotion::Turn { axis } => (axis, &body.rotation_first),
+        DrivenMotion::Slide { direction } => (direction, &body.translation_first),
+    }
 }
 
 pub(crate) fn norm(x: &[f64]) -> f64 {

@@ -7,8 +7,9 @@ use nalgebra::Matrix3;
 
 use crate::limits::{LINEAR, Refusal, deflected};
 use crate::motion::case::{AdviceError, Case};
+use crate::motion::course::Course;
 use crate::motion::excitation::{Source, Spin};
-use crate::motion::response::{Response, norm};
+use crate::motion::response::{Response, norm, of_drive};
 use crate::motion::{rigid, tensor};
 use crate::strain::error_bound;
 use crate::table::estimate::Estimate;
@@ -38,6 +39,8 @@ pub struct Advice {
     pub certain_deflection: f64,
     /// Influence of what the modes leave out of the static response to the spin, bounded above; at most 1.
     pub stretch: f64,
+    /// The same of the static response to the inertia of the drive; 0 where it is not known.
+    pub pushed: f64,
     /// The tolerance.
     pub tolerance: f64,
 }
@@ -129,7 +132,7 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         rest < tolerance
     });
     let keep = shares.len() - negligible.count();
-    let stretch = stretch(case, &spin, &response);
+    let (stretch, pushed) = (stretch(case, &spin, &response), pushed(case, &response));
     let estimate = |effect| match effect {
         Effect::Flexibility => flexibility(&spin, &sources, &response, deflection),
         Effect::Damping => damping(case, &response),
@@ -143,7 +146,7 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
     };
     Ok(Advice {
         effects: EffectMap::from_fn(|effect| estimate(effect).row(tolerance)),
-        static_correction: static_correction(case, &spin, &sources, keep, stretch).row(tolerance),
+        static_correction: static_correction(case, &spin, &sources, keep, [stretch, pushed]).row(tolerance),
         large_deflection: bending(deflection),
         modes,
         keep,
@@ -152,6 +155,7 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         deflection,
         certain_deflection: if spin.largest == 0.0 { response.certain_deflection } else { 0.0 },
         stretch,
+        pushed,
         tolerance,
     })
 }
@@ -299,6 +303,24 @@ fn stretch(case: &Case, spin: &Spin, response: &Response) -> f64 {
     relative(left, response.scale + left)
 }
 
+/// Influence of what the modes leave out of the static response to the inertia of the drive.
+fn pushed(case: &Case, response: &Response) -> f64 {
+    let (Some(drive), Some(remainder)) = (case.drive, case.drive_remainder) else { return 0.0 };
+    let course = Course::new(&drive.speed.history, case.end, case.costly_histories());
+    let left = SWING * drive.speed.amplitude.abs() * course.steepest() * remainder;
+    relative(left, response.scale + left)
+}
+
+/// Part of the static response to a unit acceleration of the drive that the modes hold, and how much they leave out.
+pub(crate) fn held_of_drive(case: &Case) -> Option<(f64, f64)> {
+    let (drive, left) = (case.drive?, case.drive_remainder?);
+    let (unit, coupling) = of_drive(case.body, drive);
+    let answer = |(k, omega): (usize, &f64)| (0..3).map(|i| unit[i] * coupling[i][k]).sum::<f64>() / (omega * omega);
+    let carried: Vec<f64> = case.body.circular_frequencies.iter().enumerate().map(answer).collect();
+    let carried = norm(&carried);
+    Some((if left > 0.0 { carried / carried.hypot(left) } else { 1.0 }, left))
+}
+
 /// Part of the static response to a spin that the modes hold, and how much they leave out: √(uᵀMu) of the answer u.
 /// `squares` are ω_iω_j.
 pub(crate) fn held(case: &Case, squares: &Matrix3<f64>) -> (f64, f64) {
@@ -338,7 +360,13 @@ fn left_out_at_most(body: &ReducedBody) -> [f64; 6] {
     })
 }
 
-fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, stretch: f64) -> Estimate {
+fn static_correction(
+    case: &Case,
+    spin: &Spin,
+    sources: &[Source],
+    keep: usize,
+    [stretch, pushed]: [f64; 2],
+) -> Estimate {
     let omega = &case.body.circular_frequencies;
     let left = |(i, source): (usize, &Source)| match case.static_compliances.get(i) {
         Some(whole) => source.left_out(whole, omega, keep),
@@ -348,9 +376,15 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, 
     let value = sources.iter().enumerate().map(left).fold(0.0, f64::max);
     let known = case.static_compliances.len() == sources.len();
     // What is left out may swing about its static response, and is measured over the whole body.
-    let influence = relative(SWING * value, 1.0).max(stretch);
+    let influence = relative(SWING * value, 1.0).max(stretch).max(pushed);
     let why = if influence == 0.0 {
         "The modes carry the whole static response.".into()
+    } else if pushed >= influence {
+        let held = held_of_drive(case).map_or(1.0, |(held, _)| held);
+        let left_out = 100.0 * (1.0 - held * held).max(0.0).sqrt();
+        format!(
+            "The modes leave out {left_out:.1} % of the static response to the acceleration of the drive, which may come to {pushed:.1e} of the deformation."
+        )
     } else if stretch > value && case.centrifugal_remainders.is_empty() && known {
         format!(
             "What the modes leave out of the static response to the spin may come to {stretch:.1e} of the deformation."

@@ -91,6 +91,7 @@ impl Plate {
             peaks: &self.peaks,
             static_compliances: &[],
             centrifugal_remainders: &[],
+            drive_remainder: None,
             backbones: &[],
             manifold: None,
         }

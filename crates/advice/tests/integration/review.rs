@@ -212,6 +212,6 @@ fn no_spin_is_written_as_zero() {
     let spin = Broken::Spin { time: 0.5, found: 3.2e-5, assumed: 1.1e-6, off: "coriolis".into() };
     let text = spin.to_string();
     assert!(text.contains("the spin was 3.200e-5, above the 1.100e-6"), "{text}");
-    let stretch = Broken::Stretch { time: 0.5, left_out: 0.031, influence: 2e-3 };
+    let stretch = Broken::Stretch { time: 0.5, left_out: 0.031, influence: 2e-3, of_drive: false };
     assert!(stretch.to_string().contains("left out 3.1 % of the static response"), "{stretch}");
 }

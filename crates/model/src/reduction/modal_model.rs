@@ -77,6 +77,7 @@ impl ModalModel {
             peaks: &self.size.peaks,
             static_compliances: &[],
             centrifugal_remainders: &[],
+            drive_remainder: None,
             backbones: &[],
             manifold: None,
         }

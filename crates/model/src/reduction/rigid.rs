@@ -12,7 +12,7 @@ use crate::error::{BuildError, modal};
 use crate::load::mesh_load;
 use crate::model::initial::initial;
 use crate::model::points::output_points;
-use crate::model::{Model, Size};
+use crate::model::{Model, Remainders, Size};
 use crate::progress::BuildTimes;
 use crate::reduction::physics;
 use crate::support::support;
@@ -52,6 +52,7 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
             peaks: &[],
             static_compliances: &[],
             centrifugal_remainders: &[],
+            drive_remainder: None,
             backbones: &[],
             manifold: None,
         },
@@ -74,7 +75,7 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         all_damping_ratios: Vec::new(),
         size,
         body,
-        left_out: Vec::new(),
+        left_out: Remainders::default(),
         backbones: Vec::new(),
         stress: None,
         supports: None,
