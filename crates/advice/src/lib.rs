@@ -40,6 +40,7 @@
 //!     initial: &initial,
 //!     end: 1.0,
 //!     length: 200.0,
+//!     length_unit: "mm",
 //!     peaks: &[100.0; 4], // the largest of each column of `modes.shapes`
 //!     static_compliances: &[],
 //!     centrifugal_remainders: &[],

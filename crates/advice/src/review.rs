@@ -8,6 +8,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::limits::{LINEAR, LeftOut, Refusal, SOFTENED, beyond, deflected, detuned, refusal};
 use crate::motion::case::{AdviceError, Case};
+use crate::strain::error_bound::OF_BAR;
 use crate::strain::fourth_order::{FourthOrder, STATED};
 use crate::table::number::Number;
 use crate::table::relative::relative;
@@ -508,13 +509,19 @@ impl<'a> Review<'a> {
             let (swings, i, omega) =
                 (self.swings.get(k / SIDE_BY_SIDE)?, k % SIDE_BY_SIDE, case.body.circular_frequencies[k]);
             let (largest, integral) = (swings.largest[i], swings.integral[i]);
-            let backbone = backbone.as_ref()?;
             let turns = omega / std::f64::consts::TAU;
+            let bend = case.peaks[k] / case.length;
+            // Where nobody thought that it would move, as a bar.
+            let [shift, curvature] = match backbone {
+                Some(backbone) => [backbone.shift(largest), backbone.curvature()],
+                None if case.manifold.is_some_and(|manifold| manifold.bent().contains(&k)) => return None,
+                None => [-OF_BAR * (largest * bend).powi(2), -OF_BAR * bend * bend],
+            };
             let detuning = Detuning {
                 mode: k + 1,
-                deflection: largest * case.peaks[k] / case.length,
-                shift: backbone.shift(largest),
-                phase: backbone.curvature() * integral * turns,
+                deflection: largest * bend,
+                shift,
+                phase: curvature * integral * turns,
                 periods: self.time * turns,
             };
             let matters = detuning.shift.abs() >= SHIFTED || detuning.phase.abs() >= OUT_OF_PHASE;

@@ -23,6 +23,7 @@ use crate::mesh::given::MatrixChecks;
 use crate::model::initial::initial;
 use crate::progress::BuildTimes;
 use crate::stress::shapes::BodyStress;
+use crate::structure::remainders::Remainders;
 use crate::support::reactions::SupportRows;
 use crate::tie::body_marker::BodyMarker;
 
@@ -87,22 +88,6 @@ pub struct Model {
     pub(crate) left_out: Remainders,
     /// Backbones of the modes that may bend the body far.
     pub(crate) backbones: Vec<Option<Backbone>>,
-}
-
-/// Remainders of static responses beside the modes, √(uᵀMu − Σ(Φ_kᵀMu)²).
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Remainders {
-    /// To the centrifugal field of each pair of spins (6); none where they are not known.
-    pub of_spin: Vec<f64>,
-    /// To the inertia of a unit acceleration of the drive.
-    pub of_drive: Option<f64>,
-}
-
-impl Remainders {
-    /// True if any is known.
-    pub fn any(&self) -> bool {
-        !self.of_spin.is_empty() || self.of_drive.is_some()
-    }
 }
 
 /// The size of a body and of its modes.
@@ -221,7 +206,7 @@ impl Model {
     }
 
     /// The run as [`advice`] sees it, which begins with `initial`.
-    pub fn case<'a>(&'a self, scene: &Scene, initial: &'a Initial) -> Case<'a> {
+    pub fn case<'a>(&'a self, scene: &'a Scene, initial: &'a Initial) -> Case<'a> {
         Case {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
@@ -231,6 +216,7 @@ impl Model {
             initial,
             end: scene.time.end,
             length: self.size.length,
+            length_unit: &scene.units.length,
             peaks: &self.size.peaks,
             static_compliances: &[],
             centrifugal_remainders: &self.left_out.of_spin,

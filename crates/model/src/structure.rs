@@ -4,6 +4,7 @@
 //! assembled and factored only where a value is not known. The functions of `modal` and `fem_tet10` with these names say more.
 
 pub(crate) mod kept;
+pub(crate) mod remainders;
 pub(crate) mod statics;
 
 use std::cell::{Cell, OnceCell, RefCell};

@@ -25,6 +25,8 @@ pub struct Case<'a> {
     pub end: f64,
     /// Largest distance of two points of the body.
     pub length: f64,
+    /// Name of the unit of length, for people.
+    pub length_unit: &'a str,
     /// Largest displacement of a node in each mode (nf).
     pub peaks: &'a [f64],
     /// Compliance for each load. Empty where not known.

@@ -13,6 +13,7 @@ use crate::motion::response::{Response, norm, of_drive};
 use crate::motion::{rigid, tensor};
 use crate::strain::error_bound;
 use crate::table::estimate::Estimate;
+use crate::table::number::Number;
 use crate::table::relative::relative;
 use crate::table::row::{Row, Subject, Worth};
 
@@ -134,20 +135,20 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
     let keep = shares.len() - negligible.count();
     let (stretch, pushed) = (stretch(case, &spin, &response), pushed(case, &response));
     let estimate = |effect| match effect {
-        Effect::Flexibility => flexibility(&spin, &sources, &response, deflection),
+        Effect::Flexibility => flexibility(case, &spin, &sources, &response, deflection),
         Effect::Damping => damping(case, &response),
         Effect::Gravity => rigid::gravity(case, &sources, &response),
         Effect::DeformedInertia => deformed_inertia(case, &spin, &response, &second, stiffness.as_ref(), stretch),
         Effect::Coriolis => coriolis(case, &spin, &response, &coupling),
         Effect::GeometricStiffening => stiffening(case, &spin, &response, stiffness.as_ref()),
-        Effect::LargeDeflection => error_bound::large_deflection(&modes, deflection),
+        Effect::LargeDeflection => error_bound::large_deflection(&modes, deflection, (case.length, case.length_unit)),
         Effect::Translation => rigid::translation(case, &sources),
         Effect::Rotation => rigid::rotation(case, &spin, &sources, &response),
     };
     Ok(Advice {
         effects: EffectMap::from_fn(|effect| estimate(effect).row(tolerance)),
         static_correction: static_correction(case, &spin, &sources, keep, [stretch, pushed]).row(tolerance),
-        large_deflection: bending(deflection),
+        large_deflection: bending(case, deflection),
         modes,
         keep,
         more_modes: keep > 0 && keep == case.body.flexible(),
@@ -160,7 +161,7 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
     })
 }
 
-fn flexibility(spin: &Spin, sources: &[Source], response: &Response, deflection: f64) -> Estimate {
+fn flexibility(case: &Case, spin: &Spin, sources: &[Source], response: &Response, deflection: f64) -> Estimate {
     let flexible = norm(&response.acceleration);
     let pushed = sources.iter().map(|s| s.course.largest * s.translation.hypot(s.rotation)).fold(0.0, f64::max);
     let rigid = pushed.max(spin.certain * spin.certain_momentum);
@@ -170,14 +171,13 @@ fn flexibility(spin: &Spin, sources: &[Source], response: &Response, deflection:
         (f64::INFINITY, 1.0, "The body can do nothing but deform.".into())
     } else {
         let ratio = flexible / rigid;
-        let (influence, share) = (relative(ratio.max(deflection), 1.0), 100.0 * deflection);
-        (
-            ratio,
-            influence,
-            format!(
-                "Vibration accelerates up to {ratio:.1e} of what the rigid motion does, and bends by {share:.1e} % of the length."
-            ),
-        )
+        let influence = relative(ratio.max(deflection), 1.0);
+        let why = format!(
+            "{} It accelerates up to {} times what the rigid motion does.",
+            bends(case, deflection),
+            Number(ratio)
+        );
+        (ratio, influence, why)
     };
     Estimate { value, influence, why }
 }
@@ -407,11 +407,23 @@ fn static_correction(
     Estimate { value, influence, why }
 }
 
+/// How far the body bends, for people.
+fn bends(case: &Case, deflection: f64) -> String {
+    if deflection > 1.0 {
+        return "How far vibration bends the body cannot be told before the run.".into();
+    }
+    format!("Vibration moves no place by more than {} {}.", Number(deflection * case.length), case.length_unit)
+}
+
 /// The deflection.
-fn bending(deflection: f64) -> Row {
-    let why = format!("At most {deflection:.1e} of the length; linear strain ends at 10 %.");
+fn bending(case: &Case, deflection: f64) -> Row {
     let influence = relative(SHORTENING * deflection * deflection, 1.0);
-    Row { value: deflection, influence, on: deflection >= LINEAR, why }
+    let good = if deflection < LINEAR {
+        format!("Linear strain is good to {}.", Number(influence))
+    } else {
+        "Linear strain ends at a tenth of the length.".into()
+    };
+    Row { value: deflection, influence, on: deflection >= LINEAR, why: format!("{} {good}", bends(case, deflection)) }
 }
 
 /// Σ m_kl x_k y_l

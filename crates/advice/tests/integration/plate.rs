@@ -88,6 +88,7 @@ impl Plate {
             initial,
             end,
             length: self.length,
+            length_unit: "mm",
             peaks: &self.peaks,
             static_compliances: &[],
             centrifugal_remainders: &[],

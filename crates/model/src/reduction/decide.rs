@@ -3,10 +3,10 @@
 use dynamics::{Effect, EffectMap};
 use scene::{Choice, Flexible, Scene};
 
-use crate::model::Remainders;
 use crate::reduction::bent::Bent;
 use crate::reduction::physics;
 use crate::reduction::survey::Survey;
+use crate::structure::remainders::Remainders;
 
 /// The parts that a body is to have.
 pub(crate) struct Decision {

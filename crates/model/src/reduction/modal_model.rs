@@ -74,6 +74,7 @@ impl ModalModel {
             initial: &self.initial,
             end: model.scene.time.end,
             length: self.size.length,
+            length_unit: &model.scene.units.length,
             peaks: &self.size.peaks,
             static_compliances: &[],
             centrifugal_remainders: &[],

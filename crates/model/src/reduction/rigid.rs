@@ -12,9 +12,10 @@ use crate::error::{BuildError, modal};
 use crate::load::mesh_load;
 use crate::model::initial::initial;
 use crate::model::points::output_points;
-use crate::model::{Model, Remainders, Size};
+use crate::model::{Model, Size};
 use crate::progress::BuildTimes;
 use crate::reduction::physics;
+use crate::structure::remainders::Remainders;
 use crate::support::support;
 use crate::tie::body_marker;
 
@@ -49,6 +50,7 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
             initial: &initial,
             end: scene.time.end,
             length: size.length,
+            length_unit: &scene.units.length,
             peaks: &[],
             static_compliances: &[],
             centrifugal_remainders: &[],

@@ -10,11 +10,11 @@ use nalgebra::Vector3;
 use crate::error::{BuildError, modal};
 use crate::load::mesh_load::MeshLoad;
 use crate::load::turning;
-use crate::model::Remainders;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::physics;
 use crate::structure::StaticForces;
 use crate::structure::kept::StaticResponses;
+use crate::structure::remainders::Remainders;
 
 /// Which static responses are asked for.
 #[derive(Clone, Copy)]
