@@ -4,6 +4,7 @@
 //! assembled and factored only where a value is not known. The functions of `modal` and `fem_tet10` with these names say more.
 
 pub(crate) mod kept;
+pub(crate) mod remainders;
 pub(crate) mod statics;
 
 use std::cell::{Cell, OnceCell, RefCell};
@@ -328,8 +329,10 @@ impl Structure<'_> {
         let StaticForces { of_loads, spin, drive, origin } = forces;
         let asked = self.of_held_body("static responses").with_natural(modes);
         let asked = asked.with("loads", of_loads).with("spin", spin).with("drive", drive).with("origin", origin);
-        let spins = if *spin { 6 } else { 0 };
-        self.ask(asked, [self.rows(), forces.count(), spins], || {
+        // Of the spins and of the drive.
+        let of_inertia = forces.count() - of_loads.ncols();
+        let asked = asked.with("remainders", &of_inertia);
+        self.ask(asked, [self.rows(), forces.count(), of_inertia], || {
             let solver = self.solver()?;
             let solve = |forces| self.solve(modes, forces, StaticAccuracy::Full);
             if forces.count() == of_loads.ncols() {
@@ -356,14 +359,14 @@ impl Structure<'_> {
                 None => {}
             }
             let fields = solve(all.as_ref())?;
-            let momenta = mass.product(fields.subcols(of_loads.ncols(), spins));
+            let of_inertia = fields.subcols(of_loads.ncols(), of_inertia);
+            let momenta = mass.product(of_inertia);
             let natural = modes.shapes.get(.., ..modes.natural());
             let remainder = |(u, mu): (ColRef<'_, f64>, ColRef<'_, f64>)| {
                 let carried: f64 = natural.col_iter().map(|shape| (shape.transpose() * mu).powi(2)).sum();
                 (u.transpose() * mu - carried).max(0.0).sqrt()
             };
-            let of_spin = fields.subcols(of_loads.ncols(), spins);
-            let remainders = of_spin.col_iter().zip(momenta.as_ref().col_iter()).map(remainder).collect();
+            let remainders = of_inertia.col_iter().zip(momenta.as_ref().col_iter()).map(remainder).collect();
             Ok(StaticResponses { fields, remainders })
         })
     }
@@ -492,6 +495,14 @@ impl Structure<'_> {
         let shapes = self.solver()?.large_shapes(modes.clone(), large, following, of_products);
         let shapes = shapes.map_err(|error| self.modal(error))?;
         Ok(Extended { body: self.reduced(&shapes.modes)?, shapes, energies })
+    }
+
+    /// The parts (nf×k) of fields (3n×k) along M-orthonormal modes and static shapes.
+    pub fn parts(&self, modes: &Modes, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
+        let asked = self.of_body("parts of fields").with_modes(modes).with("fields", &fields);
+        self.ask(asked, [modes.shapes.ncols(), fields.ncols()], || {
+            Ok(modes.shapes.transpose() * self.solver()?.mass().product(fields))
+        })
     }
 
     /// Fields (3n×k) without their parts along some modes.

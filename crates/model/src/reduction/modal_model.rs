@@ -74,9 +74,11 @@ impl ModalModel {
             initial: &self.initial,
             end: model.scene.time.end,
             length: self.size.length,
+            length_unit: &model.scene.units.length,
             peaks: &self.size.peaks,
             static_compliances: &[],
             centrifugal_remainders: &[],
+            drive_remainder: None,
             backbones: &[],
             manifold: None,
         }

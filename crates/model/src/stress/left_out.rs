@@ -5,8 +5,8 @@
 //! u_j = K⁻¹ f_j (inertia relief)        r_j = u_j − Σ_k φ_k (φ_kᵀ K u_j)/λ_k        σ_left = Σ_j a_j σ(r_j)
 //! ```
 //!
-//! The forces f_j are the loads, in every direction that they may come to have in the body, the centrifugal force of the spin
-//! and the Euler force of its change. The inertia of the modes' own motion and the Coriolis force are not among them.
+//! The forces f_j are the loads, in every direction that they may come to have in the body, the centrifugal force of the spin,
+//! the Euler force of its change and the inertia of a slide that is driven. The inertia of the modes' own motion and the Coriolis force are not among them.
 
 use dynamics::{DrivenMotion, History, Observation};
 use faer::Mat;
@@ -27,6 +27,8 @@ pub(crate) struct LeftOut {
     loads: Vec<LoadPart>,
     /// The spin of a bent reference, whose stress is known to the end.
     carried: Vector3<f64>,
+    /// The slide that is driven, to whose inertia the last column belongs.
+    slide: Option<DrivenMotion>,
 }
 
 /// A load, or one of its directions in the body.
@@ -66,14 +68,13 @@ impl LeftOut {
                 }
             }
         }
-        columns.extend(statics.of_spin.map(|of_spin| of_spin.responses));
-        for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-            let forces = StaticForces {
-                of_loads: modes.shapes.get(.., ..0),
-                spin: false,
-                drive: Some(DrivenMotion::Turn { axis }),
-                origin: *origin,
-            };
+        columns.extend(statics.of_spin);
+        let turns = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| DrivenMotion::Turn { axis });
+        let slide = model.drive.as_ref().map(|drive| drive.motion);
+        let slide = slide.filter(|motion| matches!(motion, DrivenMotion::Slide { .. }));
+        for motion in turns.into_iter().chain(slide) {
+            let forces =
+                StaticForces { of_loads: modes.shapes.get(.., ..0), spin: false, drive: Some(motion), origin: *origin };
             columns.push(structure.static_responses(modes, &forces)?.fields);
         }
         let mut stress = Mat::zeros(6 * structure.stress_sites()?.len(), columns.iter().map(Mat::ncols).sum());
@@ -84,7 +85,7 @@ impl LeftOut {
             first += beside.ncols();
         }
         let carried = model.reference.map(|reference| reference.steady.omega_body).unwrap_or_default();
-        Ok(Self { stress: SiteStress::new(&stress), loads, carried })
+        Ok(Self { stress: SiteStress::new(&stress), loads, carried, slide })
     }
 
     /// How much there is of each now.
@@ -102,6 +103,8 @@ impl LeftOut {
             times * (omega[i] * omega[j] - self.carried[i] * self.carried[j])
         };
         let spin = ReducedBody::PAIRS.into_iter().map(of_pair);
-        self.loads.iter().map(of_load).chain(spin).chain(now.alpha_body.iter().map(|alpha| -alpha)).collect()
+        let euler = now.alpha_body.iter().map(|alpha| -alpha);
+        let slide = self.slide.iter().map(|motion| -now.acceleration_of(motion));
+        self.loads.iter().map(of_load).chain(spin).chain(euler).chain(slide).collect()
     }
 }
