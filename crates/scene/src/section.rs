@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::PathBuf;
 
 use fem_tet10::{Material, PointMass};
 use serde::de::value::SeqAccessDeserializer;
@@ -88,6 +89,8 @@ pub(crate) struct ModesSection {
     pub static_correction: Choice,
     pub large: Option<CountOrList>,
     pub following: Option<usize>,
+    /// A CSV file of measured frequencies and damping, which replace those of the model.
+    pub measured: Option<PathBuf>,
 }
 
 #[derive(Deserialize)]

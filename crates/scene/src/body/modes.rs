@@ -3,6 +3,7 @@
 use serde::Deserialize;
 
 use crate::body::effects::Choice;
+use crate::body::measured::Measured;
 
 /// The modes kept and their damping: `[modes]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +18,8 @@ pub struct Modes {
     pub large: Option<Large>,
     /// Most modes that follow the large ones.
     pub following: usize,
+    /// Measured frequencies and damping, which replace those of the model.
+    pub measured: Option<Measured>,
 }
 
 /// Which modes may bend the body far.

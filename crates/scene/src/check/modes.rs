@@ -25,6 +25,7 @@ impl Check<'_> {
                     static_correction: Choice::Auto,
                     large: None,
                     following: DEFAULT_FOLLOWING,
+                    measured: None,
                 }),
                 false => Err(self.missing("", "modes")),
             };
@@ -54,7 +55,8 @@ impl Check<'_> {
             &format!("a whole number from 0 to {MAX_FOLLOWING}"),
             "give the most modes that follow the large ones; three are enough for most bodies",
         )?;
-        Ok(Modes { flexible, damping, static_correction, large, following })
+        let measured = section.measured.map(|file| self.measured(&file, flexible)).transpose()?;
+        Ok(Modes { flexible, damping, static_correction, large, following, measured })
     }
 
     fn large(&self, large: Option<CountOrList>, flexible: usize) -> Result<Option<Large>, SceneError> {
