@@ -91,6 +91,10 @@ stability:
     FLEXFRAME_KILLS=200 cargo test --release --quiet --package results --test killed
     FLEXFRAME_KILLS=40 cargo test --release --quiet --package flexframe-cli --test faults
 
+# docs/evidence/mesh-error.md: estimated errors of frequencies against those of fine meshes (gmsh; a few minutes).
+mesh-error: build
+    python3 crates/verification/mesh_error/measure.py {{flexframe}} docs/evidence/mesh-error.md
+
 # Large deflection and stress against a nonlinear finite-element body, and the curves of docs/evidence/nonlinear.md (some minutes).
 nonlinear:
     cargo test --release --quiet --package verification --test nonlinear --test systems -- --include-ignored --nocapture

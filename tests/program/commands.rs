@@ -3,6 +3,7 @@
 pub(crate) mod advise;
 pub(crate) mod body;
 pub(crate) mod campbell;
+pub(crate) mod carried;
 pub(crate) mod check;
 pub(crate) mod cost;
 pub(crate) mod export;

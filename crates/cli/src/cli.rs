@@ -159,6 +159,13 @@ enum Command {
         /// Number of flexible modes, instead of the scene's.
         #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
         flexible: Option<usize>,
+        /// The point that a base turns about, in the frame of the mesh, for effective moments of inertia [default: the support of a
+        /// held body, the center of mass of a free one].
+        #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+        about: Option<Place>,
+        /// Compare the shapes with those of another body in the same place (MAC): a scene, a body file, or another mesh for this scene.
+        #[arg(long, value_name = "OTHER")]
+        mac: Option<PathBuf>,
         /// Folder for a picture of the mode shapes (SVG, PDF and PNG) [default: no picture].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
@@ -530,9 +537,19 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             drop(bar);
             output::print(&report, json)
         }
-        Command::Modes { scene: SceneArgs { scene, json }, flexible, output, files, solver } => {
+        Command::Modes { scene: SceneArgs { scene, json }, flexible, about, mac, output, files, solver } => {
+            let about = about.map(|Place(about)| about);
             output::require_file("--output", output.as_deref())?;
             let mut system = read_system(scene)?;
+            if mac.is_some() && system.bodies.len() > 1 {
+                return Err(CliError::Option {
+                    option: "--mac",
+                    found: format!("a scene of {} bodies", system.bodies.len()),
+                    expected: "a scene of one body, to compare it with another one".to_owned(),
+                    help: "name one: --body NAME".to_owned(),
+                }
+                .into());
+            }
             if let Some(count) = flexible {
                 system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
             }
@@ -571,7 +588,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                 }
                 let is_tied = |number: &usize| systems.iter().any(|modes| modes.bodies.contains(number));
                 for scene in (0..scenes.len()).filter(|number| !is_tied(number)).map(|number| &scenes[number]) {
-                    let (_, report) = modes::modes(scene, &builder, |p| bar.build(p))
+                    let (_, report) = modes::modes(scene, &builder, about, |p| bar.build(p))
                         .map_err(|error| of_option(error.into(), flexible))?;
                     reports.push((scene.name.clone(), report));
                 }
@@ -581,8 +598,11 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                 return if json { Ok(()) } else { output::list(&pictures) };
             }
             for scene in scenes {
-                let (model, report) = modes::modes(scene, &builder, |p| bar.build(p))
+                let (model, mut report) = modes::modes(scene, &builder, about, |p| bar.build(p))
                     .map_err(|error| of_option(error.into(), flexible))?;
+                if let Some(other) = &mac {
+                    report.mac = Some(modes::mac(scene, &model, other, &builder, |p| bar.build(p))?);
+                }
                 if let Some(folder) = output.as_ref().filter(|_| model.meshed.is_some() || scenes.len() == 1) {
                     make_folder(folder)?;
                     pictures.extend(mode_shapes::draw(scene, &model, &picture(folder, scene))?);
@@ -853,15 +873,26 @@ fn axis(text: &str) -> Result<Direction, String> {
         "z" => Some([0.0, 0.0, 1.0]),
         _ => None,
     };
-    let numbers = || {
-        let parts = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|part| !part.is_empty());
-        let numbers: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().ok()?;
-        <[f64; 3]>::try_from(numbers).ok().filter(|v| v.iter().all(|x| x.is_finite()) && *v != [0.0; 3])
-    };
     named
-        .or_else(numbers)
+        .or_else(|| three_numbers(text).filter(|v| *v != [0.0; 3]))
         .map(Direction)
         .ok_or_else(|| "expected x, y, z, or three numbers that are not all zero, such as 0,0.6,0.8".to_owned())
+}
+
+/// Three finite numbers.
+fn three_numbers(text: &str) -> Option<[f64; 3]> {
+    let parts = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|part| !part.is_empty());
+    let numbers: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().ok()?;
+    <[f64; 3]>::try_from(numbers).ok().filter(|v| v.iter().all(|x| x.is_finite()))
+}
+
+/// A point in the frame of the mesh.
+#[derive(Debug, Clone, Copy)]
+struct Place([f64; 3]);
+
+/// A point by its coordinates.
+fn point(text: &str) -> Result<Place, String> {
+    three_numbers(text).map(Place).ok_or_else(|| "expected three numbers, such as 0,0,1.5".to_owned())
 }
 
 /// Where a viewer is: on an axis, or at two angles.

@@ -5,6 +5,7 @@ mod bent;
 mod damping;
 mod decide;
 pub(crate) mod manifold;
+pub(crate) mod measured;
 pub(crate) mod mesh_model;
 pub(crate) mod meshed;
 pub(crate) mod modal_model;

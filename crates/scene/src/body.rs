@@ -2,4 +2,5 @@
 
 pub(crate) mod constraint;
 pub(crate) mod effects;
+pub(crate) mod measured;
 pub(crate) mod modes;

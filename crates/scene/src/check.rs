@@ -7,6 +7,7 @@ mod history;
 mod initial;
 mod load;
 mod marker;
+mod measured;
 mod modes;
 pub(crate) mod tie;
 mod time;

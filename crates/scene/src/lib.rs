@@ -50,6 +50,7 @@ mod tie_section;
 
 pub use body::constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use body::effects::{Choice, Effects};
+pub use body::measured::{Measured, MeasuredMode};
 pub use body::modes::{About, Damping, Flexible, Large, Modes, Rayleigh};
 pub use document::join as key_path;
 pub use dynamics::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::PathBuf;
 
 use fem_tet10::{Material, PointMass};
 use schemars::JsonSchema;
@@ -127,6 +128,8 @@ pub(crate) struct ModesSection {
     pub following: Option<usize>,
     /// The bent rest that all modes are about; default the undeformed body.
     pub about: Option<AboutSection>,
+    /// A CSV file of measured frequencies and damping, which replace those of the model.
+    pub measured: Option<PathBuf>,
 }
 
 #[derive(Deserialize, JsonSchema)]

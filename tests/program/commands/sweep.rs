@@ -278,7 +278,7 @@ fn frequencies_are_swept_without_a_run() {
     assert_eq!((report.done, report.reductions), (2, 2), "{:?}", report.failures);
     let found = case.table("results/f");
     let scene = Scene::parse(SCENE, case.path("blade.toml")).unwrap();
-    let (_, modes) = flexframe::modes::modes(&scene, &Builder::default(), |_| ()).unwrap();
+    let (_, modes) = flexframe::modes::modes(&scene, &Builder::default(), None, |_| ()).unwrap();
     assert_eq!(found[..4], modes.body.natural_frequencies);
     for k in 0..4 {
         assert!((found[4 + k] / found[k] - 2.0).abs() < 1e-6, "{found:?}");

@@ -1,5 +1,9 @@
 //! `flexframe modes`: natural frequencies and mode shapes of a scene's body.
 
+mod carried;
+mod mac;
+mod strain_energy;
+
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +13,10 @@ use scene::{Body, Choice, Flexible, Scene, SceneError};
 use serde::Serialize;
 
 use crate::plausible;
+pub use carried::CarriedReport;
+pub use mac::{MacReport, mac};
+pub use strain_energy::{EnergyPart, StrainEnergyReport};
+
 use crate::report::{BodyReport, MeshReport, Times, size_and_mass};
 
 /// Report of `flexframe modes`.
@@ -24,6 +32,12 @@ pub struct ModesReport {
     pub mesh: Option<MeshReport>,
     /// Mass properties and modes.
     pub body: BodyReport,
+    /// The mass that each mode carries; none of a body without flexible modes, and of one that is written to a file.
+    pub carried: Option<CarriedReport>,
+    /// Where the strain energy of each mode is, and the error of its frequency; none of a body without elements.
+    pub strain_energy: Option<StrainEnergyReport>,
+    /// The modes beside those of another body, where one is given.
+    pub mac: Option<MacReport>,
     /// Parts of the mesh file that were left out, and values that no material has.
     pub warnings: Vec<String>,
     /// Where the time went, seconds.
@@ -39,6 +53,9 @@ impl ModesReport {
             warnings: plausible::doubts(scene, model),
             mesh: MeshReport::new(model),
             body: BodyReport::new(model),
+            carried: None,
+            strain_energy: None,
+            mac: None,
             times: Times::of_model(model),
         }
     }
@@ -62,18 +79,24 @@ pub fn reduce(
     Ok(ModesReport::new(scene, &model))
 }
 
-/// Finds the modes of a scene's body.
+/// Finds the modes of a scene's body, and what each carries: rotations of the base are `about` a point in the frame of the mesh, or
+/// about the support of a held body and the center of mass of a free one.
 ///
 /// # Errors
 /// [`BuildError`].
 pub fn modes(
     scene: &Scene,
     builder: &Builder,
+    about: Option<[f64; 3]>,
     progress: impl FnMut(BuildProgress),
 ) -> Result<(Model, ModesReport), BuildError> {
     let scene = unloaded(scene);
     let model = builder.build(&scene, progress)?;
-    let report = ModesReport::new(&scene, &model);
+    let mut report = ModesReport::new(&scene, &model);
+    if let Some(meshed) = model.meshed.as_ref().filter(|_| model.body.flexible() > 0) {
+        report.carried = Some(CarriedReport::new(&model, about));
+        report.strain_energy = StrainEnergyReport::new(meshed)?;
+    }
     Ok((model, report))
 }
 
@@ -168,12 +191,26 @@ impl fmt::Display for ModesReport {
             };
             writeln!(f, "  modes  {why}")?;
         } else {
-            writeln!(f, "\n  mode  frequency, {:<6}  damping  residual", self.frequency_unit)?;
+            let error = if self.strain_energy.is_some() { "  mesh error" } else { "" };
+            writeln!(f, "\n  mode  frequency, {:<6}  damping  residual{error}", self.frequency_unit)?;
         }
         for (k, (frequency, damping)) in body.natural_frequencies.iter().zip(&body.damping_ratios).enumerate() {
             let kind = body.kinds.get(k).copied().unwrap_or_default();
             let residual = body.residuals.get(k).map_or_else(|| kind.to_owned(), |r| format!("{r:.0e}"));
-            writeln!(f, "  {:>4}  {frequency:>17.6}  {damping:>7.4}  {residual}", k + 1)?;
+            write!(f, "  {:>4}  {frequency:>17.6}  {damping:>7.4}  {residual}", k + 1)?;
+            if let Some(error) = self.strain_energy.as_ref().and_then(|energy| energy.mesh_errors.get(k)) {
+                write!(f, "  {:>8.1e} %", 100.0 * error)?;
+            }
+            writeln!(f)?;
+        }
+        if let Some(carried) = &self.carried {
+            write!(f, "{carried}")?;
+        }
+        if let Some(energy) = &self.strain_energy {
+            write!(f, "{energy}")?;
+        }
+        if let Some(mac) = &self.mac {
+            write!(f, "{mac}")?;
         }
         write!(f, "\n  time   {}", self.times)?;
         self.warnings.iter().try_for_each(|warning| write!(f, "\n  warning  {warning}"))

@@ -4,6 +4,7 @@ mod beam;
 mod bodies;
 mod held;
 mod modes;
+mod participation;
 mod reduced_body;
 mod refusals;
 mod rigid_body;

@@ -20,6 +20,7 @@ use crate::model::{Meshed, Model};
 use crate::progress::{BuildProgress, BuildTimes, timed};
 use crate::reduction::decide::Decision;
 use crate::reduction::manifold::LargeDeflection;
+use crate::reduction::measured::as_measured;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
 use crate::reduction::physics;
@@ -86,6 +87,8 @@ pub(crate) fn reduce(
     let supports = SupportRows::new(&model, shapes, manifold, &decision.effects, has_gravity)?;
     times.reduction += started.elapsed();
 
+    let (mut damping_ratios, has_large) = (reduced.damping_ratios, large.is_some());
+    let body = as_measured(scene, reduced.body, &points, has_large, &mut damping_ratios)?;
     let Decision { mut effects, lacks, .. } = decision;
     effects[Effect::LargeDeflection] = large.is_some();
     let following = large.as_ref().map_or_else(Mat::new, LargeDeflection::following);
@@ -106,19 +109,15 @@ pub(crate) fn reduce(
         times,
         all_loads: reduced.loads.loads.clone(),
         loads: reduced.loads.acting(effects[Effect::Gravity]),
-        damping_ratios: if effects[Effect::Damping] {
-            reduced.damping_ratios.clone()
-        } else {
-            vec![0.0; reduced.body.flexible()]
-        },
-        all_damping_ratios: reduced.damping_ratios,
+        damping_ratios: if effects[Effect::Damping] { damping_ratios.clone() } else { vec![0.0; body.flexible()] },
+        all_damping_ratios: damping_ratios,
         size: reduced.size,
         // Who switches static shapes off is not warned again.
         left_out: lacks.filter(|_| scene.modes.static_correction == Choice::Auto).unwrap_or_default(),
         backbones,
         stress: body_stress,
         supports,
-        body: reduced.body,
+        body,
         meshed: Some(Meshed {
             matrix_bytes,
             mesh: Arc::clone(mesh),

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::body::effects::Choice;
+use crate::body::measured::Measured;
 
 /// The modes kept and their damping: `[modes]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,8 @@ pub struct Modes {
     pub following: usize,
     /// The bent body that all modes are about; without, the undeformed one.
     pub about: Option<About>,
+    /// Measured frequencies and damping, which replace those of the model.
+    pub measured: Option<Measured>,
 }
 
 /// The steady state that the modes of a body are about.

@@ -114,6 +114,11 @@ impl Check<'_> {
     }
 
     fn read_table(&self, key: &str, path: &Path) -> Result<Vec<[f64; 2]>, SceneError> {
+        self.parse_table(&self.table_text(key, path)?, path, key)
+    }
+
+    /// The text of a CSV file, as long as all tables of the scene together are not too long.
+    pub(super) fn table_text(&self, key: &str, path: &Path) -> Result<String, SceneError> {
         let mut text = String::new();
         let left = self.table_bytes.get();
         let read = open_ordinary(path).and_then(|file| file.take(left + 1).read_to_string(&mut text));
@@ -135,7 +140,7 @@ impl Check<'_> {
                 ));
             }
         }
-        self.parse_table(&text, path, key)
+        Ok(text)
     }
 
     /// The points of a CSV text: two columns of numbers, separated by a comma, the times rising. The first line may name

@@ -26,6 +26,7 @@ impl Check<'_> {
                     large: None,
                     following: DEFAULT_FOLLOWING,
                     about: None,
+                    measured: None,
                 }),
                 false => Err(self.missing("", "modes")),
             };
@@ -56,7 +57,8 @@ impl Check<'_> {
             "give the most modes that follow the large ones; three are enough for most bodies",
         )?;
         let about = section.about.map(|about| self.about(&about, body, flexible)).transpose()?;
-        Ok(Modes { flexible, damping, static_correction, large, following, about })
+        let measured = section.measured.map(|file| self.measured(&file, flexible)).transpose()?;
+        Ok(Modes { flexible, damping, static_correction, large, following, about, measured })
     }
 
     fn about(&self, about: &AboutSection, body: &Body, flexible: Flexible) -> Result<About, SceneError> {

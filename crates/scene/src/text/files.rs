@@ -8,10 +8,11 @@ use crate::loads::load::Load;
 use crate::scene::Scene;
 
 impl Scene {
-    /// The scene file, and the tables of its histories: what is read to know the scene. Those of its body are read later.
+    /// The scene file, and the tables of its histories and of its measured modes: what is read to know the scene. Those of its body are read later.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut files = vec![self.path.clone()];
         files.extend(self.tables().filter_map(|table| table.file.clone()));
+        files.extend(self.modes.measured.iter().map(|measured| measured.file.clone()));
         files
     }
 

@@ -9,7 +9,7 @@ use super::error::FmuError;
 /// A scene that finds everything in its own folder.
 pub(super) struct PackedScene {
     pub text: String,
-    /// Tables of histories, and of a system its meshes: where they are, and their names in the FMU.
+    /// Tables of histories and of measured modes, and of a system its meshes: where they are, and their names in the FMU.
     pub tables: Vec<(PathBuf, String)>,
 }
 
@@ -59,13 +59,18 @@ fn take_mesh(body: &mut Value, folder: &Path, files: &mut Vec<(PathBuf, String)>
     }
 }
 
-/// Names the files of all histories of the kind "table" in `value` anew.
+/// Names the files of all histories of the kind "table" in `value` anew, and those of measured modes.
 fn take_tables(value: &mut Value, folder: &Path, prefix: &str, tables: &mut Vec<(PathBuf, String)>) {
     match value {
         Value::Array(entries) => entries.iter_mut().for_each(|entry| take_tables(entry, folder, prefix, tables)),
         Value::Table(table) => {
             let is_table = table.get("kind").and_then(Value::as_str) == Some("table");
             if let Some(Value::String(file)) = table.get_mut("file").filter(|_| is_table) {
+                let name = format!("{prefix}table{}.csv", tables.len() + 1);
+                tables.push((folder.join(&*file), name.clone()));
+                *file = name;
+            }
+            if let Some(Value::String(file)) = table.get_mut("measured") {
                 let name = format!("{prefix}table{}.csv", tables.len() + 1);
                 tables.push((folder.join(&*file), name.clone()));
                 *file = name;

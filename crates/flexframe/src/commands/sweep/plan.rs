@@ -237,7 +237,8 @@ fn identity(scenes: &[Scene], mut contents_of: impl FnMut(&Scene) -> Hash) -> u6
     let of_scene = |key: Key, scene: &Scene| {
         let key = key.with("scene", scene.source.as_str());
         let key = scene.tables().fold(key, |key, table| key.with("table", table.points.as_flattened()));
-        key.with("body", &contents_of(scene))
+        let measured = scene.modes.measured.as_ref().map(|measured| format!("{measured:?}")).unwrap_or_default();
+        key.with("measured", measured.as_str()).with("body", &contents_of(scene))
     };
     let key = scenes.iter().fold(Key::new().of("row", 1), of_scene);
     let mut first = [0; 8];

@@ -1,0 +1,155 @@
+//! Modal assurance criterion of the modes of two bodies, Eq. (M14) of `docs/method/modes.md`: their shapes at the same places.
+
+use std::fmt;
+use std::path::Path;
+
+use faer::{Col, Mat};
+use fem_tet10::Location;
+use model::{BuildError, BuildProgress, Builder, Meshed, Model};
+use rayon::prelude::*;
+use scene::{Body, FileBody, MeshedBody, Scene};
+use serde::Serialize;
+
+use crate::commands::modes::{require_flexible, unloaded};
+use crate::files::given_file::GivenFile;
+
+/// Nodes at which shapes are compared, at the most.
+const PLACES: usize = 1000;
+/// Farthest that a place may be from the other body, relative to the size of this one.
+const APART: f64 = 0.02;
+/// Two shapes that are the same, in words.
+const SAME: f64 = 0.9;
+
+/// The modes of a body beside those of another.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MacReport {
+    /// Name of the file of the other body.
+    pub other: String,
+    /// Number of nodes at which the shapes are compared.
+    pub places: usize,
+    /// Largest distance of such a node to the other body, relative to the size of this one.
+    pub distance: f64,
+    /// Natural frequencies of the other body, cycles per time.
+    pub frequencies: Vec<f64>,
+    /// The criterion, 0 to 1: a row for each mode of this body, a column for each one of the other.
+    pub mac: Vec<Vec<f64>>,
+    /// For each mode of this body, the number of the one of the other that is most like it, from 1.
+    pub nearest: Vec<usize>,
+    #[serde(skip)]
+    own: Vec<f64>,
+}
+
+/// The scene of the other body: a scene file's, or this scene with another mesh or body file.
+fn scene_of(scene: &Scene, other: &Path) -> Result<Scene, BuildError> {
+    let body = match (GivenFile::of(other), &scene.body) {
+        (Some(GivenFile::Scene), _) => return Ok(Scene::read(other)?),
+        (Some(GivenFile::Body), _) => Body::File(FileBody {
+            file: other.to_owned(),
+            mesh: None,
+            mesh_size: None,
+            raise_order: false,
+            materials: None,
+            point_masses: None,
+        }),
+        (_, Body::Meshed(body)) => Body::Meshed(MeshedBody { mesh: other.to_owned(), ..body.clone() }),
+        _ => {
+            let found = format!("{}, a mesh for a body that has none to replace", other.display());
+            return Err(scene
+                .refuse("body", found, "a scene or a body file", "give --mac a scene or a body file")
+                .into());
+        }
+    };
+    Ok(Scene { body, ..scene.clone() })
+}
+
+/// Compares the modes of a body with those of another one: of a scene file, or of this scene with another mesh or body file. The other
+/// body has to lie where this one does.
+///
+/// # Errors
+/// [`BuildError`] of the other body, of bodies that lie apart, and of those without flexible modes.
+pub fn mac(
+    scene: &Scene,
+    model: &Model,
+    other: &Path,
+    builder: &Builder,
+    progress: impl FnMut(BuildProgress),
+) -> Result<MacReport, BuildError> {
+    let own = require_flexible(scene, model)?;
+    let with = scene_of(scene, other)?;
+    let other_model = builder.build(&unloaded(&with), progress)?;
+    let others = require_flexible(&with, &other_model)?;
+    let (own_shapes, other_shapes, distance) = at_places(own, others);
+    let relative = distance / own.mesh.diagonal();
+    if relative > APART {
+        let found = format!("{}, whose body is {distance:.4} away from a node of this one", other.display());
+        let expected = "a body that lies where this one does";
+        return Err(scene.refuse("body", found, expected, "compare bodies in the same place and units").into());
+    }
+    let norms = |shapes: &Mat<f64>| Col::from_iter(shapes.col_iter().map(|shape| shape.squared_norm_l2()));
+    let (of_own, of_other) = (norms(&own_shapes), norms(&other_shapes));
+    let products = own_shapes.transpose() * &other_shapes;
+    let row = |j: usize| (0..products.ncols()).map(|k| products[(j, k)].powi(2) / (of_own[j] * of_other[k])).collect();
+    let mac: Vec<Vec<f64>> = (0..products.nrows()).map(row).collect();
+    let nearest = |row: &Vec<f64>| row.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(k, _)| k + 1);
+    Ok(MacReport {
+        other: other.display().to_string(),
+        places: own_shapes.nrows() / 3,
+        distance: relative,
+        frequencies: other_model.natural_frequencies(),
+        nearest: mac.iter().map(nearest).collect(),
+        mac,
+        own: model.natural_frequencies(),
+    })
+}
+
+/// Shapes of both bodies at nodes of the first (3n×modes), and the largest distance of these to the second.
+fn at_places(own: &Meshed, other: &Meshed) -> (Mat<f64>, Mat<f64>, f64) {
+    let count = own.mesh.positions().len();
+    let nodes: Vec<usize> = (0..count).step_by(count.div_ceil(PLACES)).collect();
+    let (dofs, other_dofs) = (dofs(own), dofs(other));
+    let located: Vec<(Location, f64)> = nodes
+        .par_iter()
+        .map(|node| {
+            let at = own.mesh.positions()[*node];
+            match other.mesh.locate(at) {
+                Ok(location) => (location, 0.0),
+                Err(_) => {
+                    let (nearest, distance) = other.mesh.nearest_node(at);
+                    (Location { nodes: vec![nearest], weights: vec![1.0] }, distance)
+                }
+            }
+        })
+        .collect();
+    let shapes = &own.modes.shapes;
+    let of_own = Mat::from_fn(3 * nodes.len(), shapes.ncols(), |i, k| shapes[(dofs * nodes[i / 3] + i % 3, k)]);
+    let shapes = &other.modes.shapes;
+    let of_other = Mat::from_fn(3 * nodes.len(), shapes.ncols(), |i, k| {
+        let Location { nodes, weights } = &located[i / 3].0;
+        nodes.iter().zip(weights).map(|(node, w)| w * shapes[(other_dofs * *node as usize + i % 3, k)]).sum()
+    });
+    (of_own, of_other, located.iter().map(|(_, distance)| *distance).fold(0.0, f64::max))
+}
+
+/// Degrees of freedom of a node.
+fn dofs(meshed: &Meshed) -> usize {
+    meshed.checks.map_or(3, |checks| checks.dofs)
+}
+
+impl fmt::Display for MacReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "\n  beside {}, at {} nodes", self.other, self.places)?;
+        writeln!(f, "  mode  most like   MAC    frequency there")?;
+        for (k, (nearest, row)) in self.nearest.iter().zip(&self.mac).enumerate() {
+            let (Some(frequency), Some(mac)) = (
+                nearest.checked_sub(1).and_then(|of| self.frequencies.get(of)),
+                nearest.checked_sub(1).and_then(|of| row.get(of)),
+            ) else {
+                continue;
+            };
+            let doubt = if *mac < SAME { "  no mode there is the same" } else { "" };
+            let change = 100.0 * (frequency / self.own[k] - 1.0);
+            writeln!(f, "  {:>4}  {nearest:>9}  {mac:.4}  {frequency:>12.6}  ({change:+.3} %){doubt}", k + 1)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,93 @@
+//! Frequencies and damping as they were measured, in the place of the model's.
+
+use dynamics::PointShapes;
+use modal::{Constants, ReducedBody};
+use scene::{Measured, MeasuredMode, Scene};
+
+use crate::error::{BuildError, modal};
+
+const KEY: &str = "modes.measured";
+/// Least MAC of a measured shape with that of the mode which takes its numbers.
+const ALIKE: f64 = 0.6;
+/// Rigid shapes at a point, before the flexible ones.
+const RIGID: usize = 6;
+
+/// The modes that take the numbers of the measured ones, by number from 0.
+fn matched(
+    scene: &Scene,
+    measured: &Measured,
+    natural: usize,
+    points: &[(String, PointShapes)],
+) -> Result<Vec<usize>, BuildError> {
+    if measured.places.is_empty() {
+        if measured.modes.len() <= natural {
+            return Ok((0..measured.modes.len()).collect());
+        }
+        let found = format!("{} measured modes", measured.modes.len());
+        let expected = format!("at most {natural}, the natural modes of the model");
+        return Err(scene.refuse(KEY, found, expected, "keep more modes, or leave lines out").into());
+    }
+    // Rows of the shapes at the places: a list of the modes for each.
+    let mut rows = Vec::new();
+    for (name, axis) in &measured.places {
+        let Some((_, shapes)) = points.iter().find(|(point, _)| point == name) else {
+            let expected =
+                format!("one of {}", points.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", "));
+            let help = "give the point in [output] `points`";
+            return Err(scene.refuse(KEY, format!("a shape at the point `{name}`"), expected, help).into());
+        };
+        rows.push(shapes.columns()[RIGID..RIGID + natural].iter().map(|shape| shape[*axis]).collect::<Vec<f64>>());
+    }
+    let norm = |k: usize| rows.iter().map(|row| row[k].powi(2)).sum::<f64>();
+    let mac = |mode: &MeasuredMode, k: usize| {
+        let product: f64 = rows.iter().zip(&mode.shape).map(|(row, value)| row[k] * value).sum();
+        let norms = norm(k) * mode.shape.iter().map(|value| value * value).sum::<f64>();
+        if norms > 0.0 { product.powi(2) / norms } else { 0.0 }
+    };
+    let mut taken: Vec<usize> = Vec::new();
+    for mode in &measured.modes {
+        let best = (0..natural).map(|k| (k, mac(mode, k))).max_by(|a, b| a.1.total_cmp(&b.1));
+        let line = mode.line;
+        let Some((k, _)) = best.filter(|(_, alike)| *alike >= ALIKE) else {
+            let alike = best.map_or(0.0, |(_, alike)| alike);
+            let found = format!("the shape of line {line}, whose MAC with the mode most like it is {alike:.2}");
+            let expected = format!("{ALIKE} or more");
+            return Err(scene
+                .refuse(KEY, found, expected, "correct the shape, measure at more points, or keep more modes")
+                .into());
+        };
+        if let Some(before) = taken.iter().position(|of| *of == k) {
+            let found = format!("lines {} and {line}, both most like mode {}", measured.modes[before].line, k + 1);
+            let help = "leave one of them out, or measure at more points";
+            return Err(scene.refuse(KEY, found, "a mode of its own for each line", help).into());
+        }
+        taken.push(k);
+    }
+    Ok(taken)
+}
+
+/// The body with the frequencies that the scene has measured, and its damping ratios with the measured ones among them.
+pub(crate) fn as_measured(
+    scene: &Scene,
+    body: ReducedBody,
+    points: &[(String, PointShapes)],
+    has_large: bool,
+    damping_ratios: &mut [f64],
+) -> Result<ReducedBody, BuildError> {
+    let Some(measured) = &scene.modes.measured else { return Ok(body) };
+    if has_large {
+        let found = "measured frequencies of a body with large modes, whose frequencies follow their amplitudes";
+        return Err(scene
+            .refuse(KEY, found, "modes that are small", "set `large_deflection = false` in [effects]")
+            .into());
+    }
+    let modes = matched(scene, measured, body.natural_modes, points)?;
+    let mut circular_frequencies = body.circular_frequencies.clone();
+    for (k, mode) in modes.into_iter().zip(&measured.modes) {
+        circular_frequencies[k] = std::f64::consts::TAU * mode.frequency;
+        if let Some(ratio) = mode.damping_ratio {
+            damping_ratios[k] = ratio;
+        }
+    }
+    ReducedBody::from_constants(Constants { circular_frequencies, ..(*body).clone() }).map_err(modal(scene))
+}

@@ -1,0 +1,118 @@
+//! `flexframe modes`: what each mode carries, where its strain energy is, the error of the mesh, and MAC.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn root() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+fn modes(arguments: &[&str]) -> Output {
+    let program =
+        Command::new(env!("CARGO_BIN_EXE_flexframe")).arg("modes").args(arguments).current_dir(root()).output();
+    program.unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = modes(&[arguments, &["--json"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap_or_else(|| panic!("{value}")).iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+/// Independent reference: CalculiX 2.20, the mesh of `meshes/rotating_bar.msh` as C3D10 with its root held, `*FREQUENCY`: its table
+/// "EFFECTIVE MODAL MASS". Pairs of modes of bending are summed, since their plane is that of rounding.
+#[test]
+fn effective_masses_are_those_of_calculix() {
+    let report = json(&["examples/rotating_bar.toml"]);
+    let carried = &report["carried"];
+    assert_eq!(carried["point"], "the support");
+    let masses: Vec<Vec<f64>> = carried["effective_masses"].as_array().unwrap().iter().map(numbers).collect();
+    let pairs = [
+        (0, 1, 0.333_789_2e-4 + 0.611_013_2e-7, 0.131_793_0e-2 + 0.719_975_8),
+        (2, 3, 0.103_136_3e-4 + 0.125_381_4e-9, 0.222_895_8e-6 + 0.018_360_07),
+        (4, 5, 0.355_921_0e-5 + 0.689_457_7e-9, 0.451_690_8e-6 + 0.233_574_8e-2),
+    ];
+    for (j, k, along_y, about_y) in pairs {
+        let sum = |i: usize| masses[j][i] + masses[k][i];
+        assert!((sum(1) / along_y - 1.0).abs() < 1e-5, "{j}: {} {along_y}", sum(1));
+        assert!((sum(4) / about_y - 1.0).abs() < 1e-5, "{j}: {} {about_y}", sum(4));
+    }
+    assert!((masses[7][0] / 0.442_256_4e-4 - 1.0).abs() < 1e-5 && (masses[6][3] / 0.736_322_2e-3 - 1.0).abs() < 1e-5);
+    // What is missed and what is carried make the whole.
+    let (missed, cumulated) = (numbers(&carried["missed"]), numbers(&carried["cumulated"][11]));
+    assert!(missed.iter().zip(&cumulated).all(|(missed, carried)| (missed + carried - 1.0).abs() < 1e-12));
+    let text = String::from_utf8(modes(&["examples/rotating_bar.toml"]).stdout).unwrap();
+    assert!(text.contains("modes that are kept miss of the mass 18.9 % x, 7.9 % y, 7.9 % z"), "{text}");
+}
+
+/// Closed form: Steiner's theorem for the whole about the tip; the factor of a rotation is moved by L times that of the translation.
+#[test]
+fn the_base_turns_about_the_point_that_is_asked_for() {
+    let about_tip = json(&["examples/rotating_bar.toml", "--about=202.07,0,0"]);
+    let about_root = json(&["examples/rotating_bar.toml"]);
+    assert_eq!(about_tip["carried"]["point"], "the point asked for");
+    let whole = |report: &Value| numbers(&report["carried"]["whole"])[5];
+    assert!((whole(&about_tip) / whole(&about_root) - 1.0).abs() < 1e-9);
+    let factors = |report: &Value| numbers(&report["carried"]["factors"][0]);
+    let (tip, root) = (factors(&about_tip), factors(&about_root));
+    let (sign, length) = ((tip[1] * root[1]).signum(), 202.07);
+    assert!((tip[5] * sign - (root[5] - length * root[1])).abs() < 1e-9 * root[5].abs());
+}
+
+/// Conserved: the parts of the energy sum to one; the stiffer half of a bar that bends has less of it.
+#[test]
+fn strain_energy_is_shared_among_groups() {
+    let folder = tempfile::tempdir().unwrap();
+    let geometry = folder.path().join("two.geo");
+    let text = "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 100, 10, 10};\nBox(2) = {100, 0, 0, 100, 10, 10};\n\
+                BooleanFragments{ Volume{1}; Delete; }{ Volume{2}; Delete; }\nPhysical Volume(\"soft\") = {1};\n\
+                Physical Volume(\"stiff\") = {2};\nMesh.MeshSizeMin = 10;\nMesh.MeshSizeMax = 10;\n";
+    std::fs::write(&geometry, text).unwrap();
+    let scene = folder.path().join("two.toml");
+    let text = "title = \"Two\"\nunits = { length = \"mm\", mass = \"Mg\", time = \"s\" }\n[body]\nmesh = \"two.geo\"\n\
+                materials = { soft = { young_modulus = 7e4, poisson_ratio = 0.3, density = 2.7e-9 }, stiff = { young_modulus = 7e7, \
+                poisson_ratio = 0.3, density = 2.7e-9 } }\n[modes]\nflexible = 3\n[time]\nend = 1e-3\ntolerance = 1e-6\n";
+    std::fs::write(&scene, text).unwrap();
+    let report = json(&[scene.to_str().unwrap()]);
+    let energy = &report["strain_energy"];
+    for table in ["by_material", "by_group"] {
+        let parts: Vec<Vec<f64>> = energy[table].as_array().unwrap().iter().map(|row| numbers(&row["parts"])).collect();
+        for k in 0..3 {
+            assert!((parts[0][k] + parts[1][k] - 1.0).abs() < 1e-12, "{table} {parts:?}");
+            assert!(parts[1][k] < 0.05 && parts[1][k] > 0.0, "{table} {parts:?}");
+        }
+    }
+    let text = String::from_utf8(modes(&[scene.to_str().unwrap()]).stdout).unwrap();
+    assert!(text.contains("strain energy by material, %") && text.contains("the body is free"), "{text}");
+}
+
+/// Conserved: the modes of two meshes of a plate are the same ones, and of the same mesh to rounding.
+#[test]
+fn shapes_of_two_meshes_are_the_same() {
+    for (other, limit) in [("meshes/plate.msh", 1e-10), ("meshes/plate_lc12.msh", 0.02)] {
+        let mac = &json(&["examples/plate.toml", "-n", "5", "--mac", other])["mac"];
+        assert_eq!(numbers(&mac["nearest"]), [1.0, 2.0, 3.0, 4.0, 5.0]);
+        let rows: Vec<Vec<f64>> = mac["mac"].as_array().unwrap().iter().map(numbers).collect();
+        for (k, row) in rows.iter().enumerate() {
+            assert!((row[k] - 1.0).abs() < limit, "{other} {rows:?}");
+        }
+    }
+}
+
+#[test]
+fn bodies_that_cannot_be_compared_are_refused() {
+    let refused = |arguments: &[&str], words: &str| {
+        let output = modes(arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && message.contains(words), "{message}");
+    };
+    refused(&["examples/plate.toml", "--mac", "examples/rotating_bar.toml"], "away from a node of this one");
+    refused(&["examples/pair.toml", "--mac", "examples/plate.toml"], "a scene of 2 bodies");
+    refused(&["examples/plate.toml", "--about", "1,2"], "expected three numbers");
+}
