@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clap::{Args, CommandFactory, Parser, Subcommand};
-use flexframe::animation::{AnimationSettings, MAX_FRAMES, animate, animate_results};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use flexframe::animation::{AnimationSettings, Coloured, MAX_FRAMES, animate, animate_mode, animate_results};
 use flexframe::campbell::{self, AboutRest, CampbellError, CampbellSettings, Speeds, SystemCampbellSettings};
 use flexframe::check::{self, CheckRows};
 use flexframe::cost::{self, CostSettings};
@@ -355,19 +355,20 @@ enum Command {
     /// #:schema ./flexframe.schema.json
     #[command(verbatim_doc_comment)]
     Schema,
-    /// Draw a scene or a results file as an animated GIF.
+    /// Draw a scene or a results file as a moving picture: a GIF, or a film.
     ///
-    /// A scene is run for it; of a results file (.h5) each frame is a row, and no mesh is needed. Colours are the displacement by deformation, from 0 to the largest of the frames that are shown. A warning says
-    /// where the frames are too few to show how the body turns.
+    /// A scene is run for it; of a results file (.h5) each frame is a row, and no mesh is needed. Colours run from 0 to the largest
+    /// value of the frames that are shown. A warning says where the frames are too few to show how the body turns. With `--mode`
+    /// the scene is not run: one of its modes swings through one period.
     Animate {
         #[command(flatten)]
         scene: SceneInput,
-        /// The GIF to write.
+        /// The picture to write: a GIF (.gif), or with ffmpeg a film (.mp4, .webm).
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
         #[command(flatten)]
         files: FileArgs,
-        /// Number of frames.
+        /// Number of frames; each is shown for 0.05 s.
         #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(2..=MAX_FRAMES))]
         frames: u64,
         /// Time of the first frame [default: 0].
@@ -376,14 +377,28 @@ enum Command {
         /// Time of the last frame [default: the end of the scene or of the results].
         #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
         to: Option<f64>,
-        /// Viewpoint: x, y or z, or the angles of the viewer in degrees, about z from x and above
-        /// the xy plane [default: -60,25].
-        #[arg(long, value_name = "AXIS|ANGLE,ANGLE", value_parser = view, allow_hyphen_values = true)]
+        /// Draw this mode of the scene, from 1 as `flexframe modes` counts them; of bodies in joints, one of the whole.
+        #[arg(long, value_name = "N", conflicts_with_all = ["from", "to"], value_parser = clap::value_parser!(u64).range(1..))]
+        mode: Option<u64>,
+        /// The coloured quantity: the displacement by deformation, or the von Mises stress.
+        #[arg(long, value_enum, default_value_t)]
+        colour: Colour,
+        /// Viewpoint: iso; xy, xz or yz (right and up); x, y, z, -x, -y or -z (where the viewer is); or the angles of the viewer
+        /// in degrees, about z from x and above the xy plane [default: -60,25].
+        #[arg(long, value_name = "VIEW", value_parser = view, allow_hyphen_values = true)]
         view: Option<View>,
-        /// Factor on the deformation that is drawn.
+        /// Factor on the deformation that is drawn; of a mode, on 8 % of the size of the body.
         #[arg(long, default_value_t = 1.0, value_parser = finite, allow_hyphen_values = true)]
         magnify: f64,
     },
+}
+
+/// The coloured quantity of a moving picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+enum Colour {
+    #[default]
+    Displacement,
+    Stress,
 }
 
 #[derive(Debug, Args)]
@@ -788,11 +803,24 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             output::print(&report, json)?;
             Ok(report.require_a_row()?)
         }
-        Command::Animate { scene, output, files, frames, from, to, view, magnify } => {
+        Command::Animate { scene, output, files, frames, from, to, mode, colour, view, magnify } => {
             output::require_file("--output", Some(&output))?;
+            let coloured = match colour {
+                Colour::Displacement => Coloured::Displacement,
+                Colour::Stress => Coloured::Stress,
+            };
             let view = view.unwrap_or_default();
-            let settings = AnimationSettings { frames, magnification: magnify, from, to, view };
+            let settings = AnimationSettings { frames, magnification: magnify, from, to, view, coloured };
             let warning = match scene.results()? {
+                Some(_) if mode.is_some() => {
+                    return Err(CliError::Option {
+                        option: "--mode",
+                        found: "a results file".to_owned(),
+                        expected: "a scene".to_owned(),
+                        help: "name the scene of the run, whose modes are found again".to_owned(),
+                    }
+                    .into());
+                }
                 Some(file) => {
                     outputs_of_results(file, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
                     animate_results(file, &output, settings, |p| bar.run(p))?
@@ -802,7 +830,14 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                     system.bodies = system.bodies.into_iter().map(Scene::without_rows).collect();
                     outputs_of_scenes(&system.bodies, &builder, files.overwrite)
                         .claim_as(&Written::ANIMATION, &output)?;
-                    animate(&system, &builder, &output, settings, |p| bar.run(p))?
+                    match mode {
+                        Some(mode) => {
+                            let mode = usize::try_from(mode).unwrap_or(usize::MAX);
+                            animate_mode(&system, &builder, mode, &output, settings, |p| bar.run(p))?;
+                            None
+                        }
+                        None => animate(&system, &builder, &output, settings, |p| bar.run(p))?,
+                    }
                 }
             };
             drop(bar);
@@ -897,23 +932,18 @@ fn point(text: &str) -> Result<Place, String> {
 
 /// Where a viewer is: on an axis, or at two angles.
 fn view(text: &str) -> Result<View, String> {
-    let at = |azimuth, elevation| Ok(View { azimuth, elevation });
     let angles = || {
         let (azimuth, elevation) = text.split_once(',')?;
         Some((finite(azimuth.trim()).ok()?, finite(elevation.trim()).ok()?))
     };
-    match text {
-        "x" => at(0.0, 0.0),
-        "y" => at(90.0, 0.0),
-        // With x to the right and y up.
-        "z" => at(-90.0, 90.0),
-        _ => match angles() {
-            Some((azimuth, elevation)) if (-90.0..=90.0).contains(&elevation) => at(azimuth, elevation),
-            _ => {
-                Err("expected x, y, z, or two angles in degrees, the second from -90 to 90, such as -60,25".to_owned())
-            }
-        },
-    }
+    let by_angles = || match angles() {
+        Some((azimuth, elevation)) if (-90.0..=90.0).contains(&elevation) => Some(View { azimuth, elevation }),
+        _ => None,
+    };
+    View::named(text).or_else(by_angles).ok_or_else(|| {
+        "expected iso, xy, xz, yz, x, y, z, -x, -y, -z, or two angles in degrees, the second from -90 to 90, such as -60,25"
+            .to_owned()
+    })
 }
 
 /// About what the vibrations of a spinning body are.

@@ -6,7 +6,7 @@ mod of_model;
 mod opened;
 mod stored;
 
-pub(crate) use of_model::shapes_of;
+pub(crate) use of_model::{shapes_of, surface_shapes_of};
 pub use opened::DrawnError;
 pub(crate) use opened::{Drawn, DrawnBody, Part, body_files};
 pub(crate) use stored::{mesh_properties, not_stored, stored_shapes};

@@ -1,12 +1,13 @@
 //! The surface of a body, for pictures.
 
+use fem_tet10::von_mises;
 use figures::{facets, sharp_edges};
-use model::Model;
+use model::{BuildError, Model};
 use nalgebra::Vector3;
 use results::Shapes;
 use rigid_kin::Attitude;
 
-use crate::drawn::shapes_of;
+use crate::drawn::{shapes_of, surface_shapes_of};
 
 /// Surface of the undeformed body, and how its points move.
 #[derive(Debug, Clone)]
@@ -29,6 +30,32 @@ impl Surface {
     pub fn of_model(model: &Model) -> Option<Self> {
         let meshed = model.meshed.as_ref()?;
         Some(Self::new(shapes_of(meshed, model.physics.large_deflection.as_ref())))
+    }
+
+    /// The same with its stress; `None` for a rigid body without a mesh.
+    ///
+    /// # Errors
+    /// [`BuildError`] where the stress cannot be computed, for want of memory.
+    pub(crate) fn with_stress(model: &Model) -> Result<Option<Self>, BuildError> {
+        Ok(surface_shapes_of(model)?.map(Self::new))
+    }
+
+    /// Von Mises stress at the points in the coordinates of the stress ([`Shapes::stress_coordinates`]); those that are not given
+    /// are zero. At a node between materials it is the largest one. Zero without stress shapes.
+    pub fn von_mises(&self, coordinates: &[f64]) -> Vec<f64> {
+        let mut greatest = vec![0.0_f64; self.shapes.positions.len()];
+        let Some(stress) = &self.shapes.stress else { return greatest };
+        let mut sums = vec![[0.0; 6]; stress.nodes.len()];
+        for (shape, coordinate) in stress.shapes.iter().zip(coordinates).filter(|(_, coordinate)| **coordinate != 0.0) {
+            for (sum, of_shape) in sums.iter_mut().zip(shape) {
+                sum.iter_mut().zip(of_shape).for_each(|(sum, s)| *sum += coordinate * s);
+            }
+        }
+        for (node, sum) in stress.nodes.iter().zip(&sums) {
+            let at_node = &mut greatest[*node as usize];
+            *at_node = at_node.max(von_mises(sum));
+        }
+        greatest
     }
 
     /// Displacements of the points, body axes, in the coordinates ξ of all shapes ([`Shapes::coordinates`]); those that are

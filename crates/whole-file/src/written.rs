@@ -9,7 +9,7 @@ const ENDINGS: [(&[&str], &str); 12] = [
     (&["csv", "tsv", "txt", "dat"], "a table of text"),
     (&["json"], "JSON"),
     (&["html", "htm"], "a web page"),
-    (&["gif"], "an animation"),
+    (&["gif", "mp4", "webm"], "an animation"),
     (&["svg", "pdf", "png", "jpg", "jpeg"], "a picture"),
     (&["fmu"], "an FMU"),
     (&["vtkhdf", "vtu", "pvd", "vtk", "xdmf"], "a file for ParaView"),
@@ -63,7 +63,7 @@ impl Written {
     /// A table of numbers.
     pub const TABLE: Self = Self { what: "a table of text", endings: &["csv"], in_any_order: false };
     /// An animation.
-    pub const ANIMATION: Self = Self { what: "an animation", endings: &["gif"], in_any_order: false };
+    pub const ANIMATION: Self = Self { what: "an animation", endings: &["gif", "mp4", "webm"], in_any_order: false };
     /// A file for ParaView.
     pub const VTKHDF: Self =
         Self { what: "a VTKHDF file", endings: &["vtkhdf", "h5", "hdf5", "hdf"], in_any_order: true };

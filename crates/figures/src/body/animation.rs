@@ -1,8 +1,8 @@
-//! A moving body as an animated GIF.
+//! A moving body as an animated GIF, or as pictures for a film.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use gif::{Encoder, EncodingError, Repeat};
 use plotters::prelude::*;
@@ -15,7 +15,7 @@ use crate::body::render::{Canvas, Grades, check_indices, check_points, surface_c
 use crate::body::shapes::EDGE;
 use crate::body::view::{View, Window};
 use crate::chart::axis::{Axis, round_step};
-use crate::document::formats::rgb;
+use crate::document::formats::{png_file, rgb};
 use crate::document::picture::{Area, Figure, INK, LABEL_EM, TITLE_EM, Unit, draw_error};
 
 const WIDTH: u16 = 720;
@@ -98,6 +98,23 @@ impl Animation<'_> {
         }
         gif.into_inner().map_err(written)?;
         file.finish().map_err(system)
+    }
+
+    /// Writes each frame as a PNG of 1440×880 dots into a folder: `00000.png`, `00001.png` and so on. Tells the number of each
+    /// that is written.
+    ///
+    /// # Errors
+    /// As [`Animation::save_gif`].
+    pub fn save_pictures(&self, folder: &Path, mut written: impl FnMut(usize)) -> Result<Vec<PathBuf>, FigureError> {
+        self.check()?;
+        let stage = self.stage();
+        let picture = |last| {
+            let path = folder.join(format!("{last:05}.png"));
+            png_file(&Shot { animation: self, stage: &stage, last }, &path)?;
+            written(last);
+            Ok(path)
+        };
+        (0..self.frames.len()).map(picture).collect()
     }
 
     fn check(&self) -> Result<(), FigureError> {

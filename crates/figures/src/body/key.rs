@@ -7,21 +7,36 @@ use crate::FigureError;
 use crate::body::render::value_colour;
 use crate::body::view::View;
 use crate::chart::axis::{Axis, Scale};
+use crate::document::font;
 use crate::document::picture::{Area, INK, LABEL_EM, TICK_EM, Unit};
 
 // Lengths in pixels.
 const BAR: [f64; 2] = [240.0, 10.0];
 const ARM: f64 = 13.0;
+/// Between two labels of the bar at least.
+const LABEL_GAP: f64 = 6.0;
 /// Distance of a letter from the end of its arm.
 const LETTER: f64 = 7.0;
 /// Height of the key: the bar with its labels, or the axes.
 pub(crate) const HEIGHT: f64 = BAR[1] + 2.6 * LABEL_EM + 8.0;
 
-/// The axis of the colours for these values. It begins at 0, unless there are values below it.
+/// The axis of the colours for these values. It begins at 0, unless there are values below it. It has as many ticks, five or so
+/// at the most, as have labels that do not touch.
 pub(crate) fn colour_axis(values: impl Iterator<Item = f64>) -> Axis {
     let (low, high) = values.fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
     let high = if high > low { high } else { low + 1.0 };
-    Axis::new(Scale::Window(low, high), [], 0.0, 5)
+    let axis = |count| Axis::new(Scale::Window(low, high), [], 0.0, count);
+    (2..=5).rev().map(axis).find(|axis| label_gap(axis) >= LABEL_GAP).unwrap_or_else(|| axis(1))
+}
+
+/// Room between the labels of the axis of the colours where they are nearest, in pixels.
+fn label_gap(axis: &Axis) -> f64 {
+    let (low, high) = axis.range;
+    let labels: Vec<[f64; 2]> = axis
+        .labelled()
+        .map(|(shown, label)| [BAR[0] * (shown - low) / (high - low), 0.5 * font::width(&label, TICK_EM)])
+        .collect();
+    labels.windows(2).map(|pair| pair[1][0] - pair[1][1] - pair[0][0] - pair[0][1]).fold(f64::INFINITY, f64::min)
 }
 
 /// Where a value lies on the axis of the colours: 0 at its lower end, 1 at its upper one.
@@ -112,5 +127,16 @@ mod tests {
         assert_eq!(range(&[]), (0.0, 1.0));
         let axis = colour_axis([2e-9, 4e-9].into_iter());
         assert!((shade(&axis, 2e-9) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn labels_of_the_bar_do_not_touch_however_long_they_are() {
+        for high in [1.0, 0.0123, 1234.5, 54321.0, 0.009999, 99999.0, 3.3e-7, 2.5e9, 7000.1] {
+            for low in [0.0, -0.3 * high, -high, -1e6 * high] {
+                let axis = colour_axis([low, high].into_iter());
+                assert!(label_gap(&axis) >= LABEL_GAP, "{low} {high}: {:?}", axis.labels().collect::<Vec<_>>());
+                assert!(axis.labels().count() >= 2, "{low} {high}");
+            }
+        }
     }
 }

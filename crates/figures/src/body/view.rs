@@ -17,6 +17,26 @@ impl Default for View {
     }
 }
 
+impl View {
+    /// A standard view: `iso`, where the axes look equally long; `xy`, `xz` or `yz`, the first axis to the right and the second
+    /// one up; `x`, `y`, `z`, `-x`, `-y` or `-z`, from where the viewer is. `None` for any other word.
+    pub fn named(name: &str) -> Option<Self> {
+        let (azimuth, elevation) = match name {
+            // The height of a cube's diagonal above its base.
+            "iso" => (-45.0, 0.5_f64.sqrt().atan().to_degrees()),
+            "x" | "yz" => (0.0, 0.0),
+            "y" => (90.0, 0.0),
+            // With x to the right and y up.
+            "z" | "xy" => (-90.0, 90.0),
+            "-x" => (180.0, 0.0),
+            "-y" | "xz" => (-90.0, 0.0),
+            "-z" => (-90.0, -90.0),
+            _ => return None,
+        };
+        Some(Self { azimuth, elevation })
+    }
+}
+
 /// Seen from the viewer: to the right, up, and towards them.
 pub(crate) type Seen = Vector3<f64>;
 
@@ -66,6 +86,27 @@ mod tests {
         let view = View { azimuth: 37.0, elevation: -22.0 };
         let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| view.see(&axis));
         assert!((x.cross(&y) - z).norm() < 1e-15 && (x.norm() - 1.0).abs() < 1e-15);
+    }
+
+    /// Closed form: axes to the right, up and towards the viewer; in the isometric view all are √(2/3) long.
+    #[test]
+    fn standard_views_look_along_the_axes() {
+        let seen = |name: &str| {
+            let view = View::named(name).unwrap();
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| view.see(&axis))
+        };
+        for (name, right, up) in [("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)] {
+            let axes = seen(name);
+            assert!((axes[right].x - 1.0).abs() < 1e-15 && (axes[up].y - 1.0).abs() < 1e-15, "{name}");
+        }
+        for (i, name) in ["x", "y", "z"].into_iter().enumerate() {
+            assert!((seen(name)[i].z - 1.0).abs() < 1e-15, "{name}");
+            assert!((seen(&format!("-{name}"))[i].z + 1.0).abs() < 1e-15, "-{name}");
+        }
+        let lengths = seen("iso").map(|axis| axis.x.hypot(axis.y));
+        assert!(lengths.iter().all(|length| (length - (2.0_f64 / 3.0).sqrt()).abs() < 1e-15), "{lengths:?}");
+        assert!(seen("iso")[2].y > 0.8 && seen("iso").iter().all(|axis| axis.z.abs() > 0.5));
+        assert_eq!(View::named("front"), None);
     }
 
     /// Closed form: views along the axes.

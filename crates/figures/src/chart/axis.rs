@@ -111,7 +111,12 @@ impl Axis {
     }
 
     pub(crate) fn labels(&self) -> impl Iterator<Item = String> {
-        self.ticks.iter().map(|tick| self.format_ext(tick))
+        self.labelled().map(|(_, label)| label)
+    }
+
+    /// Shown values of the ticks, with their labels.
+    pub(crate) fn labelled(&self) -> impl Iterator<Item = (f64, String)> {
+        self.ticks.iter().map(|tick| (*tick, self.format_ext(tick)))
     }
 }
 

@@ -1,5 +1,6 @@
 //! The typeface of all figures: DejaVu Sans, carried in the program, so that figures need no system font.
 
+use ab_glyph::{Font, FontRef};
 use plotters::style::text_anchor::VPos;
 use plotters::style::{FontStyle, IntoFont, TextStyle, register_font};
 
@@ -36,4 +37,12 @@ pub(crate) fn register() -> Result<(), FigureError> {
 /// Text of the size that plotters measures in.
 pub(crate) fn of_size(size: f64) -> TextStyle<'static> {
     TextStyle::from((FAMILY, size).into_font())
+}
+
+/// Width of a text whose em is so large, by the advances of its letters.
+pub(crate) fn width(text: &str, em: f64) -> f64 {
+    // A letter of the typeface is not wider than an em.
+    let Ok(font) = FontRef::try_from_slice(FILE) else { return text.chars().count() as f64 * em };
+    let per_em = font.units_per_em().unwrap_or(2048.0);
+    text.chars().map(|letter| em * f64::from(font.h_advance_unscaled(font.glyph_id(letter)) / per_em)).sum()
 }

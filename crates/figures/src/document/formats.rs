@@ -42,6 +42,11 @@ pub(crate) fn svg_file(figure: &impl Figure, path: &Path) -> Result<(), FigureEr
     write(path, svg(figure)?.as_bytes())
 }
 
+/// Writes a PNG.
+pub(crate) fn png_file(figure: &impl Figure, path: &Path) -> Result<(), FigureError> {
+    write(path, &png(figure)?)
+}
+
 fn write(path: &Path, bytes: &[u8]) -> Result<(), FigureError> {
     write_whole(path, bytes).map_err(|error| FigureError::system(path, &error))
 }

@@ -1,5 +1,8 @@
 //! `flexframe animate`: a scene or a results file as a moving picture.
 
+mod film;
+mod mode;
+
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 
@@ -9,18 +12,33 @@ use model::{BuildError, Builder};
 use nalgebra::Vector3;
 use results::{BodyResults, Shapes, Units};
 use rigid_kin::Attitude;
-use scene::{Rows, System};
+use scene::{Rows, SceneError, System};
 use whole_file::TemporaryFolder;
 
+pub use self::film::FilmError;
+use self::film::Format;
+pub use self::mode::animate_mode;
 use crate::commands::export::ExportError;
 use crate::commands::modes::require_surface;
 use crate::commands::run::{self, RunError, RunProgress, RunSettings};
+use crate::commands::system_modes::SystemModesError;
 use crate::drawn::{Drawn, Part};
 use crate::report::quantity;
+use crate::rows::units::UnitLabels;
 use crate::surface::Surface;
 
 /// An animation has no more frames.
 pub const MAX_FRAMES: u64 = 10_000;
+
+/// The coloured quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Coloured {
+    /// Length of the displacement by deformation.
+    #[default]
+    Displacement,
+    /// Von Mises stress.
+    Stress,
+}
 
 /// How the picture is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,11 +53,20 @@ pub struct AnimationSettings {
     pub to: Option<f64>,
     /// From where the body is seen.
     pub view: View,
+    /// The coloured quantity.
+    pub coloured: Coloured,
 }
 
 impl Default for AnimationSettings {
     fn default() -> Self {
-        Self { frames: 60, magnification: 1.0, from: None, to: None, view: View::default() }
+        Self {
+            frames: 60,
+            magnification: 1.0,
+            from: None,
+            to: None,
+            view: View::default(),
+            coloured: Coloured::default(),
+        }
     }
 }
 
@@ -56,9 +83,41 @@ pub enum AnimationError {
     /// There is nothing to draw.
     #[error("{}: a rigid body without a mesh has no surface to draw; give it a mesh and `flexible = 0`", scene.display())]
     NoMesh { scene: PathBuf },
-    /// The name is not that of a GIF: it may be that of a file which is not to be replaced.
-    #[error("{}: the animation is a GIF; give its file a name that ends in .gif", path.display())]
-    NotGif { path: PathBuf },
+    /// The name is not that of a moving picture: it may be that of a file which is not to be replaced.
+    #[error(
+        "{}: the animation is a GIF or a film; give its file a name that ends in .gif, .mp4 or .webm", path.display()
+    )]
+    OtherFormat { path: PathBuf },
+    /// The film could not be made.
+    #[error("{0}")]
+    Film(#[from] FilmError),
+    /// The stress of a body is not known.
+    #[error(
+        "{}: the stress of a body that deforms is not known, because its elements are not\n = leave --colour stress out", file.display()
+    )]
+    NoStress { file: PathBuf },
+    /// A mode that is not there.
+    #[error(
+        "{}: --mode: found {number}, expected 1 to {modes}\n = `flexframe modes` lists them; ask for more in [modes] of the scene",
+        scene.display()
+    )]
+    NoSuchMode { scene: PathBuf, number: usize, modes: usize },
+    /// Modes of bodies that move apart.
+    #[error(
+        "{}: --mode: found {count} bodies or systems that move apart, each with modes of its own, expected one\n = choose a body with \
+         --body NAME",
+        scene.display()
+    )]
+    SeveralMotions { scene: PathBuf, count: usize },
+    /// A body could not be built.
+    #[error("{0}")]
+    Build(#[from] BuildError),
+    /// The scene is refused.
+    #[error("{0}")]
+    Scene(#[from] SceneError),
+    /// The vibrations of a system could not be found.
+    #[error("{0}")]
+    Modes(#[from] SystemModesError),
     /// The times are not those of the run. `end`: that of the run.
     #[error(
         "--from, --to: found the times from {from} to {to}, expected a part of the run, which goes from 0 to {end}\n = \
@@ -73,8 +132,8 @@ pub enum AnimationError {
     Figure(#[from] FigureError),
 }
 
-/// Runs the bodies of a scene and draws them into a GIF at `path`, which ends in `.gif`; colours are the deformation. Rigid bodies
-/// without a mesh are not drawn. Returns a warning where the frames are too few to show the spin.
+/// Runs the bodies of a scene and draws them into a moving picture at `path`, which ends in `.gif`, or with ffmpeg in `.mp4` or
+/// `.webm`. Rigid bodies without a mesh are not drawn. Returns a warning where the frames are too few to show the spin.
 ///
 /// # Errors
 /// [`AnimationError`].
@@ -85,7 +144,7 @@ pub fn animate(
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<Option<String>, AnimationError> {
-    require_gif(path)?;
+    let format = Format::of(path)?;
     let scenes = &system.bodies[..];
     let scene = scenes.first().ok_or(RunError::NoBody)?;
     let surface_of = |scene| require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)));
@@ -98,13 +157,17 @@ pub fn animate(
     let mut simulations = Vec::new();
     for scene in scenes {
         let model = builder.build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
-        let Some(surface) = Surface::of_model(&model) else { continue };
+        let surface = match settings.coloured {
+            Coloured::Displacement => Surface::of_model(&model),
+            Coloured::Stress => Surface::with_stress(&model)?,
+        };
+        let Some(surface) = surface else { continue };
         let mut simulation = model
             .start(scene)
             .map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
         simulation.keep_last_step();
         simulations.push(simulation);
-        bodies.push(PictureBody { origin: model.body.origin, surface });
+        bodies.push(PictureBody::new(model.body.origin, surface, settings.coloured, &scene.path)?);
     }
     if bodies.is_empty() {
         return Err(AnimationError::NoMesh { scene: scene.path.clone() });
@@ -122,7 +185,7 @@ pub fn animate(
         picture.add(due, &now.iter().map(state).collect::<Vec<_>>());
         progress(RunProgress::Motion(due / to));
     }
-    picture.save(path)
+    picture.save(format, path)
 }
 
 /// Draws bodies that are tied together, from the results of a run whose rows are the frames.
@@ -157,7 +220,7 @@ pub fn animate_results(
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<Option<String>, AnimationError> {
-    require_gif(path)?;
+    let format = Format::of(path)?;
     let Drawn { results, bodies } = Drawn::open(file, Part::Surface).map_err(ExportError::from)?;
     let drawn: Vec<(BodyResults<'_>, Shapes)> =
         results.bodies().zip(bodies).filter_map(|(of, body)| Some((of, body.shapes?))).collect();
@@ -178,12 +241,12 @@ pub fn animate_results(
     }
     let chosen: Vec<usize> = (0..=last).map(|frame| rows[(frame * (rows.len() - 1) + last / 2) / last]).collect();
     let interval = chosen.windows(2).map(|pair| times[pair[1]] - times[pair[0]]).fold(0.0, f64::max);
-    let (of_bodies, bodies): (Vec<_>, Vec<_>) = (drawn.into_iter())
-        .map(|(of, shapes)| {
-            let body = PictureBody { origin: of.metadata.model.origin.into(), surface: Surface::new(shapes) };
-            (of, body)
-        })
-        .unzip();
+    let (mut of_bodies, mut bodies) = (Vec::new(), Vec::new());
+    for (of, shapes) in drawn {
+        let origin = of.metadata.model.origin.into();
+        bodies.push(PictureBody::new(origin, Surface::new(shapes), settings.coloured, file)?);
+        of_bodies.push(of);
+    }
     let run = &results.metadata;
     let mut picture = Picture::new(&run.title, &run.units, bodies, settings, interval);
     for (frame, row) in chosen.into_iter().enumerate() {
@@ -197,14 +260,7 @@ pub fn animate_results(
         picture.add(times[row], &of_bodies.iter().map(state).collect::<Vec<_>>());
         progress(RunProgress::Motion(frame as f64 / last as f64));
     }
-    picture.save(path)
-}
-
-fn require_gif(path: &Path) -> Result<(), AnimationError> {
-    match path.extension() {
-        Some(ending) if ending.eq_ignore_ascii_case("gif") => Ok(()),
-        _ => Err(AnimationError::NotGif { path: path.to_owned() }),
-    }
+    picture.save(format, path)
 }
 
 impl AnimationSettings {
@@ -239,6 +295,25 @@ struct PictureBody {
     surface: Surface,
 }
 
+impl PictureBody {
+    /// Refuses a body that deforms and has no stress where that is the coloured quantity.
+    fn new(origin: Vector3<f64>, surface: Surface, coloured: Coloured, file: &Path) -> Result<Self, AnimationError> {
+        let Shapes { displacements, stress, .. } = &surface.shapes;
+        if coloured == Coloured::Stress && stress.is_none() && !displacements.is_empty() {
+            return Err(AnimationError::NoStress { file: file.to_owned() });
+        }
+        Ok(Self { origin, surface })
+    }
+
+    /// The coloured quantity at the points, which are displaced by `u`.
+    fn values(&self, q: &[f64], u: &[Vector3<f64>], coloured: Coloured) -> Vec<f64> {
+        match coloured {
+            Coloured::Displacement => u.iter().map(Vector3::norm).collect(),
+            Coloured::Stress => self.surface.von_mises(&self.surface.shapes.stress_coordinates(q)),
+        }
+    }
+}
+
 /// A body in a frame: place of its origin, attitude, modal coordinates, and its spin in body axes.
 type State = (Vector3<f64>, Attitude, Vec<f64>, Vector3<f64>);
 
@@ -256,21 +331,20 @@ impl<'a> Picture<'a> {
 
     fn add(&mut self, time: f64, states: &[State]) {
         let (mut points, mut values) = (Vec::new(), Vec::new());
-        for (PictureBody { origin, surface }, (origin_global, attitude, q, omega_body)) in
-            self.bodies.iter().zip(states)
-        {
+        for (body, (origin_global, attitude, q, omega_body)) in self.bodies.iter().zip(states) {
+            let PictureBody { origin, surface } = body;
             self.fastest = self.fastest.max(omega_body.norm());
             let u = surface.displacements(&surface.shapes.coordinates(q));
             let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * self.settings.magnification).collect();
             points.extend(surface.placed(origin, origin_global, attitude, &drawn));
-            values.extend(u.iter().map(Vector3::norm));
+            values.extend(body.values(q, &u, self.settings.coloured));
         }
         let decimals = decimals(self.interval);
         self.frames.push(Frame { points, values, caption: format!("t = {time:.decimals$} {}", self.units.time) });
     }
 
     /// Writes it. Returns a warning where the frames are too few to show the spin.
-    fn save(self, path: &Path) -> Result<Option<String>, AnimationError> {
+    fn save(self, format: Format, path: &Path) -> Result<Option<String>, AnimationError> {
         let Self { title, units, bodies, settings, interval, frames, fastest } = self;
         let factor = match settings.magnification {
             1.0 => String::new(),
@@ -283,9 +357,17 @@ impl<'a> Picture<'a> {
             edges.extend(surface.edges.iter().map(|points| points.map(|point| first + point)));
             first += surface.shapes.positions.len() as u32;
         }
-        Animation {
+        let value_label = match settings.coloured {
+            Coloured::Displacement => format!("displacement by deformation, {}{factor}", units.length),
+            Coloured::Stress => {
+                let Units { length, mass, time } = units;
+                let deformation = if factor.is_empty() { String::new() } else { format!("; deformation{factor}") };
+                format!("von Mises stress, {}{deformation}", UnitLabels { length, mass, time }.stress())
+            }
+        };
+        let animation = Animation {
             title: title.to_owned(),
-            value_label: format!("displacement by deformation, {}{factor}", units.length),
+            value_label,
             triangles: &triangles,
             edges: &edges,
             frames: &frames,
@@ -293,8 +375,8 @@ impl<'a> Picture<'a> {
             view: settings.view,
             ground: true,
             traced_point: None,
-        }
-        .save_gif(path)?;
+        };
+        format.write(&animation, path, |_| ())?;
         Ok(aliased(interval, frames.len() as u64 - 1, fastest, &units.time))
     }
 }

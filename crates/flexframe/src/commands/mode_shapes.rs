@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use figures::{FigureError, Panel, ShapeGrid, View};
-use model::{Meshed, Model};
+use model::{BuildError, Meshed, Model};
 use nalgebra::Vector3;
 use scene::{Scene, SceneError};
 
@@ -22,6 +22,9 @@ pub enum ShapesError {
     /// The body has no flexible modes.
     #[error("{0}")]
     Scene(#[from] SceneError),
+    /// The surface of a body is not known.
+    #[error("{0}")]
+    Build(#[from] BuildError),
     /// The picture could not be drawn.
     #[error("{0}")]
     Figure(#[from] FigureError),

@@ -5,6 +5,7 @@ mod assembled;
 mod draw;
 mod error;
 mod report;
+mod shape;
 
 use dynamics::CommonSpin;
 use model::{BuildError, BuildProgress, Builder, Model};
@@ -16,6 +17,7 @@ pub use draw::draw;
 pub use error::SystemModesError;
 pub(crate) use report::body_names;
 pub use report::{ModesOfSystems, Share, SystemModeReport, SystemModes, SystemModesReport};
+pub(crate) use shape::SystemSurface;
 
 /// Builds the bodies of a scene.
 ///

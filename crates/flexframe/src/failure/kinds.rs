@@ -424,10 +424,15 @@ impl Fault for FmuError {
 impl Fault for AnimationError {
     fn known(&self) -> Known {
         match self {
-            Self::Run(_) | Self::Export(_) | Self::Figure(_) => Known::default(),
+            Self::Run(_) | Self::Export(_) | Self::Figure(_) | Self::Build(_) | Self::Scene(_) | Self::Modes(_) => {
+                Known::default()
+            }
             Self::Step { scene, .. } => Kind::Run.of(scene),
             Self::NoMesh { scene } => Kind::Input.of(scene),
-            Self::NotGif { path } => Kind::Usage.of(path),
+            Self::NoStress { file } => Kind::Input.of(file),
+            Self::NoSuchMode { scene, .. } | Self::SeveralMotions { scene, .. } => Kind::Usage.of(scene),
+            Self::OtherFormat { path } => Kind::Usage.of(path),
+            Self::Film(error) => Kind::Io.of(error.path()),
             Self::Times { from, to, end } => Kind::Usage.with(Details {
                 key: Some("--from, --to".to_owned()),
                 found: Some(format!("{from} to {to}")),

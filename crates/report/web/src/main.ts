@@ -8,7 +8,9 @@ import { LiveRun } from "./live/run";
 import { Motion } from "./motion";
 import { panels } from "./plots/panels";
 import { listenToPrinter } from "./print";
+import { offerViews } from "./picture/views";
 import { Viewer } from "./picture/viewer";
+import { offerPicture } from "./saved/picture";
 
 function header(report: Report) {
     document.title = `${report.title} – report`;
@@ -76,6 +78,8 @@ const clock = new Clock(motion);
 const viewer = new Viewer(report, motion, clock);
 listenToPrinter(viewer, panels(report, clock, viewer));
 keyboard(clock, viewer);
+offerViews((direction) => viewer.lookFrom(direction));
+offerPicture(viewer);
 // For the test of the page.
 const page: Record<string, unknown> = { clock, viewer };
 Object.assign(window, { reportPage: page });

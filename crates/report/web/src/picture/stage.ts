@@ -136,6 +136,13 @@ export class Stage {
         this.controls.update();
     }
 
+    /// Turns the camera about the middle of the picture.
+    lookFrom(direction: THREE.Vector3) {
+        const distance = this.camera.position.distanceTo(this.controls.target);
+        this.camera.position.copy(this.controls.target).addScaledVector(direction, distance);
+        this.controls.update();
+    }
+
     resize(ratio = Math.min(devicePixelRatio, 2)) {
         const { clientWidth: width, clientHeight: height } = this.canvas;
         if (width === 0 || height === 0) return;

@@ -1,5 +1,6 @@
 // The picture of the body with its controls.
 
+import type { Vector3 } from "three";
 import type { Body, Field } from "./body";
 import { nextStep, type Clock } from "../clock";
 import { onSchemeChange } from "../colours";
@@ -267,8 +268,21 @@ export class Viewer {
     /// Draws the picture that paper shows.
     print() {
         this.recolour();
+        this.drawInto(element<HTMLCanvasElement>("printed-picture"));
+    }
+
+    /// Draws the picture into a plain canvas; false where there is none.
+    drawInto(plain: HTMLCanvasElement): boolean {
         this.prepare();
-        this.stage?.drawInto(element<HTMLCanvasElement>("printed-picture"));
+        this.stage?.drawInto(plain);
+        this.changed = true;
+        return this.stage !== null;
+    }
+
+    /// Looks from a direction at what is in the middle of the picture.
+    lookFrom(direction: Vector3) {
+        this.stage?.lookFrom(direction);
+        this.changed = true;
     }
 
     private showSurroundings() {

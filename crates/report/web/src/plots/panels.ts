@@ -56,13 +56,16 @@ function zoomButtons(group: PlotGroup, unit: string): HTMLElement {
     return bar;
 }
 
+const tools = (report: Report, times: Float64Array) =>
+    ({ time: report.units.time, frequency: report.units.frequency, thinned: times.length < report.rows });
+
 /// A long run shows fewer points than it has rows.
 function thinned(report: Report, points: number, sentence: string): HTMLElement[] {
     return points < report.rows ? [make("p", `${points} of ${report.rows} rows. ${sentence}`, "muted")] : [];
 }
 
 function histories(panel: HTMLElement, report: Report, clock: Clock, times: Float64Array): PlotGroup {
-    const group = new PlotGroup(clock, times);
+    const group = new PlotGroup(clock, times, tools(report, times));
     onSchemeChange(() => group.recolour());
     const names = [...new Set(report.histories.map((history) => history.group))];
     const plots = make("div");
@@ -91,7 +94,7 @@ function balances(panel: HTMLElement, report: Report, clock: Clock, times: Float
         term_peak > 0 ? number(error_peak / term_peak, 2) : "–",
     ]);
     panel.append(table(["Balance", "Greatest error", "Greatest term", "Ratio"], rows, [1, 2, 3]));
-    const group = new PlotGroup(clock, times);
+    const group = new PlotGroup(clock, times, tools(report, times));
     onSchemeChange(() => group.recolour());
     const names = [...new Set(report.balances.map((balance) => balance.group))];
     const select = make("select");

@@ -5,6 +5,7 @@ import type { Clock } from "../clock";
 import { cssColour } from "../colours";
 import { number, withUnit } from "../format";
 import { rowAt } from "../motion";
+import { plotTools, type ToolSettings } from "./tools";
 
 export interface Course { name: string; values: Float32Array }
 
@@ -20,7 +21,7 @@ const CLICK_PIXELS = 4;
 export class PlotGroup {
     private readonly plots: Plot[] = [];
     private passing = false;
-    constructor(readonly clock: Clock, readonly times: Float64Array) {
+    constructor(readonly clock: Clock, readonly times: Float64Array, readonly tools: ToolSettings) {
         clock.onChange(() => this.plots.forEach((plot) => plot.mark()));
     }
     add(plot: Plot) { this.plots.push(plot); }
@@ -112,6 +113,8 @@ export class Plot {
                 draw: [() => this.mark()],
             },
         }, [group.times, ...courses.map((course) => course.values)] as unknown as uPlot.AlignedData, place);
+        const names = courses.map((course) => course.name);
+        caption.append(plotTools({ chart: this.chart, figure, title, unit, names, times: group.times, values: courses.map(({ values }) => values) }, group.tools));
         this.now.className = "now";
         this.chart.over.append(this.now);
         this.listen();
