@@ -213,6 +213,42 @@ paraview: build
 report-page:
     cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build
 
+# Build the program of live pages, the crate `live` as WebAssembly (Debian's Rust for the web). It is checked in beside the page.
+live-page:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    export RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 # -Zbuild-std needs no target that would have to be fetched
+    export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=wasm-ld-19
+    # No paths of this machine, so that it comes out the same on every one.
+    registry="${CARGO_HOME:-$HOME/.cargo}/registry/src/"
+    export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="-Ctarget-feature=+simd128 -Zlocation-detail=none \
+    --remap-path-prefix=$PWD= --remap-path-prefix=$registry=registry/"
+    /usr/bin/cargo build --quiet --locked --package live --profile page --target wasm32-unknown-unknown \
+        -Zbuild-std=std,panic_abort --target-dir target/page
+    gzip -9nc target/page/wasm32-unknown-unknown/page/live.wasm >crates/report/web/live.wasm.gz
+    .ci/live-sources >crates/report/web/live.sources
+
+# Live pages: in Node against the results files, to 1e-9, with the work of a frame; then in a headless Chromium. Before that, whether
+# their program is what its sources give (npm).
+live-page-test:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    .ci/live-sources | cmp - crates/report/web/live.sources || {
+        echo "live-page-test: live.wasm.gz is not what its sources give: run ./dev live-page" >&2
+        exit 1
+    }
+    mkdir -p out/live-page
+    cargo build --quiet --package flexframe-cli
+    program=$(realpath "${CARGO_TARGET_DIR:-target}/debug/flexframe")
+    for scene in examples/thrown_plate examples/mechanisms/double_pendulum tests/bent_rod tests/chain; do
+        name=$(basename $scene)
+        $program run $scene.toml -o out/live-page --no-check --overwrite >/dev/null
+        $program export out/live-page/$name.h5 --csv out/live-page/$name.csv --overwrite >/dev/null
+        $program report out/live-page/$name.h5 --live --overwrite >/dev/null
+    done
+    cd crates/report/web && npm ci --silent --no-audit --no-fund
+    REPORTS=../../../out/live-page npm run --silent test-live
+
 # The page of reports in a headless Chromium; before that, whether it is what its sources give (npm).
 report-page-test:
     mkdir -p out/report-page

@@ -40,9 +40,11 @@
 //!     initial: &initial,
 //!     end: 1.0,
 //!     length: 200.0,
+//!     length_unit: "mm",
 //!     peaks: &[100.0; 4], // the largest of each column of `modes.shapes`
 //!     static_compliances: &[],
 //!     centrifugal_remainders: &[],
+//!     drive_remainder: None,
 //!     backbones: &[],
 //!     manifold: None,
 //! };

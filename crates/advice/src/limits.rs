@@ -25,8 +25,9 @@ pub enum Refusal {
     /// K + Ω²(K_σ − N) is not definite.
     #[error(
         "the body spins at {} rad per time, beyond the {} at which K + Ω²(K_σ − N) loses definiteness: \
-         it would bend without limit; spin it slower{} (`refuse = false` in [effects] runs it all the same)",
-        Number(*.spin), Number(*.critical), if *.stiffening { "" } else { ", or turn geometric_stiffening on" }
+         linear modes have no rest there, though the body may have one; name the modes that bend it in `large` in [modes]{}, or \
+         spin it slower (`refuse = false` in [effects] runs it all the same)",
+        Number(*.spin), Number(*.critical), if *.stiffening { "" } else { ", turn geometric_stiffening on" }
     )]
     Unstable {
         /// |ω|.
@@ -51,8 +52,8 @@ pub enum Refusal {
     /// K + K_σ of the steady loads is not definite, or nearly so.
     #[error(
         "the steady loads are {factor:.4} times those at which the body buckles, where K + K_σ loses definiteness (from \
-         {BUCKLED} on a run is refused): it would bend without limit; make them smaller, or hold the body at more places \
-         (`refuse = false` in [effects] runs it all the same)"
+         {BUCKLED} on a run is refused): linear modes have no rest there; make them smaller, hold the body at more places, or \
+         name the modes that bend it in `large` in [modes] (`refuse = false` in [effects] runs it all the same)"
     )]
     Buckled {
         /// The loads over those at which it buckles.

@@ -8,10 +8,11 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::limits::{LINEAR, LeftOut, Refusal, SOFTENED, beyond, deflected, detuned, refusal};
 use crate::motion::case::{AdviceError, Case};
+use crate::strain::error_bound::OF_BAR;
 use crate::strain::fourth_order::{FourthOrder, STATED};
 use crate::table::number::Number;
 use crate::table::relative::relative;
-use crate::table::rows::{Advice, held, left_out};
+use crate::table::rows::{Advice, held, held_of_drive, left_out};
 
 /// An assumption that has broken.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -70,11 +71,11 @@ pub enum Broken {
         /// Relative error of the forces on them by the orders left out, about.
         error: f64,
     },
-    /// The modes do not carry what the spin does to the body.
+    /// The modes do not carry what the spin, or the acceleration of the drive, does to the body.
     #[error(
-        "at time {time:.6} the modes left out {:.1} % of the static response to the spin, and the answer lacks it, \
+        "at time {time:.6} the modes left out {:.1} % of the static response to {}, and the answer lacks it, \
          {influence:.1e} of the deformation: take static_correction = true with the scheme exponential, or more modes",
-        100.0 * .left_out
+        100.0 * .left_out, if *.of_drive { "the acceleration of the drive" } else { "the spin" }
     )]
     Stretch {
         /// When most was missing.
@@ -83,6 +84,8 @@ pub enum Broken {
         left_out: f64,
         /// Part of the whole deformation that was missing.
         influence: f64,
+        /// True if it was the response to the acceleration of the drive, not to the spin.
+        of_drive: bool,
     },
     /// A spin or a deflection was reached at which the model is known to be wrong.
     #[error("at time {time:.6}: {refusal}")]
@@ -277,8 +280,9 @@ pub struct Review<'a> {
     fastest: (f64, Vector3<f64>),
     /// The last |ω| whose limit was looked up, and its direction.
     looked_up: (f64, Vector3<f64>),
-    /// The most that the modes left out of the static response to the spin, when, and the part of it.
-    left_out: (f64, f64, f64),
+    /// The most that the modes left out of the static response to the spin and to the acceleration of the drive, when, and the
+    /// part of it.
+    left_out: [(f64, f64, f64); 2],
     /// Lowest natural frequency, rad per time. The centrifugal force takes at most Ω² from the stiffness of a mode, so
     /// that below it nothing can be lost.
     lowest: f64,
@@ -336,7 +340,7 @@ impl<'a> Review<'a> {
             row: None,
             fastest: (0.0, Vector3::zeros()),
             looked_up: (0.0, Vector3::zeros()),
-            left_out: (0.0, 0.0, 0.0),
+            left_out: [(0.0, 0.0, 0.0); 2],
             lowest: case.body.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min),
             deformation: 0.0,
             order: case
@@ -428,13 +432,19 @@ impl<'a> Review<'a> {
             modal_velocity: &observation.modal_velocity,
         });
         self.row = Some(observation.time);
+        if let (Some(drive), Some((held, remainder))) = (self.case.drive, held_of_drive(&self.case)) {
+            let left = remainder * observation.acceleration_of(&drive.motion).abs();
+            if left > self.left_out[1].0 {
+                self.left_out[1] = (left, observation.time, (1.0 - held * held).max(0.0).sqrt());
+            }
+        }
         let between = std::mem::replace(&mut self.fastest, (0.0, Vector3::zeros()));
         for (speed, omega_body) in [between, (observation.omega_body.norm(), observation.omega_body)] {
             if self.effects[Effect::DeformedInertia] && !self.case.centrifugal_remainders.is_empty() {
                 let squares = omega_body * omega_body.transpose();
-                if left_out(&self.case, &squares) > self.left_out.0 {
+                if left_out(&self.case, &squares) > self.left_out[0].0 {
                     let (held, left) = held(&self.case, &squares);
-                    self.left_out = (left, observation.time, (1.0 - held * held).max(0.0).sqrt());
+                    self.left_out[0] = (left, observation.time, (1.0 - held * held).max(0.0).sqrt());
                 }
             }
             if speed >= SOFTENED * self.lowest && !self.is_known(&omega_body, speed) {
@@ -478,16 +488,18 @@ impl<'a> Review<'a> {
         let linear = (found > LINEAR || !modes.is_empty()).then_some(Broken::Linear { time, found, modes });
         let limits =
             [self.limit, limit_of_bending].map(|limit| limit.map(|(time, refusal)| Broken::Limit { time, refusal }));
-        let (left, time, left_out) = self.left_out;
-        let influence = relative(left, self.deformation.hypot(left));
-        let stretch = (influence >= self.tolerance).then_some(Broken::Stretch { time, left_out, influence });
+        let stretch = |(of_drive, (left, time, left_out)): (bool, (f64, f64, f64))| {
+            let influence = relative(left, self.deformation.hypot(left));
+            (influence >= self.tolerance).then_some(Broken::Stretch { time, left_out, influence, of_drive })
+        };
+        let stretch = [false, true].into_iter().zip(self.left_out).map(stretch);
         let order = self.order.as_ref().filter(|(_, [error, ..])| *error > STATED);
         let order = order.map(|(_, [error, time, deflection])| Broken::FourthOrder {
             time: *time,
             deflection: *deflection,
             error: *error,
         });
-        [spin, bent, linear, order].into_iter().chain(limits).chain([stretch]).flatten().collect()
+        [spin, bent, linear, order].into_iter().chain(limits).chain(stretch).flatten().collect()
     }
 
     /// The modes whose frequency, or phase in the time that was watched, linear strain puts out noticeably.
@@ -497,13 +509,19 @@ impl<'a> Review<'a> {
             let (swings, i, omega) =
                 (self.swings.get(k / SIDE_BY_SIDE)?, k % SIDE_BY_SIDE, case.body.circular_frequencies[k]);
             let (largest, integral) = (swings.largest[i], swings.integral[i]);
-            let backbone = backbone.as_ref()?;
             let turns = omega / std::f64::consts::TAU;
+            let bend = case.peaks[k] / case.length;
+            // Where nobody thought that it would move, as a bar.
+            let [shift, curvature] = match backbone {
+                Some(backbone) => [backbone.shift(largest), backbone.curvature()],
+                None if case.manifold.is_some_and(|manifold| manifold.bent().contains(&k)) => return None,
+                None => [-OF_BAR * (largest * bend).powi(2), -OF_BAR * bend * bend],
+            };
             let detuning = Detuning {
                 mode: k + 1,
-                deflection: largest * case.peaks[k] / case.length,
-                shift: backbone.shift(largest),
-                phase: backbone.curvature() * integral * turns,
+                deflection: largest * bend,
+                shift,
+                phase: curvature * integral * turns,
                 periods: self.time * turns,
             };
             let matters = detuning.shift.abs() >= SHIFTED || detuning.phase.abs() >= OUT_OF_PHASE;

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, MAX_FRAMES, animate, animate_results};
-use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds, SystemCampbellSettings};
+use flexframe::campbell::{self, AboutRest, CampbellError, CampbellSettings, Speeds, SystemCampbellSettings};
 use flexframe::check::{self, CheckRows};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
@@ -30,6 +30,7 @@ use slepc::files_of_folder;
 use crate::cli_error::{self, CliError};
 use crate::progress::Bar;
 use crate::scene_input::SceneInput;
+use crate::served::Served;
 use crate::signals::Signals;
 use crate::solver_input::{SolverInput, WriteOnly};
 use crate::{output, threads};
@@ -215,6 +216,10 @@ enum Command {
             value_parser = positive
         )]
         orders: Vec<f64>,
+        /// Vibrations about the rest of the full nonlinear body at each speed: auto (where the spin bends the body so far that a low
+        /// frequency at the highest speed is off by 1 % without), always, or never.
+        #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = about_rest)]
+        about_rest: AboutRest,
         /// Number of flexible modes, instead of the scene's.
         #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
         flexible: Option<usize>,
@@ -294,8 +299,20 @@ enum Command {
         /// The page to write, or - for standard output [default: the results file's name with .html].
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
+        /// Put the run itself into the page: it computes the motion, lets it be changed, and be pulled at with the pointer.
+        /// The bodies are built again from the scene in the file, with their meshes.
+        #[arg(long)]
+        live: bool,
         #[command(flatten)]
         files: FileArgs,
+    },
+    /// Run a scene and show its live page at an address of this machine alone, until it is stopped (Ctrl-C).
+    Play {
+        #[command(flatten)]
+        scene: SceneInput,
+        /// The port; 0 takes one that is free.
+        #[arg(long, value_name = "N", default_value_t = 0)]
+        port: u16,
     },
     /// Run a scene with many values of its keys, and write a table of parameters and results (docs/reference/cli.md).
     ///
@@ -332,6 +349,14 @@ enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
+    /// Print the JSON schema of scene files, by which editors complete and explain keys.
+    ///
+    /// flexframe schema > flexframe.schema.json
+    ///
+    /// Visual Studio Code with the extension Even Better TOML uses it in a scene whose first line is
+    /// #:schema ./flexframe.schema.json
+    #[command(verbatim_doc_comment)]
+    Schema,
     /// Draw a scene or a results file as an animated GIF.
     ///
     /// A scene is run for it; of a results file (.h5) each frame is a row, and no mesh is needed. Colours are the displacement by deformation, from 0 to the largest of the frames that are shown. A warning says
@@ -458,6 +483,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             clap_complete::generate(shell, &mut Cli::command(), "flexframe", &mut script);
             Ok(output::written(std::io::stdout().write_all(&script))?)
         }
+        Command::Schema => Ok(output::text(&format!("{:#}\n", flexframe::scene::json_schema()))?),
         Command::Run { scene: SceneArgs { scene, json }, output, files, large, no_check, solver } => {
             output::require_file("--output", output.as_deref())?;
             let system = read_system(scene)?;
@@ -617,6 +643,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             joint,
             speeds,
             orders,
+            about_rest,
             flexible,
             output,
             files,
@@ -645,7 +672,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                     expected: "the axis of the spin, in the axes of the mesh".to_owned(),
                     help: "give x, y, z, or three numbers such as 0,0.6,0.8".to_owned(),
                 })?;
-                let settings = CampbellSettings { axis, speeds, orders };
+                let settings = CampbellSettings { axis, speeds, orders, about_rest };
                 campbell::campbell(scene, &builder, &folder, &settings, |p| bar.campbell(p))
             };
             let report = report.map_err(|error| of_option(error, flexible))?;
@@ -716,18 +743,37 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             }
             Ok(())
         }
-        Command::Report { file, output, files } => {
+        Command::Report { file, output, live, files } => {
             GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
+            let mut contents = || match live {
+                true => html_report::live_contents(&file, &builder, |p| bar.build(p)),
+                false => html_report::contents(&file),
+            };
             if output.as_deref().is_some_and(output::is_standard) {
-                let page = html_report::page(&file)?;
+                let page = html_report::page(&contents()?)?;
                 drop(bar);
                 return Ok(output::text(&page)?);
             }
             let output = output.unwrap_or_else(|| file.with_extension("html"));
             outputs_of_results(&file, files.overwrite).claim_as(&Written::PAGE, &output)?;
-            html_report::write(&file, &output)?;
+            html_report::write(&contents()?, &output)?;
             drop(bar);
             output::list(&[output])
+        }
+        Command::Play { scene, port } => {
+            let system = read_system(scene)?;
+            let served = Served::new(port)?;
+            let folder = tempfile::tempdir().map_err(CliError::Folder)?;
+            let settings = RunSettings { check: false, ..settings(&signals, true, &builder) };
+            let (_, report) = run::run(&system, folder.path(), &settings, |p| {
+                signals.heard(p);
+                bar.run(p);
+            })?;
+            let contents = html_report::live_contents(&report.results, &builder, |p| bar.build(p))?;
+            let page = html_report::page(&contents)?;
+            drop((bar, contents));
+            output::line(&format!("  page     {} (Ctrl-C ends it)", served.address()))?;
+            Ok(served.serve(&page, &signals.stop())?)
         }
         Command::Sweep { sweep: file, output, shard, merge, slurm, files: FileArgs { overwrite }, large, json } => {
             GivenFile::expect(&file, &[GivenFile::Sweep], "the file of a sweep (docs/reference/cli.md)")?;
@@ -876,6 +922,16 @@ fn view(text: &str) -> Result<View, String> {
                 Err("expected x, y, z, or two angles in degrees, the second from -90 to 90, such as -60,25".to_owned())
             }
         },
+    }
+}
+
+/// About what the vibrations of a spinning body are.
+fn about_rest(text: &str) -> Result<AboutRest, String> {
+    match text {
+        "auto" => Ok(AboutRest::Auto),
+        "always" => Ok(AboutRest::Always),
+        "never" => Ok(AboutRest::Never),
+        _ => Err("expected auto, always or never".to_owned()),
     }
 }
 

@@ -32,6 +32,14 @@ pub enum CliError {
          complete"
     )]
     Output(#[source] io::Error),
+    /// A port that somebody else has, or may not be had.
+    #[error(
+        "port {port} of 127.0.0.1 cannot be taken: {source}\n = leave --port out, so that one that is free is taken"
+    )]
+    Port { port: u16, source: io::Error },
+    /// The folder for a run that is played.
+    #[error("a folder for the run cannot be made: {0}\n = let TMPDIR name a folder where there is room")]
+    Folder(#[source] io::Error),
     /// The summary has no form in JSON.
     #[error("the summary cannot be written as JSON: {0}\n = leave --json out, and please report this")]
     Json(#[from] serde_json::Error),
@@ -57,7 +65,9 @@ impl CliError {
                 (Kind::Usage, Details { key, found, expected, ..Details::default() })
             }
             Self::Output(_) => (Kind::Io, Details::of_file("standard output")),
-            Self::Threads { .. } | Self::Signals(_) => (Kind::Io, Details::default()),
+            Self::Threads { .. } | Self::Signals(_) | Self::Port { .. } | Self::Folder(_) => {
+                (Kind::Io, Details::default())
+            }
             Self::Json(_) => (Kind::Run, Details::default()),
         };
         FailureReport::new(kind, self.to_string(), details)

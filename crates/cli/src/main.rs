@@ -8,6 +8,7 @@ mod out_of_memory;
 mod output;
 mod progress;
 mod scene_input;
+mod served;
 mod signals;
 mod solver_input;
 mod threads;

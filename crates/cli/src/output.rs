@@ -82,7 +82,7 @@ pub fn notes(notes: &CacheNotes) {
     }
 }
 
-fn line(line: &str) -> Result<(), CliError> {
+pub fn line(line: &str) -> Result<(), CliError> {
     written(writeln!(io::stdout(), "{line}"))
 }
 

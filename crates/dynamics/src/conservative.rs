@@ -48,6 +48,9 @@
 //! ω = (J − SᵀM⁻¹S)⁻¹ (π − SᵀM⁻¹p),      q̇ = M⁻¹ (p − S ω)
 //! p' = Dᵀ [Σ ω_iω_j (c_ij + N_ij ξ) − Σ ω_i G_i ν + Ψ_extᵀF] + Ḋᵀμ − Λq − D q̇ − ∂V_n/∂q
 //! ```
+//!
+//! About a bent reference X stands for the nodes of the bent body, Λ for its stiffness, and p' has −g − Bq
+//! ([`ReferenceForces`](crate::ReferenceForces)).
 
 mod body;
 mod build;
@@ -60,6 +63,7 @@ pub(crate) mod manifold;
 mod methods;
 mod observation;
 mod rates;
+mod reference;
 mod start;
 mod state;
 

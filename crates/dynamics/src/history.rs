@@ -20,7 +20,8 @@ use crate::error::SetupError;
 /// with a duration (but for the ramp, which stays at one) are zero after it. As data it is an enum whose variants have
 /// kebab-case names; a table and an expression have, as data, other types `T` and `E` than those that can be evaluated,
 /// and [`Self::try_map`] goes from one to the other.
-#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(tag = "kind"))]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum History<T = Table, E = Expression> {
     /// One at all times.

@@ -93,7 +93,8 @@ pub trait Load: fmt::Debug + Send + Sync + Any {
 pub type SharedLoad = Arc<dyn Load>;
 
 /// The axes that the direction of a load is fixed in.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum LoadFrame {
     /// Global axes: a dead load.

@@ -11,6 +11,7 @@ pub(crate) mod work;
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
+use crate::body::physics::DrivenMotion;
 use crate::matrix::four::all_finite;
 use crate::observation::reaction::Reaction;
 use crate::observation::work::Work;
@@ -75,6 +76,14 @@ pub struct Observation {
 }
 
 impl Observation {
+    /// The acceleration of the body along a driven motion: of its origin along a slide, its angular one about the axis of a turn.
+    pub fn acceleration_of(&self, motion: &DrivenMotion) -> f64 {
+        match motion {
+            DrivenMotion::Slide { direction } => self.attitude.to_body(&self.origin_acceleration_global).dot(direction),
+            DrivenMotion::Turn { axis } => self.alpha_body.dot(axis),
+        }
+    }
+
     /// Zeros, for `flexible` modes and `points` points: room for a motion.
     pub fn new(flexible: usize, points: usize) -> Self {
         let list = || vec![0.0; flexible];

@@ -7,6 +7,7 @@ use crate::mesh::checked::Mesh;
 
 /// An isotropic, linearly elastic material.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Material {
     /// Young's modulus E, force per area.

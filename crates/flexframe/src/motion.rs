@@ -2,6 +2,7 @@
 //! them by these.
 
 mod beginning;
+pub(crate) mod described;
 pub(crate) mod row_times;
 
 use dynamics::{

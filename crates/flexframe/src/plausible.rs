@@ -78,7 +78,21 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
             ratios.len()
         ));
     }
+    doubts.extend(without_statics(scene, model));
     doubts
+}
+
+/// Stress of modes that leave out something of the static response.
+fn without_statics(scene: &Scene, model: &Model) -> Option<String> {
+    let row = &model.advice.static_correction;
+    let has_modes = scene.output.any_stress() && model.body.flexible() > 0;
+    (has_modes && model.static_shapes() == 0 && row.on).then(|| {
+        format!(
+            "the stress lacks what the modes leave out of the static response, which is largest beside loads and supports. {} Take \
+             static_correction = true with the scheme exponential, or more modes; `peak_stress = true` tells how much is missing",
+            row.why
+        )
+    })
 }
 
 /// Multigrid cycles that could not spare a long time and much memory.

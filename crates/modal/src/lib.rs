@@ -35,6 +35,7 @@ mod support;
 pub use eigen::engine::{Eigenpairs, Engine, EngineStats, StaticAnswers};
 pub use error::{EngineError, ModalError};
 pub use factor::indefinite::{IndefiniteFactor, IndefiniteOrder};
+pub use matrix::as_data;
 pub use matrix::mass::NodalMass;
 pub use matrix::mass_matrix::{GeneralMass, MassMatrix};
 pub use matrix::stiffness::{NodalStiffness, StiffnessMatrix};

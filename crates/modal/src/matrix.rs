@@ -1,5 +1,6 @@
 //! Sparse matrices over nodes and dense ones over modes, and their products.
 
+pub mod as_data;
 pub(crate) mod columns;
 pub(crate) mod dense;
 pub(crate) mod mass;

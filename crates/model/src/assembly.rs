@@ -20,6 +20,7 @@ use crate::mesh::given::{Given, MatrixChecks};
 use crate::mesh::other_materials::other_materials;
 use crate::mesh::read::{matrices, mesh_file, mesh_in};
 use crate::progress::{BuildProgress, BuildTimes, timed};
+use crate::reference::Reference;
 use crate::support::support;
 
 /// The mesh and the matrices of the body of a scene, and what holds it.
@@ -46,6 +47,9 @@ pub(crate) struct AssembledMesh {
     pub mesh_notes: Vec<String>,
     /// The matrices, where they are needed: where values are known, none are.
     matrices: OnceLock<(FeMatrices, Duration)>,
+    /// The bent body that the modes are about, if the scene asks for one, and its matrices.
+    reference: OnceLock<Option<Reference>>,
+    tangent: OnceLock<FeMatrices>,
     /// Checks of matrices from another program.
     pub checks: Option<MatrixChecks>,
     pub support: Support,
@@ -98,6 +102,8 @@ impl Builder {
             mesh,
             mesh_notes,
             matrices: OnceLock::new(),
+            reference: OnceLock::new(),
+            tangent: OnceLock::new(),
             checks: None,
             support,
             drive,
@@ -132,6 +138,8 @@ impl Builder {
             mesh,
             mesh_notes,
             matrices: OnceLock::from((matrices, Duration::ZERO)),
+            reference: OnceLock::from(None),
+            tangent: OnceLock::new(),
             checks: Some(checks),
             support,
             drive,
@@ -148,7 +156,12 @@ impl Assembly {
         let flexibility = scene.effects.choices[Effect::Flexibility];
         // Such a support is checked against what the scene begins with.
         let initial = matches!(scene.constraint, Some(Constraint::Support { .. })).then_some(&scene.initial);
-        format!("{:?} {:?} {:?} {flexibility:?} {initial:?}", scene.body, scene.constraint, scene.modes.flexible)
+        // So is the rest that modes are about.
+        let about = scene.modes.about.map(|about| (about, &scene.loads, scene.initial.attitude, scene.time.end));
+        format!(
+            "{:?} {:?} {:?} {flexibility:?} {initial:?} {about:?}",
+            scene.body, scene.constraint, scene.modes.flexible
+        )
     }
 
     /// The same without the matrices, which are assembled again where they are needed, for who keeps it for long.
@@ -157,6 +170,7 @@ impl Assembly {
             && let MadeOf::Elements(_) = assembled.body
         {
             assembled.matrices.take();
+            assembled.tangent.take();
         }
         self
     }
@@ -173,6 +187,30 @@ impl AssembledMesh {
         let assembled = timed(&mut time, || matrices(&self.scene, body, &self.mesh))?;
         self.builder.cache.note(|notes| notes.assembled += 1);
         Ok(&self.matrices.get_or_init(|| (FeMatrices::Assembled(assembled), time)).0)
+    }
+
+    /// The bent body that the modes are about, found at the first call; none of modes about the undeformed one.
+    pub fn reference(&self) -> Result<Option<&Reference>, BuildError> {
+        if let Some(found) = self.reference.get() {
+            return Ok(found.as_ref());
+        }
+        let found = Reference::new(self)?;
+        Ok(self.reference.get_or_init(|| found).as_ref())
+    }
+
+    /// Mass and stiffness about the reference: of the undeformed body without one.
+    pub fn tangent(&self) -> Result<&FeMatrices, BuildError> {
+        let Some(reference) = self.reference()? else { return self.matrices() };
+        if let Some(found) = self.tangent.get() {
+            return Ok(found);
+        }
+        let found = reference.tangent(self)?;
+        Ok(self.tangent.get_or_init(|| found))
+    }
+
+    /// The nodes of the reference: of the undeformed body without one.
+    pub fn positions(&self) -> Result<&[[f64; 3]], BuildError> {
+        Ok(self.reference()?.map_or(self.mesh.positions(), |reference| &reference.positions))
     }
 
     /// Degrees of freedom of a node.
@@ -194,7 +232,7 @@ impl AssembledMesh {
     }
 
     /// The refusal of what needs elements.
-    fn without_elements(&self) -> BuildError {
+    pub fn without_elements(&self) -> BuildError {
         let found = "a body of matrices, whose elements are not known";
         self.scene.refuse("body.matrices", found, "a body with elements", "give the body a mesh and a material").into()
     }

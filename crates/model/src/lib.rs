@@ -13,6 +13,7 @@
 //! | `support`, `load`, `stress` | what holds the body, what acts on it, and the stress of that |
 //! | `reduction` | `survey` (what the scene may need), `decide` (what it gets), `reduce` (make it) |
 //! | `model` | the reduced body with its points, markers and loads |
+//! | `reference` | the bent body that modes are about |
 //! | `full` | the full nonlinear body of the scene, and the check of a model's state by it |
 //! | `tie` | markers, and the systems of the bodies that joints connect |
 
@@ -30,6 +31,7 @@ mod mesh;
 mod model;
 mod progress;
 mod reduction;
+mod reference;
 mod stress;
 mod structure;
 mod support;
@@ -49,6 +51,7 @@ pub use mesh::doubt::{Doubt, doubts};
 pub use mesh::given::MatrixChecks;
 pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes, BuildWork};
+pub use stress::about::stress_about;
 pub use stress::products::ProductStrains;
 pub use stress::shapes::{BodyStress, StressPeak};
 pub use support::reactions::SupportRows;

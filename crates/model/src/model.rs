@@ -23,6 +23,7 @@ use crate::mesh::given::MatrixChecks;
 use crate::model::initial::initial;
 use crate::progress::BuildTimes;
 use crate::stress::shapes::BodyStress;
+use crate::structure::remainders::Remainders;
 use crate::support::reactions::SupportRows;
 use crate::tie::body_marker::BodyMarker;
 
@@ -49,6 +50,8 @@ pub struct Meshed {
     /// Shapes on the mesh that only follow large modes (3n × …), none without: what the extended shapes have after the
     /// modes.
     pub following: Mat<f64>,
+    /// Displacement of the bent body that the modes are about (3n × 1); none of modes about the undeformed one.
+    pub reference: Option<Mat<f64>>,
 }
 
 /// The body of a scene in modal coordinates, with its mesh, its points and its loads.
@@ -83,8 +86,8 @@ pub struct Model {
     /// The damping that the scene does not switch off, where it does not call for it, too (nf).
     pub(crate) all_damping_ratios: Vec<f64>,
     pub(crate) size: Size,
-    /// Remainder of the static responses to the spin beside the modes (6), where that is to be watched.
-    pub(crate) left_out: Vec<f64>,
+    /// What the modes leave out of static responses, where that is to be watched.
+    pub(crate) left_out: Remainders,
     /// Backbones of the modes that may bend the body far.
     pub(crate) backbones: Vec<Option<Backbone>>,
 }
@@ -205,7 +208,7 @@ impl Model {
     }
 
     /// The run as [`advice`] sees it, which begins with `initial`.
-    pub fn case<'a>(&'a self, scene: &Scene, initial: &'a Initial) -> Case<'a> {
+    pub fn case<'a>(&'a self, scene: &'a Scene, initial: &'a Initial) -> Case<'a> {
         Case {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
@@ -215,9 +218,11 @@ impl Model {
             initial,
             end: scene.time.end,
             length: self.size.length,
+            length_unit: &scene.units.length,
             peaks: &self.size.peaks,
             static_compliances: &[],
-            centrifugal_remainders: &self.left_out,
+            centrifugal_remainders: &self.left_out.of_spin,
+            drive_remainder: self.left_out.of_drive,
             backbones: &self.backbones,
             manifold: self.physics.large_deflection.as_ref(),
         }

@@ -1,5 +1,6 @@
 //! Stress of loads and of a drive, and the stiffness by it.
 
+pub(crate) mod about;
 pub(crate) mod left_out;
 pub(crate) mod products;
 pub(crate) mod shapes;
@@ -48,7 +49,9 @@ impl Stress {
         if !physics::may_stress(model.scene) || modes.shapes.ncols() == 0 {
             return Ok(Self::default());
         }
-        let mut found = Self { buckling_ratio: buckling_ratio(model, statics, modes)?, ..Self::default() };
+        // About a bent body loads are what it stands under.
+        let buckling_ratio = if model.reference.is_some() { 0.0 } else { buckling_ratio(model, statics, modes)? };
+        let mut found = Self { buckling_ratio, ..Self::default() };
         let (mut names, mut shown) = (Vec::new(), Vec::new());
         let stiffness = |responses: MatRef<'_, f64>| -> Result<Vec<Mat<f64>>, BuildError> {
             let found = model.structure.stress_stiffness(responses, modes, &[])?;

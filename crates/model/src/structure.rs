@@ -4,6 +4,7 @@
 //! assembled and factored only where a value is not known. The functions of `modal` and `fem_tet10` with these names say more.
 
 pub(crate) mod kept;
+pub(crate) mod remainders;
 pub(crate) mod statics;
 
 use std::cell::{Cell, OnceCell, RefCell};
@@ -32,6 +33,8 @@ use crate::error::{BuildError, modal, too_many_modes};
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{MatrixChecks, refuse_matrix};
 use crate::progress::{BuildProgress, BuildWork};
+use crate::reference::Reference;
+use crate::stress::about::stress_about;
 use crate::structure::kept::{Basis, Extended, Found, OwnSecondOrder, SecondOrder, StaticResponses};
 
 /// The finite-element side of a body.
@@ -93,6 +96,7 @@ impl<'a> Structure<'a> {
             element_passes: Cell::default(),
             computing: RefCell::default(),
         };
+        assembled.reference()?;
         if assembled.store.is_none() {
             structure.solver()?;
         }
@@ -106,7 +110,11 @@ impl<'a> Structure<'a> {
 
     /// The key of a value of the body whatever holds it.
     fn of_body(&self, what: &str) -> Asked {
-        Asked(self.assembled.store.as_ref().map(|store| store.key().of(what, 1)))
+        let start = self.assembled.store.as_ref().map(|store| store.key().of(what, 1));
+        match self.reference() {
+            Some(reference) => Asked(start).with("reference", &reference.hash),
+            None => Asked(start),
+        }
     }
 
     /// The key of a value of the body with its support.
@@ -146,7 +154,7 @@ impl<'a> Structure<'a> {
             return Ok(found);
         }
         let AssembledMesh { mesh, support, builder, .. } = self.assembled;
-        let solver = self.matrices()?.solver(mesh.positions(), support).map_err(|error| self.refuse(error))?;
+        let solver = self.matrices()?.solver(self.positions()?, support).map_err(|error| self.refuse(error))?;
         let edge_ends = if mesh.has_elements() { mesh.edge_ends() } else { None };
         let solver = match edge_ends {
             Some(edge_ends) => solver.with_edge_ends(edge_ends).map_err(|error| self.refuse(error))?,
@@ -159,8 +167,20 @@ impl<'a> Structure<'a> {
         Ok(self.solver.get_or_init(|| solver))
     }
 
+    /// About the reference.
     fn matrices(&self) -> Result<&'a FeMatrices, BuildError> {
-        self.assembled.matrices()
+        self.assembled.tangent()
+    }
+
+    /// The nodes of the reference.
+    fn positions(&self) -> Result<&'a [[f64; 3]], BuildError> {
+        self.assembled.positions()
+    }
+
+    /// The bent body that the modes are about.
+    pub fn reference(&self) -> Option<&'a Reference> {
+        // It was found when this was made.
+        self.assembled.reference().ok().flatten()
     }
 
     fn recovery(&self) -> Result<&StressRecovery<'a>, BuildError> {
@@ -191,7 +211,7 @@ impl<'a> Structure<'a> {
 
     /// The body in the coordinates of its modes.
     fn reduced(&self, modes: &Modes) -> Result<ReducedBody, BuildError> {
-        let positions = self.assembled.mesh.positions();
+        let positions = self.positions()?;
         ReducedBody::of_mass(modes, self.solver()?.mass(), positions).map_err(|error| self.modal(error))
     }
 
@@ -247,6 +267,12 @@ impl<'a> Structure<'a> {
                 "a body file of a body that is held otherwise".to_owned(),
                 "one with the constraints of the scene".to_owned(),
             )
+        } else if origin.reference != self.reference().map(|reference| reference.hash.to_string()) {
+            let found = match origin.reference {
+                Some(_) => "a body file with modes about a bent body that is not that of the scene",
+                None => "a body file with modes about the undeformed body",
+            };
+            (found.to_owned(), "one with the modes of `about` in [modes]".to_owned())
         } else {
             (format!("a body file with {} modes", origin.modes), format!("one with {flexible}, as [modes] asks"))
         };
@@ -303,14 +329,16 @@ impl Structure<'_> {
         let StaticForces { of_loads, spin, drive, origin } = forces;
         let asked = self.of_held_body("static responses").with_natural(modes);
         let asked = asked.with("loads", of_loads).with("spin", spin).with("drive", drive).with("origin", origin);
-        let spins = if *spin { 6 } else { 0 };
-        self.ask(asked, [self.rows(), forces.count(), spins], || {
+        // Of the spins and of the drive.
+        let of_inertia = forces.count() - of_loads.ncols();
+        let asked = asked.with("remainders", &of_inertia);
+        self.ask(asked, [self.rows(), forces.count(), of_inertia], || {
             let solver = self.solver()?;
             let solve = |forces| self.solve(modes, forces, StaticAccuracy::Full);
             if forces.count() == of_loads.ncols() {
                 return Ok(StaticResponses { fields: solve(*of_loads)?, remainders: Vec::new() });
             }
-            let (mass, positions) = (solver.mass(), self.assembled.mesh.positions());
+            let (mass, positions) = (solver.mass(), self.positions()?);
             let mut all = Mat::zeros(of_loads.nrows(), forces.count());
             all.as_mut().subcols_mut(0, of_loads.ncols()).copy_from(of_loads);
             let mut next = of_loads.ncols();
@@ -331,14 +359,14 @@ impl Structure<'_> {
                 None => {}
             }
             let fields = solve(all.as_ref())?;
-            let momenta = mass.product(fields.subcols(of_loads.ncols(), spins));
+            let of_inertia = fields.subcols(of_loads.ncols(), of_inertia);
+            let momenta = mass.product(of_inertia);
             let natural = modes.shapes.get(.., ..modes.natural());
             let remainder = |(u, mu): (ColRef<'_, f64>, ColRef<'_, f64>)| {
                 let carried: f64 = natural.col_iter().map(|shape| (shape.transpose() * mu).powi(2)).sum();
                 (u.transpose() * mu - carried).max(0.0).sqrt()
             };
-            let of_spin = fields.subcols(of_loads.ncols(), spins);
-            let remainders = of_spin.col_iter().zip(momenta.as_ref().col_iter()).map(remainder).collect();
+            let remainders = of_inertia.col_iter().zip(momenta.as_ref().col_iter()).map(remainder).collect();
             Ok(StaticResponses { fields, remainders })
         })
     }
@@ -441,10 +469,11 @@ impl Structure<'_> {
         let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
         let bent = shapes_of(modes, &[large, following].concat());
         let products = Products { large: large.len(), following: following.len() };
+        let reference = self.reference().map(|reference| reference.displacement.as_ref());
         let mut known: Vec<Vec<usize>> = (0..products.coordinates()).map(|k| vec![k]).collect();
         let mut fields = bent.clone();
         for wanted in [products.second(), products.third()] {
-            let expansion = Expansion { products: &known, fields: fields.as_ref(), reference: None };
+            let expansion = Expansion { products: &known, fields: fields.as_ref(), reference };
             self.pass_elements();
             let forces = expansion.forces(mesh, materials, &wanted)?;
             let answers = self.solve(modes, forces.as_ref(), StaticAccuracy::Shapes)? * Scale(-1.0);
@@ -459,13 +488,21 @@ impl Structure<'_> {
             });
             known.extend(wanted);
         }
-        let expansion = Expansion { products: &known, fields: fields.as_ref(), reference: None };
+        let expansion = Expansion { products: &known, fields: fields.as_ref(), reference };
         self.pass_elements();
         let energies = expansion.energies(mesh, materials, &products.of_energy())?;
         let of_products = fields.get(.., products.coordinates()..);
         let shapes = self.solver()?.large_shapes(modes.clone(), large, following, of_products);
         let shapes = shapes.map_err(|error| self.modal(error))?;
         Ok(Extended { body: self.reduced(&shapes.modes)?, shapes, energies })
+    }
+
+    /// The parts (nf×k) of fields (3n×k) along M-orthonormal modes and static shapes.
+    pub fn parts(&self, modes: &Modes, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
+        let asked = self.of_body("parts of fields").with_modes(modes).with("fields", &fields);
+        self.ask(asked, [modes.shapes.ncols(), fields.ncols()], || {
+            Ok(modes.shapes.transpose() * self.solver()?.mass().product(fields))
+        })
     }
 
     /// Fields (3n×k) without their parts along some modes.
@@ -494,7 +531,8 @@ impl Structure<'_> {
         self.ask(asked.with("known", known), [displacements.ncols(), shapes.ncols()], || {
             self.pass_elements();
             let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
-            Ok(extended_geometric_stiffness(mesh, materials, displacements, shapes, known)?)
+            let reference = self.reference().map(|reference| reference.displacement.as_ref());
+            Ok(extended_geometric_stiffness(mesh, materials, displacements, shapes, known, reference)?)
         })
     }
 
@@ -514,7 +552,11 @@ impl Structure<'_> {
         let asked = self.of_body("nodal stress").with("displacements", &displacements);
         let size = [6 * recovery.sites().len(), displacements.ncols() + pairs.len()];
         self.ask(asked.with("others", &others).with("pairs", pairs), size, || {
-            let linear = recovery.nodal_stress(displacements)?;
+            let linear = match self.reference() {
+                Some(Reference { displacement, .. }) => stress_about(recovery, displacement.as_ref(), displacements)?,
+                None => recovery.nodal_stress(displacements)?,
+            };
+            let linear = linear.get(.., ..displacements.ncols()).to_owned();
             if pairs.is_empty() {
                 return Ok(linear);
             }
@@ -523,6 +565,17 @@ impl Structure<'_> {
             let entry = |i: usize, j: usize| if j < first { linear[(i, j)] } else { second[(i, j - first)] };
             Ok(Mat::from_fn(size[0], size[1], entry))
         })
+    }
+
+    /// The stress (6m×1) of the bent body that the modes are about; none of the undeformed one.
+    pub fn reference_stress(&self) -> Result<Option<Mat<f64>>, BuildError> {
+        let Some(Reference { displacement, .. }) = self.reference() else { return Ok(None) };
+        let recovery = self.recovery()?;
+        let asked = self.of_body("stress of the reference");
+        let found = self.ask(asked, [6 * recovery.sites().len(), 1], || {
+            Ok(stress_about(recovery, displacement.as_ref(), displacement.get(.., ..0))?)
+        });
+        Ok(Some(found?))
     }
 
     /// The stress (6m×k) of static responses (3n×k) that modes and static shapes leave out.

@@ -57,7 +57,7 @@ pub fn true_frequencies(
 }
 
 /// ω × each node's displacement.
-fn turned(v: &Mat<f64>, omega: &Vector3<f64>) -> Mat<f64> {
+pub(crate) fn turned(v: &Mat<f64>, omega: &Vector3<f64>) -> Mat<f64> {
     Mat::from_fn(v.nrows(), v.ncols(), |row, k| {
         let first = row - row % 3;
         omega.cross(&Vector3::new(v[(first, k)], v[(first + 1, k)], v[(first + 2, k)]))[row % 3]

@@ -198,23 +198,26 @@ impl Body {
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let points = PyDict::new(py);
         for (name, point) in &self.model.points {
-            let position = self.model.body.origin + point.position_body();
+            let position = self.model.body.origin + point.position_body() - point.of_reference();
             points.set_item(name, position.as_slice().to_vec().into_pyarray(py))?;
         }
         Ok(points)
     }
 
     /// Elastic displacement of each node, body axes (n x 3, or 6 with the rotations of the nodes), with what follows
-    /// large modes.
+    /// large modes, and that of a bent reference.
     fn displacements<'py>(&self, modal_displacement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = modal_displacement.py();
-        let Meshed { modes, following, mesh, .. } = self.meshed(py)?;
+        let Meshed { modes, following, mesh, reference, .. } = self.meshed(py)?;
         let q = numbers(modal_displacement, self.model.body.flexible(), "modal_displacement")?;
         let coordinates = self.model.coordinates(&q);
         let (of_modes, of_following) = coordinates.split_at(modes.shapes.ncols().min(coordinates.len()));
         let mut u = &modes.shapes * ColRef::from_slice(of_modes);
         if following.ncols() > 0 {
             u += following * ColRef::from_slice(of_following);
+        }
+        if let Some(reference) = reference {
+            u += reference.col(0);
         }
         let u: Vec<f64> = u.iter().copied().collect();
         let nodes = mesh.positions().len();

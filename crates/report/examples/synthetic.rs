@@ -290,5 +290,6 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
             text: "title = \"Free plate, 50 N end pulse\"\n\n[body]\nmesh = \"plate.msh\"\n\n[modes]\nflexible = 10 # <all>\n".into(),
         },
         warnings: Vec::new(),
+        live: None,
     }
 }

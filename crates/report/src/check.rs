@@ -1,7 +1,7 @@
 //! Sizes and numbers of a report, checked before anything is written.
 
 use crate::ReportError;
-use crate::report::{Body, Component, Motion, Report, Surface};
+use crate::report::{Body, Component, Control, Motion, Report, Surface};
 
 /// Shapes that a page can draw: layers of a texture that every graphics processor has.
 const MAX_SHAPES: usize = 256;
@@ -36,6 +36,16 @@ pub(crate) fn check(report: &Report) -> Result<(), ReportError> {
         least_range(&format!("balance \"{}\"", balance.name), balance.least_range)?;
         check_components(&format!("balance \"{}\", terms", balance.name), &balance.terms, rows)?;
         check_components(&format!("balance \"{}\", errors", balance.name), &balance.errors, rows)?;
+    }
+    if let Some(live) = &report.live {
+        let (what, found, expected) =
+            ("list of bodies that are led on".to_owned(), live.bodies.len(), report.bodies.len());
+        if found != expected {
+            return Err(ReportError::WrongLength { what, found, expected });
+        }
+        for Control { group, name, range, recorded, .. } in &live.controls {
+            finite(&format!("control \"{group}: {name}\""), range.iter().chain([recorded]).copied())?;
+        }
     }
     Ok(())
 }

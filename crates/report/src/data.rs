@@ -1,11 +1,22 @@
 //! The report as the page reads it. `web/src/data.ts` has the same fields.
 
+use std::io::Read;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::read::GzEncoder;
 use serde::Serialize;
 
 use crate::numbers::Numbers;
 use crate::peak::{length, peak, von_mises};
-use crate::report::{Body, Component, Fact, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface};
+use crate::report::{
+    Body, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface,
+};
 use crate::thin::{Thinning, spread};
+
+/// The crate `live` for a browser, which `just live-page` builds.
+const PROGRAM: &[u8] = include_bytes!("../web/live.wasm.gz");
 
 /// Bytes of the rows of the motion, before base64.
 const MOTION_BYTES: usize = 1 << 20;
@@ -32,6 +43,27 @@ pub(crate) struct Data<'a> {
     balances: Vec<BalanceData<'a>>,
     scene: [&'a str; 2],
     warnings: &'a [String],
+    live: Option<LiveData<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct LiveData<'a> {
+    /// The program of the page and the data of the run, packed by gzip, in base64.
+    program: String,
+    run: String,
+    masses: Vec<f64>,
+    controls: Vec<ControlData<'a>>,
+    units: &'a [String; 4],
+}
+
+#[derive(Debug, Serialize)]
+struct ControlData<'a> {
+    group: &'a str,
+    name: &'a str,
+    unit: &'a str,
+    change: [usize; 3],
+    range: [f64; 2],
+    recorded: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -167,8 +199,33 @@ impl<'a> Data<'a> {
                 .collect(),
             scene: [&report.scene.file, &report.scene.text],
             warnings: &report.warnings,
+            live: report.live.as_ref().map(LiveData::new),
         }
     }
+}
+
+impl<'a> LiveData<'a> {
+    fn new(live: &'a Live) -> Self {
+        let control = |control: &'a Control| {
+            let Control { group, name, unit, change, range, recorded } = control;
+            ControlData { group, name, unit, change: *change, range: *range, recorded: *recorded }
+        };
+        Self {
+            program: STANDARD.encode(PROGRAM),
+            run: STANDARD.encode(packed(&live.run)),
+            masses: live.bodies.iter().map(|body| body.mass).collect(),
+            controls: live.controls.iter().map(control).collect(),
+            units: &live.units,
+        }
+    }
+}
+
+/// The bytes, packed by gzip.
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut packed = Vec::new();
+    // Reading from a list of bytes does not fail.
+    let _ = GzEncoder::new(bytes, Compression::best()).read_to_end(&mut packed);
+    packed
 }
 
 fn facts(facts: &[Fact]) -> Vec<[&str; 2]> {

@@ -25,6 +25,45 @@ pub struct Report {
     pub scene: SceneText,
     /// Warnings of the run, each a sentence or more.
     pub warnings: Vec<String>,
+    /// The run as data, of a page that computes.
+    pub live: Option<Live>,
+}
+
+/// A run that the page leads on by itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Live {
+    /// The data of the run, as the program of the page reads them.
+    pub run: Vec<u8>,
+    /// The bodies, in the order of the page.
+    pub bodies: Vec<LiveBody>,
+    /// What may be changed.
+    pub controls: Vec<Control>,
+    /// Names of the units of force, energy, momentum and angular momentum.
+    pub units: [String; 4],
+}
+
+/// A body of a run that the page leads on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LiveBody {
+    /// Its mass.
+    pub mass: f64,
+}
+
+/// A number of the run that may be changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Control {
+    /// Name of the body or the joint that it is of.
+    pub group: String,
+    /// Its name.
+    pub name: String,
+    /// Unit; empty for a factor.
+    pub unit: String,
+    /// How the program of the page knows it.
+    pub change: [usize; 3],
+    /// Least and greatest value that is offered.
+    pub range: [f64; 2],
+    /// Value of the recorded run.
+    pub recorded: f64,
 }
 
 /// A body of a run.

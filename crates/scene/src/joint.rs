@@ -1,5 +1,6 @@
 //! Joints, springs and bushings between the bodies of a scene.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::loads::history::History;
@@ -32,7 +33,7 @@ impl End {
 }
 
 /// Kinds of joints, by what they leave free of the motion of the second end against the first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum JointKind {
     /// Nothing.
@@ -65,7 +66,7 @@ pub struct Locked {
 }
 
 /// A coordinate that a joint leaves free.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coordinate {
     /// The angle about the z axis of the first end, from its x axis to that of the second, rad.
@@ -194,7 +195,7 @@ pub struct Stops {
 }
 
 /// Dry friction: −force · tanh(rate of the coordinate / rate).
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Friction {
     /// Moment or force, ≥ 0.
@@ -232,7 +233,7 @@ pub struct Bushing {
 }
 
 /// Numbers for each axis of a marker.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AlongAndAbout {
     /// Along x, y and z.

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use dynamics::{Effect, Method, Rows, StepControl, SystemScheme};
 use fem_tet10::{Materials, PointMass};
 use matrix_import::MatrixFiles;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::body::constraint::Constraint;
@@ -59,7 +60,7 @@ pub struct Scene {
 }
 
 /// Labels of the units. The program never converts: they are shown, not used.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Units {
     /// Label of the unit of length, e.g. `mm`.
@@ -136,7 +137,7 @@ pub struct RigidBody {
 }
 
 /// The paper's reference points: three points of the body that are not on one line.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Frame {
     /// Point R, length, mesh axes.
@@ -151,7 +152,7 @@ pub struct Frame {
 }
 
 /// The state at t = 0. Every key is optional; default 0.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Initial {
     /// Attitude as a quaternion [w, x, y, z] that takes body components to global ones; its length is made one. `None`

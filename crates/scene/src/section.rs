@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use fem_tet10::{Material, PointMass};
+use schemars::JsonSchema;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{DeserializeSeed, EnumAccess, Error, SeqAccess, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -18,82 +19,149 @@ use crate::scene::{Frame, Initial, Units};
 use crate::tie_section::{InOrder, MarkerSection};
 
 /// The whole file.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Sections {
+    /// Title of the run, for headings.
     pub title: String,
+    /// Labels of the units; nothing is converted.
     pub units: Units,
+    /// The body of a scene of one.
     pub body: BodySection,
+    /// The modes kept and their damping.
     pub modes: Option<ModesSection>,
+    /// Which effects are simulated.
     #[serde(default)]
     pub effects: Effects,
+    /// The paper's three reference points.
     pub frame: Option<Frame>,
+    /// The state at the start.
     #[serde(default)]
     pub initial: Initial,
+    /// What holds the body.
     #[serde(default)]
     pub constraints: Vec<ConstraintSection>,
+    /// What acts on the body.
     #[serde(default)]
     pub loads: Vec<Load>,
+    /// How far and how to step.
     pub time: TimeSection,
+    /// What is written.
     #[serde(default)]
     pub output: OutputSection,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BodySection {
+    /// A mesh of ten-node tetrahedra, or geometry, relative to the scene file.
     pub mesh: Option<String>,
+    /// A body file of `flexframe reduce`, instead of a mesh.
     pub file: Option<String>,
+    /// Mass and stiffness from another program, instead of a mesh.
     pub matrices: Option<MatricesSection>,
+    /// Largest size of an element where geometry is meshed, length.
     pub mesh_size: Option<f64>,
+    /// With `true`, straight edges of first-order elements get a node in the middle.
     pub raise_order: Option<bool>,
+    /// The material of the whole mesh.
     pub material: Option<Material>,
+    /// A material for each physical volume of the mesh.
     pub materials: Option<BTreeMap<String, Material>>,
+    /// Masses at points of the body.
     #[serde(default)]
     pub point_masses: Vec<PointMass>,
+    /// Mass properties of a rigid body without a mesh.
     pub rigid: Option<RigidSection>,
+    /// Places with axes, by name: the ends of joints, springs and bushings.
     #[serde(default)]
     pub markers: InOrder<MarkerSection>,
 }
 
 /// The files of a body of matrices as the scene names them.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MatricesSection {
+    /// The file of the mass matrix.
     pub mass: String,
+    /// The file of the stiffness matrix.
     pub stiffness: String,
+    /// The file of the nodes and their positions.
     pub nodes: String,
+    /// The file of the degrees of freedom, where the matrices need one.
     pub dofs: Option<String>,
 }
 
 /// A rigid body as the file gives it.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RigidSection {
+    /// Mass > 0.
     pub mass: f64,
+    /// Centre of mass, length, mesh axes.
     pub center_of_mass: [f64; 3],
+    /// Inertia tensor, with Jxy = −∫ x y dm.
     pub inertia: [[f64; 3]; 3],
     /// The point of the inertia; the centre of mass if absent.
     pub about: Option<[f64; 3]>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModesSection {
+    /// Number of flexible modes, the lowest first; or "auto": as many as the loads call for.
     pub flexible: CountOrAuto,
+    /// The largest number of modes with `flexible = "auto"`; default 40.
     pub most: Option<usize>,
+    /// Damping ratio of every flexible mode, or a list with one for each.
     pub damping_ratio: Option<NumberOrList>,
+    /// Pairs of frequency (cycles per time) and damping ratio, with straight lines between them.
     pub damping_table: Option<Vec<[f64; 2]>>,
+    /// Damping in proportion to mass and stiffness.
     pub rayleigh: Option<Rayleigh>,
+    /// Static shapes of the loads and of the centrifugal field beside the modes.
     #[serde(default)]
     pub static_correction: Choice,
+    /// The modes that bend the body far: the number of first ones (1 to 4), or their numbers from 1.
     pub large: Option<CountOrList>,
+    /// The most other modes that follow the large ones (0 to 7); default 3.
     pub following: Option<usize>,
+    /// The bent rest that all modes are about; default the undeformed body.
+    pub about: Option<AboutSection>,
     /// A CSV file of measured frequencies and damping, which replace those of the model.
     pub measured: Option<PathBuf>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "\"spin\", \"loads\", \"auto\", or a table with `angular_velocity` and `loads`")]
+pub(crate) enum AboutSection {
+    Named(AboutName),
+    Given(AboutGiven),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum AboutName {
+    /// In the largest spin of the drive.
+    Spin,
+    /// Under the steady forces and gravity.
+    Loads,
+    /// Both, where they bend the body far.
+    Auto,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AboutGiven {
+    /// A steady spin, radians per time, axes of the body.
+    #[serde(default)]
+    pub angular_velocity: [f64; 3],
+    /// True if the steady forces and gravity act.
+    #[serde(default)]
+    pub loads: bool,
+}
+
+#[derive(Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a number of modes or a list of their numbers")]
 pub(crate) enum CountOrList {
     Count(usize),
@@ -159,52 +227,87 @@ impl<'de> Deserialize<'de> for NumberOrList {
 }
 
 /// A constraint of the body, as the file gives it.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(tag = "kind")]
 pub(crate) enum ConstraintSection {
+    /// A point is held; the body turns about it.
     Pin {
+        /// A point, length, mesh axes; with a radius the centre of a ball.
         at: [f64; 3],
+        /// Radius > 0, length, of the ball whose nodes are held.
         radius: Option<f64>,
     },
+    /// A line is held; the body turns about it.
     Hinge {
+        /// A point, length, mesh axes; with a radius the centre of a ball.
         at: Option<[f64; 3]>,
+        /// Direction of the line, mesh axes.
         axis: Option<[f64; 3]>,
+        /// Two points of the line, length, mesh axes.
         points: Option<[[f64; 3]; 2]>,
+        /// Radius > 0, length, of the ball whose nodes are held.
         radius: Option<f64>,
+        /// Lowest and highest corner of a box along the mesh axes, length.
         r#box: Option<[[f64; 3]; 2]>,
+        /// Name of a physical group of the mesh.
         group: Option<String>,
+        /// Its speed over time: amplitude times history.
         motion: Option<DrivenSpeed>,
     },
+    /// A part of the body is held; no rigid motion is left.
     Clamp {
+        /// A point, length, mesh axes; with a radius the centre of a ball.
         at: Option<[f64; 3]>,
+        /// Radius > 0, length, of the ball whose nodes are held.
         radius: Option<f64>,
+        /// Lowest and highest corner of a box along the mesh axes, length.
         r#box: Option<[[f64; 3]; 2]>,
+        /// Name of a physical group of the mesh.
         group: Option<String>,
     },
+    /// A part of the body moves along a direction, without turning.
     Slider {
+        /// Direction of the motion that is left, mesh axes.
         direction: [f64; 3],
+        /// A point, length, mesh axes; with a radius the centre of a ball.
         at: Option<[f64; 3]>,
+        /// Radius > 0, length, of the ball whose nodes are held.
         radius: Option<f64>,
+        /// Lowest and highest corner of a box along the mesh axes, length.
         r#box: Option<[[f64; 3]; 2]>,
+        /// Name of a physical group of the mesh.
         group: Option<String>,
+        /// Its speed over time: amplitude times history.
         motion: Option<DrivenSpeed>,
     },
+    /// A part of the body is held in some directions.
     Support {
+        /// The held directions: some of "x", "y", "z".
         directions: Vec<String>,
+        /// A point, length, mesh axes; with a radius the centre of a ball.
         at: Option<[f64; 3]>,
+        /// Radius > 0, length, of the ball whose nodes are held.
         radius: Option<f64>,
+        /// Lowest and highest corner of a box along the mesh axes, length.
         r#box: Option<[[f64; 3]; 2]>,
+        /// Name of a physical group of the mesh.
         group: Option<String>,
     },
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TimeSection {
+    /// The run goes from 0 to here.
     pub end: f64,
+    /// Longest step.
     pub step: Option<f64>,
+    /// Limit of the sum of the estimated relative errors of all steps, between 0 and 1.
     pub tolerance: Option<f64>,
+    /// The equations of motion.
     pub formulation: Option<Formulation>,
+    /// The way from one step to the next.
     pub scheme: Option<Scheme>,
 }
 
@@ -262,12 +365,17 @@ fn one_of_names<'de, D: Deserializer<'de>>(
     deserializer.deserialize_enum("name", names, OneOf(names))
 }
 
-#[derive(Default, Deserialize)]
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct OutputSection {
+    /// Write every N-th step.
     pub every: Option<u64>,
+    /// Write at the multiples of this time.
     pub interval: Option<f64>,
+    /// Points whose motion is written, by name: positions, length, mesh axes.
     pub points: BTreeMap<String, [f64; 3]>,
+    /// With `true`, the stress at the points is written, too.
     pub stress: bool,
+    /// With `true`, the largest von Mises stress of the whole body among the rows is found.
     pub peak_stress: bool,
 }

@@ -7,8 +7,10 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flexframe::columns::COLUMNS;
 use flexframe::fem_tet10::von_mises;
-use flexframe::model::Model;
+use flexframe::html_report;
+use flexframe::model::{Builder, Model};
 use flexframe::scene::Scene;
+use live::{BODY_NUMBERS, LiveRun, Player};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use results::Results;
 use serde_json::Value;
@@ -193,4 +195,58 @@ fn a_body_of_matrices_is_drawn_by_its_nodes_which_move_as_the_run_did() {
         assert!((u - Vector3::from(*expected)).norm() < 1e-4 * greatest, "{u} {expected:?}");
     }
     assert!(greatest > 1e-3);
+}
+
+/// The run of a live page, led natively to each row of a results file: all that the two have in common, to the last bit where `exact`.
+fn is_led_to_the_rows(scene: &str, exact: bool) {
+    let folder = tempfile::tempdir().unwrap();
+    succeed(&["run", scene, "--no-check", "-o", folder.path().to_str().unwrap()]);
+    let file = folder.path().join(Path::new(scene).with_extension("h5").file_name().unwrap());
+    let page = html_report::live_contents(&file, &Builder::default(), |_| ()).unwrap();
+    let live = page.live.unwrap();
+    assert!(live.controls.iter().any(|control| control.name == "gravity"));
+    let run = LiveRun::from_bytes(&live.run).unwrap();
+    let results = Results::open(&file, &COLUMNS).unwrap();
+    let times = results.numbers("time").unwrap();
+    let mut player = Player::new(run, times[1]).unwrap();
+    for (row, time) in times.iter().enumerate() {
+        player.lead_to(*time).unwrap();
+        let mut first = 1;
+        for (number, body) in results.bodies().enumerate() {
+            let numbers = &player.numbers()[first..first + BODY_NUMBERS];
+            first += BODY_NUMBERS + player.coordinates(number);
+            let (origin, attitude) =
+                (body.vectors::<3>("origin").unwrap()[row], body.vectors::<4>("attitude").unwrap()[row]);
+            let kinetic = body.table("energy/kinetic").unwrap().row(row).unwrap()[0];
+            let expected = origin.iter().chain(&attitude).chain([&kinetic]);
+            for (found, expected) in numbers[..7].iter().chain([&numbers[10]]).zip(expected) {
+                let is_same =
+                    if exact { found == expected } else { (found - expected).abs() < 1e-9 * expected.abs().max(1.0) };
+                assert!(is_same, "{scene}, row {row}, body {number}: {found} {expected}");
+            }
+        }
+    }
+    assert!(player.is_recorded());
+}
+
+/// Conserved: the numbers of the results file, by the run that a live page has.
+#[test]
+fn a_live_page_has_the_run_of_its_file() {
+    is_led_to_the_rows("tests/bent_rod.toml", true);
+    is_led_to_the_rows("tests/chain.toml", false); // rows within steps, whose times differ by rounding
+}
+
+#[test]
+fn a_live_page_of_what_a_page_cannot_step_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = ["--set", "time.scheme=paper", "--set", "time.end=1e-3"];
+    let out = folder.path().to_str().unwrap();
+    succeed(&[&["run", "examples/tumbling_plate.toml", "--no-check", "-o", out][..], &scene].concat());
+    let file = folder.path().join("tumbling_plate.h5");
+    let refused = flexframe(&["report", file.to_str().unwrap(), "--live"]);
+    let words = String::from_utf8_lossy(&refused.stderr);
+    assert!(
+        !refused.status.success() && words.contains("no live page") && words.contains("formulation paper"),
+        "{words}"
+    );
 }

@@ -25,6 +25,8 @@ pub struct Case<'a> {
     pub end: f64,
     /// Largest distance of two points of the body.
     pub length: f64,
+    /// Name of the unit of length, for people.
+    pub length_unit: &'a str,
     /// Largest displacement of a node in each mode (nf).
     pub peaks: &'a [f64],
     /// Compliance for each load. Empty where not known.
@@ -32,6 +34,8 @@ pub struct Case<'a> {
     /// `√(uᵀMu − Σ(Φ_kᵀMu)²)` of the static response u to the centrifugal field of each pair of spins, in the order of
     /// [`ReducedBody::PAIRS`]: what the modes leave out of it (6). Empty where not known.
     pub centrifugal_remainders: &'a [f64],
+    /// The same of the static response to the inertia of a unit acceleration of the drive. None where not known.
+    pub drive_remainder: Option<f64>,
     /// How the frequency of each of the first modes goes with its amplitude, where that is known.
     pub backbones: &'a [Option<Backbone>],
     /// The manifold that the large modes move on, if there is one.
@@ -124,6 +128,7 @@ impl Case<'_> {
         };
         let compliances: Vec<f64> = self.static_compliances.iter().flat_map(works).collect();
         let finite = [
+            ("the remainder of the drive", self.drive_remainder.as_slice()),
             ("a damping ratio", self.damping_ratios),
             ("a largest displacement", self.peaks),
             ("a static compliance", &compliances),

@@ -30,17 +30,15 @@ const MOST: usize = 1 << 15;
 const MAX_IN_ALL: usize = 1 << 22;
 /// Distance of the lines from the history, of its largest value.
 const CLOSE: f64 = 1e-3;
+/// A part of loads that is rounding where they cancel.
+const ROUNDING: f64 = 1e-12;
 
 impl Course {
     /// The course of one history, `among` others that cost more than closed forms do.
     pub(crate) fn new(history: &History, end: f64, among: usize) -> Self {
-        let mut stops: Vec<f64> = history.discontinuities().into_iter().filter(|t| *t > 0.0 && *t < end).collect();
-        stops.push(end);
-        stops.sort_by(f64::total_cmp);
+        let stops = stops(&[history], end);
         let largest = history.largest(end);
-        // What a value costs is in the number of samples as its square root: the walks for the size have the other part.
-        let share = history.cost().sqrt() * among.max(1) as f64;
-        let most = ((MAX_IN_ALL / stops.len()).clamp(1, MOST) as f64 / share).max(1.0) as usize;
+        let most = most_intervals(history, among, stops.len());
         let mut start = 0.0;
         let mut resolved = true;
         let mut pieces = Vec::with_capacity(stops.len());
@@ -53,6 +51,58 @@ impl Course {
             }
         }
         let magnitude_integral = history.magnitude_integral(end);
+        let net_integral = if resolved { net_integral(&pieces).min(magnitude_integral) } else { magnitude_integral };
+        Self { pieces, magnitude_integral, net_integral, largest, resolved }
+    }
+
+    /// The courses of histories in the same samples, for [`Self::sum`].
+    pub(crate) fn aligned(histories: &[&History], end: f64, among: usize) -> Vec<Self> {
+        let mut courses: Vec<Self> = histories.iter().map(|history| Self::new(history, end, among)).collect();
+        courses.iter_mut().for_each(|course| course.pieces.clear());
+        let stops = stops(histories, end);
+        let mut start = 0.0;
+        for stop in stops.iter().copied() {
+            if stop <= start {
+                continue;
+            }
+            let found = histories.iter().zip(&courses).map(|(history, course)| {
+                Piece::new(history, start, stop, CLOSE * course.largest, most_intervals(history, among, stops.len()))
+            });
+            let found: Vec<(Piece, bool)> = found.collect();
+            let count = found.iter().map(|(piece, _)| piece.samples.len() - 1).max().unwrap_or(1);
+            for ((course, history), (_, follows)) in courses.iter_mut().zip(histories).zip(found) {
+                course.pieces.push(Piece::of(history, start, stop, count));
+                course.resolved &= follows;
+            }
+            start = stop;
+        }
+        courses
+    }
+
+    /// The sum of courses in the same samples, times a factor each.
+    pub(crate) fn sum(courses: &[(f64, &Self)]) -> Self {
+        let total =
+            |of: fn(&Self) -> f64| courses.iter().map(|(factor, course)| factor.abs() * of(course)).sum::<f64>();
+        let resolved = courses.iter().all(|(_, course)| course.resolved);
+        let count = courses.first().map_or(0, |(_, course)| course.pieces.len());
+        let piece = |i: usize| {
+            let parts = courses.iter().map(|(factor, course)| (*factor, &course.pieces[i]));
+            let length = courses[0].1.pieces[i].samples.len();
+            let at = |k: usize| parts.clone().map(|(factor, piece)| factor * piece.samples[k]).sum();
+            Piece { step: courses[0].1.pieces[i].step, samples: (0..length).map(at).collect() }
+        };
+        let pieces: Vec<Piece> = (0..count).map(piece).collect();
+        let most = total(|course| course.largest);
+        // What is left of loads that cancel is rounding.
+        let sampled = pieces.iter().flat_map(|piece| &piece.samples).fold(0.0_f64, |most, h| most.max(h.abs()));
+        let largest = match resolved {
+            true if sampled <= ROUNDING * most => {
+                return Self { pieces: Vec::new(), magnitude_integral: 0.0, net_integral: 0.0, largest: 0.0, resolved };
+            }
+            true => sampled,
+            false => most,
+        };
+        let magnitude_integral = total(|course| course.magnitude_integral);
         let net_integral = if resolved { net_integral(&pieces).min(magnitude_integral) } else { magnitude_integral };
         Self { pieces, magnitude_integral, net_integral, largest, resolved }
     }
@@ -127,24 +177,42 @@ pub(crate) struct Swing {
     pub rate: f64,
 }
 
+/// The discontinuities of histories before the end, and the end, ascending.
+fn stops(histories: &[&History], end: f64) -> Vec<f64> {
+    let of_all = histories.iter().flat_map(|history| history.discontinuities());
+    let mut stops: Vec<f64> = of_all.filter(|t| *t > 0.0 && *t < end).collect();
+    stops.push(end);
+    stops.sort_by(f64::total_cmp);
+    stops
+}
+
+/// Most intervals in each of `pieces` of a history, `among` others that cost more than closed forms do.
+fn most_intervals(history: &History, among: usize, pieces: usize) -> usize {
+    // What a value costs is in the number of samples as its square root: the walks for the size have the other part.
+    let share = history.cost().sqrt() * among.max(1) as f64;
+    ((MAX_IN_ALL / pieces).clamp(1, MOST) as f64 / share).max(1.0) as usize
+}
+
 impl Piece {
-    fn new(history: &History, start: f64, stop: f64, close: f64, most: usize) -> (Self, bool) {
+    /// In so many intervals.
+    fn of(history: &History, start: f64, stop: f64, n: usize) -> Self {
         let inside = 0.5 * (start + stop);
-        let sampled = |n: usize| -> Vec<f64> {
-            (0..=n).map(|i| history.at(start + (stop - start) * i as f64 / n as f64, inside)).collect()
-        };
+        let at = |i: usize| history.at(start + (stop - start) * i as f64 / n as f64, inside);
+        Self { step: (stop - start) / n as f64, samples: (0..=n).map(at).collect() }
+    }
+
+    fn new(history: &History, start: f64, stop: f64, close: f64, most: usize) -> (Self, bool) {
         let mut n = FEWEST.min(most);
         loop {
             // Three points between the samples: one in the middle could fall on the waves of the history.
-            let samples = sampled(n);
-            let finer = sampled(4 * n);
+            let (piece, finer) = (Self::of(history, start, stop, n), Self::of(history, start, stop, 4 * n));
             let away = (0..4 * n).map(|i| {
                 let (k, part) = (i / 4, (i % 4) as f64 / 4.0);
-                (finer[i] - samples[k] * (1.0 - part) - samples[k + 1] * part).abs()
+                (finer.samples[i] - piece.samples[k] * (1.0 - part) - piece.samples[k + 1] * part).abs()
             });
             let follows = away.fold(0.0, f64::max) <= close;
             if follows || 2 * n > most {
-                return (Self { step: (stop - start) / n as f64, samples }, follows);
+                return (piece, follows);
             }
             n *= 2;
         }

@@ -13,9 +13,10 @@ use crate::table::relative::relative;
 pub(crate) struct Source {
     pub translation: f64,
     pub rotation: f64,
-    /// nf; and as the load meets the body at the beginning.
+    /// nf; and as the load meets the body at the beginning, with its sign.
     pub modal: Vec<f64>,
     pub modal_at_start: Vec<f64>,
+    pub history: History,
     /// Displacement of each mode where the load acts (nf).
     shapes: Vec<Vector3<f64>>,
     pub course: Course,
@@ -78,7 +79,8 @@ impl Source {
             translation: largest(&columns[..3]),
             rotation: if is_rounding { 0.0 } else { largest(turning) },
             modal: moved(&|shape| largest(&[*shape])),
-            modal_at_start: moved(&|shape| shape.dot(&vector).abs()),
+            modal_at_start: moved(&|shape| shape.dot(&vector)),
+            history: load.history().cloned().unwrap_or(History::Constant),
             shapes: columns[6..].to_vec(),
             course: course.clone(),
             dead,

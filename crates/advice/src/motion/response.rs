@@ -1,6 +1,8 @@
 //! How far each mode is moved, bounded above, and how a small force from one mode on another moves it.
 
-use dynamics::DrivenMotion;
+use dynamics::{Drive, DrivenMotion, History};
+use modal::ReducedBody;
+use nalgebra::Vector3;
 
 use crate::motion::case::Case;
 use crate::motion::course::{Course, Swing};
@@ -53,32 +55,44 @@ impl Response {
             memory,
         };
         response.centrifugal(case, spin);
+        let together = Together::new(case, sources);
         for source in sources {
             let z: Vec<_> = (0..nf).map(|k| swing(source, spin, omega[k], zeta[k], response.memory[k])).collect();
+            response.forced.push((source.modal.clone(), z.iter().map(|z| z.0).collect()));
+            if source.gravity {
+                (0..nf).for_each(|k| response.of_gravity[k] += source.modal[k] * z[k].0 / omega[k]);
+            }
+            if together.has(source) {
+                continue;
+            }
             for k in 0..nf {
                 let q = source.modal[k] * z[k].0 / omega[k];
                 response.steady[k] += source.modal[k] * source.course.largest / (omega[k] * omega[k]);
                 response.displacement[k] += q;
                 response.velocity[k] += source.modal[k] * z[k].0;
                 response.acceleration[k] += source.modal[k] * z[k].1;
-                if source.gravity {
-                    response.of_gravity[k] += q;
-                }
             }
             // A direction that turns may take as much away as it may add.
             let turning = |k: usize| turning(source, spin, response.memory[k]);
-            let straight = |k: usize| source.modal_at_start[k] * source.course.swing(omega[k], zeta[k]).z / omega[k];
+            let straight =
+                |k: usize| source.modal_at_start[k].abs() * source.course.swing(omega[k], zeta[k]).z / omega[k];
             let certain: Vec<f64> = (0..nf).map(|k| straight(k) / turning(k)).collect();
-            response.certainly(&certain, 0.5);
-            let bent = certain.iter().zip(case.peaks).map(|(q, peak)| 0.5 * q * peak / case.length);
-            response.certain_deflection = bent.fold(response.certain_deflection, f64::max);
-            response.forced.push((source.modal.clone(), z.iter().map(|z| z.0).collect()));
+            response.certainly_bent(case, &certain);
+        }
+        if !together.loads.is_empty() {
+            let courses: Vec<Course> = (0..nf).map(|k| together.course(k)).collect();
+            let z: Vec<Swing> = (0..nf).map(|k| courses[k].swing(omega[k], zeta[k])).collect();
+            for k in 0..nf {
+                response.steady[k] += courses[k].largest / (omega[k] * omega[k]);
+                response.displacement[k] += z[k].z / omega[k];
+                response.velocity[k] += z[k].z;
+                response.acceleration[k] += z[k].rate;
+            }
+            let certain: Vec<f64> = (0..nf).map(|k| z[k].z / omega[k]).collect();
+            response.certainly_bent(case, &certain);
         }
         if let Some(drive) = case.drive {
-            let (unit, coupling) = match drive.motion {
-                DrivenMotion::Turn { axis } => (axis, &case.body.rotation_first),
-                DrivenMotion::Slide { direction } => (direction, &case.body.translation_first),
-            };
+            let (unit, coupling) = of_drive(case.body, drive);
             let course = Course::new(&drive.speed.history, case.end, case.costly_histories()).risen();
             let z: Vec<_> = (0..nf).map(|k| course.swing(omega[k], zeta[k])).collect();
             let force: Vec<f64> = (0..nf)
@@ -115,6 +129,13 @@ impl Response {
             steady[k] = if case.drive.is_some() { force } else { at_start.abs() } / (omega * omega);
         }
         self.certainly(&steady, 0.5);
+    }
+
+    /// The same with half of a deflection by loads, in each mode.
+    fn certainly_bent(&mut self, case: &Case, q: &[f64]) {
+        self.certainly(q, 0.5);
+        let bent = q.iter().zip(case.peaks).map(|(q, peak)| 0.5 * q * peak / case.length);
+        self.certain_deflection = bent.fold(self.certain_deflection, f64::max);
     }
 
     /// A deflection of which there will be this part.
@@ -188,6 +209,53 @@ impl Response {
     }
 }
 
+/// Several loads that keep their directions in the body: at each time their forces on a mode add up, or cancel.
+struct Together<'a> {
+    /// One for each different history, with the forces of its loads on the modes (nf).
+    loads: Vec<(&'a History, Vec<f64>)>,
+    courses: Vec<Course>,
+}
+
+impl<'a> Together<'a> {
+    /// Nothing where only one keeps its direction.
+    fn new(case: &Case, sources: &'a [Source]) -> Self {
+        let mut loads: Vec<(&History, Vec<f64>)> = Vec::new();
+        let steady = || sources.iter().filter(|source| !source.dead);
+        if steady().count() > 1 {
+            for source in steady() {
+                match loads.iter_mut().find(|(history, _)| *history == &source.history) {
+                    Some((_, forces)) => forces.iter_mut().zip(&source.modal_at_start).for_each(|(sum, f)| *sum += f),
+                    None => loads.push((&source.history, source.modal_at_start.clone())),
+                }
+            }
+            // Of forces that cancel, rounding is left.
+            for k in 0..case.body.flexible() {
+                let largest = steady().map(|source| source.modal_at_start[k].abs()).fold(0.0, f64::max);
+                let of_mode = loads.iter_mut().map(|(_, forces)| &mut forces[k]);
+                of_mode.filter(|force| force.abs() <= CANCELLED * largest).for_each(|force| *force = 0.0);
+            }
+        }
+        let histories: Vec<&History> = loads.iter().map(|(history, _)| *history).collect();
+        let courses = Course::aligned(&histories, case.end, case.costly_histories());
+        Self { loads, courses }
+    }
+
+    /// True if it has this load.
+    fn has(&self, source: &Source) -> bool {
+        !source.dead && !self.loads.is_empty()
+    }
+
+    /// The force on mode `k`.
+    fn course(&self, k: usize) -> Course {
+        let parts: Vec<(f64, &Course)> =
+            self.loads.iter().zip(&self.courses).map(|((_, forces), course)| (forces[k], course)).collect();
+        Course::sum(&parts)
+    }
+}
+
+/// A part of forces that is rounding where they cancel: a mesh that is symmetric is so to the digits of its nodes.
+const CANCELLED: f64 = 1e-9;
+
 /// |z| and |z'| of a mode under a load. With a direction a(t) that turns in the body, |a'| ≤ Ω, by parts:
 /// `|∫ e^{λ(t−s)} h a ds| ≤ sup|z| (1 + ∫|a'|)`, as far back as the mode remembers.
 fn swing(source: &Source, spin: &Spin, omega: f64, zeta: f64, memory: f64) -> (f64, f64) {
@@ -203,6 +271,14 @@ fn swing(source: &Source, spin: &Spin, omega: f64, zeta: f64, memory: f64) -> (f
 /// 1 + ∫|a'| of the direction of a load, as far back as a mode remembers.
 fn turning(source: &Source, spin: &Spin, memory: f64) -> f64 {
     if source.dead { 1.0 + spin.turn.min(spin.largest * memory) } else { 1.0 }
+}
+
+/// The direction of a drive, and how its acceleration along each axis pushes the modes.
+pub(crate) fn of_drive<'a>(body: &'a ReducedBody, drive: &Drive) -> (Vector3<f64>, &'a [Vec<f64>; 3]) {
+    match drive.motion {
+        DrivenMotion::Turn { axis } => (axis, &body.rotation_first),
+        DrivenMotion::Slide { direction } => (direction, &body.translation_first),
+    }
 }
 
 pub(crate) fn norm(x: &[f64]) -> f64 {

@@ -13,7 +13,7 @@ use crate::table::relative::relative;
 use crate::table::row::Worth;
 
 /// Change of the frequency of a free bar over (u/L)².
-const OF_BAR: f64 = 22.0;
+pub(crate) const OF_BAR: f64 = 22.0;
 /// Change of the force on an L over u/L.
 const OF_ARCH: f64 = 3.0;
 /// Deflection over the length of the body up to which bounds are believed: runs that come there are stopped or warn.
@@ -95,29 +95,29 @@ pub(crate) fn furthest_modes(modes: &[Worth], keep: usize) -> Vec<usize> {
 }
 
 /// The row of [`dynamics::Effect::LargeDeflection`].
-pub(crate) fn large_deflection(modes: &[Worth], deflection: f64) -> Estimate {
+pub(crate) fn large_deflection(modes: &[Worth], deflection: f64, (length, unit): (f64, &str)) -> Estimate {
     let worst = modes.iter().enumerate().filter_map(|(k, mode)| Some((k, mode.strain?, mode.strain_influence())));
     let worst = worst.max_by(|a, b| a.2.total_cmp(&b.2));
     let Some((k, error, influence)) = worst else {
         let influence = modes.iter().map(|mode| mode.strain_bound).fold(0.0, f64::max);
         let why = match deflection {
             0.0 => "The body does not bend.".into(),
-            _ => {
-                format!("Linear strain has frequencies off by about {:.1e} at most.", OF_BAR * deflection * deflection)
-            }
+            _ if deflection > 1.0 => "How far the body bends cannot be told before the run.".into(),
+            _ => format!("Linear strain has frequencies right to {}.", Number(OF_BAR * deflection * deflection)),
         };
         return Estimate { value: OF_BAR * deflection * deflection, influence, why };
     };
     let StrainError { deflection, frequency, phase, statics } = error;
     let mut why = format!(
-        "Mode {} bends the body by at most {:.2} % of its length: linear strain has its frequency {:.2} % too {}, its \
-         phase out by {} rad, and what holds it in place off by {:.2} %.",
+        "Mode {} moves the body by up to {} {}: linear strain has its frequency {} % too {}, its phase out by {} rad, and what \
+         holds it in place off by {} %.",
         k + 1,
-        100.0 * deflection,
-        100.0 * frequency.abs(),
+        Number(deflection * length),
+        unit,
+        Number(100.0 * frequency.abs()),
         if frequency < 0.0 { "high" } else { "low" },
         Number(phase),
-        100.0 * statics,
+        Number(100.0 * statics),
     );
     if frequency > OF_BAR * deflection * deflection {
         why += " A slender bar does not stiffen so with its amplitude: where the body is one, the elements along it are too long \
@@ -167,7 +167,7 @@ mod tests {
         let why = |frequency: f64| {
             let mut mode = out_of_phase(1.0);
             mode.strain = mode.strain.map(|strain| StrainError { deflection: 0.05, frequency, ..strain });
-            large_deflection(&[mode], 0.05).row(1e-3).why
+            large_deflection(&[mode], 0.05, (1.0, "m")).row(1e-3).why
         };
         assert!(why(0.22).contains("too long for its thickness"), "{}", why(0.22));
         assert!(!why(-0.008).contains("too long") && !why(0.01).contains("too long"));

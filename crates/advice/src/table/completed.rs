@@ -12,7 +12,7 @@ pub struct Findings {
     pub deflection: f64,
     /// The row of [`crate::stress_row`], where loads or a drive stress the body.
     pub stress: Option<Row>,
-    /// True if the body has no static shapes for the stretch by the spin.
+    /// True if the body has no static shapes for the stretch by the spin, or for the inertia of the drive.
     pub lacks_stretch: bool,
     /// True if modes bend the body far.
     pub has_large_modes: bool,
@@ -36,7 +36,7 @@ impl Advice {
                 row.why += OF_LARGE_MODES;
             }
         }
-        if findings.lacks_stretch && advice.stretch >= advice.tolerance {
+        if findings.lacks_stretch && advice.stretch.max(advice.pushed) >= advice.tolerance {
             advice.static_correction.why += LACKS_STRETCH;
         }
         advice
@@ -44,5 +44,5 @@ impl Advice {
 }
 
 const OF_LARGE_MODES: &str = " What follows the large modes moves along the body, where turning acts on it.";
-const LACKS_STRETCH: &str = " The answer lacks what the spin stretches beyond the modes: take static_correction = true \
+const LACKS_STRETCH: &str = " The answer lacks what the modes leave out: take static_correction = true \
      with the scheme exponential, or more modes.";

@@ -7,11 +7,13 @@ use nalgebra::Matrix3;
 
 use crate::limits::{LINEAR, Refusal, deflected};
 use crate::motion::case::{AdviceError, Case};
+use crate::motion::course::Course;
 use crate::motion::excitation::{Source, Spin};
-use crate::motion::response::{Response, norm};
+use crate::motion::response::{Response, norm, of_drive};
 use crate::motion::{rigid, tensor};
 use crate::strain::error_bound;
 use crate::table::estimate::Estimate;
+use crate::table::number::Number;
 use crate::table::relative::relative;
 use crate::table::row::{Row, Subject, Worth};
 
@@ -38,6 +40,8 @@ pub struct Advice {
     pub certain_deflection: f64,
     /// Influence of what the modes leave out of the static response to the spin, bounded above; at most 1.
     pub stretch: f64,
+    /// The same of the static response to the inertia of the drive; 0 where it is not known.
+    pub pushed: f64,
     /// The tolerance.
     pub tolerance: f64,
 }
@@ -129,22 +133,22 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         rest < tolerance
     });
     let keep = shares.len() - negligible.count();
-    let stretch = stretch(case, &spin, &response);
+    let (stretch, pushed) = (stretch(case, &spin, &response), pushed(case, &response));
     let estimate = |effect| match effect {
-        Effect::Flexibility => flexibility(&spin, &sources, &response, deflection),
+        Effect::Flexibility => flexibility(case, &spin, &sources, &response, deflection),
         Effect::Damping => damping(case, &response),
         Effect::Gravity => rigid::gravity(case, &sources, &response),
         Effect::DeformedInertia => deformed_inertia(case, &spin, &response, &second, stiffness.as_ref(), stretch),
         Effect::Coriolis => coriolis(case, &spin, &response, &coupling),
         Effect::GeometricStiffening => stiffening(case, &spin, &response, stiffness.as_ref()),
-        Effect::LargeDeflection => error_bound::large_deflection(&modes, deflection),
+        Effect::LargeDeflection => error_bound::large_deflection(&modes, deflection, (case.length, case.length_unit)),
         Effect::Translation => rigid::translation(case, &sources),
         Effect::Rotation => rigid::rotation(case, &spin, &sources, &response),
     };
     Ok(Advice {
         effects: EffectMap::from_fn(|effect| estimate(effect).row(tolerance)),
-        static_correction: static_correction(case, &spin, &sources, keep, stretch).row(tolerance),
-        large_deflection: bending(deflection),
+        static_correction: static_correction(case, &spin, &sources, keep, [stretch, pushed]).row(tolerance),
+        large_deflection: bending(case, deflection),
         modes,
         keep,
         more_modes: keep > 0 && keep == case.body.flexible(),
@@ -152,11 +156,12 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         deflection,
         certain_deflection: if spin.largest == 0.0 { response.certain_deflection } else { 0.0 },
         stretch,
+        pushed,
         tolerance,
     })
 }
 
-fn flexibility(spin: &Spin, sources: &[Source], response: &Response, deflection: f64) -> Estimate {
+fn flexibility(case: &Case, spin: &Spin, sources: &[Source], response: &Response, deflection: f64) -> Estimate {
     let flexible = norm(&response.acceleration);
     let pushed = sources.iter().map(|s| s.course.largest * s.translation.hypot(s.rotation)).fold(0.0, f64::max);
     let rigid = pushed.max(spin.certain * spin.certain_momentum);
@@ -166,14 +171,13 @@ fn flexibility(spin: &Spin, sources: &[Source], response: &Response, deflection:
         (f64::INFINITY, 1.0, "The body can do nothing but deform.".into())
     } else {
         let ratio = flexible / rigid;
-        let (influence, share) = (relative(ratio.max(deflection), 1.0), 100.0 * deflection);
-        (
-            ratio,
-            influence,
-            format!(
-                "Vibration accelerates up to {ratio:.1e} of what the rigid motion does, and bends by {share:.1e} % of the length."
-            ),
-        )
+        let influence = relative(ratio.max(deflection), 1.0);
+        let why = format!(
+            "{} It accelerates up to {} times what the rigid motion does.",
+            bends(case, deflection),
+            Number(ratio)
+        );
+        (ratio, influence, why)
     };
     Estimate { value, influence, why }
 }
@@ -299,6 +303,24 @@ fn stretch(case: &Case, spin: &Spin, response: &Response) -> f64 {
     relative(left, response.scale + left)
 }
 
+/// Influence of what the modes leave out of the static response to the inertia of the drive.
+fn pushed(case: &Case, response: &Response) -> f64 {
+    let (Some(drive), Some(remainder)) = (case.drive, case.drive_remainder) else { return 0.0 };
+    let course = Course::new(&drive.speed.history, case.end, case.costly_histories());
+    let left = SWING * drive.speed.amplitude.abs() * course.steepest() * remainder;
+    relative(left, response.scale + left)
+}
+
+/// Part of the static response to a unit acceleration of the drive that the modes hold, and how much they leave out.
+pub(crate) fn held_of_drive(case: &Case) -> Option<(f64, f64)> {
+    let (drive, left) = (case.drive?, case.drive_remainder?);
+    let (unit, coupling) = of_drive(case.body, drive);
+    let answer = |(k, omega): (usize, &f64)| (0..3).map(|i| unit[i] * coupling[i][k]).sum::<f64>() / (omega * omega);
+    let carried: Vec<f64> = case.body.circular_frequencies.iter().enumerate().map(answer).collect();
+    let carried = norm(&carried);
+    Some((if left > 0.0 { carried / carried.hypot(left) } else { 1.0 }, left))
+}
+
 /// Part of the static response to a spin that the modes hold, and how much they leave out: √(uᵀMu) of the answer u.
 /// `squares` are ω_iω_j.
 pub(crate) fn held(case: &Case, squares: &Matrix3<f64>) -> (f64, f64) {
@@ -338,7 +360,13 @@ fn left_out_at_most(body: &ReducedBody) -> [f64; 6] {
     })
 }
 
-fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, stretch: f64) -> Estimate {
+fn static_correction(
+    case: &Case,
+    spin: &Spin,
+    sources: &[Source],
+    keep: usize,
+    [stretch, pushed]: [f64; 2],
+) -> Estimate {
     let omega = &case.body.circular_frequencies;
     let left = |(i, source): (usize, &Source)| match case.static_compliances.get(i) {
         Some(whole) => source.left_out(whole, omega, keep),
@@ -348,9 +376,15 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, 
     let value = sources.iter().enumerate().map(left).fold(0.0, f64::max);
     let known = case.static_compliances.len() == sources.len();
     // What is left out may swing about its static response, and is measured over the whole body.
-    let influence = relative(SWING * value, 1.0).max(stretch);
+    let influence = relative(SWING * value, 1.0).max(stretch).max(pushed);
     let why = if influence == 0.0 {
         "The modes carry the whole static response.".into()
+    } else if pushed >= influence {
+        let held = held_of_drive(case).map_or(1.0, |(held, _)| held);
+        let left_out = 100.0 * (1.0 - held * held).max(0.0).sqrt();
+        format!(
+            "The modes leave out {left_out:.1} % of the static response to the acceleration of the drive, which may come to {pushed:.1e} of the deformation."
+        )
     } else if stretch > value && case.centrifugal_remainders.is_empty() && known {
         format!(
             "What the modes leave out of the static response to the spin may come to {stretch:.1e} of the deformation."
@@ -373,11 +407,23 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, 
     Estimate { value, influence, why }
 }
 
+/// How far the body bends, for people.
+fn bends(case: &Case, deflection: f64) -> String {
+    if deflection > 1.0 {
+        return "How far vibration bends the body cannot be told before the run.".into();
+    }
+    format!("Vibration moves no place by more than {} {}.", Number(deflection * case.length), case.length_unit)
+}
+
 /// The deflection.
-fn bending(deflection: f64) -> Row {
-    let why = format!("At most {deflection:.1e} of the length; linear strain ends at 10 %.");
+fn bending(case: &Case, deflection: f64) -> Row {
     let influence = relative(SHORTENING * deflection * deflection, 1.0);
-    Row { value: deflection, influence, on: deflection >= LINEAR, why }
+    let good = if deflection < LINEAR {
+        format!("Linear strain is good to {}.", Number(influence))
+    } else {
+        "Linear strain ends at a tenth of the length.".into()
+    };
+    Row { value: deflection, influence, on: deflection >= LINEAR, why: format!("{} {good}", bends(case, deflection)) }
 }
 
 /// Σ m_kl x_k y_l

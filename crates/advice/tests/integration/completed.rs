@@ -51,7 +51,7 @@ fn a_stretch_that_is_lacking_is_said_only_where_it_matters() {
     let why = |speed: f64, lacks_stretch: bool| {
         let advice = spun(speed);
         let complete = advice.clone().completed(Findings { lacks_stretch, ..found(&advice) });
-        (advice.stretch, complete.static_correction.why.contains("lacks what the spin stretches"))
+        (advice.stretch, complete.static_correction.why.contains("The answer lacks"))
     };
     let (fast, still) = (why(100.0, true), why(0.0, true));
     println!("{fast:?} {still:?}");

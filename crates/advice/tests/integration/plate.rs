@@ -88,9 +88,11 @@ impl Plate {
             initial,
             end,
             length: self.length,
+            length_unit: "mm",
             peaks: &self.peaks,
             static_compliances: &[],
             centrifugal_remainders: &[],
+            drive_remainder: None,
             backbones: &[],
             manifold: None,
         }

@@ -175,6 +175,17 @@ fn the_warning_tells_frequency_and_phase_by_the_modes_own_backbone() {
     assert_eq!(watched(&case, STILL, half / 20.0, 16.0 * half), []);
 }
 
+/// Closed form: 22 (u/L)² of a bar.
+#[test]
+fn a_mode_that_moved_though_nobody_thought_that_it_would_is_looked_at() {
+    let (zeta, (initial, half)) = ([0.0; 10], swinging(0.05));
+    let case = Case { backbones: &[None, None], ..plate().case(&zeta, &[], &initial, 16.0 * half) };
+    let broken = watched(&case, STILL, half / 20.0, 16.0 * half);
+    let [Broken::Linear { modes, .. }] = &broken[..] else { panic!("{broken:?}") };
+    let [Detuning { mode: 1, shift, phase, .. }] = modes[..] else { panic!("{modes:?}") };
+    assert!((shift + 0.055).abs() < 1e-4 && (phase + 8.0 * 0.055).abs() < 1e-3, "{shift} {phase}");
+}
+
 #[test]
 fn what_means_nothing_is_refused() {
     let zeta = [0.0; 10];
@@ -212,6 +223,6 @@ fn no_spin_is_written_as_zero() {
     let spin = Broken::Spin { time: 0.5, found: 3.2e-5, assumed: 1.1e-6, off: "coriolis".into() };
     let text = spin.to_string();
     assert!(text.contains("the spin was 3.200e-5, above the 1.100e-6"), "{text}");
-    let stretch = Broken::Stretch { time: 0.5, left_out: 0.031, influence: 2e-3 };
+    let stretch = Broken::Stretch { time: 0.5, left_out: 0.031, influence: 2e-3, of_drive: false };
     assert!(stretch.to_string().contains("left out 3.1 % of the static response"), "{stretch}");
 }

@@ -4,7 +4,7 @@ use advice::{AdviceError, Case, StaticCompliance, advise, screen};
 use dynamics::{Effect, EffectMap, History, Initial, Pattern, SharedLoad};
 use nalgebra::Vector3;
 
-use crate::plate::{CORNER, plate, run, spinning};
+use crate::plate::{CORNER, clamped, plate, run, spinning};
 
 /// Closed form: (Ω/ω₁)², and the rise √(1 + Ω²K/ω₁²) − 1.
 #[test]
@@ -198,5 +198,36 @@ fn flexibility_is_what_the_modes_add_to_the_rigid_acceleration() {
         assert!(row.value >= real && row.influence >= real.min(1.0), "{duration}: {row:?} {real}");
         // Measured bound/real: 1.2 and 2.2.
         assert!(row.value < 10.0 * real, "{duration}: {row:?} {real}");
+    }
+}
+
+/// Closed form: of forces F and −F from t₁ on, a mode has the force of an impulse: 2 F sin(ωt₁/2)/ω² at the most, and nothing
+/// where both act from the beginning.
+#[test]
+fn loads_that_cancel_move_the_modes_together() {
+    let (zeta, initial) = ([0.0; 10], Initial::at_rest(10));
+    let omega = &clamped().body.circular_frequencies;
+    let late = 1.0 / omega[9];
+    let moved = |other: History| {
+        let loads = [
+            clamped().force(CORNER, [0.0, 0.0, 1e-9], History::Constant),
+            clamped().force(CORNER, [0.0, 0.0, -1e-9], other),
+        ];
+        let advice = advise(&clamped().case(&zeta, &loads, &initial, 20.0 / omega[0]), 1e-9).unwrap();
+        let columns = loads[0].pattern().unwrap().columns;
+        let force = move |k: usize| 1e-9 * columns[6 + k].z.abs();
+        (0..10).map(|k| (advice.modes[k].displacement, force(k))).collect::<Vec<_>>()
+    };
+    for at in [0.0, -1.0] {
+        let found = moved(if at < 0.0 { History::Step { at } } else { History::Constant });
+        assert!(found.iter().all(|(displacement, force)| *displacement <= 1e-9 * force), "{found:?}");
+    }
+    for (k, (displacement, force)) in moved(History::Step { at: late }).into_iter().enumerate() {
+        let expected = 2.0 * force * (0.5 * omega[k] * late).sin() / omega[k].powi(2);
+        println!("{k}: {displacement:e} {expected:e}");
+        assert!(
+            displacement >= (1.0 - 1e-6) * expected && displacement <= 1.1 * expected,
+            "{k}: {displacement:e} {expected:e}"
+        );
     }
 }

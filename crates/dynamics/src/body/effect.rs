@@ -47,7 +47,7 @@ effects! {
 /// let effects = EffectMap::all().without(Effect::Coriolis);
 /// assert!(effects[Effect::DeformedInertia] && !effects[Effect::Coriolis]);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct EffectMap<T>([T; Effect::ALL.len()]);
 
 impl<T> EffectMap<T> {

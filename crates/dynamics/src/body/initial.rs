@@ -7,7 +7,7 @@ use rigid_kin::Attitude;
 use crate::error::SetupError;
 
 /// State at the beginning.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Initial {
     /// Attitude of the body frame.
     pub attitude: Attitude,

@@ -6,7 +6,7 @@ use rigid_kin::Attitude;
 use crate::error::SetupError;
 
 /// A state in quantities that every formulation has.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MotionState {
     /// Time.
     pub time: f64,

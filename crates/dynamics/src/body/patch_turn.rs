@@ -17,7 +17,7 @@ const MOST: usize = 30;
 const ROUNDING: f64 = 1e-14;
 
 /// A patch of nodes with what the modes do to it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct PatchTurn {
     /// G₀ = Σ d dᵀ, squared length.
     rest: Matrix3<f64>,

@@ -13,19 +13,21 @@ use crate::load::signal::Signal;
 
 /// A motion that something forces on the held part of a body. The body's own modes are those of the part held still
 /// ([`modal::RigidMotion::clamp`]).
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Drive {
     /// How it moves.
     pub motion: DrivenMotion,
     /// How fast.
     pub speed: DrivenSpeed,
     /// A speed that a program adds from outside. It must not jump; its rate may.
+    #[serde(skip)]
     pub added: Option<Signal>,
 }
 
 /// A speed over time: the amplitude times the history. As data, tables and expressions have other types `T` and `E` than
 /// those that can be evaluated, as in [`History`].
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DrivenSpeed<T = Table, E = Expression> {
     /// Angular velocity, rad/time, or velocity, length/time, where the history is 1.
@@ -35,7 +37,7 @@ pub struct DrivenSpeed<T = Table, E = Expression> {
 }
 
 /// How a driven part moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum DrivenMotion {
     /// Turning about an axis through the body's origin.
     Turn {
@@ -61,7 +63,7 @@ impl DrivenSpeed {
     }
 
     /// The amplitude times the largest factor up to a time.
-    pub(crate) fn largest(&self, end: f64) -> f64 {
+    pub fn largest(&self, end: f64) -> f64 {
         self.amplitude * self.history.largest(end)
     }
 }
@@ -97,7 +99,7 @@ pub(crate) fn check_unit(what: &'static str, direction: &Vector3<f64>) -> Result
 }
 
 /// Physics of a motion in the conservative form beside modes, damping and loads.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Physics {
     /// Which effects are computed; all by default. Flexibility, damping and gravity are the matter of the body, its
     /// damping ratios and its loads: what these do not hold is not computed.
@@ -106,16 +108,46 @@ pub struct Physics {
     pub drive: Option<Drive>,
     /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static response to the forces `M (1⊗e)` of a unit
     /// acceleration of a driven slide along e, or `M (I⊗[a×]) X` of a driven turn about a.
+    #[serde(with = "modal::as_data")]
     pub drive_stiffness: Option<Mat<f64>>,
     /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that
     /// of the modes counts.
     pub large_deflection: Option<Manifold>,
+    /// What holds the bent body that the modes are about, where that is not the undeformed one. Data of a run do not have it
+    /// ([`crate::DescriptionError`]).
+    #[serde(skip)]
+    pub reference: Option<ReferenceForces>,
+}
+
+/// The strain energy g·q + ½ qᵀBq that a body has beside its stiffness and its manifold where its modes are about a bent
+/// reference. g are the internal forces there, which loads and spin of the reference balance; B takes from the stiffness what the
+/// stress of these would count twice, and adds the work of g on displacements of second order.
+#[derive(Debug, Clone)]
+pub struct ReferenceForces {
+    /// g (nf).
+    pub force: Vec<f64>,
+    /// B (nf×nf), symmetric.
+    pub stiffness: Mat<f64>,
+}
+
+impl ReferenceForces {
+    /// Refuses sizes other than `nf`, and numbers that are not finite.
+    pub(crate) fn check(&self, nf: usize) -> Result<(), SetupError> {
+        let Self { force, stiffness } = self;
+        for found in [force.len(), stiffness.nrows(), stiffness.ncols()] {
+            if found != nf {
+                return Err(SetupError::Length { what: "the forces of a reference", expected: nf, found });
+            }
+        }
+        let numbers = force.iter().chain(stiffness.col_iter().flat_map(|column| column.iter()));
+        numbers.copied().try_for_each(|value| finite("a force of a reference", value))
+    }
 }
 
 impl Default for Physics {
     /// All effects; nothing drives or stresses the body.
     fn default() -> Self {
-        Self { effects: EffectMap::all(), drive: None, drive_stiffness: None, large_deflection: None }
+        Self { effects: EffectMap::all(), drive: None, drive_stiffness: None, large_deflection: None, reference: None }
     }
 }
 
@@ -137,13 +169,20 @@ impl Keyed for DrivenMotion {
     }
 }
 
+impl Keyed for ReferenceForces {
+    fn key(&self, key: Key) -> Key {
+        key.of("reference forces", 1).with("force", &self.force).with("stiffness", &self.stiffness)
+    }
+}
+
 impl Keyed for Physics {
     fn key(&self, key: Key) -> Key {
-        let Self { effects, drive, drive_stiffness, large_deflection } = self;
-        key.of("physics", 1)
+        let Self { effects, drive, drive_stiffness, large_deflection, reference } = self;
+        key.of("physics", 2)
             .with("effects", effects)
             .with("drive", drive)
             .with("drive stiffness", drive_stiffness)
             .with("large deflection", large_deflection)
+            .with("reference", reference)
     }
 }

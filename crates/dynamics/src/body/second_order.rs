@@ -13,6 +13,7 @@ use std::sync::Arc;
 use faer::Mat;
 use keys::{Key, Keyed};
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use crate::body::physics::check_unit;
 use crate::error::SetupError;
@@ -20,7 +21,8 @@ use crate::matrix::blocked_matrix::BlockedMatrix;
 use crate::matrix::column_major::dot;
 
 /// How a point moves, or a place turns, to second order in the modes.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(into = "Vec<Direction>", try_from = "Vec<Direction>")]
 pub struct SecondOrder {
     terms: Arc<[Term]>,
     modes: usize,
@@ -159,6 +161,24 @@ impl SecondOrder {
 impl Term {
     fn new((direction, stiffness): (Vector3<f64>, Mat<f64>)) -> Self {
         Self { direction, blocked: BlockedMatrix::new(stiffness.as_ref()), stiffness }
+    }
+}
+
+/// A direction and K_d, as serde has them.
+#[derive(Serialize, Deserialize)]
+struct Direction(Vector3<f64>, #[serde(with = "modal::as_data")] Mat<f64>);
+
+impl From<SecondOrder> for Vec<Direction> {
+    fn from(second_order: SecondOrder) -> Self {
+        second_order.terms.iter().map(|term| Direction(term.direction, term.stiffness.clone())).collect()
+    }
+}
+
+impl TryFrom<Vec<Direction>> for SecondOrder {
+    type Error = SetupError;
+
+    fn try_from(terms: Vec<Direction>) -> Result<Self, SetupError> {
+        Self::new(terms.into_iter().map(|Direction(direction, stiffness)| (direction, stiffness)).collect())
     }
 }
 

@@ -8,11 +8,15 @@ use nalgebra::Vector3;
 use crate::body::components::{Components, ComponentsFrom};
 use crate::body::patch_turn::PatchTurn;
 use crate::body::second_order::SecondOrder;
+use crate::error::SetupError;
 
 /// A point with its rows of all mode shapes, rigid and flexible.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+#[serde(into = "Columns", try_from = "Columns")]
 pub struct PointShapes {
     position_body: Vector3<f64>,
+    /// Displacement that the position has already: of a bent reference.
+    of_reference: Vector3<f64>,
     /// Column k is the displacement of the point in mode k (6+nf columns).
     columns: Vec<Vector3<f64>>,
     /// The same by components, a list of all modes each.
@@ -32,7 +36,20 @@ impl PointShapes {
     }
 
     fn of_columns(position_body: Vector3<f64>, columns: Vec<Vector3<f64>>) -> Self {
-        Self { position_body, components: Components::new(&columns), columns, second_order: None }
+        let of_reference = Vector3::zeros();
+        Self { position_body, of_reference, components: Components::new(&columns), columns, second_order: None }
+    }
+
+    /// The point of a bent reference, which has moved it by a displacement already: what is seen is counted from the
+    /// undeformed body.
+    #[must_use]
+    pub fn moved_by(self, of_reference: Vector3<f64>) -> Self {
+        Self { of_reference, ..self }
+    }
+
+    /// Displacement that its position has already: zero but about a bent reference.
+    pub fn of_reference(&self) -> Vector3<f64> {
+        self.of_reference
     }
 
     /// The point with its displacement to second order: a load on it then stiffens the body.
@@ -46,7 +63,7 @@ impl PointShapes {
         self.second_order.as_ref()
     }
 
-    /// X: undeformed position from the body's origin, body axes.
+    /// X: position from the body's origin without deformation, or in the bent reference that the modes are about, body axes.
     pub fn position_body(&self) -> Vector3<f64> {
         self.position_body
     }
@@ -60,7 +77,8 @@ impl PointShapes {
     pub fn truncated(&self, flexible: usize) -> Self {
         let kept = self.columns.len().min(6 + flexible);
         let second_order = self.second_order.as_ref().map(|second_order| second_order.truncated(flexible));
-        Self { second_order, ..Self::of_columns(self.position_body, self.columns[..kept].to_vec()) }
+        let of_reference = self.of_reference;
+        Self { second_order, of_reference, ..Self::of_columns(self.position_body, self.columns[..kept].to_vec()) }
     }
 
     /// Modal expansion at the point, (28): Σ_k Ψ_k c_k.
@@ -89,14 +107,59 @@ impl PointShapes {
     }
 }
 
+/// A point as serde has it.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Columns(Vector3<f64>, Vec<Vector3<f64>>, Option<SecondOrder>);
+
+impl From<PointShapes> for Columns {
+    fn from(PointShapes { position_body, columns, second_order, .. }: PointShapes) -> Self {
+        Self(position_body, columns, second_order)
+    }
+}
+
+impl TryFrom<Columns> for PointShapes {
+    type Error = SetupError;
+
+    fn try_from(Columns(position_body, columns, second_order): Columns) -> Result<Self, SetupError> {
+        check_rigid(&columns)?;
+        Ok(Self { second_order, ..Self::of_columns(position_body, columns) })
+    }
+}
+
+/// Refuses columns without those of the six rigid modes.
+fn check_rigid(columns: &[Vector3<f64>]) -> Result<(), SetupError> {
+    let (what, found) = ("the list of the shapes of a place", columns.len());
+    if found < 6 { Err(SetupError::Entries { what, found, expected: "6 or more".to_owned() }) } else { Ok(()) }
+}
+
 /// A place of the body with the small rotations that all modes, rigid and flexible, give it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+#[serde(into = "Rotations", try_from = "Rotations")]
 pub struct RotationShapes {
     /// Column k is the rotation vector of the place in mode k (6+nf columns).
     columns: Vec<Vector3<f64>>,
     second_order: Option<SecondOrder>,
     /// How far it turns, where large modes turn it.
     patch: Option<PatchTurn>,
+}
+
+/// A place as serde has it.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Rotations(Vec<Vector3<f64>>, Option<SecondOrder>, Option<PatchTurn>);
+
+impl From<RotationShapes> for Rotations {
+    fn from(RotationShapes { columns, second_order, patch }: RotationShapes) -> Self {
+        Self(columns, second_order, patch)
+    }
+}
+
+impl TryFrom<Rotations> for RotationShapes {
+    type Error = SetupError;
+
+    fn try_from(Rotations(columns, second_order, patch): Rotations) -> Result<Self, SetupError> {
+        check_rigid(&columns)?;
+        Ok(Self { columns, second_order, patch: None }.with_patch(patch))
+    }
 }
 
 impl RotationShapes {
@@ -151,9 +214,9 @@ impl RotationShapes {
 
 impl Keyed for PointShapes {
     fn key(&self, key: Key) -> Key {
-        let Self { position_body, columns, second_order, components: _ } = self;
-        let key = key.of("point", 1).with("position", position_body).with("columns", columns.as_slice());
-        key.with("second order", second_order)
+        let Self { position_body, of_reference, columns, second_order, components: _ } = self;
+        let key = key.of("point", 2).with("position", position_body).with("columns", columns.as_slice());
+        key.with("second order", second_order).with("of reference", of_reference)
     }
 }
 

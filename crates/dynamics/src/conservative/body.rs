@@ -7,6 +7,7 @@ use crate::body::center_of_mass::CenterOfMass;
 use crate::body::initial::Initial;
 use crate::body::physics::Drive;
 use crate::conservative::manifold::Manifold;
+use crate::conservative::reference::Reference;
 use crate::conservative::state::BodyList;
 use crate::load::SharedLoad;
 use crate::matrix::four::{Group, Padded};
@@ -85,6 +86,8 @@ pub struct ConservativeBody {
     pub(super) loads: Vec<SharedLoad>,
     /// Manifold of a body with large modes.
     pub(crate) manifold: Option<Manifold>,
+    /// Forces of the bent body that the modes are about.
+    pub(super) reference: Option<Reference>,
     /// Constants of a body that something holds.
     pub(super) held: Option<Held>,
 }

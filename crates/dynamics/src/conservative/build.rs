@@ -12,6 +12,7 @@ use crate::body::spin_stiffness::SpinStiffness;
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::coordinates::{InCoordinates, pair_weights};
 use crate::conservative::manifold::Manifold;
+use crate::conservative::reference::Reference;
 use crate::conservative::state;
 use crate::error::SetupError;
 use crate::load::SharedLoad;
@@ -36,7 +37,10 @@ impl ConservativeBody {
     ) -> Result<Self, SetupError> {
         crate::body::model::check_motion(body)?;
         crate::body::model::check_damping(damping_ratios, body.flexible())?;
-        let Physics { effects, drive, drive_stiffness, large_deflection } = physics;
+        let Physics { effects, drive, drive_stiffness, large_deflection, reference } = physics;
+        if let Some(reference) = reference {
+            reference.check(body.flexible())?;
+        }
         let (modes, manifold) = (body, large_deflection.as_ref());
         let body = manifold.map_or(modes, Manifold::body);
         let nf = body.flexible();
@@ -119,6 +123,7 @@ impl ConservativeBody {
                 .map_or_else(Vec::new, |k| columns(k.get(..modes.flexible(), ..modes.flexible()))),
             loads,
             manifold: large_deflection.clone(),
+            reference: reference.as_ref().map(Reference::new),
             held: Held::new(body, stiffness.as_ref(), effects),
         })
     }

@@ -58,9 +58,11 @@ impl ConservativeBody {
         (kinetic, self.strain_energy(state.q()))
     }
 
-    /// ½ qᵀΛq + V_n
+    /// ½ qᵀΛq + V_n, and g·q + ½ qᵀBq about a reference.
     fn strain_energy(&self, q: &[f64]) -> f64 {
-        0.5 * weighted_squares(&self.stiffness, q) + self.manifold.as_ref().map_or(0.0, |manifold| manifold.energy(q))
+        0.5 * weighted_squares(&self.stiffness, q)
+            + self.manifold.as_ref().map_or(0.0, |manifold| manifold.energy(q))
+            + self.reference.as_ref().map_or(0.0, |reference| reference.energy(q))
     }
 
     /// Lowest ω_k; infinite without modes.

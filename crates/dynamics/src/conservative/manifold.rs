@@ -45,7 +45,8 @@ const MAX_BENT: usize = MAX_LARGE + MAX_FOLLOWING;
 type Bent = [f64; MAX_BENT + 1];
 
 /// The manifold that a body with large modes moves on.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+#[serde(into = "Parts", try_from = "Parts")]
 pub struct Manifold(Arc<Constants>);
 
 #[derive(Debug)]
@@ -54,6 +55,8 @@ struct Constants {
     body: ReducedBody,
     /// By what it was made of.
     hash: Hash,
+    coefficients: Mat<f64>,
+    energies: Vec<f64>,
     /// Number of modes of the motion.
     modes: usize,
     /// The large ones among them, and those that follow.
@@ -82,6 +85,39 @@ struct Constants {
     forces: Polynomials,
 }
 
+/// The parts of a manifold, as serde has it.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Parts {
+    body: ReducedBody,
+    dynamic: usize,
+    large: Vec<usize>,
+    following: Vec<usize>,
+    #[serde(with = "modal::as_data")]
+    coefficients: Mat<f64>,
+    energies: Vec<f64>,
+}
+
+impl From<Manifold> for Parts {
+    fn from(Manifold(of): Manifold) -> Self {
+        Self {
+            body: of.body.clone(),
+            dynamic: of.modes,
+            large: of.large.clone(),
+            following: of.following.clone(),
+            coefficients: of.coefficients.clone(),
+            energies: of.energies.clone(),
+        }
+    }
+}
+
+impl TryFrom<Parts> for Manifold {
+    type Error = SetupError;
+
+    fn try_from(parts: Parts) -> Result<Self, SetupError> {
+        Self::of_parts(parts)
+    }
+}
+
 /// The place on the manifold.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ManifoldPoint {
@@ -105,11 +141,21 @@ impl Manifold {
     /// [`SetupError`] for more modes than [`MAX_LARGE`] and [`MAX_FOLLOWING`], sizes that do not fit together, and numbers that
     /// are not finite.
     pub fn new(body: ReducedBody, shapes: &LargeShapes, energies: &[f64]) -> Result<Self, SetupError> {
+        let (expected, found) = (shapes.modes.shapes.ncols(), body.flexible());
+        if found != expected {
+            return Err(SetupError::Length { what: "the body in the extended shapes", expected, found });
+        }
         let LargeShapes { dynamic, large, following, coefficients, .. } = shapes;
+        let (large, following, coefficients) = (large.clone(), following.clone(), coefficients.clone());
+        Self::of_parts(Parts { body, dynamic: *dynamic, large, following, coefficients, energies: energies.to_vec() })
+    }
+
+    fn of_parts(parts: Parts) -> Result<Self, SetupError> {
+        let Parts { body, dynamic, large, following, coefficients, energies } = &parts;
         let (dynamic, extended) = (*dynamic, body.flexible());
-        let key = Key::new().of("manifold", 2).with("body", &body).with("modes", &dynamic).with("large", large);
+        let key = Key::new().of("manifold", 2).with("body", body).with("modes", &dynamic).with("large", large);
         let key = key.with("following", following).with("coefficients", coefficients).with("energies", energies);
-        let products = shapes.products();
+        let products = Products { large: large.len(), following: following.len() };
         let of_energy = products.of_energy();
         for (what, found, least, most, expected) in [
             ("the number of large modes", large.len(), 1, MAX_LARGE, "1 to 4"),
@@ -122,13 +168,16 @@ impl Manifold {
         let of_displacement = products.of_displacement();
         for (what, found, expected) in [
             ("the list of strain energies", energies.len(), of_energy.len()),
-            ("the body in the extended shapes", extended, shapes.modes.shapes.ncols()),
             ("the rows of the shapes of products", coefficients.nrows(), extended),
             ("the shapes of products", coefficients.ncols(), of_displacement.len()),
         ] {
             if found != expected {
                 return Err(SetupError::Length { what, expected, found });
             }
+        }
+        if let Some(mode) = large.iter().chain(following).find(|mode| **mode >= dynamic.min(extended)) {
+            let what = "the number of a mode that bends";
+            return Err(SetupError::Value { what, found: *mode as f64, expected: "that of a mode, from 0" });
         }
         if let Some(found) = energies.iter().copied().find(|energy| !energy.is_finite()) {
             return Err(SetupError::Value { what: "a strain energy", found, expected: "a finite number" });
@@ -172,7 +221,9 @@ impl Manifold {
             shapes_by_coordinates,
             monomials,
             bent,
-            body,
+            body: body.clone(),
+            energies: energies.clone(),
+            coefficients: coefficients.clone(),
         })))
     }
 

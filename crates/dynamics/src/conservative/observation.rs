@@ -116,8 +116,9 @@ impl ConservativeBody {
         let to_initial = self.initial_attitude.global_to_body().transpose();
         out.points.clear();
         out.points.extend(points.iter().map(|point| {
-            let x = point.position_body();
-            let [u, v, a] = point.deformations(shapes);
+            let (of_reference, [u, v, a]) = (point.of_reference(), point.deformations(shapes));
+            let x = point.position_body() - of_reference;
+            let u = u + of_reference;
             let arm = x + u;
             PointMotion {
                 displacement: moved + (to_global * arm - to_initial * x),

@@ -147,6 +147,11 @@ impl ConservativeBody {
             }
         }
         self.project_forces(speed, e);
+        if let Some(reference) = &self.reference {
+            let Evaluation { at, rates, .. } = &mut *e;
+            let [_, momentum] = rates.modes_mut();
+            reference.subtract_force(at.q(), momentum);
+        }
         let [_, momentum] = e.rates.modes_mut();
         momentum.iter_mut().zip(&e.drive_stress).for_each(|(rate, k_q)| *rate += driven_acceleration * k_q);
         let force_rate = match self.translation {

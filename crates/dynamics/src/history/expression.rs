@@ -22,7 +22,8 @@ const SAME: f64 = 1e-12;
 /// Operators are `+ - * / % ^` as in mathematics: `-t^2` is −(t²), and a power of a power needs parentheses. `2 t` and
 /// `t (t + 1)` are products. Constants are `pi` and `e`, angles are in radians. Kinks (as of `abs`, `min`, `max`) and jumps
 /// (as of `floor`, `sign`) are to be discontinuities, so that steps end there: [`Self::with_discontinuities_until`] finds them.
-#[derive(Clone)]
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
+#[serde(into = "(String, Vec<f64>)", try_from = "(String, Vec<f64>)")]
 pub struct Expression {
     text: Arc<str>,
     discontinuities: Vec<f64>,
@@ -107,6 +108,20 @@ impl Expression {
             .get(next)
             .map_or(f64::INFINITY, |discontinuity| discontinuity - beside(*discontinuity));
         time.min(to).max(from)
+    }
+}
+
+impl From<Expression> for (String, Vec<f64>) {
+    fn from(Expression { text, discontinuities, .. }: Expression) -> Self {
+        (text.to_string(), discontinuities)
+    }
+}
+
+impl TryFrom<(String, Vec<f64>)> for Expression {
+    type Error = SetupError;
+
+    fn try_from((text, discontinuities): (String, Vec<f64>)) -> Result<Self, SetupError> {
+        Self::new(&text, discontinuities)
     }
 }
 

@@ -6,7 +6,8 @@ use crate::error::SetupError;
 
 /// Values at rising times, joined by straight lines; the first value holds before the first time, the last one after
 /// the last.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(into = "(Vec<f64>, Vec<f64>)", try_from = "(Vec<f64>, Vec<f64>)")]
 pub struct Table {
     times: Vec<f64>,
     values: Vec<f64>,
@@ -99,6 +100,20 @@ fn discontinuities(times: &[f64], values: &[f64]) -> Vec<f64> {
         before = after;
     }
     discontinuities
+}
+
+impl From<Table> for (Vec<f64>, Vec<f64>) {
+    fn from(Table { times, values, .. }: Table) -> Self {
+        (times, values)
+    }
+}
+
+impl TryFrom<(Vec<f64>, Vec<f64>)> for Table {
+    type Error = SetupError;
+
+    fn try_from((times, values): (Vec<f64>, Vec<f64>)) -> Result<Self, SetupError> {
+        Self::new(times, values)
+    }
 }
 
 impl Keyed for Table {

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use crate::body::second_order::SecondOrder;
 
 /// Forces f_i on nodes, body components, in modal coordinates.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct BodyField {
     /// Σ f_i.
     pub force_body: Vector3<f64>,

@@ -8,7 +8,7 @@ use crate::error::SetupError;
 use crate::history::History;
 
 /// A field of forces times a history.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct FieldLoad {
     /// The forces where the history is 1.
     pub field: BodyField,

@@ -11,7 +11,7 @@ use crate::history::History;
 
 /// A force at a point. A load of one direction that is spread over the body, such as a traction or gravity, is its
 /// resultant at the point that moves as the weighted mean of where it acts.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct PointForce {
     /// Where it acts.
     pub point: PointShapes,

@@ -10,7 +10,7 @@ use crate::error::SetupError;
 use crate::history::History;
 
 /// A moment.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct PointMoment {
     /// How the place where it acts is turned by the modes.
     pub rotation: RotationShapes,

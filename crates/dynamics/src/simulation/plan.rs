@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::simulation::checkpoint::{CheckpointError, counts, expect, finite};
 
 /// How long the steps are.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum StepControl {
     /// Steps of at most this length; between two stops all are equally long.
     Fixed(f64),
@@ -15,7 +15,7 @@ pub enum StepControl {
 }
 
 /// When the motion is observed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Rows {
     /// At the beginning, after every so many steps, and at the end.
     EverySteps(u64),

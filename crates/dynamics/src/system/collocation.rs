@@ -8,7 +8,7 @@ use nalgebra::{Complex, Matrix3, Vector3};
 pub(crate) const STAGES: usize = 3;
 
 /// A scheme for the steps of a system.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum SystemScheme {
     /// Radau IIA of order 5: forgets vibration that its steps do not resolve.
     #[default]

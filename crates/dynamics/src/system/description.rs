@@ -118,6 +118,11 @@ impl System {
         &self.connections.couplings
     }
 
+    /// The forces between markers.
+    pub fn elements(&self) -> &[Arc<dyn ForceElement>] {
+        &self.connections.elements
+    }
+
     /// Number of coordinates of all bodies.
     pub(crate) fn coordinates(&self) -> usize {
         self.first[self.bodies.len()]

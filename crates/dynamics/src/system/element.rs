@@ -2,6 +2,7 @@
 
 pub(crate) mod springs;
 
+use std::any::Any;
 use std::fmt;
 
 use crate::system::marker::Marker;
@@ -14,7 +15,7 @@ pub type SetDirection<'a> = dyn FnMut(usize, [f64; 2], &[MarkerWrench]) + 'a;
 ///
 /// Where the wrenches sum to no force and no moment, momenta are kept. What it does is its work, in
 /// [`SystemMotion::element_work`](crate::SystemMotion::element_work).
-pub trait ForceElement: fmt::Debug + Send + Sync {
+pub trait ForceElement: fmt::Debug + Send + Sync + Any {
     /// Its markers.
     fn markers(&self) -> &[Marker];
 

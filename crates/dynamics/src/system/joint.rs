@@ -19,7 +19,7 @@ use crate::system::joint::row::Row;
 use crate::system::marker::Marker;
 
 /// A joint between two markers, i and j.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Joint {
     /// Its name in errors and results.
     pub name: String,
@@ -38,7 +38,7 @@ pub struct Joint {
 }
 
 /// A pair of places of a joint's ends, with rows of its own.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct JointPart {
     /// On i and on j.
     pub markers: [Marker; 2],

@@ -16,7 +16,7 @@ use crate::system::marker::motion::MarkerMotion;
 ///
 /// On a flexible body it is the mean of a patch, or a node: the modes move it by Ψ q and turn it by the rotation vector Θ q, both to
 /// second order where the shapes know it: then the forces of joints and elements stiffen the body.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Marker {
     body: Option<usize>,
     /// X, from the origin of the body in its axes; of the ground, global.

@@ -63,14 +63,18 @@ fn stiffening(frame: LoadFrame) -> [SharedLoad; 2] {
     ]
 }
 
+/// A load of every kind.
+pub fn every_kind() -> Vec<SharedLoad> {
+    let [global, follower] = [LoadFrame::Global, LoadFrame::Body];
+    let others = [force(global), force(follower), moment(global), moment(follower), field(), following_field()];
+    others.into_iter().chain(stiffening(global)).chain(stiffening(follower)).collect()
+}
+
 /// Conserved: the balances of energy and momenta; order 4.
 #[test]
 fn work_and_impulses_of_every_load_close_the_balances() {
     let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
-    let [global, follower] = [LoadFrame::Global, LoadFrame::Body];
-    let stiffening = [stiffening(global), stiffening(follower)].concat();
-    let others = [force(global), force(follower), moment(global), moment(follower), field(), following_field()];
-    for load in others.into_iter().chain(stiffening) {
+    for load in every_kind() {
         let mut run = Run::new(&body, 3.0);
         run.loads = vec![load.clone()];
         for method in [EXPONENTIAL, RKMK4] {

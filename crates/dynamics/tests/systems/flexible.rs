@@ -111,7 +111,7 @@ impl Jointed {
     }
 }
 
-fn rod() -> &'static Jointed {
+pub fn rod() -> &'static Jointed {
     static ROD: OnceLock<Jointed> = OnceLock::new();
     let steel = Material { young_modulus: 200e9, poisson_ratio: 0.3, density: 7870.0 };
     ROD.get_or_init(|| Jointed::new("crank_rod", steel, 6, &["crank", "slider"]))

@@ -3,6 +3,7 @@
 mod andrews;
 mod coordinates;
 mod dense;
+mod described;
 mod elements;
 mod flexible;
 mod hard;

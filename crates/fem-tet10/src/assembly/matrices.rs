@@ -35,6 +35,17 @@ pub struct Matrices {
 }
 
 impl Matrices {
+    /// The same mass with another stiffness, whose entries are in the order of [`stiffness_by_nodes`](Self::stiffness_by_nodes),
+    /// such as that of a deformed body ([`crate::FiniteStrain::stiffness`]).
+    ///
+    /// # Panics
+    /// Where there are not as many entries.
+    #[must_use]
+    pub fn with_stiffness(&self, stiffness: Vec<f64>) -> Self {
+        assert_eq!(stiffness.len(), self.stiffness.len(), "an entry for each of the stiffness");
+        Self { stiffness, ..self.clone() }
+    }
+
     /// K (N×N), force per length. Its pattern is made at the first call.
     pub fn stiffness(&self) -> SparseColMatRef<'_, usize, f64> {
         SparseColMatRef::new(self.pattern().as_ref(), &self.stiffness)

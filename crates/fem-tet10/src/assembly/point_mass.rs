@@ -11,6 +11,7 @@ const MAX_CARRIERS: usize = 500;
 
 /// A mass at a point of the body, Eq. (M4) of `docs/method/modes.md`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PointMass {
     /// Where, in the mesh's frame.

@@ -4,6 +4,8 @@
 //! K(u)_ab = ∫ ε(u):C:ε₂(a,b) dV        reduced: Ψᵀ K(u) Ψ
 //! ```
 //!
+//! About a reference u₀ with F₀ = 1 + ∇u₀ the stress is that of a small change u of it: sym(F₀ᵀ∇u) is in the place of ε(u).
+//!
 //! K(u) of the whole body is never made. In an element its rows sum to zero over the nodes, so only displacements
 //! *against the element's first node* count. With those, a translation of the element drops out exactly, and rounding is
 //! measured against the deformation and not against the motion.
@@ -44,11 +46,11 @@ pub fn reduced_geometric_stiffness(
     displacements: MatRef<'_, f64>,
     shapes: MatRef<'_, f64>,
 ) -> Result<Vec<Mat<f64>>, AssemblyError> {
-    extended_geometric_stiffness(mesh, materials, displacements, shapes, &[])
+    extended_geometric_stiffness(mesh, materials, displacements, shapes, &[], None)
 }
 
 /// The same where the matrices `known` of the first of the shapes are known, one for each displacement field; none for no
-/// shapes at all. Only what is new is computed.
+/// shapes at all. Only what is new is computed. With a `reference` (N×1) the displacements are small changes of it.
 ///
 /// # Errors
 /// As [`reduced_geometric_stiffness`].
@@ -61,8 +63,12 @@ pub fn extended_geometric_stiffness(
     displacements: MatRef<'_, f64>,
     shapes: MatRef<'_, f64>,
     known: &[Mat<f64>],
+    reference: Option<MatRef<'_, f64>>,
 ) -> Result<Vec<Mat<f64>>, AssemblyError> {
     check_field(mesh, "displacements", displacements)?;
+    if let Some(reference) = reference {
+        check_field(mesh, "the reference", reference)?;
+    }
     check_field(mesh, "shapes", shapes)?;
     assert!(known.is_empty() || known.len() == displacements.ncols());
     let first = known.first().map_or(0, Mat::ncols);
@@ -79,6 +85,7 @@ pub fn extended_geometric_stiffness(
     let zeros = || vec![Mat::<f64>::zeros(f, f - first); displacements.ncols()];
     let rules = Rules::new();
     let (shapes, displacements) = (Rows::new(shapes), Rows::new(displacements));
+    let reference = reference.map(Rows::new);
     let groups = Group::all(mesh);
     let parts: Vec<Vec<Mat<f64>>> = groups
         .par_chunks(groups.len().div_ceil(PARTS))
@@ -89,7 +96,7 @@ pub fn extended_geometric_stiffness(
             for groups in part.chunks(BLOCK) {
                 vectorized(
                     #[inline(always)]
-                    || here.fill(mesh, &materials, &rules, groups, &shapes, &displacements),
+                    || here.fill(mesh, &materials, &rules, groups, [&shapes, &displacements], reference.as_ref()),
                 );
                 for (u, sum) in sums.iter_mut().enumerate() {
                     vectorized(
@@ -150,25 +157,37 @@ impl Block {
         materials: &[Material],
         rules: &Rules,
         groups: &[Group],
-        shapes: &Rows,
-        displacements: &Rows,
+        [shapes, displacements]: [&Rows; 2],
+        reference: Option<&Rows>,
     ) {
-        self.count = groups.iter().map(|group| group.cubic_points(rules).len()).sum();
+        // Of a bent reference the stress is of the second degree.
+        let points = |group: &Group| if reference.is_some() { rules.fine() } else { group.cubic_points(rules) };
+        self.count = groups.iter().map(|group| points(group).len()).sum();
         self.gradients.resize(self.count * shapes.columns, Tensors::ZERO.0);
         self.of_displacements.resize(self.count * displacements.columns, Tensors::ZERO);
-        let (mut of_shapes, mut of_displacements, mut row) = (Vec::new(), Vec::new(), 0);
+        let (mut of_shapes, mut of_displacements, mut of_reference, mut row) = (Vec::new(), Vec::new(), Vec::new(), 0);
         for group in groups {
             let (lame, positions) = (group.lame(materials), group.positions(mesh));
             shapes.relative(mesh, group, &mut of_shapes);
             displacements.relative(mesh, group, &mut of_displacements);
-            for rule in group.cubic_points(rules) {
+            if let Some(reference) = reference {
+                reference.relative(mesh, group, &mut of_reference);
+            }
+            for rule in points(group) {
                 let point = GroupPoint::new(&positions, rule, group.count);
                 for (a, relative) in of_shapes.iter().enumerate() {
                     self.gradients[self.count * a + row] = point.gradient(relative).0;
                 }
+                let bent = of_reference.first().map(|relative| point.gradient(relative));
                 for (u, relative) in of_displacements.iter().enumerate() {
-                    let [_, stress] = point.gradient(relative).scaled(&point.volume).with_stress(&lame);
-                    self.of_displacements[self.count * u + row] = stress;
+                    let gradient = point.gradient(relative).scaled(&point.volume);
+                    self.of_displacements[self.count * u + row] = match &bent {
+                        None => {
+                            let [_, stress] = gradient.with_stress(&lame);
+                            stress
+                        }
+                        Some(bent) => gradient.strain().plus(&bent.second_strain(&gradient)).stress(&lame),
+                    };
                 }
                 row += 1;
             }

@@ -3,8 +3,10 @@
 //! The body spins steadily about an axis through its origin: the centre of mass of a free body, a fixed point of one
 //! that is held (of a clamp or a slider the mean of its nodes). Frequencies are those that the body itself sees, so that
 //! order n stands for a load that comes by n times a turn, such as one that stands still in space. Vibrations are about
-//! the undeformed body, without damping and without the scene's loads.
+//! the undeformed body or, where the spin bends it, about the rest of the full body at each speed ([`AboutRest`]), without damping and
+//! without the scene's loads.
 
+mod bent;
 mod branches;
 mod critical;
 mod diagram;
@@ -21,6 +23,7 @@ use model::{BuildError, BuildProgress, Builder};
 use nalgebra::Vector3;
 use scene::{Choice, Flexible, Scene};
 
+pub use bent::AboutRest;
 pub use branches::Branch;
 pub use critical::Critical;
 pub use error::CampbellError;
@@ -30,6 +33,7 @@ pub use system::{SystemCampbellSettings, campbell_of_system};
 
 use crate::commands::modes::{frequency_unit, require_flexible};
 use crate::report::MeshReport;
+use bent::BentSpin;
 use branches::Branches;
 use error::MAX_SPEEDS;
 
@@ -78,6 +82,8 @@ pub struct CampbellSettings {
     pub speeds: Speeds,
     /// Engine orders: numbers of times a turn that loads come by.
     pub orders: Vec<f64>,
+    /// About what the vibrations are.
+    pub about_rest: AboutRest,
 }
 
 /// The speeds, where they and the orders are in range.
@@ -99,6 +105,8 @@ fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, CampbellError> {
 fn spinning(scene: &Scene) -> Scene {
     let mut scene = scene.clone().without_rows();
     scene.loads.clear();
+    // The rest at each speed is found here.
+    scene.modes.about = None;
     scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
     for effect in [Effect::DeformedInertia, Effect::Coriolis, Effect::GeometricStiffening] {
         if scene.effects.choices[effect] == Choice::Auto {
@@ -130,29 +138,58 @@ pub fn campbell(
     require_flexible(&scene, &model).map_err(BuildError::from)?;
 
     let effects = &model.physics.effects;
-    let spin = SteadySpin::new(&model.body, &axis, effects);
+    let effects = SpinEffects {
+        coriolis: effects[Effect::Coriolis],
+        softening: effects[Effect::DeformedInertia],
+        stiffening: effects[Effect::GeometricStiffening],
+    };
+    let spin = SteadySpin::new(&model.body, &axis, &model.physics.effects);
     let total = speeds.len();
+    let done = |done| progress(CampbellProgress::Speeds { done, total });
     let failed = |source| CampbellError::Eigen { scene: scene.path.clone(), source };
-    let branches =
-        Branches::follow(&|speed| spin.modes(speed), speeds, |done| progress(CampbellProgress::Speeds { done, total }))
-            .map_err(failed)?;
-    let critical_speed = spin.critical_speed().map_err(failed)?;
+    let highest = settings.speeds.end;
+    let may_be_bent = match settings.about_rest {
+        AboutRest::Never => false,
+        AboutRest::Always => true,
+        AboutRest::Auto => effects.all() && scene.body.has_elements() && bent::bends(&model, &axis, highest),
+    };
+    let full = may_be_bent.then(|| bent::full(&scene, builder)).transpose()?;
+    let bent = full.as_ref().map(|full| BentSpin::new(&scene, full, &model, &axis)).transpose()?;
+    let bent = match bent {
+        Some(bent) if settings.about_rest == AboutRest::Always || bent.differs(&spin, highest)? => Some(bent),
+        _ => None,
+    };
+    let (branches, stable_below, critical_speeds, static_shapes) = match &bent {
+        None => {
+            let branches = Branches::follow(&|speed| spin.modes(speed), speeds, done).map_err(failed)?;
+            let critical_speed = spin.critical_speed().map_err(failed)?;
+            let critical = critical::find(&spin, &branches, &settings.orders).map_err(failed)?;
+            (branches, critical_speed.is_finite().then_some(critical_speed), critical, model.static_shapes())
+        }
+        Some(bent) => {
+            let branches = Branches::follow(&|speed| bent.modes(speed), speeds, done)?;
+            let critical = critical::between(&branches, &settings.orders);
+            let grows = |here: &Vec<dynamics::SpinMode>| here.iter().any(|mode| mode.growth > 0.0);
+            let first = branches.modes.iter().position(grows).map(|at| branches.speeds[at]);
+            let stops = critical.iter().filter(|critical| critical.order == 0.0).map(|critical| critical.speed);
+            let stable_below = stops.chain(first).reduce(f64::min);
+            (branches, stable_below, critical, 0)
+        }
+    };
     let mut report = CampbellReport {
         bodies: Vec::new(),
         title: scene.title.clone(),
         time_unit: scene.units.time.clone(),
+        length_unit: scene.units.length.clone(),
         frequency_unit: frequency_unit(&scene.units.time),
         mesh: MeshReport::new(&model),
         axis: axis.into(),
         origin: model.body.origin.into(),
-        effects: SpinEffects {
-            coriolis: effects[Effect::Coriolis],
-            softening: effects[Effect::DeformedInertia],
-            stiffening: effects[Effect::GeometricStiffening],
-        },
-        stable_below: critical_speed.is_finite().then_some(critical_speed),
-        critical_speeds: critical::find(&spin, &branches, &settings.orders).map_err(failed)?,
-        branches: branches.lines(model.static_shapes()),
+        effects,
+        stable_below,
+        critical_speeds,
+        deflection: bent.iter().flat_map(|bent| branches.speeds.iter().map(|speed| bent.deflection(*speed))).collect(),
+        branches: branches.lines(static_shapes),
         speeds: branches.speeds,
         files: Vec::new(),
     };

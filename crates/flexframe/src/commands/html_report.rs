@@ -1,48 +1,56 @@
 //! `flexframe report`: a results file as one HTML page.
 
 mod contents;
+mod error;
+mod led_on;
 mod quantities;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use report::{Report, ReportError};
+use model::{BuildProgress, Builder};
+use report::Report;
 
-use crate::drawn::{Drawn, DrawnError, Part};
+use crate::drawn::{Drawn, Part};
+pub use error::HtmlReportError;
 
-/// A page that could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum HtmlReportError {
-    /// The results file, or the shapes of its bodies, cannot be read.
-    #[error("{0}")]
-    Drawn(#[from] DrawnError),
-    /// A results file that lacks a column of every run.
-    #[error("{}: the results lack the columns of a run; run its scene again with --overwrite", results.display())]
-    NoColumns {
-        /// The results file.
-        results: PathBuf,
-    },
-    /// The page cannot be written.
-    #[error("{0}")]
-    Page(#[from] ReportError),
-}
-
-/// Reads a results file, finished or not, and writes a page about it to `path`.
+/// What the page about a results file, finished or not, shows.
 ///
 /// # Errors
 /// [`HtmlReportError`].
-pub fn write(file: &Path, path: &Path) -> Result<(), HtmlReportError> {
-    Ok(report::write(&contents_of(file)?, path)?)
-}
-
-/// The same page as a text.
-///
-/// # Errors
-/// [`HtmlReportError`].
-pub fn page(file: &Path) -> Result<String, HtmlReportError> {
-    Ok(report::html(&contents_of(file)?)?)
-}
-
-fn contents_of(file: &Path) -> Result<Report, HtmlReportError> {
+pub fn contents(file: &Path) -> Result<Report, HtmlReportError> {
     let Drawn { results, bodies } = Drawn::open(file, Part::Surface)?;
     contents::contents(file, &results, bodies).ok_or_else(|| HtmlReportError::NoColumns { results: file.to_owned() })
+}
+
+/// The same with the run itself: the page computes the motion, and lets it be changed. The bodies are built again from the scene
+/// in the results file, with their meshes, which have to be there as they were.
+///
+/// # Errors
+/// [`HtmlReportError`].
+pub fn live_contents(
+    file: &Path,
+    builder: &Builder,
+    progress: impl FnMut(BuildProgress),
+) -> Result<Report, HtmlReportError> {
+    let Drawn { results, bodies } = Drawn::open(file, Part::Surface)?;
+    let led_on = led_on::led_on(file, &results, builder, progress)?;
+    let no_columns = || HtmlReportError::NoColumns { results: file.to_owned() };
+    let contents = contents::contents(file, &results, bodies).ok_or_else(no_columns)?;
+    Ok(Report { live: Some(led_on), ..contents })
+}
+
+/// The page as a text.
+///
+/// # Errors
+/// [`HtmlReportError::Page`].
+pub fn page(report: &Report) -> Result<String, HtmlReportError> {
+    Ok(report::html(report)?)
+}
+
+/// Writes the page to `path`, whole or not at all.
+///
+/// # Errors
+/// [`HtmlReportError::Page`].
+pub fn write(report: &Report, path: &Path) -> Result<(), HtmlReportError> {
+    Ok(report::write(report, path)?)
 }

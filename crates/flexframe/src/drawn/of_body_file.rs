@@ -3,6 +3,11 @@
 use results::{Shapes, StressShapes};
 use sealed::{SealedError, SealedFile};
 
+use super::of_model::add_reference;
+
+/// Displacement of the bent body that the modes are about.
+const REFERENCE: &str = "reference/displacement";
+
 /// The shapes on the surface of the body in a body file, and of its whole volume the elements, too; the stress where the file
 /// has it.
 ///
@@ -19,7 +24,11 @@ pub(super) fn read(file: &SealedFile, volume: bool) -> Result<(Shapes, Vec<[u32;
     };
     let faces = on_mesh.iter().map(|face| places.of(face)).collect::<Option<Vec<_>>>().ok_or_else(no_node)?;
     let mut displacements = Vec::new();
+    let mut modes = 0;
     for dataset in ["modes/shapes", "static_shapes/shapes", "large_deflection/shapes"] {
+        if dataset == "large_deflection/shapes" {
+            modes = displacements.len();
+        }
         if file.has(dataset) {
             let numbers: Vec<[f64; 3]> = vectors(file, dataset)?;
             for list in numbers.chunks_exact(all.len().max(1)) {
@@ -35,6 +44,13 @@ pub(super) fn read(file: &SealedFile, volume: bool) -> Result<(Shapes, Vec<[u32;
         shapes.products = products.chunks_exact(shapes.displacements.len().max(1)).map(<[f64]>::to_vec).collect();
     }
     shapes.stress = stress(file, &places)?;
+    if file.has(REFERENCE) {
+        let displacement = at_nodes(&vectors(file, REFERENCE)?).ok_or_else(no_node)?;
+        add_reference(&mut shapes, displacement, modes);
+        if let Some(stress) = &mut shapes.stress {
+            stress.shapes.push(vec![[0.0; 6]; stress.nodes.len()]);
+        }
+    }
     shapes.nodes = nodes;
     let tetrahedra =
         if volume { file.read::<u32>("mesh/tetrahedra")?.values.as_chunks().0.to_vec() } else { Vec::new() };

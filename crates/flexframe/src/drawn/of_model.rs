@@ -1,9 +1,9 @@
 //! The shapes of a model that is at hand.
 
 use dynamics::Manifold;
-use faer::Mat;
+use faer::{Mat, MatRef};
 use fem_tet10::{AssemblyError, Mesh, StressRecovery};
-use model::{Meshed, Model, ProductStrains};
+use model::{Meshed, Model, ProductStrains, stress_about};
 use results::{Shapes, StressShapes};
 
 /// A body without elements is drawn by so many of its nodes at the most.
@@ -37,15 +37,31 @@ pub(crate) fn shapes_of(meshed: &Meshed, manifold: Option<&Manifold>) -> Shapes 
     let all = meshed.modes.shapes.col_iter().chain(meshed.following.col_iter());
     let displacements: Vec<_> = all.map(at_nodes).collect();
     let products = manifold.map_or(&[][..], Manifold::of_products).chunks_exact(displacements.len().max(1));
-    Shapes {
+    let mut shapes = Shapes {
         positions: nodes.iter().map(|node| mesh.positions()[*node as usize]).collect(),
         faces,
         products: products.map(<[f64]>::to_vec).collect(),
         factors: manifold.map_or_else(Vec::new, factors),
-        displacements,
         stress: None,
+        displacements,
         nodes,
+    };
+    if let Some(reference) = &meshed.reference {
+        let at = |node: &u32| [0, 1, 2].map(|axis| reference[(dofs * *node as usize + axis, 0)]);
+        let at_nodes = shapes.nodes.iter().map(at).collect();
+        add_reference(&mut shapes, at_nodes, meshed.modes.shapes.ncols());
     }
+    shapes
+}
+
+/// A bent reference is a shape of its own, whose coordinate is the product without factors.
+pub(super) fn add_reference(shapes: &mut Shapes, displacement: Vec<[f64; 3]>, modes: usize) {
+    shapes.displacements.push(displacement);
+    shapes.products.iter_mut().for_each(|adds| adds.push(0.0));
+    let mut adds = vec![0.0; shapes.displacements.len()];
+    adds[shapes.displacements.len() - 1] = 1.0;
+    shapes.products.push(adds);
+    shapes.factors.push([modes as u32; 3]);
 }
 
 /// The nodes of the surface, ascending, and its faces by their places among these.
@@ -79,12 +95,22 @@ fn stress(
     manifold: Option<&Manifold>,
     nodes: &[u32],
 ) -> Result<StressShapes, AssemblyError> {
-    let mut shapes = lists(&recovery.nodal_stress(meshed.modes.shapes.as_ref())?);
-    if meshed.following.ncols() > 0 {
-        shapes.extend(lists(&recovery.nodal_stress(meshed.following.as_ref())?));
+    let (modes, following) = (meshed.modes.shapes.as_ref(), meshed.following.as_ref());
+    let linear = |displacements: MatRef<'_, f64>| match &meshed.reference {
+        Some(reference) => {
+            let found = stress_about(recovery, reference.as_ref(), displacements)?;
+            Ok::<_, AssemblyError>(found.get(.., ..displacements.ncols()).to_owned())
+        }
+        None => recovery.nodal_stress(displacements),
+    };
+    let mut shapes = lists(&linear(modes)?);
+    if following.ncols() > 0 {
+        shapes.extend(lists(&linear(following)?));
+    }
+    if let Some(reference) = &meshed.reference {
+        shapes.extend(lists(&stress_about(recovery, reference.as_ref(), reference.get(.., ..0))?));
     }
     if let Some(manifold) = manifold {
-        let (modes, following) = (meshed.modes.shapes.as_ref(), meshed.following.as_ref());
         let count = modes.ncols();
         let extended = Mat::from_fn(modes.nrows(), count + following.ncols(), |i, j| match j.checked_sub(count) {
             None => modes[(i, j)],
@@ -93,6 +119,10 @@ fn stress(
         let strains = ProductStrains::new(manifold, extended.as_ref());
         let of_pairs = recovery.second_order_nodal_stress(strains.fields.as_ref(), &strains.pairs)?;
         shapes.extend(lists(&strains.stress(of_pairs.as_ref())));
+    }
+    if meshed.reference.is_some() {
+        // Of the product without factors.
+        shapes.push(vec![[0.0; 6]; recovery.nodes().count()]);
     }
     let place = |node: u32| nodes.partition_point(|n| *n < node) as u32;
     Ok(StressShapes { nodes: recovery.nodes().map(place).collect(), shapes })

@@ -450,7 +450,11 @@ impl Fault for ExportError {
 
 impl Fault for HtmlReportError {
     fn known(&self) -> Known {
-        if let Self::NoColumns { results } = self { Kind::Input.of(results) } else { Known::default() }
+        match self {
+            Self::NoColumns { results } | Self::Changed { results, .. } => Kind::Input.of(results),
+            Self::Live { results, .. } => Kind::Usage.of(results),
+            Self::Drawn(_) | Self::Page(_) | Self::Scene(_) | Self::Build(_) => Known::default(),
+        }
     }
 }
 
@@ -459,7 +463,8 @@ impl Fault for CampbellError {
         match self {
             Self::Build(_) | Self::System(_) | Self::Figure(_) | Self::Write(_) => Known::default(),
             Self::Eigen { scene, .. } | Self::Steady { scene, .. } => Kind::Run.of(scene),
-            Self::NoAxis { scene, .. } => Kind::Usage.of(scene),
+            Self::Full { scene, .. } | Self::Bent { scene, .. } => Kind::Run.of(scene),
+            Self::NoAxis { scene, .. } | Self::NoFullBody { scene } => Kind::Usage.of(scene),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
         }
     }

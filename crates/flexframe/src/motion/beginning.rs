@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use dynamics::{
-    ConservativeBody, Coordinate, JointLaw, Method, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation,
-    StepControl, SystemScheme, SystemSetup, SystemSimulation,
+    Coordinate, DescribedBody, JointLaw, Method, Physics, PointShapes, Rows, RunOfBody, RunOfSystem, Setup, SetupError,
+    SharedLoad, Simulation, StepControl, SystemScheme, SystemSimulation,
 };
 use model::{BuildError, Model, StartError, Tied, tie_models};
 use scene::{Scene, System};
@@ -181,24 +181,58 @@ fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> R
 }
 
 fn start_tied(system: &System, models: &[&Model], tied: Tied, of: &Beginning) -> Result<SystemSimulation, StartError> {
-    let body = |number: &usize| {
-        let BodyForces { loads, damping_ratios, physics } = &of.bodies[*number];
-        ConservativeBody::new(&models[*number].body, damping_ratios, loads.clone(), physics)
-    };
-    let mut described = tied.system.with_bodies(tied.bodies.iter().map(body).collect::<Result<_, _>>()?)?;
+    Ok(run_of_system(system, models, tied, of)?.begin()?)
+}
+
+/// A body with what acts on it.
+fn described_body(model: &Model, forces: &BodyForces) -> DescribedBody {
+    DescribedBody {
+        body: model.body.clone(),
+        damping_ratios: forces.damping_ratios.clone(),
+        loads: forces.loads.clone(),
+        physics: forces.physics.clone(),
+        points: points(model),
+    }
+}
+
+/// The run of a body alone, as data have it: all but the reference points of the paper's formulation.
+pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> RunOfBody {
+    RunOfBody {
+        body: described_body(model, forces),
+        initial: model.initial(scene),
+        method: of.method,
+        control: of.control,
+        end: of.end,
+        rows: of.rows,
+    }
+}
+
+/// The run of tied bodies.
+///
+/// # Errors
+/// [`SetupError`] for laws at joints that are not there.
+pub(super) fn run_of_system(
+    system: &System,
+    models: &[&Model],
+    tied: Tied,
+    of: &Beginning,
+) -> Result<RunOfSystem, SetupError> {
+    let mut described = tied.system;
     for JointForces { joint, along, law } in &of.laws {
         if let Some(here) = tied.joints.iter().position(|number| number == joint) {
             described = described.with_law(here, *along, Arc::clone(law))?;
         }
     }
-    Ok(SystemSimulation::new(SystemSetup {
-        system: described,
+    Ok(RunOfSystem {
+        bodies: tied.bodies.iter().map(|number| described_body(models[*number], &of.bodies[*number])).collect(),
+        joints: described.joints().to_vec(),
+        couplings: described.couplings().to_vec(),
+        elements: described.elements().to_vec(),
         states: tied.states,
         relaxed: system.relaxed,
         scheme: of.system_scheme,
         control: of.control,
         end: of.end,
         rows: of.tied_rows,
-        points: tied.bodies.iter().map(|number| points(models[*number])).collect(),
-    })?)
+    })
 }

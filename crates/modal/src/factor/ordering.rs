@@ -3,14 +3,11 @@
 //! The three degrees of freedom of a node stay together, so the graph to order is a ninth of the matrix. Of that graph METIS
 //! orders the part that leads, of second-order tetrahedra the corners: a sixth of the nodes.
 
-use std::sync::{Mutex, PoisonError};
-
 use faer::perm::Perm;
 use faer::sparse::SymbolicSparseColMatRef;
 
-use metis_sys::idx_t;
-
 use crate::error::ModalError;
+use crate::factor::dissection::{dissect, idx_t};
 use crate::matrix::node_pairs::NodePairs;
 use crate::matrix::symmetry::check_symmetric;
 
@@ -109,6 +106,7 @@ fn order_nodes(start: &[idx_t], neighbours: &[idx_t]) -> Result<Vec<idx_t>, Moda
         start.push(neighbours.len() as idx_t);
     }
     let (mut order, mut place) = (vec![0; leading.len()], vec![0; leading.len()]);
+    memory::check("the ordering", ordering_bytes(order.len(), neighbours.len()))?;
     dissect(&mut start, &mut neighbours, &mut order, &mut place)?;
 
     // What follows a node that follows another follows that one, too: so each has a leading one among its own.
@@ -195,55 +193,6 @@ impl Graph<'_> {
         }
         sorted
     }
-}
-
-/// METIS has one random number generator for the whole process: two calls at a time would race for it, and the
-/// ordering, with it the last digits of the modes, would differ from run to run.
-static METIS: Mutex<()> = Mutex::new(());
-
-/// Nested dissection: `order[new] = old`, `place[old] = new`.
-///
-/// By METIS_NodeNDP for one processor, which orders as METIS_NodeND does. That one catches SIGTERM and SIGABRT while it
-/// works: a request to stop would end as an error of METIS, and the handlers of the program would be put back without
-/// their flags. What METIS_NodeND catches them for is memory that runs out, so room is made sure of before.
-fn dissect(
-    start: &mut [idx_t],
-    neighbours: &mut [idx_t],
-    order: &mut [idx_t],
-    place: &mut [idx_t],
-) -> Result<(), ModalError> {
-    if neighbours.is_empty() {
-        // METIS wants an edge; without any, every order is as good.
-        for (i, (order, place)) in order.iter_mut().zip(place).enumerate() {
-            (*order, *place) = (i as idx_t, i as idx_t);
-        }
-        return Ok(());
-    }
-    let n = order.len() as idx_t;
-    // METIS gives the sizes of the top separators, 2 processors − 1 of them.
-    let mut sizes = [0];
-    // A poisoned lock is as good: METIS seeds its generator anew in every call.
-    let _one_at_a_time = METIS.lock().unwrap_or_else(PoisonError::into_inner);
-    memory::check("the ordering", ordering_bytes(order.len(), neighbours.len()))?;
-    // SAFETY: METIS has no other interface than C. The arrays are a valid compressed graph of n nodes (start has n + 1
-    // entries, the last of them neighbours.len(), every neighbour is below n and has the node for a neighbour), the two
-    // results have room for n numbers and `sizes` for one, null pointers stand for "no weights" and "default options" as
-    // its manual says, and the lock keeps a second call out.
-    #[allow(unsafe_code)]
-    let status = unsafe {
-        metis_sys::METIS_NodeNDP(
-            n,
-            start.as_mut_ptr(),
-            neighbours.as_mut_ptr(),
-            std::ptr::null_mut(),
-            1,
-            std::ptr::null_mut(),
-            order.as_mut_ptr(),
-            place.as_mut_ptr(),
-            sizes.as_mut_ptr(),
-        )
-    };
-    if status == metis_sys::rstatus_et_METIS_OK { Ok(()) } else { Err(ModalError::Ordering { status }) }
 }
 
 /// Most bytes that METIS allocates for a graph.

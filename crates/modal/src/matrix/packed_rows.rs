@@ -107,7 +107,7 @@ pub(crate) fn add_products<const K: usize, const W: usize, S: Simd>(
 
 /// Asks for numbers that are due soon. The processor does not look as far ahead by itself.
 #[inline(always)]
-#[expect(unsafe_code, reason = "the instruction of the processor has no safe name")]
+#[cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "the instruction of the processor has no safe name"))]
 pub(crate) fn prefetch<T>(number: *const T) {
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a hint, which reads nothing: any address will do. All processors of the kind have it.

@@ -20,9 +20,11 @@ use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatRef};
 use keys::{Key, Keyed};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 use crate::error::ModalError;
 use crate::input::check_finite_entries;
+use crate::matrix::as_data;
 use crate::matrix::mass_matrix::MassMatrix;
 use crate::matrix::pairs::PAIRS;
 use crate::reduction::general::general_products;
@@ -32,9 +34,24 @@ use crate::solve::Modes;
 use crate::support::motion::RigidMotion;
 
 /// An elastic body in modal coordinates: [`Constants`] whose sizes fit together and which are finite. They can be read as
-/// its fields.
-#[derive(Debug, Clone)]
+/// its fields. Serde has it as these, which it checks.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(into = "Constants", try_from = "Constants")]
 pub struct ReducedBody(Constants);
+
+impl From<ReducedBody> for Constants {
+    fn from(body: ReducedBody) -> Self {
+        body.0
+    }
+}
+
+impl TryFrom<Constants> for ReducedBody {
+    type Error = ModalError;
+
+    fn try_from(constants: Constants) -> Result<Self, ModalError> {
+        Self::from_constants(constants)
+    }
+}
 
 impl std::ops::Deref for ReducedBody {
     type Target = Constants;
@@ -46,7 +63,7 @@ impl std::ops::Deref for ReducedBody {
 
 /// The constants of a body in modal coordinates. Axes are those of the mesh. X is measured from the origin: the centre
 /// of mass of a free body, a fixed point of one that is held.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Constants {
     /// Total mass m.
     pub mass: f64,
@@ -69,14 +86,17 @@ pub struct Constants {
     /// Number of natural modes among the flexible ones: they come first, static shapes after them.
     pub natural_modes: usize,
     /// E_ab (3×3 matrices of 6+nf × 6+nf).
+    #[serde(with = "as_data")]
     pub rotation_products: [[Mat<f64>; 3]; 3],
     /// E^X_ab = `Ψᵀ M (e_a e_bᵀ) X` (3×3 vectors of 6+nf).
     pub position_products: [[Vec<f64>; 3]; 3],
     /// c_ij for ij = 11, 22, 33, 23, 13, 12 (6 vectors of nf).
     pub inertia_first: [Vec<f64>; 6],
     /// N_ij in the same order (6 matrices of nf×nf).
+    #[serde(with = "as_data")]
     pub inertia_second: [Mat<f64>; 6],
     /// G_i (3 matrices of nf×nf).
+    #[serde(with = "as_data")]
     pub gyroscopic: [Mat<f64>; 3],
     /// t_i (3 vectors of nf).
     pub translation_first: [Vec<f64>; 3],
@@ -84,6 +104,7 @@ pub struct Constants {
     pub rotation_first: [Vec<f64>; 3],
     /// Ψ_fᵀ K_ij Ψ_f for ij = 11, 22, 33, 23, 13, 12 (6 matrices of nf×nf): K_ij is the stress stiffness matrix of the
     /// static response to the centrifugal field of ω_iω_j, Eq. (G1) of `docs/method/stiffening.md`. `None` if it was not asked for.
+    #[serde(with = "as_data")]
     pub stress_stiffness: Option<[Mat<f64>; 6]>,
 }
 

@@ -2,6 +2,7 @@
 
 use keys::{Key, Keyed};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 use crate::error::ModalError;
 use crate::input::check_finite;
@@ -13,7 +14,7 @@ const UNIT: f64 = 1e-9;
 ///
 /// It tells the directions that the body may translate along, the axes that it may turn about, and
 /// the point that stays where it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RigidMotion {
     translations: Directions,
     rotations: Directions,
@@ -22,7 +23,7 @@ pub struct RigidMotion {
 }
 
 /// A rigid motion: the velocity of a point of the body, and its angular velocity.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Twist {
     /// Velocity of the point.
     pub velocity: Vector3<f64>,
@@ -31,7 +32,8 @@ pub struct Twist {
 }
 
 /// Up to six rigid motions.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(into = "Vec<Twist>", try_from = "Vec<Twist>")]
 struct Twists {
     list: [Twist; 6],
     count: usize,
@@ -45,7 +47,8 @@ impl Twists {
 }
 
 /// Up to three unit vectors.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(into = "Vec<Vector3<f64>>", try_from = "Vec<Vector3<f64>>")]
 struct Directions {
     list: [Vector3<f64>; 3],
     count: usize,
@@ -64,6 +67,38 @@ impl Directions {
 
     fn as_slice(&self) -> &[Vector3<f64>] {
         &self.list[..self.count]
+    }
+}
+
+impl From<Twists> for Vec<Twist> {
+    fn from(Twists { list, count }: Twists) -> Self {
+        list[..count].to_vec()
+    }
+}
+
+impl TryFrom<Vec<Twist>> for Twists {
+    type Error = &'static str;
+
+    fn try_from(twists: Vec<Twist>) -> Result<Self, Self::Error> {
+        let mut list = Self::NONE.list;
+        list.get_mut(..twists.len()).ok_or("more than six rigid motions")?.copy_from_slice(&twists);
+        Ok(Self { list, count: twists.len() })
+    }
+}
+
+impl From<Directions> for Vec<Vector3<f64>> {
+    fn from(directions: Directions) -> Self {
+        directions.as_slice().to_vec()
+    }
+}
+
+impl TryFrom<Vec<Vector3<f64>>> for Directions {
+    type Error = &'static str;
+
+    fn try_from(directions: Vec<Vector3<f64>>) -> Result<Self, Self::Error> {
+        let mut list = Self::NONE.list;
+        list.get_mut(..directions.len()).ok_or("more than three directions")?.copy_from_slice(&directions);
+        Ok(Self { list, count: directions.len() })
     }
 }
 

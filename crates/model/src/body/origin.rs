@@ -25,6 +25,10 @@ pub(crate) struct Origin {
     pub modes: usize,
     /// The key of the support, in hexadecimal digits.
     pub support: String,
+    /// The hash of the displacements of the bent body that the modes are about, in hexadecimal digits; none about the undeformed
+    /// one.
+    #[serde(default)]
+    pub reference: Option<String>,
 }
 
 /// Materials and point masses, by their keys in a scene.

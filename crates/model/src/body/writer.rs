@@ -98,11 +98,18 @@ impl Builder {
         if let Some(manifold) = &model.physics.large_deflection {
             named.add_large_deflection(manifold, meshed.following.as_ref());
         }
+        if let Some(reference) = &meshed.reference {
+            let description = "displacement of each node of the bent body that the modes are about";
+            let shape = [reference.nrows() / 3, 3];
+            let numbers = Numbers::F64(by_columns(reference.as_ref()));
+            named.add("reference/displacement", &shape, &scene.units.length, "mesh", description, numbers);
+        }
         if let Some(stress) = &model.stress {
             named.add_stress(stress, &model);
         }
         if matrices {
-            let matrices = assembled.matrices()?;
+            // About the reference: those of the modes.
+            let matrices = assembled.tangent()?;
             named.add_matrix("stiffness", matrices.stiffness());
             named.add_matrix("mass", matrices.mass());
         }
@@ -113,6 +120,7 @@ impl Builder {
             elements: ElementKeys::of(body),
             modes: crate::variants::requested(scene),
             support: structure.support_hash(),
+            reference: structure.reference().map(|reference| reference.hash.to_string()),
         };
         let mut texts = BTreeMap::from(arrays.texts());
         texts.extend([

@@ -23,7 +23,10 @@ impl Model {
         let [rate, curved] = [1, 2].map(|order| self.along(q, &motion.modal_velocity, order));
         let change: Vec<f64> =
             self.along(q, &motion.modal_acceleration, 1).iter().zip(&curved).map(|(a, b)| a + b).collect();
-        let [displacement, velocity, relative] = [&xi, &rate, &change].map(|xi| field(meshed, xi));
+        let [mut displacement, velocity, relative] = [&xi, &rate, &change].map(|xi| field(meshed, xi));
+        if let Some(reference) = &meshed.reference {
+            displacement.iter_mut().zip(reference.col(0).iter()).for_each(|(u, of_reference)| *u += of_reference);
+        }
         let (omega, alpha) = (motion.omega_body, motion.alpha_body);
         let of_origin = motion.attitude.to_body(&motion.origin_acceleration_global);
         let at = |list: &[f64], node: usize| Vector3::from_column_slice(&list[3 * node..3 * node + 3]);

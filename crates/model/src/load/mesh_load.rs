@@ -293,6 +293,10 @@ impl MeshLoad {
         self.is_gravity
     }
 
+    pub fn is_moment(&self) -> bool {
+        matches!(self.action, Action::Moment { .. })
+    }
+
     /// "gravity along (0, 0, -1)", for a force or moment in body axes.
     pub fn name_along(&self, vector: &Vector3<f64>) -> String {
         let rounded = |x: f64| (x * 100.0).round() / 100.0 + 0.0;
@@ -429,11 +433,12 @@ impl MeshLoad {
     }
 
     /// The load on the modes of a body, with the stiffness by its stress. A pressure turns with its surface: its resultant does
-    /// always, what it does along the modes where `has_load_stiffness` says so.
+    /// always, what it does along the modes where `has_load_stiffness` says so. The `positions` are those of the nodes in the body
+    /// that the modes are about.
     pub(crate) fn reduced(
         &self,
         scene: &Scene,
-        mesh: &Mesh,
+        (mesh, positions): (&Mesh, &[[f64; 3]]),
         body: &ReducedBody,
         modes: &Modes,
         stress: &[Directed],
@@ -464,7 +469,7 @@ impl MeshLoad {
         };
         Ok(match &self.action {
             Action::Force { nodes, weights, force } => {
-                let point = BodyPoint::new(modes, mesh.positions(), nodes, weights).map_err(modal(scene))?;
+                let point = BodyPoint::new(modes, positions, nodes, weights).map_err(modal(scene))?;
                 at(&point, force * self.size)?
             }
             Action::Weight { weight, force } => at(&weight.point(body, modes), force * self.size)?,

@@ -22,7 +22,12 @@ pub(crate) fn backbones(
     let may_matter = |k: &usize| advice.modes.get(*k).is_some_and(|mode| mode.strain_bound >= advice.tolerance);
     let large: Vec<usize> = (0..natural).filter(may_matter).collect();
     let mut of_modes = vec![None; natural];
-    if large.is_empty() || !model.scene.body.has_elements() || !model.scene.output.backbones {
+    // Those of a bent body are other ones.
+    if large.is_empty()
+        || model.reference.is_some()
+        || !model.scene.body.has_elements()
+        || !model.scene.output.backbones
+    {
         return Ok(of_modes);
     }
     let OwnSecondOrder { second, along, inertia } = match structure.own_second_order(modes, &large) {

@@ -6,6 +6,7 @@ use scene::{Choice, Flexible, Scene};
 use crate::reduction::bent::Bent;
 use crate::reduction::physics;
 use crate::reduction::survey::Survey;
+use crate::structure::remainders::Remainders;
 
 /// The parts that a body is to have.
 pub(crate) struct Decision {
@@ -13,8 +14,8 @@ pub(crate) struct Decision {
     pub keep: usize,
     /// True if static shapes are added to them.
     pub has_static_shapes: bool,
-    /// Remainder of the static responses to the spin beside the modes (6), where static shapes for it are missing.
-    pub lacks: Option<Vec<f64>>,
+    /// What the modes leave out, where static shapes for it are missing.
+    pub lacks: Option<Remainders>,
     pub effects: EffectMap<bool>,
     /// Which of the modes that are kept bend the body far.
     pub bent: Bent,
@@ -26,6 +27,8 @@ impl Decision {
         let flexible = modal.body.flexible();
         let keep = match (scene.modes.flexible, scene.effects.choices[Effect::Flexibility]) {
             (Flexible::Auto { .. }, Choice::On) => advice.keep.max(1).min(flexible),
+            // Shapes go after modes: where none moves, one is there for them.
+            (Flexible::Auto { .. }, Choice::Auto) if advice.static_correction.on => advice.keep.max(1).min(flexible),
             (Flexible::Auto { .. }, Choice::Auto) => advice.keep,
             _ => flexible,
         };
@@ -36,12 +39,12 @@ impl Decision {
                 // How fast joints let it turn is not known.
                 Choice::Auto => advice.static_correction.on || !scene.markers.is_empty() && statics.of_spin.is_some(),
             };
-        let of_spin = statics.of_spin.as_ref().filter(|_| keep > 0 && !has_static_shapes);
+        let lacks = (keep > 0 && !has_static_shapes && statics.remainders.any()).then(|| statics.remainders.clone());
         let bent = physics::bent_modes(scene, advice, keep, modal.body.natural_modes);
         Self {
             keep,
             has_static_shapes,
-            lacks: of_spin.map(|of_spin| of_spin.remainders.clone()),
+            lacks,
             effects: physics::with_large_modes(scene, physics::effects(scene, advice, &modal.body, keep), &bent),
             bent,
         }

@@ -9,6 +9,7 @@ use crate::reduction::bent::Bent;
 use crate::reduction::mesh_model::MeshModel;
 use crate::stress::{Stress, in_shapes};
 use crate::structure::kept::Extended;
+use crate::structure::statics::Statics;
 
 /// A mode that relieves more than this part of the strain energy of second order of others is drawn in by them. Measured: 0.17
 /// of the first mode that stretches a cantilever, 3e-8 at most of those that bend or twist it.
@@ -44,11 +45,39 @@ impl Bent {
         }
         Err(refuse_drawn_in(model, large[follower], pairs[index].map(|j| large[j]), &others))
     }
+
+    /// With the static shape of the moment that acts most, where there are static shapes and no list of large modes is given: it
+    /// turns its place by an angle that modes hold slowly, and the angle is what the moment works on.
+    pub fn with_moment(
+        mut self,
+        model: &MeshModel<'_, '_>,
+        statics: &Statics,
+        modes: &Modes,
+    ) -> Result<Self, BuildError> {
+        let natural = modes.natural();
+        let Some(of_loads) = statics.of_loads.as_ref().filter(|_| natural < modes.shapes.ncols()) else {
+            return Ok(self);
+        };
+        if self.large.is_empty() || model.scene.modes.large.is_some() {
+            return Ok(self);
+        }
+        let mut most: Option<(f64, usize)> = None;
+        for (i, load) in model.loads.iter().enumerate().filter(|(_, load)| load.is_moment() && load.size() > 0.0) {
+            let parts = model.structure.parts(modes, of_loads.at_start(i, load).as_ref())?;
+            let furthest = (natural..modes.shapes.ncols()).map(|k| (load.size() * parts[(k, 0)].abs(), k));
+            most = furthest.chain(most).max_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        // Static shapes come after the modes.
+        self.large.extend(most.filter(|(part, _)| *part > 0.0).map(|(_, k)| k));
+        Ok(self)
+    }
 }
 
 /// The manifold of the large modes, and the shapes that it is made of.
 pub(crate) struct LargeDeflection {
     pub manifold: Manifold,
+    /// B (modes × modes): the work of the internal forces of a bent reference on displacements of second order is ½ qᵀBq.
+    pub reference_work: Option<Mat<f64>>,
     shapes: LargeShapes,
 }
 
@@ -61,10 +90,14 @@ impl LargeDeflection {
         Bent { large, following }: &Bent,
         spin: Option<&[Mat<f64>; 6]>,
     ) -> Result<Self, BuildError> {
-        let Extended { shapes, body, energies } = model.structure.large_shapes(modes, large, following)?;
+        let Extended { shapes, body, mut energies } = model.structure.large_shapes(modes, large, following)?;
+        let reference_work = model.reference.map(|reference| {
+            let forces = reference.modal_forces(&shapes.modes);
+            reference_work(&shapes, &forces, &mut energies)
+        });
         let extended = spin.map(|spin| spin.each_ref().map(|k| in_shapes(k, body.flexible())));
         let body = body.with_stress_stiffness(extended).map_err(modal(model.scene))?;
-        Ok(Self { manifold: Manifold::new(body, &shapes, &energies)?, shapes })
+        Ok(Self { manifold: Manifold::new(body, &shapes, &energies)?, reference_work, shapes })
     }
 
     /// The extended shapes.
@@ -87,6 +120,24 @@ impl LargeDeflection {
         stress.of_drive = stress.of_drive.map(|k| in_shapes(&k, count));
         stress
     }
+}
+
+/// The work of forces in the extended shapes on the displacements of products: that of third order is added to the energies, that of
+/// second order is given as a stiffness.
+fn reference_work(shapes: &LargeShapes, forces: &[f64], energies: &mut [f64]) -> Mat<f64> {
+    let (products, of_energy) = (shapes.products(), shapes.products().of_energy());
+    let bent = [&shapes.large[..], &shapes.following].concat();
+    let mut stiffness = Mat::zeros(shapes.dynamic, shapes.dynamic);
+    for (product, displacement) in products.of_displacement().iter().zip(shapes.coefficients.col_iter()) {
+        let work: f64 = displacement.iter().zip(forces).map(|(a, force)| a * force).sum();
+        if let [j, k] = product[..] {
+            stiffness[(bent[j], bent[k])] += work;
+            stiffness[(bent[k], bent[j])] += work;
+        } else if let Some(place) = of_energy.iter().position(|other| other == product) {
+            energies[place] += work;
+        }
+    }
+    stiffness
 }
 
 /// Refuses a list of large modes, numbered from 0, with one that others draw in.

@@ -6,6 +6,7 @@ use modal::Support;
 use scene::Scene;
 
 use crate::load::mesh_load::MeshLoad;
+use crate::reference::Reference;
 use crate::structure::Structure;
 use crate::tie::mesh_marker::MeshMarker;
 
@@ -13,6 +14,10 @@ use crate::tie::mesh_marker::MeshMarker;
 pub(crate) struct MeshModel<'a, 's> {
     pub scene: &'a Scene,
     pub mesh: &'a Mesh,
+    /// The nodes of the body that the modes are about.
+    pub positions: &'a [[f64; 3]],
+    /// The bent body that they are about.
+    pub reference: Option<&'a Reference>,
     /// Degrees of freedom of a node: 3, or 6 with its rotations.
     pub dofs: usize,
     pub structure: &'a Structure<'s>,

@@ -23,6 +23,7 @@ use crate::reduction::manifold::LargeDeflection;
 use crate::reduction::measured::as_measured;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
+use crate::reduction::physics;
 use crate::reduction::reduce::Reduction;
 use crate::reduction::survey::Survey;
 use crate::stress::shapes::BodyStress;
@@ -45,7 +46,12 @@ pub(crate) fn reduce(
     let Found { modes, body, weights, matrix_bytes, .. } = found;
     let loads = mesh_load::on_mesh(scene, mesh, dofs, &Arc::new(UnitWeight::new(weights, dofs)))?;
     let markers = mesh_marker::on_mesh(scene, mesh, dofs)?;
-    let model = MeshModel { scene, mesh, dofs, structure, support, loads, markers, drive: drive.clone() };
+    let (positions, reference) = (assembled.positions()?, structure.reference());
+    // What stresses the bent body in the reference has stiffened it already.
+    let about_reference = reference.is_some().then(|| physics::about_reference(scene));
+    let scene = about_reference.as_ref().unwrap_or(scene);
+    let drive = drive.clone();
+    let model = MeshModel { scene, mesh, positions, reference, dofs, structure, support, loads, markers, drive };
 
     if !scene.time.method.abilities.any_mass && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {
         let found = "a scheme of the paper's formulation, which knows no rotations of nodes, for a mass that is no scalar for each node";
@@ -58,7 +64,7 @@ pub(crate) fn reduce(
     let survey = Survey::new(&model, modes, on_all_modes, progress)?;
     let has_statics = survey.statics.any() || survey.of_markers.is_some();
     let decision = Decision::new(scene, &survey);
-    let Reduction { modes, modal: reduced, large, backbones, stress, of_markers, warps, advice } =
+    let Reduction { modes, modal: reduced, large, backbones, stress, forces, of_markers, warps, advice } =
         Reduction::new(&model, survey, &decision)?;
     if has_statics {
         times.statics = started.elapsed();
@@ -66,8 +72,8 @@ pub(crate) fn reduce(
 
     let started = Instant::now();
     let points = match &large {
-        Some(large) => points(scene, mesh, large.modes(), large.manifold.body())?,
-        None => points(scene, mesh, &modes, &reduced.body)?,
+        Some(large) => points(&model, large.modes(), large.manifold.body())?,
+        None => points(&model, &modes, &reduced.body)?,
     };
     let markers = mesh_marker::reduced(&model.markers, scene, mesh, (&reduced.body, &modes), &of_markers, &warps)?;
     let reference_points = reference_points(scene, mesh, &reduced.body);
@@ -88,7 +94,13 @@ pub(crate) fn reduce(
     let following = large.as_ref().map_or_else(Mat::new, LargeDeflection::following);
     let large_deflection = large.map(|large| large.manifold);
     let mut model = Model {
-        physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive, large_deflection },
+        physics: Physics {
+            effects,
+            drive: model.drive,
+            drive_stiffness: stress.of_drive,
+            large_deflection,
+            reference: forces,
+        },
         points,
         markers,
         paper: Paper { reference_points },
@@ -115,8 +127,13 @@ pub(crate) fn reduce(
             no_cycles: structure.no_cycles().cloned(),
             modes,
             following,
+            reference: reference.map(|reference| reference.displacement.clone()),
         }),
     };
+    // About a bent body the estimates would count what it has carried already; the check by the full body knows.
+    if reference.is_some() {
+        return Ok(model);
+    }
     let initial = model.initial(scene);
     model.refusal = buckling(stress.buckling_ratio);
     if model.refusal.is_none() && model.is_stressed() {
@@ -140,15 +157,18 @@ pub(crate) fn reduce(
 
 /// The points of the output, by name.
 fn points(
-    scene: &Scene,
-    mesh: &Mesh,
+    &MeshModel { scene, mesh, positions, reference, .. }: &MeshModel<'_, '_>,
     modes: &Modes,
     body: &ReducedBody,
 ) -> Result<Vec<(String, PointShapes)>, BuildError> {
     output_points(scene, |key: String, at: [f64; 3]| {
         let Location { nodes, weights } = mesh.locate(at).map_err(|error| refuse(scene, &key, error))?;
-        let point = BodyPoint::new(modes, mesh.positions(), &nodes, &weights);
-        Ok(PointShapes::new(body, &point.map_err(modal(scene))?))
+        let point = BodyPoint::new(modes, positions, &nodes, &weights);
+        let point = PointShapes::new(body, &point.map_err(modal(scene))?);
+        Ok(match reference {
+            Some(reference) => point.moved_by(reference.displacement_at(&nodes, &weights)),
+            None => point,
+        })
     })
 }
 

@@ -74,9 +74,11 @@ impl ModalModel {
             initial: &self.initial,
             end: model.scene.time.end,
             length: self.size.length,
+            length_unit: &model.scene.units.length,
             peaks: &self.size.peaks,
             static_compliances: &[],
             centrifugal_remainders: &[],
+            drive_remainder: None,
             backbones: &[],
             manifold: None,
         }
@@ -93,7 +95,10 @@ fn loads(
     let reduced = |(i, load): (usize, &MeshLoad)| {
         let of_load = stress.get(i).map_or(&[][..], |of_load| of_load);
         let has_load_stiffness = !of_load.is_empty();
-        Ok((load.reduced(model.scene, model.mesh, body, modes, of_load, has_load_stiffness)?, load.is_gravity()))
+        Ok((
+            load.reduced(model.scene, (model.mesh, model.positions), body, modes, of_load, has_load_stiffness)?,
+            load.is_gravity(),
+        ))
     };
     model.loads.iter().enumerate().map(reduced).collect()
 }

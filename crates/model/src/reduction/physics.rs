@@ -9,6 +9,18 @@ use crate::load::mesh_load::MeshLoad;
 use crate::load::turning::{Turning, turning};
 use crate::reduction::bent::Bent;
 
+/// The scene of a body about a bent reference: where the scene leaves that open, the stress that changes stiffens it, and modes are
+/// large.
+pub(crate) fn about_reference(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    for effect in [Effect::GeometricStiffening, Effect::DeformedInertia, Effect::Coriolis, Effect::LargeDeflection] {
+        if scene.effects.choices[effect] == Choice::Auto {
+            scene.effects.choices[effect] = Choice::On;
+        }
+    }
+    scene
+}
+
 /// True if anything may set the body spinning.
 pub(crate) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
     let by_others = !scene.loads.is_empty() || !scene.markers.is_empty();

@@ -1,8 +1,8 @@
 //! Third stage: the body that has what was decided.
 
 use advice::{Advice, Backbone, Findings, advise};
-use dynamics::Effect;
-use faer::Mat;
+use dynamics::{Effect, ReferenceForces};
+use faer::{Mat, Scale};
 use modal::Modes;
 
 use crate::error::BuildError;
@@ -28,6 +28,8 @@ pub(crate) struct Reduction {
     /// Backbones of the modes that are kept.
     pub backbones: Vec<Option<Backbone>>,
     pub stress: Stress,
+    /// Forces of the bent body that the modes are about.
+    pub forces: Option<ReferenceForces>,
     /// Stiffness by the stress of unit forces and moments on the markers (nf×nf each); none where it is left out.
     pub of_markers: Vec<Mat<f64>>,
     /// How the faces of the markers warp; none where the body does not deform.
@@ -63,8 +65,8 @@ impl Reduction {
             (modes, modal, spin, deflection)
         };
         let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
-        let bent = decision.bent.clone().settled(model, &modes)?;
-        let (modal, stress, large) = if !bent.large.is_empty() {
+        let bent = decision.bent.clone().settled(model, &modes)?.with_moment(model, &statics, &modes)?;
+        let (modal, stress, large, of_spin) = if !bent.large.is_empty() {
             let all = bent.all();
             let stressing = statics.without_parts(model, &modes, &all)?;
             let stress = Stress::new(model, &statics, &stressing, &modes, &modal, &all)?;
@@ -79,12 +81,21 @@ impl Reduction {
             }
             let stress = large.stressed(stress);
             let modal = modal.with_stress(model, Some(large.manifold.body()), large.modes(), &stress.of_loads)?;
-            (modal, stress, Some(large))
+            (modal, stress, Some(large), of_spin)
         } else {
             let stress = Stress::new(model, &statics, &statics, &modes, &modal, &[])?;
             let modal = if stress.any() { modal.with_stress(model, None, &modes, &stress.of_loads)? } else { modal };
-            (modal, stress, None)
+            (modal, stress, None, spin)
         };
+        let forces = model.reference.map(|reference| {
+            let nf = modes.shapes.ncols();
+            let stressed = reference.stress_stiffness(model, of_spin.as_ref(), &stress.of_loads, nf);
+            let stiffness = match large.as_ref().and_then(|large| large.reference_work.as_ref()) {
+                Some(work) => work - stressed,
+                None => stressed * Scale(-1.0),
+            };
+            ReferenceForces { force: reference.modal_forces(&modes), stiffness }
+        });
         let of_markers = match &of_markers {
             Some(responses) if physics::may_stress(model.scene) => {
                 model.structure.stress_stiffness(responses.as_ref(), &modes, &[])?
@@ -106,6 +117,6 @@ impl Reduction {
                 }
             }
         }
-        Ok(Self { modes, modal, large, backbones, stress, of_markers, warps, advice })
+        Ok(Self { modes, modal, large, backbones, stress, forces, of_markers, warps, advice })
     }
 }

@@ -15,6 +15,7 @@ use crate::model::points::output_points;
 use crate::model::{Model, Size};
 use crate::progress::BuildTimes;
 use crate::reduction::physics;
+use crate::structure::remainders::Remainders;
 use crate::support::support;
 use crate::tie::body_marker;
 
@@ -49,9 +50,11 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
             initial: &initial,
             end: scene.time.end,
             length: size.length,
+            length_unit: &scene.units.length,
             peaks: &[],
             static_compliances: &[],
             centrifugal_remainders: &[],
+            drive_remainder: None,
             backbones: &[],
             manifold: None,
         },
@@ -74,7 +77,7 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         all_damping_ratios: Vec::new(),
         size,
         body,
-        left_out: Vec::new(),
+        left_out: Remainders::default(),
         backbones: Vec::new(),
         stress: None,
         supports: None,

@@ -44,10 +44,14 @@ impl Survey {
         let flexible = modal.body.flexible();
         let has_shapes = physics::static_correction(model.scene, flexible) != Choice::Off;
         let may_stress = flexible > 0 && physics::may_stress(model.scene);
+        // To tell what the modes leave out of it.
+        let has_stress = flexible > 0 && model.scene.output.any_stress();
+        // For static shapes, or to tell that they are missing.
+        let may_lack = flexible > 0 && model.scene.modes.static_correction != Choice::Off;
         let asked = Asked {
-            loads: (has_shapes || may_stress) && !model.loads.is_empty(),
+            loads: (has_shapes || may_stress || has_stress) && !model.loads.is_empty(),
             spin: stiffens || may_stretch(model, &modal)?,
-            drive: may_stress && model.drive.is_some(),
+            drive: model.drive.is_some() && (may_stress || may_lack),
         };
         let has_markers = flexible > 0 && !model.markers.is_empty();
         if asked.any() || has_markers {
@@ -59,8 +63,9 @@ impl Survey {
         let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
 
         let case = Case {
-            static_compliances: if has_shapes { statics.compliances() } else { &[] },
-            centrifugal_remainders: statics.remainders(),
+            static_compliances: statics.compliances(),
+            centrifugal_remainders: &statics.remainders.of_spin,
+            drive_remainder: statics.remainders.of_drive,
             ..modal.case(model)
         };
         let first = advise(&case, tolerance)?;

@@ -5,8 +5,8 @@
 //! u_j = K⁻¹ f_j (inertia relief)        r_j = u_j − Σ_k φ_k (φ_kᵀ K u_j)/λ_k        σ_left = Σ_j a_j σ(r_j)
 //! ```
 //!
-//! The forces f_j are the loads, in every direction that they may come to have in the body, the centrifugal force of the spin
-//! and the Euler force of its change. The inertia of the modes' own motion and the Coriolis force are not among them.
+//! The forces f_j are the loads, in every direction that they may come to have in the body, the centrifugal force of the spin,
+//! the Euler force of its change and the inertia of a slide that is driven. The inertia of the modes' own motion and the Coriolis force are not among them.
 
 use dynamics::{DrivenMotion, History, Observation};
 use faer::Mat;
@@ -25,6 +25,10 @@ pub(crate) struct LeftOut {
     pub stress: SiteStress,
     /// Parts of the first columns of `stress`; those of the spin and of its change follow.
     loads: Vec<LoadPart>,
+    /// The spin of a bent reference, whose stress is known to the end.
+    carried: Vector3<f64>,
+    /// The slide that is driven, to whose inertia the last column belongs.
+    slide: Option<DrivenMotion>,
 }
 
 /// A load, or one of its directions in the body.
@@ -52,7 +56,7 @@ impl LeftOut {
         let mut loads = Vec::new();
         if let Some(of_loads) = &statics.of_loads {
             for (i, load) in model.loads.iter().enumerate() {
-                if load.is_gravity() && !has_gravity {
+                if load.is_gravity() && !has_gravity || model.reference.is_some_and(|r| r.carries(model, load)) {
                     continue;
                 }
                 columns.push(of_loads.of_unit(i).to_owned());
@@ -64,14 +68,13 @@ impl LeftOut {
                 }
             }
         }
-        columns.extend(statics.of_spin.map(|of_spin| of_spin.responses));
-        for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-            let forces = StaticForces {
-                of_loads: modes.shapes.get(.., ..0),
-                spin: false,
-                drive: Some(DrivenMotion::Turn { axis }),
-                origin: *origin,
-            };
+        columns.extend(statics.of_spin);
+        let turns = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| DrivenMotion::Turn { axis });
+        let slide = model.drive.as_ref().map(|drive| drive.motion);
+        let slide = slide.filter(|motion| matches!(motion, DrivenMotion::Slide { .. }));
+        for motion in turns.into_iter().chain(slide) {
+            let forces =
+                StaticForces { of_loads: modes.shapes.get(.., ..0), spin: false, drive: Some(motion), origin: *origin };
             columns.push(structure.static_responses(modes, &forces)?.fields);
         }
         let mut stress = Mat::zeros(6 * structure.stress_sites()?.len(), columns.iter().map(Mat::ncols).sum());
@@ -81,7 +84,8 @@ impl LeftOut {
             stress.subcols_mut(first, beside.ncols()).copy_from(&beside);
             first += beside.ncols();
         }
-        Ok(Self { stress: SiteStress::new(&stress), loads })
+        let carried = model.reference.map(|reference| reference.steady.omega_body).unwrap_or_default();
+        Ok(Self { stress: SiteStress::new(&stress), loads, carried, slide })
     }
 
     /// How much there is of each now.
@@ -94,8 +98,13 @@ impl LeftOut {
             part.size * factor * direction
         };
         let omega = &now.omega_body;
-        let of_pair = |(i, j): (usize, usize)| if i == j { 1.0 } else { 2.0 } * omega[i] * omega[j];
+        let of_pair = |(i, j): (usize, usize)| {
+            let times = if i == j { 1.0 } else { 2.0 };
+            times * (omega[i] * omega[j] - self.carried[i] * self.carried[j])
+        };
         let spin = ReducedBody::PAIRS.into_iter().map(of_pair);
-        self.loads.iter().map(of_load).chain(spin).chain(now.alpha_body.iter().map(|alpha| -alpha)).collect()
+        let euler = now.alpha_body.iter().map(|alpha| -alpha);
+        let slide = self.slide.iter().map(|motion| -now.acceleration_of(motion));
+        self.loads.iter().map(of_load).chain(spin).chain(euler).chain(slide).collect()
     }
 }

@@ -4,7 +4,7 @@
 //! σ = Σ_a ξ_a σ(ψ_a) + Σ_α q^α Σ_{β+γ=α} C:½ε₂(u_β, u_γ)        α: products of large modes and of those that follow
 //! ```
 //!
-//! Without large modes ξ is q, and the second sum is not there. With them the strain of the displacement alone is wrong:
+//! Without large modes ξ is q, and the second sum is not there. About a bent reference its stress is added ([`stress_about`](super::about::stress_about)). With them the strain of the displacement alone is wrong:
 //! what draws a bent body in would count as compression, which the rotations of its parts balance. So the sum is the second
 //! Piola–Kirchhoff stress, complete to third order in the large modes; as long as strains are small, it is the true stress
 //! in axes that turn with the material.
@@ -28,6 +28,8 @@ use crate::structure::Structure;
 #[derive(Debug)]
 pub struct BodyStress {
     manifold: Option<Manifold>,
+    /// True if the stress of a bent reference is that of a coordinate of 1, after those of the shapes.
+    has_reference: bool,
     /// For each point of the output, for each material there, the stress of each coordinate; none if not asked for.
     points: Vec<Vec<Vec<[f64; 6]>>>,
     field: Option<Field>,
@@ -69,6 +71,7 @@ impl BodyStress {
             return Ok(None);
         }
         let nodal = of_coordinates(structure, modes, large)?;
+        let has_reference = model.reference.is_some();
         let sites = structure.stress_sites()?;
         let mut points = Vec::new();
         for (name, at) in scene.output.points.iter().filter(|_| stress) {
@@ -82,7 +85,7 @@ impl BodyStress {
         let field =
             (peak_stress || stress_field).then(|| Field { sites: sites.clone(), shapes: SiteStress::new(&nodal) });
         let left_out = if peak_stress { Some(LeftOut::new(model, modes, origin, has_gravity)?) } else { None };
-        Ok(Some(Self { manifold: large.map(|(manifold, _)| manifold.clone()), points, field, left_out }))
+        Ok(Some(Self { manifold: large.map(|(manifold, _)| manifold.clone()), has_reference, points, field, left_out }))
     }
 
     /// Number of points of the output whose stress is known.
@@ -132,12 +135,15 @@ impl BodyStress {
     }
 
     /// The coordinates of the stress: those of the modes and of the shapes that follow them
-    /// ([`Model::coordinates`](crate::Model::coordinates)), then the products of the modes that bend the body.
+    /// ([`Model::coordinates`](crate::Model::coordinates)), a one for a bent reference that the modes are about, then the products of
+    /// the modes that bend the body.
     pub fn coordinates(&self, modal_displacement: &[f64]) -> Vec<f64> {
         let q = modal_displacement;
-        let Some(manifold) = &self.manifold else { return q.to_vec() };
+        let one = self.has_reference.then_some(1.0);
+        let Some(manifold) = &self.manifold else { return q.iter().copied().chain(one).collect() };
         let mut coordinates = vec![0.0; manifold.body().flexible()];
         manifold.coordinates(q, &mut coordinates);
+        coordinates.extend(one);
         coordinates.extend(manifold.products().iter().map(|product| product.iter().map(|k| q[*k]).product::<f64>()));
         coordinates
     }
@@ -154,13 +160,26 @@ fn of_coordinates(
     modes: &Modes,
     large: Option<(&Manifold, &Modes)>,
 ) -> Result<Mat<f64>, BuildError> {
+    let of_reference = structure.reference_stress()?;
     let Some((manifold, extended)) = large else {
-        return structure.nodal_stress(modes.shapes.as_ref(), modes.shapes.get(.., ..0), &[]);
+        let found = structure.nodal_stress(modes.shapes.as_ref(), modes.shapes.get(.., ..0), &[])?;
+        return Ok(match &of_reference {
+            Some(of_reference) => side_by_side([&found, of_reference]),
+            None => found,
+        });
     };
     let strains = ProductStrains::new(manifold, extended.shapes.as_ref());
     let found = structure.nodal_stress(extended.shapes.as_ref(), strains.fields.as_ref(), &strains.pairs)?;
     let shapes = extended.shapes.ncols();
     let of_products = strains.stress(found.get(.., shapes..));
-    let entry = |i: usize, j: usize| if j < shapes { found[(i, j)] } else { of_products[(i, j - shapes)] };
-    Ok(Mat::from_fn(found.nrows(), shapes + of_products.ncols(), entry))
+    let linear = found.get(.., ..shapes).to_owned();
+    Ok(match &of_reference {
+        Some(of_reference) => side_by_side([&side_by_side([&linear, of_reference]), &of_products]),
+        None => side_by_side([&linear, &of_products]),
+    })
+}
+
+fn side_by_side([a, b]: [&Mat<f64>; 2]) -> Mat<f64> {
+    let first = a.ncols();
+    Mat::from_fn(a.nrows(), first + b.ncols(), |i, j| if j < first { a[(i, j)] } else { b[(i, j - first)] })
 }

@@ -102,7 +102,8 @@ fn read_added(from: &Kept<'_>, modes: &Modes, before: usize) -> Result<Modes, Se
 #[derive(Debug)]
 pub(crate) struct StaticResponses {
     pub fields: Mat<f64>,
-    /// Remainder of those to the centrifugal field (6) beside the natural modes: √(uᵀMu − Σ(Φ_kᵀMu)²); none without the field.
+    /// Remainders beside the natural modes, √(uᵀMu − Σ(Φ_kᵀMu)²), of those to the centrifugal field (6) and to the drive; of each
+    /// that is there.
     pub remainders: Vec<f64>,
 }
 

@@ -14,6 +14,7 @@ use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::physics;
 use crate::structure::StaticForces;
 use crate::structure::kept::StaticResponses;
+use crate::structure::remainders::Remainders;
 
 /// Which static responses are asked for.
 #[derive(Clone, Copy)]
@@ -35,9 +36,12 @@ impl Asked {
 /// Static responses (3n each), side by side; none that are not asked for.
 pub(crate) struct Statics {
     pub of_loads: Option<OfLoads>,
-    pub of_spin: Option<OfSpin>,
+    /// To the centrifugal field of each pair of spins (3n × 6).
+    pub of_spin: Option<Mat<f64>>,
     /// To the forces M (1⊗e) of a slide along e, or M (I⊗[a×]) X of a turn about a (3n × 1).
     pub of_drive: Option<Mat<f64>>,
+    /// Those of the spin and of the drive beside the modes.
+    pub remainders: Remainders,
 }
 
 /// The responses to the loads in every direction that they may come to have in the body.
@@ -52,13 +56,6 @@ pub(crate) struct OfLoads {
 /// The columns of a load in [`OfLoads`], and [`MeshLoad::turned`].
 type Columns = (Range<usize>, Vec<Vector3<f64>>);
 
-/// The responses to the centrifugal field of each pair of spins (3n × 6).
-pub(crate) struct OfSpin {
-    pub responses: Mat<f64>,
-    /// Remainder of each beside the modes (6).
-    pub remainders: Vec<f64>,
-}
-
 impl Statics {
     /// All static responses that are asked for, from one block of forces.
     pub fn new(
@@ -68,7 +65,7 @@ impl Statics {
         asked: Asked,
     ) -> Result<Self, BuildError> {
         if !asked.any() {
-            return Ok(Self { of_loads: None, of_spin: None, of_drive: None });
+            return Ok(Self { of_loads: None, of_spin: None, of_drive: None, remainders: Remainders::default() });
         }
         let &MeshModel { scene, mesh, structure, .. } = model;
         let turning = turning::turning(scene, model.support.motion, model.drive.as_ref());
@@ -104,8 +101,9 @@ impl Statics {
                 responses: to(0, of_loads),
                 columns,
             }),
-            of_spin: asked.spin.then(|| OfSpin { remainders, responses: to(of_loads, spins) }),
+            of_spin: asked.spin.then(|| to(of_loads, spins)),
             of_drive: drive.is_some().then(|| to(of_drive, 1)),
+            remainders: Remainders { of_spin: remainders[..spins].to_vec(), of_drive: remainders.get(spins).copied() },
         })
     }
 
@@ -123,7 +121,7 @@ impl Statics {
         known: &[Mat<f64>],
     ) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
-        Ok(model.structure.stress_stiffness(of_spin.responses.as_ref(), modes, known)?.try_into().ok())
+        Ok(model.structure.stress_stiffness(of_spin.as_ref(), modes, known)?.try_into().ok())
     }
 
     /// The responses without their parts along some modes: what stresses the body whatever these do.
@@ -138,13 +136,9 @@ impl Statics {
                 }),
                 None => None,
             },
-            of_spin: match &self.of_spin {
-                Some(of_spin) => {
-                    Some(OfSpin { responses: freed(&of_spin.responses)?, remainders: of_spin.remainders.clone() })
-                }
-                None => None,
-            },
+            of_spin: self.of_spin.as_ref().map(freed).transpose()?,
             of_drive: self.of_drive.as_ref().map(freed).transpose()?,
+            remainders: self.remainders.clone(),
         })
     }
 
@@ -173,15 +167,10 @@ impl Statics {
         self.of_loads.as_ref().map_or(&[], |of_loads| &of_loads.compliances)
     }
 
-    /// Remainder of the static responses to the spin beside the modes (6); none where it is not known.
-    pub fn remainders(&self) -> &[f64] {
-        self.of_spin.as_ref().map_or(&[], |of_spin| &of_spin.remainders)
-    }
-
     /// All responses that static shapes are made of, of whatever size.
     pub fn responses(&self) -> impl Iterator<Item = &Mat<f64>> {
         let of_loads = self.of_loads.iter().map(|of_loads| &of_loads.responses);
-        of_loads.chain(self.of_spin.iter().map(|of_spin| &of_spin.responses)).chain(&self.of_drive)
+        of_loads.chain(&self.of_spin).chain(&self.of_drive)
     }
 }
 
@@ -190,6 +179,12 @@ impl OfLoads {
     pub fn of_unit(&self, load: usize) -> MatRef<'_, f64> {
         let (range, _) = &self.columns[load];
         self.responses.subcols(range.start, range.len())
+    }
+
+    /// The response (3n×1) to a load of an amplitude of 1 or −1 in its first attitude.
+    pub fn at_start(&self, i: usize, load: &MeshLoad) -> Mat<f64> {
+        let parts = Col::from_iter(load.parts(self.turned(i)));
+        (self.of_unit(i) * parts).as_mat().to_owned()
     }
 
     /// The forces or moments that a load is combined of as the body turns, see [`MeshLoad::turned`].

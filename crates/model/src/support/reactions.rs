@@ -31,6 +31,11 @@ impl SupportRows {
     ) -> Result<Option<Self>, BuildError> {
         let &MeshModel { scene, mesh, structure, .. } = model;
         let Some(parts) = several(scene) else { return Ok(None) };
+        if model.reference.is_some() {
+            let found = "modes about a bent body, whose supports' shares of the reaction are not known";
+            let help = "set `support_reactions = false` in [output]: the reaction of all supports together is written in any case";
+            return Err(scene.refuse("modes.about", found, "one support", help).into());
+        }
         let parts = held_parts(scene, mesh, parts)?;
         let (size, shapes) = (modes.shapes.nrows(), modes.shapes.ncols());
         let mut components = Vec::new();
@@ -62,8 +67,9 @@ impl SupportRows {
         let Basis { modes: extended, body } = structure.with_motions(modes, motions.as_ref())?;
         let acting = model.loads.iter().filter(|load| has_gravity || !load.is_gravity());
         // No stress, but the turn of a pressure with its surface, which the reaction of all supports has, too.
-        let loads =
-            acting.map(|load| load.reduced(scene, mesh, &body, &extended, &[], true)).collect::<Result<Vec<_>, _>>()?;
+        let loads = acting
+            .map(|load| load.reduced(scene, (mesh, model.positions), &body, &extended, &[], true))
+            .collect::<Result<Vec<_>, _>>()?;
         let reactions = SupportReactions::new(&body, shapes, loads, manifold.cloned(), effects);
         Ok(Some(Self { names: (1..=parts.len()).map(|i| i.to_string()).collect(), components, reactions }))
     }

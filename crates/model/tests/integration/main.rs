@@ -8,6 +8,7 @@ mod kept;
 mod loads;
 mod matrices;
 mod mechanisms;
+mod mesh_lies;
 mod off;
 mod quasi_static;
 mod statics;

@@ -25,6 +25,12 @@ export class Clock {
         this.changed();
     }
 
+    /// A time that something else has come to, which may be beyond the recorded run.
+    show(time: number) {
+        this.time = time;
+        this.changed();
+    }
+
     /// To a neighbouring row.
     step(rows: number) {
         this.playing = false;

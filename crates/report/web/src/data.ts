@@ -33,6 +33,16 @@ export interface Report {
     balances: Balance[];
     scene: [string, string];
     warnings: string[];
+    live: LiveData | null;
+}
+/// A run that the page leads on by itself.
+export interface LiveData {
+    program: string; run: string; masses: number[]; controls: Control[];
+    units: [force: string, energy: string, momentum: string, angularMomentum: string];
+}
+export interface Control {
+    group: string; name: string; unit: string; change: [number, number, number];
+    range: [number, number]; recorded: number;
 }
 
 const TYPES = { f64: Float64Array, f32: Float32Array, i16: Int16Array, u16: Uint16Array, u32: Uint32Array };

@@ -4,6 +4,7 @@ import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import { Clock } from "./clock";
 import { readReport, type Report } from "./data";
+import { LiveRun } from "./live/run";
 import { Motion } from "./motion";
 import { panels } from "./plots/panels";
 import { listenToPrinter } from "./print";
@@ -41,8 +42,9 @@ function keyboard(clock: Clock, viewer: Viewer) {
         if (event.ctrlKey || event.metaKey || event.altKey) return;
         const target = event.target as HTMLElement;
         const range = target instanceof HTMLInputElement && target.type === "range";
-        if (target.closest("select, textarea")) return;
+        if (target.closest("select, textarea, #live-controls")) return;
         if (event.key === " " && target.closest("button, summary, input") && !range) return;
+        const { leading } = viewer;
         const large = Math.max(1, Math.round(clock.motion.times.length / 20));
         const actions: Record<string, () => void> = {
             " ": () => viewer.toggle(),
@@ -57,6 +59,8 @@ function keyboard(clock: Clock, viewer: Viewer) {
             "]": () => viewer.exaggerate(1),
             r: () => viewer.resetView(),
             R: () => viewer.resetView(),
+            ...(report.live ? { l: () => viewer.toggleLive(), L: () => viewer.toggleLive() } : {}),
+            ...(leading ? { ArrowLeft: () => {}, ArrowRight: () => leading.step(), Home: () => viewer.restartLive(), End: () => {} } : {}),
         };
         const action = actions[event.key];
         if (!action) return;
@@ -73,4 +77,16 @@ const viewer = new Viewer(report, motion, clock);
 listenToPrinter(viewer, panels(report, clock, viewer));
 keyboard(clock, viewer);
 // For the test of the page.
-Object.assign(window, { reportPage: { clock, viewer } });
+const page: Record<string, unknown> = { clock, viewer };
+Object.assign(window, { reportPage: page });
+if (report.live) {
+    LiveRun.begin(report, report.live, clock).then((run) => {
+        viewer.lead(run);
+        page.live = run;
+    }, (error) => {
+        const warning = document.createElement("p");
+        warning.className = "warning";
+        warning.textContent = `The live run does not start in this browser: ${error.message ?? error}`;
+        document.getElementById("warnings")!.append(warning);
+    });
+}

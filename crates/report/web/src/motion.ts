@@ -31,7 +31,15 @@ export class Motion {
     }
 }
 
-export class BodyMotion {
+/// Where a body is, and how it is deformed.
+export interface Placed {
+    origin: [number, number, number];
+    /// x, y, z, w
+    attitude: [number, number, number, number];
+    q: Float32Array;
+}
+
+export class BodyMotion implements Placed {
     readonly origins: Float32Array;
     readonly coordinates: Float32Array;
     readonly shapes: number;

@@ -43,6 +43,7 @@ export function frame(page) {
 export function pixels(page, time) {
     return page.evaluate((time) => new Promise((done) => {
         if (time !== null) window.reportPage.clock.seek(time);
+        else window.reportPage.viewer.recolour(); // draws it again
         // In the same frame, after the page has drawn: later the buffer is empty.
         requestAnimationFrame(() => {
             const gl = document.getElementById("canvas").getContext("webgl2");

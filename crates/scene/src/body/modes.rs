@@ -1,5 +1,6 @@
 //! The modes kept and their damping.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::body::effects::Choice;
@@ -18,8 +19,28 @@ pub struct Modes {
     pub large: Option<Large>,
     /// Most modes that follow the large ones.
     pub following: usize,
+    /// The bent body that all modes are about; without, the undeformed one.
+    pub about: Option<About>,
     /// Measured frequencies and damping, which replace those of the model.
     pub measured: Option<Measured>,
+}
+
+/// The steady state that the modes of a body are about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum About {
+    /// `"spin"`: its rest in the largest spin of its drive.
+    Spin,
+    /// `"loads"`: its rest under its steady loads.
+    Loads,
+    /// `"auto"`: its rest under both, where they bend it far.
+    Auto,
+    /// Its rest in this spin, under its steady loads or without.
+    Given {
+        /// The spin, radians per time, axes of the body.
+        angular_velocity: [f64; 3],
+        /// True if the steady loads act.
+        loads: bool,
+    },
 }
 
 /// Which modes may bend the body far.
@@ -68,7 +89,7 @@ pub enum Damping {
 }
 
 /// Damping in proportion to mass and stiffness.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rayleigh {
     /// Factor α ≥ 0 of the mass matrix, 1 per time.

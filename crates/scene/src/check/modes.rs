@@ -4,10 +4,10 @@ use dynamics::{MAX_FOLLOWING, MAX_LARGE};
 
 use super::Check;
 use crate::body::effects::Choice;
-use crate::body::modes::{Damping, Flexible, Large, Modes, Rayleigh};
+use crate::body::modes::{About, Damping, Flexible, Large, Modes, Rayleigh};
 use crate::error::SceneError;
 use crate::scene::Body;
-use crate::section::{CountOrAuto, CountOrList, ModesSection, NumberOrList};
+use crate::section::{AboutGiven, AboutName, AboutSection, CountOrAuto, CountOrList, ModesSection, NumberOrList};
 
 /// The largest number of modes with `flexible = "auto"`, where the scene gives none.
 const DEFAULT_MOST: usize = 40;
@@ -25,6 +25,7 @@ impl Check<'_> {
                     static_correction: Choice::Auto,
                     large: None,
                     following: DEFAULT_FOLLOWING,
+                    about: None,
                     measured: None,
                 }),
                 false => Err(self.missing("", "modes")),
@@ -55,8 +56,29 @@ impl Check<'_> {
             &format!("a whole number from 0 to {MAX_FOLLOWING}"),
             "give the most modes that follow the large ones; three are enough for most bodies",
         )?;
+        let about = section.about.map(|about| self.about(&about, body, flexible)).transpose()?;
         let measured = section.measured.map(|file| self.measured(&file, flexible)).transpose()?;
-        Ok(Modes { flexible, damping, static_correction, large, following, measured })
+        Ok(Modes { flexible, damping, static_correction, large, following, about, measured })
+    }
+
+    fn about(&self, about: &AboutSection, body: &Body, flexible: Flexible) -> Result<About, SceneError> {
+        let place = self.document.place("modes.about");
+        if flexible == Flexible::Count(0) || !body.has_elements() {
+            let found = "modes about a bent body, of one without flexible modes or without elements";
+            return Err(place.refuse(found, "a body with a mesh and flexible modes", "remove it"));
+        }
+        Ok(match about {
+            AboutSection::Named(AboutName::Spin) => About::Spin,
+            AboutSection::Named(AboutName::Loads) => About::Loads,
+            AboutSection::Named(AboutName::Auto) => About::Auto,
+            AboutSection::Given(AboutGiven { angular_velocity, loads }) => {
+                if *angular_velocity == [0.0; 3] && !loads {
+                    let help = "give the spin as `angular_velocity = [x, y, z]`, set `loads = true`, or remove it";
+                    return Err(place.refuse("neither a spin nor loads", "one of them, or both", help));
+                }
+                About::Given { angular_velocity: *angular_velocity, loads: *loads }
+            }
+        })
     }
 
     fn large(&self, large: Option<CountOrList>, flexible: usize) -> Result<Option<Large>, SceneError> {

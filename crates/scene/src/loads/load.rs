@@ -1,6 +1,7 @@
 //! The loads of a scene: what acts, and where.
 
 use dynamics::LoadFrame;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::loads::history::History;
@@ -9,8 +10,9 @@ use crate::loads::history::History;
 ///
 /// Every `direction` is a unit vector (the file may give a vector of any length but 0); a negative amplitude acts
 /// against it. The amplitude is the load where its history is 1.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
+#[schemars(tag = "kind")]
 pub enum Load {
     /// `kind = "force"`: a force at a point.
     Force(Force),
@@ -27,7 +29,7 @@ pub enum Load {
 }
 
 /// A force at a point of the body.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Force {
     /// Where it acts, length, mesh axes.
@@ -45,7 +47,7 @@ pub struct Force {
 }
 
 /// A moment at a point of the body.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Moment {
     /// Where it acts, length, mesh axes.
@@ -65,7 +67,7 @@ pub struct Moment {
 }
 
 /// A pressure on a surface: normal to it, against its outward normal where positive. It follows the body.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pressure {
     /// Name of the physical surface in the mesh.
@@ -78,7 +80,7 @@ pub struct Pressure {
 }
 
 /// A force per area on a surface, in one direction.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Traction {
     /// Name of the physical surface in the mesh.
@@ -96,7 +98,7 @@ pub struct Traction {
 }
 
 /// Gravity: each mass m of the body has the weight m · amplitude · direction.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gravity {
     /// Unit vector of the direction in which things fall, global axes.
@@ -109,7 +111,7 @@ pub struct Gravity {
 }
 
 /// The acceleration of what holds the body; its motion is then seen from there.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BaseAcceleration {
     /// Unit vector of its direction, global axes.

@@ -7,6 +7,7 @@ mod parts;
 mod reading;
 mod refusals;
 mod robustness;
+mod schema;
 mod systems;
 mod tables;
 mod ties;

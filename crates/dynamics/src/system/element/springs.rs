@@ -8,7 +8,7 @@ use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 use crate::system::marker::{Marker, tangent_of};
 
 /// A spring and a damper along the line between two markers.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct PointSpring {
     /// Its ends.
     pub markers: [Marker; 2],
@@ -70,7 +70,7 @@ impl ForceElement for PointSpring {
 }
 
 /// Springs and dampers along and about the axes of the first of two markers, for small turns of the second against it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Bushing {
     /// i, whose axes count, and j.
     pub markers: [Marker; 2],

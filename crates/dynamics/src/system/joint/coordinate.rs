@@ -9,7 +9,7 @@ use crate::system::joint::wrench::RowWrench;
 use crate::system::marker::MarkerPlace;
 
 /// A scalar that tells where the second marker of a joint is against the first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Coordinate {
     /// The angle about the z axis of i, from its x axis to that of j, rad. Full turns are counted.
     Turn,

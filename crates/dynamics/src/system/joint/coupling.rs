@@ -3,7 +3,7 @@
 use crate::system::joint::coordinate::Coordinate;
 
 /// A sum of coordinates of joints that stays as it is: one more row.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Coupling {
     /// Its name in errors and results.
     pub name: String,
@@ -14,7 +14,7 @@ pub struct Coupling {
 }
 
 /// A coordinate of a joint, times a factor.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct CoupledCoordinate {
     /// The number of the joint in its system.
     pub joint: usize,

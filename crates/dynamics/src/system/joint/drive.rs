@@ -3,7 +3,7 @@
 use crate::history::History;
 
 /// An angle (rad), a distance, a force or a moment over time: the amplitude times the history.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct JointDrive {
     /// Value where the history is 1.
     pub amplitude: f64,

@@ -8,7 +8,7 @@ use crate::system::joint::drive::JointDrive;
 use crate::system::joint::law::JointLaw;
 
 /// A force along the slide of a joint, or a moment about its turn; positive on the second marker along the coordinate.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct JointForce {
     /// Force per length, or moment per angle (rad).
     pub stiffness: f64,
@@ -27,11 +27,12 @@ pub struct JointForce {
     /// A force or moment over time.
     pub motor: Option<JointDrive>,
     /// Laws from outside.
+    #[serde(skip)]
     pub laws: Vec<Arc<dyn JointLaw>>,
 }
 
 /// Ends of a coordinate: stiff springs on one side, which push and do not pull.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 pub struct Stops {
     /// Lowest and highest coordinate.
     pub limits: [f64; 2],
@@ -42,7 +43,7 @@ pub struct Stops {
 }
 
 /// Dry friction, of one size in either direction but near rest: −force·tanh(rate/rate_scale).
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 pub struct Friction {
     /// Force or moment.
     pub force: f64,

@@ -7,7 +7,7 @@ use crate::system::joint::wrench::RowWrench;
 use crate::system::marker::MarkerPlace;
 
 /// One scalar equation between the frames of the markers i and j, with d from i to j.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Row {
     /// d has no component along an axis of one marker (0 for i, 1 for j).
     Point {

@@ -250,7 +250,7 @@ fn no_shapes_and_no_fields_cost_no_error() {
     };
     assert!(of(0, 3).is_empty());
     assert_eq!(of(2, 0).len(), 2);
-    assert_eq!(of(2, 3), vec![Mat::zeros(3, 3); 2]);
+    assert_eq!(of(2, 3), vec![Mat::<f64>::zeros(3, 3); 2]);
 }
 
 #[test]

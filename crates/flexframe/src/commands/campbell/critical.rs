@@ -41,6 +41,30 @@ pub(super) fn find(spin: &SteadySpin, branches: &Branches, orders: &[f64]) -> Re
     Ok(all)
 }
 
+/// All crossings of branches between their speeds, with the square of each frequency a straight line in that of the speed: so it goes
+/// with stiffness that grows with the centrifugal force, and a crossing is off by far less than the step. Order 0 where a vibration
+/// stops to swing.
+pub(super) fn between(branches: &Branches, orders: &[f64]) -> Vec<Critical> {
+    let square = |mode: &SpinMode| mode.circular_frequency.powi(2) - mode.growth.powi(2);
+    let mut all = Vec::new();
+    for &order in std::iter::once(&0.0).chain(orders) {
+        for (i, pair) in branches.speeds.windows(2).enumerate() {
+            let [from, to] = [pair[0] * pair[0], pair[1] * pair[1]];
+            for k in 0..branches.modes[i].len() {
+                let [before, after] =
+                    [(i, from), (i + 1, to)].map(|(at, speed)| square(&branches.modes[at][k]) - order * order * speed);
+                if (before > 0.0) == (after > 0.0) {
+                    continue;
+                }
+                let speed = (from + (to - from) * before / (before - after)).sqrt();
+                all.push(Critical { order, mode: k + 1, speed, frequency: order * speed / TAU });
+            }
+        }
+    }
+    all.sort_by(|a, b| (a.order, a.speed).partial_cmp(&(b.order, b.speed)).unwrap_or(std::cmp::Ordering::Equal));
+    all
+}
+
 /// Halvings of a step between two speeds: a crossing is found to a part of 1e-12 of it.
 const HALVINGS: usize = 40;
 

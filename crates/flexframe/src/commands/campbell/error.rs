@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use dynamics::{EigenError, SteadyError};
 use figures::FigureError;
-use model::BuildError;
+use model::{BuildError, FullError};
+use nonlinear::NonlinearError;
 
 use crate::commands::system_modes::SystemModesError;
 use crate::files::write_error::WriteError;
@@ -28,6 +29,21 @@ pub enum CampbellError {
     /// The system has no vibrations in this spin.
     #[error("{}: at {speed} rad per time: {source}", scene.display())]
     Steady { scene: PathBuf, speed: f64, source: SteadyError },
+    /// A body without elements has no rest in a spin.
+    #[error(
+        "{}: found a body without elements or without flexible modes; expected one with a mesh, whose rest at each speed can be found; \
+         help: leave `--about-rest` out", scene.display()
+    )]
+    NoFullBody { scene: PathBuf },
+    /// The full body cannot be made.
+    #[error("{}: {source}", scene.display())]
+    Full { scene: PathBuf, source: FullError },
+    /// The bent body has no rest at a speed, or no vibrations about it.
+    #[error(
+        "{}: at {speed} rad per time: {source}; help: end the speeds before this one, or take vibrations about the undeformed body \
+         with `--about-rest never`", scene.display()
+    )]
+    Bent { scene: PathBuf, speed: f64, source: NonlinearError },
     /// The axis of the spin of a system is not known.
     #[error(
         "{}: {found}; expected --axis, an axis through the center of mass, or --joint, whose axis it is: one of {}", scene.display(), joints.join(", ")

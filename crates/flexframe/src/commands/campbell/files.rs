@@ -33,7 +33,7 @@ pub(super) fn write(report: &CampbellReport, folder: &Path, orders: &[f64]) -> R
     Ok(files)
 }
 
-/// A row a speed: the frequencies of all modes, then their growth, then their whirl.
+/// A row a speed: the frequencies of all modes, then their growth, then their whirl, and the deflection of a body that is bent.
 fn branches(report: &CampbellReport) -> String {
     let mut csv = "speed".to_owned();
     for quantity in ["frequency", "growth", "whirl"] {
@@ -42,6 +42,8 @@ fn branches(report: &CampbellReport) -> String {
             let _ = write!(csv, ",{quantity}_{}", branch.mode);
         }
     }
+    let deflection = if report.deflection.is_empty() { "" } else { ",deflection" };
+    csv.push_str(deflection);
     csv.push('\n');
     for (i, speed) in report.speeds.iter().enumerate() {
         let _ = write!(csv, "{speed:e}");
@@ -50,6 +52,9 @@ fn branches(report: &CampbellReport) -> String {
         let whirls = report.branches.iter().map(|branch| branch.whirl[i]);
         for value in frequencies.chain(growths).chain(whirls) {
             let _ = write!(csv, ",{value:e}");
+        }
+        if let Some(deflection) = report.deflection.get(i) {
+            let _ = write!(csv, ",{deflection:e}");
         }
         csv.push('\n');
     }

@@ -16,6 +16,8 @@ pub struct CampbellReport {
     pub title: String,
     /// Label of the unit of time.
     pub time_unit: String,
+    /// Label of the unit of length.
+    pub length_unit: String,
     /// Unit of frequencies, such as "1/s".
     pub frequency_unit: String,
     /// The finite-element model.
@@ -31,10 +33,14 @@ pub struct CampbellReport {
     pub effects: SpinEffects,
     /// Spin speeds, radians per time.
     pub speeds: Vec<f64>,
+    /// Largest displacement of a node by deformation at each speed, where the vibrations are about the rest of the full body; none where
+    /// they are about the undeformed body.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub deflection: Vec<f64>,
     /// The lines of the diagram, in the order of their frequencies at the lowest speed.
     pub branches: Vec<Branch>,
     /// The spin speed at which the body loses its stability because K + Ω²(K_σ − N) is no longer positive definite; none
-    /// if it never does. Of a system the lowest of the speeds at which a vibration grows; none if none does within them.
+    /// if it never does. Of a system, and about the rest of the full body, the lowest of the speeds at which a vibration grows; none if none does within them.
     pub stable_below: Option<f64>,
     /// Where orders and branches cross, by order and speed; order 0 where a frequency is zero.
     pub critical_speeds: Vec<Critical>,
@@ -52,4 +58,11 @@ pub struct SpinEffects {
     pub softening: bool,
     /// The stress of the centrifugal field, K_σ.
     pub stiffening: bool,
+}
+
+impl SpinEffects {
+    /// True if all are computed.
+    pub(super) fn all(self) -> bool {
+        self.coriolis && self.softening && self.stiffening
+    }
 }

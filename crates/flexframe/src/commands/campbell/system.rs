@@ -76,6 +76,7 @@ pub fn campbell_of_system(
     let mut report = CampbellReport {
         title: scene.title.clone(),
         time_unit: scene.units.time.clone(),
+        length_unit: scene.units.length.clone(),
         frequency_unit: frequency_unit(&scene.units.time),
         mesh: None,
         bodies: body_names(&system, &motion.bodies),
@@ -88,6 +89,7 @@ pub fn campbell_of_system(
         },
         stable_below: unstable.map(|at| branches.speeds[at]),
         critical_speeds: critical::find_between(&find, &branches, &settings.orders)?,
+        deflection: Vec::new(),
         branches: branches.lines(static_shapes),
         speeds: branches.speeds,
         files: Vec::new(),

@@ -29,9 +29,19 @@ impl fmt::Display for CampbellReport {
         writeln!(f, "  spin     about ({}) through ({})", vector(&self.axis), vector(&self.origin))?;
         writeln!(f, "  effects  {}", self.effects)?;
         let time = &self.time_unit;
+        if let Some(most) = self.deflection.iter().copied().reduce(f64::max) {
+            writeln!(
+                f,
+                "  rest     bent by up to {} {}: vibrations about the rest at each speed",
+                quantity(most),
+                self.length_unit
+            )?;
+        }
         match self.stable_below {
             Some(speed) => writeln!(f, "  stable   below {} rad/{time}", quantity(speed))?,
-            None if !self.bodies.is_empty() => writeln!(f, "  stable   at all speeds of this range")?,
+            None if !self.bodies.is_empty() || !self.deflection.is_empty() => {
+                writeln!(f, "  stable   at all speeds of this range")?
+            }
             None => writeln!(f, "  stable   no frequency falls to zero at any speed")?,
         }
         self.write_branches(f)?;
@@ -51,6 +61,9 @@ impl CampbellReport {
         let shown = &self.branches[..self.branches.len().min(COLUMNS)];
         let rpm = if self.rpm(0.0).is_some() { "       rpm" } else { "" };
         write!(f, "\n  {:>10}{rpm}  ", format!("rad/{}", self.time_unit))?;
+        if !self.deflection.is_empty() {
+            write!(f, "{:>10}", format!("bent, {}", self.length_unit))?;
+        }
         shown.iter().try_for_each(|branch| write!(f, "{:>10}", branch.label()))?;
         writeln!(f, "   frequency, {}", self.frequency_unit)?;
         let last = self.speeds.len() - 1;
@@ -63,6 +76,9 @@ impl CampbellReport {
                 write!(f, "{rpm:>10.1}")?;
             }
             write!(f, "  ")?;
+            if let Some(deflection) = self.deflection.get(i) {
+                write!(f, "{:>9} ", quantity(*deflection))?;
+            }
             for branch in shown {
                 let grows = branch.growth[i] > 0.0;
                 any_grows |= grows;

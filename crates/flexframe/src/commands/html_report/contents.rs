@@ -45,6 +45,7 @@ pub(super) fn contents(file: &Path, results: &Results, drawn: Vec<DrawnBody>) ->
             text: run.scene_text.clone(),
         },
         warnings: warnings(run),
+        live: None,
     })
 }
 

@@ -1,6 +1,6 @@
 //! One body of a run: what is seen of it on its way, whatever moves it.
 
-use dynamics::{Initial, Moment, Stats};
+use dynamics::{Initial, Moment, MotionState, Stats};
 use model::Model;
 use nalgebra::Vector3;
 use results::BodyResults;
@@ -74,6 +74,11 @@ impl<'a> FollowedBody<'a> {
     /// Sees a moment between rows.
     pub fn look(&mut self, moment: &Moment) {
         self.watch.look(moment);
+    }
+
+    /// Sees how far the body would have bent after a step from a state.
+    pub fn look_ahead(&mut self, state: &MotionState, step: f64) {
+        self.watch.look_ahead(state, step);
     }
 
     /// Takes a row before a checkpoint into account. `None` where the file lacks a column.

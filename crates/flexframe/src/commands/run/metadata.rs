@@ -89,7 +89,11 @@ fn body_metadata(of: &RunBody<'_>) -> BodyMetadata {
             mesh: None,
         },
         point_names: model.points.iter().map(|(name, _)| name.clone()).collect(),
-        point_positions: model.points.iter().map(|(_, p)| (model.body.origin + p.position_body()).into()).collect(),
+        point_positions: model
+            .points
+            .iter()
+            .map(|(_, p)| (model.body.origin + p.position_body() - p.of_reference()).into())
+            .collect(),
         parts: parts(of).map(str::to_owned).collect(),
         support_names: model.supports.as_ref().map_or(Vec::new(), |supports| supports.names().to_vec()),
         effects: effects::described(scene, model),

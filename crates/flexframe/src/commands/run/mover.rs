@@ -60,6 +60,16 @@ impl Mover<'_> {
         }
     }
 
+    /// Shows its bodies how far they would have bent at the end of the step that has failed: a body may be thrown out of its
+    /// model within one step.
+    pub fn look_ahead(&mut self) {
+        let Ok(states) = self.motion.states() else { return };
+        let step = self.motion.stats().longest;
+        for (state, body) in states.iter().zip(&mut self.bodies) {
+            body.look_ahead(state, step);
+        }
+    }
+
     /// Observes its bodies and joints at the time that it has come to, or at the time of a row within its last step.
     pub fn observe(&mut self, within: Option<f64>, row: &mut Row) -> Result<(), StepError> {
         let Self { motion, bodies, joints } = self;

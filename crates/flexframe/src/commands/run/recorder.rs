@@ -174,6 +174,9 @@ impl<'a> Recorder<'a> {
         for i in 0..self.movers.len() {
             let mover = &mut self.movers[i];
             let reached = mover.go(next, self.times.as_ref());
+            if reached.is_err() {
+                mover.look_ahead();
+            }
             // A step that fails after the model has come to mean nothing fails for that.
             let refused = mover.bodies.iter().find_map(|body| Some((body.number, body.refusal()?)));
             if let Some((body, (time, refusal))) = refused {

@@ -1,7 +1,7 @@
 //! Watch of a motion beside its rows: the assumptions of its model, and the quantities that should stay as they are.
 
 use advice::{Refusal, Review, StepEstimate};
-use dynamics::{EffectMap, Initial, Moment, Observation};
+use dynamics::{EffectMap, Initial, Moment, MotionState, Observation};
 use model::{BuildError, Model};
 use scene::{Load, Scene};
 
@@ -73,6 +73,19 @@ impl<'a> Watch<'a> {
     pub fn look(&mut self, moment: &Moment) {
         self.review.look(moment);
         self.turn.see(moment.time, &moment.omega_body);
+    }
+
+    /// Sees where a step from a state would lead by the rates that it begins with, as far as each mode can swing.
+    pub fn look_ahead(&mut self, state: &MotionState, step: f64) {
+        let MotionState { time, omega_body, modal_displacement: q, modal_velocity: v, .. } = state;
+        let omega = &self.model.body.circular_frequencies;
+        let swung = |((q, v), omega): ((&f64, &f64), &f64)| {
+            let reach = q.hypot(v / omega);
+            (q + step * v).clamp(-reach, reach)
+        };
+        let ahead: Vec<f64> = q.iter().zip(v).zip(omega).map(swung).collect();
+        let (time, omega_body) = (time + step, *omega_body);
+        self.review.look(&Moment { time, omega_body, modal_displacement: &ahead, modal_velocity: v });
     }
 
     /// Sees a row.

@@ -62,7 +62,7 @@ fn the_advice_says_what_linear_strain_gets_wrong_of_each_mode() {
     assert!((error.phase / phase - 1.0).abs() < 0.02 && (0.017..0.021).contains(&error.deflection), "{error:?}");
     let row = &model.advice.effects[dynamics::Effect::LargeDeflection];
     assert!(
-        row.on && row.why.contains("Mode 1 bends the body by at most 1.") && row.why.contains("too high"),
+        row.on && row.why.contains("Mode 1 moves the body by up to 18.59 mm") && row.why.contains("too high"),
         "{row:?}"
     );
     // Nothing is computed for the modes that do not move.

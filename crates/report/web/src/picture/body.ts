@@ -116,6 +116,15 @@ const groups = (count: number) => Math.max(1, Math.ceil(count / 4));
 export class Body {
     readonly group = new THREE.Group();
     readonly outline: THREE.LineSegments;
+    /// The edges in another motion; not seen at first.
+    readonly ghost: THREE.LineSegments;
+    private readonly ghostWeights: THREE.Vector4[];
+    private readonly ghostExaggeration: THREE.IUniform;
+    /// For what the picture asks on the main processor: places, shapes and stresses as they are stored.
+    private readonly positions: Float32Array;
+    private readonly triangles: ArrayLike<number>;
+    private readonly shapes: Int16Array[];
+    private readonly stresses: Int16Array[] = [];
     private readonly edges: THREE.LineSegments;
     readonly bounds: THREE.Sphere;
     readonly displacementPeaks: number[];
@@ -136,6 +145,7 @@ export class Body {
         const vertices = positions.length / 3;
         this.count = data.shapes.length;
         const shapes = data.shapes.map((shape) => quantised(shape.displacement));
+        [this.positions, this.shapes] = [positions, shapes];
         this.factors = data.shapes.map((shape) => shape.displacement.factor);
         this.displacementPeaks = peaks(shapes, this.factors, 3, (s, i) => Math.hypot(s[i], s[i + 1], s[i + 2]));
         const vectors = (count = this.count) => Array.from({ length: groups(count) }, () => new THREE.Vector4(0, 0, 0, 0));
@@ -155,6 +165,7 @@ export class Body {
         };
         if (data.stress) {
             const stresses = data.stress.shapes.map((numbers: Numbers) => quantised(numbers));
+            this.stresses = stresses;
             this.stressFactors = data.stress.shapes.map((numbers) => numbers.factor);
             this.stressPeaks = peaks(stresses, this.stressFactors, 6, vonMises);
             this.uniforms.normalStresses = { value: layers(stresses, 6, 0) };
@@ -165,6 +176,7 @@ export class Body {
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
         const triangles = indices(surface.triangles);
+        this.triangles = triangles;
         this.hasFacets = triangles.length > 0;
         if (this.hasFacets) geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
         geometry.computeBoundingSphere();
@@ -177,6 +189,10 @@ export class Body {
         this.edges = new THREE.LineSegments(lines, this.lineMaterial(this.uniforms, 0.5));
         // The same edges with weights of zero.
         this.outline = new THREE.LineSegments(lines, this.lineMaterial({ ...this.uniforms, weights: { value: vectors() } }, 0.9));
+        [this.ghostWeights, this.ghostExaggeration] = [vectors(), { value: 1 }];
+        const ofGhost = { ...this.uniforms, weights: { value: this.ghostWeights }, exaggeration: this.ghostExaggeration };
+        this.ghost = new THREE.LineSegments(lines, this.lineMaterial(ofGhost, 0.55));
+        [this.ghost.visible, this.ghost.frustumCulled] = [false, false];
         (this.outline.material as THREE.Material).depthTest = false; // also seen within the body
         this.outline.renderOrder = 1;
         for (const part of [this.surface, this.edges, this.outline]) {
@@ -223,6 +239,7 @@ export class Body {
         };
         set(this.edges, edge);
         set(this.outline, outline);
+        set(this.ghost, outline);
     }
 
     /// What is coloured, and the value at the end of the colours.
@@ -231,6 +248,65 @@ export class Body {
         this.surface.material = this.material(stressed ? "stress" : "plain");
         this.uniforms.coloured.value = stressed || field === "displacement"; // without stress a body is plain
         this.uniforms.peak.value = peak;
+    }
+
+    /// The same coordinates as `deform`, of the motion of the ghost.
+    deformGhost(q: ArrayLike<number>, exaggeration: number) {
+        this.factors.forEach((factor, k) => this.ghostWeights[k >> 2].setComponent(k & 3, q[k] * factor));
+        this.ghostExaggeration.value = exaggeration;
+    }
+
+    /// Place of a vertex, body axes, with `exaggeration` times its displacement.
+    placeOf(vertex: number, q: ArrayLike<number>, exaggeration: number, out: THREE.Vector3): THREE.Vector3 {
+        out.fromArray(this.positions, 3 * vertex);
+        this.shapes.forEach((shape, k) => {
+            const weight = exaggeration * q[k] * this.factors[k];
+            out.x += weight * shape[3 * vertex];
+            out.y += weight * shape[3 * vertex + 1];
+            out.z += weight * shape[3 * vertex + 2];
+        });
+        return out;
+    }
+
+    /// Displacements of a vertex in a unit of each coordinate, three numbers each.
+    shapesAt(vertex: number): number[] {
+        return this.shapes.flatMap((shape, k) => [0, 1, 2].map((axis) => this.factors[k] * shape[3 * vertex + axis]));
+    }
+
+    /// The vertex that a ray in body axes meets: the nearest corner of the first facet, or of nodes alone the one next to the ray
+    /// within `near`. None where it meets nothing.
+    pick(ray: THREE.Ray, q: ArrayLike<number>, exaggeration: number, near: number): { vertex: number; distance: number } | null {
+        const places = Array.from({ length: this.positions.length / 3 }, (_, i) => this.placeOf(i, q, exaggeration, new THREE.Vector3()));
+        let found: { vertex: number; distance: number } | null = null;
+        const take = (vertex: number, distance: number) => {
+            if (!found || distance < found.distance) found = { vertex, distance };
+        };
+        const hit = new THREE.Vector3();
+        for (let i = 0; i < this.triangles.length; i += 3) {
+            const corners = [this.triangles[i], this.triangles[i + 1], this.triangles[i + 2]];
+            const [a, b, c] = corners.map((corner) => places[corner]);
+            if (!ray.intersectTriangle(a, b, c, false, hit)) continue;
+            const nearest = corners.reduce((one, other) => (places[other].distanceTo(hit) < places[one].distanceTo(hit) ? other : one));
+            take(nearest, ray.origin.distanceTo(hit));
+        }
+        if (!this.hasFacets) {
+            places.forEach((place, vertex) => ray.distanceToPoint(place) < near && take(vertex, ray.origin.distanceTo(place)));
+        }
+        return found;
+    }
+
+    /// Greatest von Mises stress of all vertices at these coordinates; none without stress.
+    greatestStress(q: ArrayLike<number>): number | null {
+        if (this.stresses.length === 0) return null;
+        const weights = this.stressFactors.map((factor, k) =>
+            factor * (k < this.count ? q[k] : this.products[k - this.count].reduce((value, i) => value * q[i], 1)));
+        const sums = new Float64Array(2 * this.positions.length);
+        this.stresses.forEach((stress, k) => {
+            if (weights[k] !== 0) for (let i = 0; i < sums.length; i++) sums[i] += weights[k] * stress[i];
+        });
+        let greatest = 0;
+        for (let i = 0; i < sums.length; i += 6) greatest = Math.max(greatest, vonMises(sums, i));
+        return greatest;
     }
 
     /// Coordinates of the shapes, and the factor on the displacement that is drawn. The stress of a small displacement has no

@@ -5,7 +5,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { cssColour } from "../colours";
 import type { Report } from "../data";
 import { roundStep } from "../format";
-import type { BodyMotion, Motion } from "../motion";
+import type { Motion, Placed } from "../motion";
 import { stagedBodies, type StagedBody } from "./staged";
 import { Triad } from "./triad";
 
@@ -18,9 +18,9 @@ export class Stage {
     /// The body that the camera goes with.
     followed: number | null;
     private readonly renderer: THREE.WebGLRenderer;
-    private readonly scene = new THREE.Scene();
-    private readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 1000);
-    private readonly controls: OrbitControls;
+    readonly scene = new THREE.Scene();
+    readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 1000);
+    readonly controls: OrbitControls;
     private readonly triad: Triad;
     private readonly ground: THREE.GridHelper;
     private readonly names: HTMLElement[] = [];
@@ -29,7 +29,7 @@ export class Stage {
     private inView: number;
 
     /// Throws where the browser has no WebGL 2.
-    constructor(private readonly canvas: HTMLCanvasElement, report: Report, motion: Motion, onChange: () => void) {
+    constructor(readonly canvas: HTMLCanvasElement, report: Report, motion: Motion, onChange: () => void) {
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
         this.camera.up.set(0, 0, 1);
         this.controls = new OrbitControls(this.camera, canvas);
@@ -87,7 +87,7 @@ export class Stage {
     }
 
     /// Sets the places of all bodies; the camera goes with the one that it follows.
-    place(motions: BodyMotion[]) {
+    place(motions: Placed[]) {
         this.going(() => this.bodies.forEach((body, i) => body.place(motions[i].origin, motions[i].attitude)));
     }
 
@@ -114,6 +114,7 @@ export class Stage {
             body.path.visible = alone === null && paths;
             body.axes.visible = shown && axes;
             if (body.body) body.body.group.visible = shown;
+            if (body.body && alone !== null) body.body.ghost.visible = false;
             if (this.names[i]) this.names[i].hidden = alone !== null;
         });
     }

@@ -4,7 +4,7 @@ import * as THREE from "three";
 import { Body } from "./body";
 import { cssColour } from "../colours";
 import type { BodyData } from "../data";
-import type { BodyMotion } from "../motion";
+import type { BodyMotion, Placed } from "../motion";
 
 const AXIS_COLOURS = ["axis-x", "axis-y", "axis-z"];
 
@@ -45,7 +45,7 @@ export class StagedBody {
 
     addTo(scene: THREE.Scene) {
         scene.add(this.path, this.axes);
-        if (this.body) scene.add(this.body.group);
+        if (this.body) scene.add(this.body.group, this.body.ghost);
     }
 
     recolour() {
@@ -54,6 +54,13 @@ export class StagedBody {
         set(this.path, "path");
         this.axes.children.forEach((line, axis) => set(line as THREE.Line, AXIS_COLOURS[axis]));
         this.body?.setLineColours(colour("edge"), colour("outline"));
+    }
+
+    /// Shows where the body is in another motion.
+    placeGhost({ origin, attitude, q }: Placed, exaggeration: number) {
+        this.body?.ghost.position.set(...origin);
+        this.body?.ghost.quaternion.set(...attitude);
+        this.body?.deformGhost(q, exaggeration);
     }
 
     place(origin: ArrayLike<number>, attitude: ArrayLike<number>) {

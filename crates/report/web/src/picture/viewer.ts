@@ -7,6 +7,9 @@ import { SCALE } from "./scale.mjs";
 import type { Report } from "../data";
 import { minus, number, timeDecimals, withUnit } from "../format";
 import { Motion } from "../motion";
+import { LivePanel } from "../live/panel";
+import { Pull } from "../live/pull";
+import type { LiveRun } from "../live/run";
 import { Stage } from "./stage";
 
 /// A shape shown alone swings so far, as a part of the body's radius.
@@ -29,6 +32,8 @@ export class Viewer {
     private field: Field = "displacement";
     private changed = true;
     private last = 0;
+    /// The run that the page leads on by itself, with what is done to it.
+    private live: { run: LiveRun; panel: LivePanel; pull: Pull | null } | null = null;
     /// Milliseconds that the program worked for each frame, the latest last.
     readonly work: number[] = [];
     frames = 0;
@@ -63,9 +68,61 @@ export class Viewer {
     get playing() { return this.shape === null ? this.clock.playing : this.swinging; }
 
     toggle() {
+        if (this.leading) {
+            this.clock.playing = !this.clock.playing;
+            return this.showTime();
+        }
         if (this.shape === null) return this.clock.toggle();
         this.swinging = !this.swinging;
         this.showTime();
+    }
+
+    /// Takes up a run that the page leads on by itself.
+    lead(run: LiveRun) {
+        const { stage, report, clock } = this;
+        const stress = () => {
+            const of = (stage?.bodies ?? []).map(({ body }, i) => body?.greatestStress(run.placed[i].q) ?? null);
+            const known = of.filter((value) => value !== null);
+            return known.length > 0 ? Math.max(...known) : null;
+        };
+        const panel = new LivePanel(report, run, stress, () => this.switchLive());
+        const changed = () => (this.changed = true);
+        const [force] = run.live.units;
+        const pull = stage && new Pull(stage, run, () => panel.strength, () => this.exaggeration, force, changed);
+        this.live = { run, panel, pull };
+        run.onChange(changed);
+        clock.show(run.time);
+        this.switchLive();
+    }
+
+    /// The live run where it is shown.
+    get leading(): LiveRun | null { return this.live?.run.active && this.shape === null ? this.live.run : null; }
+
+    restartLive() { this.live?.panel.restart(); }
+
+    /// Between the live run and the recorded one.
+    toggleLive() {
+        const on = element<HTMLInputElement>("live-on");
+        on.checked = !on.checked;
+        on.dispatchEvent(new Event("change"));
+    }
+
+    private switchLive() {
+        const { live, clock, motion } = this;
+        if (!live) return;
+        clock.playing = false;
+        for (const id of ["step", "restart", "ghost"]) element<HTMLInputElement>(id).disabled = !live.run.active;
+        for (const input of document.querySelectorAll<HTMLInputElement>("#live-controls input")) input.disabled = !live.run.active;
+        element<HTMLInputElement>("time").disabled = live.run.active; // what is computed has no way back
+        if (live.run.active) clock.show(live.run.time);
+        else clock.seek(Math.min(motion.end, clock.time));
+        this.showGhost();
+    }
+
+    private showGhost() {
+        const seen = this.leading !== null && element<HTMLInputElement>("ghost").checked;
+        for (const { body } of this.stage?.bodies ?? []) if (body) body.ghost.visible = seen;
+        this.changed = true;
     }
 
     /// A shape alone, or the run.
@@ -217,6 +274,7 @@ export class Viewer {
     private showSurroundings() {
         const checked = (id: string) => element<HTMLInputElement>(id).checked;
         this.stage?.show(this.shape?.body ?? null, checked("path"), checked("axes"));
+        if (this.live) this.showGhost();
     }
 
     /// Greatest value of the field: over the run, or of a shape where its coordinate is 1.
@@ -278,8 +336,10 @@ export class Viewer {
         if (!stage) return;
         if (this.shape === null) {
             motion.at(this.clock.time);
-            stage.place(motion.bodies);
-            stage.bodies.forEach(({ body }, i) => body?.deform(motion.bodies[i].q, this.exaggeration));
+            const shown = this.leading?.placed ?? motion.bodies;
+            stage.place(shown);
+            stage.bodies.forEach(({ body }, i) => body?.deform(shown[i].q, this.exaggeration));
+            if (this.leading) stage.bodies.forEach((body, i) => body.placeGhost(motion.bodies[i], this.exaggeration));
             return;
         }
         const staged = stage.bodies[this.shape.body];
@@ -296,7 +356,11 @@ export class Viewer {
         this.last = now;
         const started = performance.now();
         if (this.playing) {
-            if (this.shape === null) this.clock.advance(seconds);
+            if (this.leading) {
+                this.live!.pull?.lead();
+                this.leading.advance(seconds);
+                this.live!.pull?.draw();
+            } else if (this.shape === null) this.clock.advance(seconds);
             else this.phase += seconds / SWING_SECONDS;
             this.changed = true;
         }

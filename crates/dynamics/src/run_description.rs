@@ -1,0 +1,227 @@
+//! A run as data: all that it begins with, so that another process makes the same motion of it, such as a page in a browser.
+//!
+//! It holds what this crate can make itself. A load, a law, an element or a method of one's own is code, which no data hold: a run
+//! with such a part is refused by name.
+
+mod elements;
+pub(crate) mod error;
+mod loads;
+mod method;
+
+use std::sync::Arc;
+
+use modal::ReducedBody;
+use serde::{Deserialize, Serialize};
+
+use crate::body::initial::Initial;
+use crate::body::motion_state::MotionState;
+use crate::body::physics::Physics;
+use crate::body::shapes::PointShapes;
+use crate::conservative::ConservativeBody;
+use crate::error::SetupError;
+use crate::load::SharedLoad;
+use crate::run_description::error::DescriptionError;
+use crate::simulation::Simulation;
+use crate::simulation::plan::{Rows, StepControl};
+use crate::simulation::setup::{Method, Setup};
+use crate::system::collocation::SystemScheme;
+use crate::system::description::System;
+use crate::system::element::ForceElement;
+use crate::system::joint::Joint;
+use crate::system::joint::coupling::Coupling;
+use crate::system::simulation::SystemSimulation;
+use crate::system::simulation::setup::SystemSetup;
+
+/// Name and version of the data, in front of them.
+const NAME: &str = "flexframe run";
+const VERSION: u32 = 1;
+
+/// A run with all that it begins with.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum RunDescription {
+    /// Of one body.
+    Alone(Box<RunOfBody>),
+    /// Of bodies with joints.
+    Tied(Box<RunOfSystem>),
+}
+
+/// A body with what acts on it, and the points that are observed.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct DescribedBody {
+    /// The body.
+    pub body: ReducedBody,
+    /// One damping ratio for each flexible mode.
+    pub damping_ratios: Vec<f64>,
+    /// The loads.
+    #[serde(with = "loads")]
+    pub loads: Vec<SharedLoad>,
+    /// Effects, drives and stress.
+    pub physics: Physics,
+    /// Points whose motion is observed.
+    pub points: Vec<PointShapes>,
+}
+
+/// The run of a body alone: what [`Setup`] has.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct RunOfBody {
+    /// The body.
+    pub body: DescribedBody,
+    /// How it begins.
+    pub initial: Initial,
+    /// How it is stepped.
+    #[serde(with = "method")]
+    pub method: Method,
+    /// How long the steps are.
+    pub control: StepControl,
+    /// When it ends.
+    pub end: f64,
+    /// When it is observed.
+    pub rows: Rows,
+}
+
+/// The run of bodies with joints: what [`SystemSetup`] has.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct RunOfSystem {
+    /// The bodies.
+    pub bodies: Vec<DescribedBody>,
+    /// The joints.
+    pub joints: Vec<Joint>,
+    /// Couplings of the joints.
+    pub couplings: Vec<Coupling>,
+    /// Forces between markers.
+    #[serde(with = "elements")]
+    pub elements: Vec<Arc<dyn ForceElement>>,
+    /// The motion of each body at the beginning, as far as the joints let it be.
+    pub states: Vec<MotionState>,
+    /// True if the bodies begin deformed as their forces ask.
+    pub relaxed: bool,
+    /// How it is stepped.
+    pub scheme: SystemScheme,
+    /// How long the steps are.
+    pub control: StepControl,
+    /// When it ends.
+    pub end: f64,
+    /// When it is observed.
+    pub rows: Rows,
+}
+
+impl RunDescription {
+    /// The bodies.
+    pub fn bodies(&self) -> &[DescribedBody] {
+        match self {
+            Self::Alone(run) => std::slice::from_ref(&run.body),
+            Self::Tied(run) => &run.bodies,
+        }
+    }
+
+    /// The bodies, to be changed.
+    pub fn bodies_mut(&mut self) -> &mut [DescribedBody] {
+        match self {
+            Self::Alone(run) => std::slice::from_mut(&mut run.body),
+            Self::Tied(run) => &mut run.bodies,
+        }
+    }
+
+    /// As bytes, by serde and postcard, with name and version in front.
+    ///
+    /// # Errors
+    /// [`DescriptionError`] for a part that is code of one's own.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, DescriptionError> {
+        self.check()?;
+        Ok(postcard::to_allocvec(&(NAME, VERSION, self))?)
+    }
+
+    /// The run of [`Self::to_bytes`]. Beginning it checks its numbers.
+    ///
+    /// # Errors
+    /// [`DescriptionError`] for bytes of something else or of another version.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, DescriptionError> {
+        let ((name, version), rest) =
+            postcard::take_from_bytes::<(&str, u32)>(bytes).map_err(|_| DescriptionError::Other)?;
+        if name != NAME {
+            return Err(DescriptionError::Other);
+        }
+        if version != VERSION {
+            return Err(DescriptionError::Version { found: version, expected: VERSION });
+        }
+        match postcard::take_from_bytes(rest)? {
+            (run, []) => Ok(run),
+            _ => Err(postcard::Error::DeserializeBadEncoding.into()),
+        }
+    }
+
+    /// Refuses what no data hold.
+    fn check(&self) -> Result<(), DescriptionError> {
+        for body in self.bodies() {
+            if let Some(load) = body.loads.iter().find(|load| loads::data(&***load).is_none()) {
+                return Err(DescriptionError::Load { load: format!("{load:?}") });
+            }
+            if body.physics.reference.is_some() {
+                return Err(DescriptionError::Reference);
+            }
+            if body.physics.drive.as_ref().is_some_and(|drive| drive.added.is_some()) {
+                return Err(DescriptionError::AddedSpeed);
+            }
+        }
+        match self {
+            Self::Alone(run) => method::check(&run.method),
+            Self::Tied(run) => {
+                if let Some(element) = run.elements.iter().find(|element| elements::data(&***element).is_none()) {
+                    return Err(DescriptionError::Element { element: format!("{element:?}") });
+                }
+                let has_law = |joint: &&Joint| joint.forces().any(|(_, force)| !force.laws.is_empty());
+                match run.joints.iter().find(has_law) {
+                    Some(joint) => Err(DescriptionError::Law { joint: joint.name.clone() }),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+}
+
+impl RunOfBody {
+    /// Begins the run.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn begin(&self) -> Result<Simulation, SetupError> {
+        let Self { body, initial, method, control, end, rows } = self;
+        let DescribedBody { body, damping_ratios, loads, physics, points } = body;
+        Simulation::new(&Setup {
+            body,
+            damping_ratios,
+            loads,
+            physics,
+            initial,
+            method,
+            control: *control,
+            end: *end,
+            rows: *rows,
+            points,
+        })
+    }
+}
+
+impl RunOfSystem {
+    /// Puts the bodies together, and begins the run.
+    ///
+    /// # Errors
+    /// As [`SystemSimulation::new`].
+    pub fn begin(&self) -> Result<SystemSimulation, SetupError> {
+        let of = |body: &DescribedBody| {
+            ConservativeBody::new(&body.body, &body.damping_ratios, body.loads.clone(), &body.physics)
+        };
+        let bodies = self.bodies.iter().map(of).collect::<Result<_, _>>()?;
+        let system = System::new(bodies, self.joints.clone())?;
+        SystemSimulation::new(SystemSetup {
+            system: system.with_couplings(self.couplings.clone())?.with_elements(self.elements.clone())?,
+            states: self.states.clone(),
+            relaxed: self.relaxed,
+            scheme: self.scheme,
+            control: self.control,
+            end: self.end,
+            rows: self.rows,
+            points: self.bodies.iter().map(|body| body.points.clone()).collect(),
+        })
+    }
+}
