@@ -8,6 +8,7 @@ pub(crate) mod check;
 pub(crate) mod cost;
 pub(crate) mod export;
 pub(crate) mod fmu;
+pub(crate) mod hand_over;
 pub(crate) mod html_report;
 pub(crate) mod new_scene;
 pub(crate) mod sweep;

@@ -5,6 +5,7 @@ pub(crate) mod command_line;
 pub(crate) mod failures;
 pub(crate) mod import;
 pub(crate) mod matrices;
+pub(crate) mod measured;
 pub(crate) mod newcomer;
 pub(crate) mod outputs;
 pub(crate) mod scene_input;

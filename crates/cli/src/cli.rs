@@ -16,6 +16,7 @@ use flexframe::failure::{Details, FailureReport, Kind};
 use flexframe::figures::{self, View};
 use flexframe::fmu::{self, FmuSettings};
 use flexframe::given_file::GivenFile;
+use flexframe::hand_over::{self, Form};
 use flexframe::outputs::{OutputError, Written, outputs_of_results, outputs_of_scene, outputs_of_scenes};
 use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
@@ -122,7 +123,8 @@ enum Command {
     Reduce {
         #[command(flatten)]
         scene: SceneArgs,
-        /// The body file to write.
+        /// The body file to write; for other programs a file that ends in .op4 (Nastran), .fem (MBDyn), .flex42 (NASA's 42), .sid_fem
+        /// (SIMPACK, Modelica) or .glb (pictures).
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
         #[command(flatten)]
@@ -533,6 +535,13 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             let scene = read(scene)?;
             if let Some(to) = solver.take(&mut builder, signals.slepc())? {
                 return write_only(&scene, &builder, &to, files.overwrite, bar);
+            }
+            if let Some(form) = Form::of(&output) {
+                outputs_of_scene(&scene, &builder, files.overwrite).claim_as(&form.written(), &output)?;
+                let report = hand_over::hand_over(&scene, &builder, form, &output, |p| bar.build(p))?;
+                drop(bar);
+                output::print(&report, json)?;
+                return if json { Ok(()) } else { output::list(&[output]) };
             }
             outputs_of_scene(&scene, &builder, files.overwrite).claim_as(&Written::BODY, &output)?;
             let report = modes::reduce(&scene, &builder, &output, matrices, stress, |p| bar.build(p))?;

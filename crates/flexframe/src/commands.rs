@@ -7,6 +7,7 @@ pub mod check;
 pub mod cost;
 pub mod export;
 pub mod fmu;
+pub mod hand_over;
 pub mod html_report;
 pub mod mode_shapes;
 pub mod modes;

@@ -33,8 +33,8 @@ pub mod report;
 mod rows;
 pub mod surface;
 pub use commands::{
-    advise, animation, campbell, check, cost, export, fmu, html_report, mode_shapes, modes, new_scene, paper, run,
-    sweep, system_modes,
+    advise, animation, campbell, check, cost, export, fmu, hand_over, html_report, mode_shapes, modes, new_scene,
+    paper, run, sweep, system_modes,
 };
 pub use files::{given_file, outputs, write_error};
 pub use rows::{columns, peak_stress, row};

@@ -33,7 +33,7 @@ tolerance = 1e-6
 """
 HEAD = """# The error that a mesh makes
 
-Made by `./dev mesh-error`: the estimated error of each frequency (Eq. (M13) of [the modes](../method/modes.md), `mesh_errors` of
+Made by `./dev mesh-error`: the estimated error of each frequency (Eq. (M15) of [the modes](../method/modes.md), `mesh_errors` of
 `flexframe modes --json`) beside the true one, which is the difference to the frequency of the same shape on a fine mesh. Shapes
 are paired by their MAC (`--mac`), and pairs below 0.9 are left out. The ratio is estimate over truth: its least, its median and its
 largest of the {modes} lowest modes.

@@ -48,6 +48,11 @@ pub struct Written {
 }
 
 impl Written {
+    /// Endings of the names of its files, in small letters.
+    pub fn endings(&self) -> &'static [&'static str] {
+        self.endings
+    }
+
     /// A folder.
     pub const FOLDER: Self = Self { what: "a folder", endings: &[], in_any_order: false };
     /// A scene.
@@ -58,6 +63,16 @@ impl Written {
     pub const SWEEP: Self = Self { what: "the table of a sweep", endings: &["h5", "hdf5"], in_any_order: true };
     /// An FMU.
     pub const FMU: Self = Self { what: "an FMU", endings: &["fmu"], in_any_order: false };
+    /// Matrices for Nastran.
+    pub const OP4: Self = Self { what: "an OP4 file of matrices", endings: &["op4"], in_any_order: false };
+    /// A modal body for MBDyn.
+    pub const MBDYN: Self = Self { what: "a modal data file of MBDyn", endings: &["fem"], in_any_order: false };
+    /// A flexible body for 42.
+    pub const FLEX: Self = Self { what: "a Flex file of 42", endings: &["flex42"], in_any_order: false };
+    /// Standard Input Data.
+    pub const SID: Self = Self { what: "a file of Standard Input Data", endings: &["sid_fem"], in_any_order: false };
+    /// A moving surface.
+    pub const GLTF: Self = Self { what: "a glTF file", endings: &["glb"], in_any_order: false };
     /// A report.
     pub const PAGE: Self = Self { what: "a web page", endings: &["html", "htm"], in_any_order: false };
     /// A table of numbers.

@@ -321,8 +321,8 @@ fn of_a_mesh_that_was_not_read_whole() {
         let [warning] = warnings else { panic!("{warnings:?}") };
         assert!(warning.contains("bar.inp: the surface none is one of nodes"), "{warning}");
     };
-    is_told(&modes(&imported, &builder, |_| ()).unwrap().1.warnings);
-    is_told(&modes(&imported, &builder, |_| ()).unwrap().1.warnings);
+    is_told(&modes(&imported, &builder, None, |_| ()).unwrap().1.warnings);
+    is_told(&modes(&imported, &builder, None, |_| ()).unwrap().1.warnings);
     is_told(&reduce(&imported, &builder, &path("bar.body.h5"), false, false, |_| ()).unwrap().warnings);
     std::fs::remove_file(path("bar.inp")).unwrap();
     let settings = RunSettings { builder: builder.clone(), ..RunSettings::default() };

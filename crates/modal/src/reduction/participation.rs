@@ -1,4 +1,4 @@
-//! The part of the mass that each mode carries in a motion of the base, Eqs. (M11) and (M12) of `docs/method/modes.md`.
+//! The part of the mass that each mode carries in a motion of the base, Eqs. (M13) and (M14) of `docs/method/modes.md`.
 
 use nalgebra::{DMatrix, Matrix3, SMatrix, SVector, Vector3};
 

@@ -9,6 +9,8 @@ use crate::error::{BuildError, modal};
 const KEY: &str = "modes.measured";
 /// Least MAC of a measured shape with that of the mode which takes its numbers.
 const ALIKE: f64 = 0.6;
+/// Least displacement of a mode at the places that are measured, relative to its largest.
+const SEEN: f64 = 0.01;
 /// Rigid shapes at a point, before the flexible ones.
 const RIGID: usize = 6;
 
@@ -18,6 +20,7 @@ fn matched(
     measured: &Measured,
     natural: usize,
     points: &[(String, PointShapes)],
+    peaks: &[f64],
 ) -> Result<Vec<usize>, BuildError> {
     if measured.places.is_empty() {
         if measured.modes.len() <= natural {
@@ -42,7 +45,9 @@ fn matched(
     let mac = |mode: &MeasuredMode, k: usize| {
         let product: f64 = rows.iter().zip(&mode.shape).map(|(row, value)| row[k] * value).sum();
         let norms = norm(k) * mode.shape.iter().map(|value| value * value).sum::<f64>();
-        if norms > 0.0 { product.powi(2) / norms } else { 0.0 }
+        // A mode that hardly moves there is not seen: its shape at the places is little more than rounding.
+        let is_seen = norm(k).sqrt() > SEEN * peaks[k];
+        if is_seen && norms > 0.0 { product.powi(2) / norms } else { 0.0 }
     };
     let mut taken: Vec<usize> = Vec::new();
     for mode in &measured.modes {
@@ -70,7 +75,7 @@ fn matched(
 pub(crate) fn as_measured(
     scene: &Scene,
     body: ReducedBody,
-    points: &[(String, PointShapes)],
+    (points, peaks): (&[(String, PointShapes)], &[f64]),
     has_large: bool,
     damping_ratios: &mut [f64],
 ) -> Result<ReducedBody, BuildError> {
@@ -81,7 +86,7 @@ pub(crate) fn as_measured(
             .refuse(KEY, found, "modes that are small", "set `large_deflection = false` in [effects]")
             .into());
     }
-    let modes = matched(scene, measured, body.natural_modes, points)?;
+    let modes = matched(scene, measured, body.natural_modes, points, peaks)?;
     let mut circular_frequencies = body.circular_frequencies.clone();
     for (k, mode) in modes.into_iter().zip(&measured.modes) {
         circular_frequencies[k] = std::f64::consts::TAU * mode.frequency;

@@ -88,7 +88,7 @@ pub(crate) fn reduce(
     times.reduction += started.elapsed();
 
     let (mut damping_ratios, has_large) = (reduced.damping_ratios, large.is_some());
-    let body = as_measured(scene, reduced.body, &points, has_large, &mut damping_ratios)?;
+    let body = as_measured(scene, reduced.body, (&points, &reduced.size.peaks), has_large, &mut damping_ratios)?;
     let Decision { mut effects, lacks, .. } = decision;
     effects[Effect::LargeDeflection] = large.is_some();
     let following = large.as_ref().map_or_else(Mat::new, LargeDeflection::following);

@@ -1,4 +1,4 @@
-//! Modal assurance criterion of the modes of two bodies, Eq. (M14) of `docs/method/modes.md`: their shapes at the same places.
+//! Modal assurance criterion of the modes of two bodies, Eq. (M16) of `docs/method/modes.md`: their shapes at the same places.
 
 use std::fmt;
 use std::path::Path;
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use scene::{Body, FileBody, MeshedBody, Scene};
 use serde::Serialize;
 
-use crate::commands::modes::{require_flexible, unloaded};
+use super::scenes::{require_flexible, unloaded};
 use crate::files::given_file::GivenFile;
 
 /// Nodes at which shapes are compared, at the most.

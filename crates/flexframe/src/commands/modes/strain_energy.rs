@@ -1,6 +1,6 @@
 //! Where the strain energy of each mode is, and the error of its frequency that the mesh makes.
 //!
-//! The frequency that a mesh gives is too high by the energy of the error of the shape, Eq. (M13) of `docs/method/modes.md`. That is
+//! The frequency that a mesh gives is too high by the energy of the error of the shape, Eq. (M15) of `docs/method/modes.md`. That is
 //! estimated from the difference between the stress of the elements and the recovered one.
 
 use std::fmt;

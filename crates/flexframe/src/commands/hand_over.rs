@@ -1,0 +1,86 @@
+//! Reduced bodies in the files of other programs: the ending of a file names its form.
+
+mod error;
+mod flex42;
+mod gltf;
+mod mbdyn;
+mod op4;
+mod reduced;
+mod sid;
+
+use std::path::Path;
+
+use model::{BuildProgress, Builder, Model};
+use scene::Scene;
+use whole_file::{Written, write_whole};
+
+pub use error::HandOverError;
+use reduced::Reduced;
+
+use crate::commands::modes::ModesReport;
+use crate::files::write_error::WriteError;
+
+/// Forms of other programs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// OP4 of Nastran: mass, stiffness and damping matrices of the base and the modes, as Craig–Bampton has them.
+    Op4,
+    /// File of MBDyn's modal joint.
+    Mbdyn,
+    /// Flex file of NASA's 42.
+    Flex42,
+    /// Standard Input Data, of SIMPACK and Modelica.
+    Sid,
+    /// glTF with a moving surface, for pictures.
+    Gltf,
+}
+
+impl Form {
+    const ALL: [Self; 5] = [Self::Op4, Self::Mbdyn, Self::Flex42, Self::Sid, Self::Gltf];
+
+    /// The form that the ending of a file names; none for any other file.
+    pub fn of(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        Self::ALL.into_iter().find(|form| form.written().endings().contains(&ending.as_str()))
+    }
+
+    /// The kind of file.
+    pub fn written(self) -> Written {
+        match self {
+            Self::Op4 => Written::OP4,
+            Self::Mbdyn => Written::MBDYN,
+            Self::Flex42 => Written::FLEX,
+            Self::Sid => Written::SID,
+            Self::Gltf => Written::GLTF,
+        }
+    }
+}
+
+/// Reduces a scene's body as a run of it asks for, and writes it in the form of another program, with its points of the output and its
+/// markers as nodes.
+///
+/// # Errors
+/// [`HandOverError`].
+pub fn hand_over(
+    scene: &Scene,
+    builder: &Builder,
+    form: Form,
+    path: &Path,
+    progress: impl FnMut(BuildProgress),
+) -> Result<ModesReport, HandOverError> {
+    let model = builder.build(scene, progress)?;
+    write(scene, &model, form, path)?;
+    Ok(ModesReport::new(scene, &model))
+}
+
+fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<(), HandOverError> {
+    let bytes = match form {
+        Form::Gltf => gltf::bytes(scene, model)?,
+        Form::Op4 => op4::text(&Reduced::new(scene, model)?).into_bytes(),
+        Form::Mbdyn => mbdyn::text(&Reduced::new(scene, model)?).into_bytes(),
+        Form::Flex42 => flex42::text(&Reduced::new(scene, model)?).into_bytes(),
+        Form::Sid => sid::text(&Reduced::new(scene, model)?).into_bytes(),
+    };
+    write_whole(path, bytes).map_err(WriteError::of(path))?;
+    Ok(())
+}

@@ -1,0 +1,133 @@
+//! The numbers of a reduced body that other programs ask for, Eq. (M17) of `docs/method/modes.md`.
+
+use faer::Mat;
+use model::{BodyMarker, Model};
+use nalgebra::{Matrix3, Vector3};
+use scene::Scene;
+
+use super::error::HandOverError;
+use crate::commands::modes::require_flexible;
+
+/// Rigid shapes before the flexible ones.
+const RIGID: usize = 6;
+
+/// A body with flexible modes of modal mass 1. Positions are from its origin: the center of mass of a free body, the support of one that
+/// is held.
+pub struct Reduced<'a> {
+    pub title: &'a str,
+    pub mass: f64,
+    /// Center of mass.
+    pub center: Vector3<f64>,
+    /// Inertia about the origin.
+    pub inertia: Matrix3<f64>,
+    /// Circular frequencies (n).
+    pub omegas: &'a [f64],
+    /// Damping ratios (n).
+    pub damping_ratios: &'a [f64],
+    /// ∫ φ_k dm.
+    pub momenta: Vec<Vector3<f64>>,
+    /// ∫ X × φ_k dm.
+    pub angular_momenta: Vec<Vector3<f64>>,
+    /// P_k = ∫ φ_k Xᵀ dm.
+    pub with_position: Vec<Matrix3<f64>>,
+    /// E_ab: entry (j, k) is ∫ φ_j,a φ_k,b dm.
+    products: &'a [[Mat<f64>; 3]; 3],
+    /// Stiffness by spins of rate 1 about 11, 22, 33, 23, 13, 12; none where the body is not stiffened.
+    pub spin_stiffness: Option<&'a [Mat<f64>; 6]>,
+    pub nodes: Vec<Node>,
+}
+
+/// A place of the body.
+pub struct Node {
+    pub name: String,
+    pub position: Vector3<f64>,
+    /// Its displacement in each mode.
+    pub shapes: Vec<Vector3<f64>>,
+    /// Its rotation in each mode.
+    pub turns: Vec<Vector3<f64>>,
+}
+
+impl<'a> Reduced<'a> {
+    /// The numbers of a model, with points of the output and then markers as nodes.
+    pub fn new(scene: &'a Scene, model: &'a Model) -> Result<Self, HandOverError> {
+        require_flexible(scene, model)?;
+        if !model.large_modes().is_empty() {
+            let help = "set `large_deflection = false` in [effects] for the linear body";
+            let found = "a body with large modes, which none of these forms knows";
+            return Err(scene.refuse("modes.large", found, "a body whose modes are small", help).into());
+        }
+        let body = &model.body;
+        let count = body.flexible();
+        let turns = model.point_rotations(scene)?;
+        let node = |name: &str, position: Vector3<f64>, shapes: &[Vector3<f64>], turns: &[Vector3<f64>]| Node {
+            name: name.to_owned(),
+            position,
+            shapes: shapes[RIGID..].to_vec(),
+            turns: turns[RIGID..].to_vec(),
+        };
+        let points = model.points.iter().zip(&turns);
+        let points =
+            points.map(|((name, point), turn)| node(name, point.position_body(), point.columns(), turn.columns()));
+        let markers = model.markers.iter().map(|BodyMarker { name, point, turning, .. }| {
+            node(name, point.position_body(), point.columns(), turning.columns())
+        });
+        let of = |parts: &'a [Vec<f64>; 3]| -> Vec<Vector3<f64>> {
+            (0..count).map(|k| Vector3::from_fn(|i, _| parts[i][k])).collect()
+        };
+        Ok(Self {
+            title: &scene.title,
+            mass: body.mass,
+            center: body.center_of_mass - body.origin,
+            inertia: body.inertia,
+            omegas: &body.circular_frequencies,
+            damping_ratios: model.damping_ratios(),
+            momenta: of(&body.translation_first),
+            angular_momenta: of(&body.rotation_first),
+            with_position: (0..count)
+                .map(|k| Matrix3::from_fn(|a, b| body.position_products[a][b][RIGID + k]))
+                .collect(),
+            products: &body.rotation_products,
+            spin_stiffness: body.stress_stiffness.as_ref(),
+            nodes: points.chain(markers).collect(),
+        })
+    }
+
+    /// Number of modes.
+    pub fn count(&self) -> usize {
+        self.omegas.len()
+    }
+
+    /// ∫ φ_j φ_kᵀ dm.
+    pub fn product(&self, j: usize, k: usize) -> Matrix3<f64> {
+        Matrix3::from_fn(|a, b| self.products[a][b][(RIGID + j, RIGID + k)])
+    }
+
+    /// ∫ φ_j × φ_k dm.
+    pub fn cross(&self, j: usize, k: usize) -> Vector3<f64> {
+        let p = self.product(j, k);
+        Vector3::new(p[(1, 2)] - p[(2, 1)], p[(2, 0)] - p[(0, 2)], p[(0, 1)] - p[(1, 0)])
+    }
+
+    /// −∫ [X×][φ_k×] dm.
+    pub fn cross_with_position(&self, k: usize) -> Matrix3<f64> {
+        let p = &self.with_position[k];
+        Matrix3::identity() * p.trace() - p
+    }
+
+    /// ∫ [φ_j×][φ_k×] dm.
+    pub fn double_cross(&self, j: usize, k: usize) -> Matrix3<f64> {
+        let p = self.product(j, k);
+        p.transpose() - Matrix3::identity() * p.trace()
+    }
+
+    /// Viscous damping 2ζω of a mode.
+    pub fn damping(&self, k: usize) -> f64 {
+        2.0 * self.damping_ratios[k] * self.omegas[k]
+    }
+
+    /// Inertia about the center of mass.
+    pub fn central_inertia(&self) -> Matrix3<f64> {
+        let c = &self.center;
+        self.inertia - (Matrix3::identity() * c.norm_squared() - c * c.transpose()) * self.mass
+    }
+}

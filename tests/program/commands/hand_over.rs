@@ -1,0 +1,176 @@
+//! `flexframe reduce` into the files of other programs, read back. Needs a Python with pyYeti, pyNastran and pygltflib, which
+//! `FLEXFRAME_READERS` names (`./dev test` sees to it).
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use nalgebra::{DMatrix, Matrix3, Vector3};
+use serde_json::Value;
+
+const READERS: &str = "FLEXFRAME_READERS";
+const MODES: usize = 6;
+
+fn root() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+fn flexframe(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(root()).output().unwrap()
+}
+
+/// The clamped bar with two points of the output, as a scene.
+fn scene(folder: &Path) -> PathBuf {
+    let text = format!(
+        "title = \"Bar\"\nunits = {{ length = \"mm\", mass = \"Mg\", time = \"s\" }}\n[body]\nmesh = \"{}\"\n\
+         material = {{ young_modulus = 70000.0, poisson_ratio = 0.3, density = 2.7e-9 }}\n[modes]\nflexible = {MODES}\n\
+         damping_ratio = 0.01\nstatic_correction = false\n[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n[time]\nend = 0.01\n\
+         tolerance = 1e-6\n[effects]\ndamping = true\n[output]\npoints = {{ tip = [202.07, 0.0, 0.0], middle = [100.0, 5.0, 5.0] }}\n",
+        root().join("meshes/rotating_bar.msh").display()
+    );
+    let path = folder.join("bar.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+/// What the reader finds in the file of this ending.
+fn handed_over(folder: &Path, ending: &str) -> Value {
+    let file = folder.join(format!("bar.{ending}"));
+    let written = flexframe(&["reduce", scene(folder).to_str().unwrap(), "-o", file.to_str().unwrap()]);
+    assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+    let python = std::env::var_os(READERS).expect("FLEXFRAME_READERS names no Python with pyYeti; use ./dev test");
+    let read = Command::new(python).arg(root().join("tests/read_hand_over.py")).arg(&file).output().unwrap();
+    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
+    serde_json::from_slice(&read.stdout).unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap_or_else(|| panic!("{value}")).iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+fn matrix(value: &Value) -> DMatrix<f64> {
+    let rows: Vec<Vec<f64>> = value.as_array().unwrap().iter().map(numbers).collect();
+    DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
+}
+
+/// What `flexframe modes` says of the scene.
+fn modes(folder: &Path) -> Value {
+    let output = flexframe(&["modes", scene(folder).to_str().unwrap(), "--json"]);
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Conserved: the matrices that pyYeti and pyNastran read have the frequencies and effective masses of `flexframe modes`. Closed form: a bar
+/// whose base moves freely has the frequencies of a free bar, 22.3733 √(EI/ρAL⁴) first.
+#[test]
+fn op4_is_a_model_of_craig_and_bampton() {
+    let folder = tempfile::tempdir().unwrap();
+    let (found, report) = (handed_over(folder.path(), "op4"), modes(folder.path()));
+    let [mass, stiffness, damping] = ["MXX", "KXX", "BXX"].map(|name| matrix(&found[name]));
+    assert_eq!(mass, mass.transpose());
+    let frequencies = numbers(&report["body"]["natural_frequencies"]);
+    let factors = report["carried"]["factors"].as_array().unwrap();
+    let whole = numbers(&report["carried"]["whole"]);
+    for i in 0..6 {
+        assert!((mass[(i, i)] / whole[i] - 1.0).abs() < 1e-9 && stiffness[(i, i)] == 0.0);
+    }
+    for k in 0..MODES {
+        let omega = std::f64::consts::TAU * frequencies[k];
+        assert!((stiffness[(6 + k, 6 + k)] / omega.powi(2) - 1.0).abs() < 1e-12);
+        assert!((damping[(6 + k, 6 + k)] / (0.02 * omega) - 1.0).abs() < 1e-12);
+        for (i, factor) in numbers(&factors[k]).iter().enumerate() {
+            assert!((mass[(6 + k, i)] - factor).abs() < 1e-9 * whole[i].sqrt(), "{k} {i}");
+        }
+    }
+    // The base has the mass of the whole body, so that nothing holds it.
+    let inverse = mass.cholesky().unwrap().l().try_inverse().unwrap();
+    let mut free: Vec<f64> =
+        (&inverse * stiffness * inverse.transpose()).symmetric_eigenvalues().iter().copied().collect();
+    free.sort_by(f64::total_cmp);
+    let expected = 22.3733 * (70_000.0 * 100.0 / 12.0 / (2.7e-9 * 202.07_f64.powi(4))).sqrt();
+    assert!((free[6].sqrt() / expected - 1.0).abs() < 0.02, "{} {expected}", free[6].sqrt());
+    // Rotations of the base about the root move the tip by its arm.
+    let recovery = matrix(&found["TREC"]);
+    // Nodes are in the order of their names.
+    assert!((recovery[(7, 5)] - 202.07).abs() < 1e-9 && recovery.nrows() == 12 && recovery[(9, 3)] == 1.0);
+}
+
+/// Conserved: three files say the same of one body by their own integrals, 42's `L` and `N` turned as `InitFlexModes` turns them.
+#[test]
+fn integrals_of_mbdyn_42_and_standard_input_data_agree() {
+    let folder = tempfile::tempdir().unwrap();
+    let [fem, flex, sid] = ["fem", "flex42", "sid_fem"].map(|ending| handed_over(folder.path(), ending));
+    let groups = &fem["groups"];
+    assert_eq!(fem["nodes"].as_array().unwrap().len(), 2);
+    let vectors = |table: &Value| -> Vec<Vector3<f64>> {
+        table.as_array().unwrap().iter().map(|row| Vector3::from_vec(numbers(row))).collect()
+    };
+    let of_sid = |name: &str, order: &str| -> Vec<Vec<f64>> {
+        let path = format!("part/modal/{name}");
+        sid[&path][order].as_array().unwrap_or(&Vec::new()).iter().map(numbers).collect()
+    };
+    let entry = |list: &[Vec<f64>], at: &[usize]| {
+        let is_it = |row: &&Vec<f64>| row.iter().zip(at).all(|(found, index)| *found == (index + 1) as f64);
+        list.iter().find(is_it).map_or(0.0, |row| row[at.len()])
+    };
+    let close = |a: f64, b: f64, scale: f64, what: &str| assert!((a - b).abs() <= 1e-12 * scale, "{what}: {a} {b}");
+    // 42's tensors.
+    let tensor = |name: &str, at: &[usize]| {
+        let is_it = |row: &&Vec<f64>| row.iter().zip(at).all(|(found, index)| *found == *index as f64);
+        let list: Vec<Vec<f64>> = flex[name].as_array().unwrap().iter().map(numbers).collect();
+        list.iter().find(is_it).map_or(0.0, |row| row[at.len()])
+    };
+    let (inv3, inv4) = (matrix(&groups["14"]), matrix(&groups["15"]));
+    let (inv8, inv5, inv9) = (matrix(&groups["16"]), matrix(&groups["17"]), matrix(&groups["18"]));
+    let (pf, hf) = (vectors(&flex["pf"]), vectors(&flex["hf"]));
+    let [ct, cr, gr, inertia] = [("Ct", "m0"), ("Cr", "m0"), ("Gr", "m0"), ("J", "m1")].map(|(n, o)| of_sid(n, o));
+    let cr1 = of_sid("Cr", "m1");
+    let oe1 = of_sid("Oe", "m1");
+    for k in 0..MODES {
+        let r = Matrix3::from_fn(|i, j| tensor("l", &[j, i, k]));
+        // R of 42: ∫ [X×][φ×] dm.
+        let r = Matrix3::from_fn(|i, j| if i == j { r[(i, i)] - r.trace() } else { tensor("l", &[j, i, k]) });
+        let scale = r.norm();
+        for i in 0..3 {
+            close(inv3[(i, k)], pf[k][i], 1.0, "momentum");
+            close(inv3[(i, k)], entry(&ct, &[k, i]), 1.0, "Ct");
+            close(inv4[(i, k)], hf[k][i], 100.0, "angular momentum");
+            close(inv4[(i, k)], entry(&cr, &[k, i]), 100.0, "Cr");
+            for j in 0..3 {
+                close(inv8[(i, 3 * k + j)], -r[(i, j)], scale, "invariant 8");
+                close(entry(&gr, &[i, 3 * k + j]), -2.0 * r[(i, j)], scale, "Gr");
+            }
+            close(entry(&inertia, &[i, k, 0]), -2.0 * r[(i, i)], scale, "J");
+        }
+        for l in 0..MODES {
+            let n = Matrix3::from_fn(|i, j| tensor("n", &[i, j, k, l]));
+            let cross = Vector3::new(n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)]);
+            for i in 0..3 {
+                close(inv5[(i, MODES * k + l)], cross[i], 1.0, "invariant 5");
+                close(entry(&cr1, &[k, l, i]), -cross[i], 1.0, "Cr");
+                close(entry(&oe1, &[k, l, i]), n[(i, i)] - n.trace(), 1.0, "Oe");
+                for j in 0..3 {
+                    let expected = n[(j, i)] - if i == j { n.trace() } else { 0.0 };
+                    close(inv9[(i, 3 * (MODES * k + l) + j)], expected, 1.0, "invariant 9");
+                }
+            }
+            // The modal mass is one.
+            close(n.trace(), f64::from(u8::from(k == l)), 1e3, "mass");
+        }
+    }
+    assert_eq!(sid["part/modal/refmod"]["nelastq"], MODES.to_string());
+}
+
+#[test]
+fn gltf_has_the_surface_and_an_animation_of_each_mode() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = handed_over(folder.path(), "glb");
+    let extent = numbers(&found["extent"]);
+    assert!((extent[0] - 202.07).abs() < 1e-3 && (extent[1] - 10.0).abs() < 1e-3, "{extent:?}");
+    assert!(found["last_index"].as_u64().unwrap() < found["points"].as_u64().unwrap());
+    assert_eq!(found["animations"].as_array().unwrap().len(), MODES);
+    // 33 frames of a weight for each target.
+    assert!(numbers(&found["weights"]).iter().all(|length| *length == (33 * MODES) as f64));
+    // The largest displacement is 8 % of the size; one of its components is no less than that over √3.
+    let largest = numbers(&found["largest"]);
+    let size = 0.08 * (202.07_f64.powi(2) + 200.0).sqrt();
+    assert!(largest.iter().all(|length| (size / 3f64.sqrt() * 0.999..size * 1.001).contains(length)), "{largest:?}");
+}
