@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use dynamics::{Drive, Effect};
-use fem_tet10::{Materials, Mesh};
+use fem_tet10::{Materials, Matrices, Mesh};
 use matrix_import::MatrixFiles;
 use mesh_import::Imported;
 use modal::Support;
@@ -21,6 +21,7 @@ use crate::mesh::other_materials::other_materials;
 use crate::mesh::read::{matrices, mesh_file, mesh_in};
 use crate::progress::{BuildProgress, BuildTimes, timed};
 use crate::reference::Reference;
+use crate::reference::found::Asked;
 use crate::support::support;
 
 /// The mesh and the matrices of the body of a scene, and what holds it.
@@ -194,7 +195,10 @@ impl AssembledMesh {
         if let Some(found) = self.reference.get() {
             return Ok(found.as_ref());
         }
-        let found = Reference::new(self)?;
+        let found = match self.scene.modes.about {
+            Some(about) => self.asked()?.reference(about, || self.assembled_matrices())?,
+            None => None,
+        };
         Ok(self.reference.get_or_init(|| found).as_ref())
     }
 
@@ -204,8 +208,22 @@ impl AssembledMesh {
         if let Some(found) = self.tangent.get() {
             return Ok(found);
         }
-        let found = reference.tangent(self)?;
+        let found = FeMatrices::Assembled(self.asked()?.tangent(reference, self.assembled_matrices()?)?);
         Ok(self.tangent.get_or_init(|| found))
+    }
+
+    /// The body as a bent rest of it is asked for.
+    fn asked(&self) -> Result<Asked<'_>, BuildError> {
+        let Self { scene, mesh, support, drive, store, .. } = self;
+        let (drive, store) = (drive.as_ref(), store.as_ref());
+        Ok(Asked { scene, mesh, materials: self.materials()?, support, drive, store })
+    }
+
+    fn assembled_matrices(&self) -> Result<&Matrices, BuildError> {
+        match self.matrices()? {
+            FeMatrices::Assembled(matrices) => Ok(matrices),
+            FeMatrices::Given { .. } => Err(self.without_elements()),
+        }
     }
 
     /// The nodes of the reference: of the undeformed body without one.
@@ -232,7 +250,7 @@ impl AssembledMesh {
     }
 
     /// The refusal of what needs elements.
-    pub fn without_elements(&self) -> BuildError {
+    fn without_elements(&self) -> BuildError {
         let found = "a body of matrices, whose elements are not known";
         self.scene.refuse("body.matrices", found, "a body with elements", "give the body a mesh and a material").into()
     }

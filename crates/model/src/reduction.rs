@@ -1,5 +1,6 @@
 //! From the finite-element model of a scene to the reduced body: a survey, a decision, and the reduction.
 
+pub(crate) mod about;
 pub(crate) mod backbones;
 mod bent;
 mod damping;

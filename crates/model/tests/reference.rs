@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use model::{Builder, Checker, Model, StateCheck};
+use model::{Builder, Cache, Checker, Model, StateCheck};
 use nonlinear::{EquilibriumSettings, ExternalForces, StateErrorSettings, equilibrium, spin_vibrations};
-use scene::Scene;
+use scene::{FileBody, Scene};
 
 /// A body of a mesh of the verification in SI, clamped at its root.
 #[derive(Clone, Copy)]
@@ -214,6 +214,57 @@ fn the_spin_of_the_drive_is_the_reference_by_its_name() {
     assert_eq!(auto.body.circular_frequencies, given.body.circular_frequencies);
     // At a tenth of the spin it hardly bends.
     assert!(drive(0.1 * spin, "about = \"auto\"").meshed.unwrap().reference.is_none());
+}
+
+#[test]
+fn a_spin_that_bends_the_body_far_calls_for_a_reference() {
+    let why = |spin: f64| {
+        let motion = format!(
+            "[[constraints]]\nkind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [1.0, 0.0, 0.0]\ngroup = \"root\"\n\
+             motion = {{ amplitude = {spin:e}, history = {{ kind = \"constant\" }} }}\n"
+        );
+        let advice = built(&BLADE.scene("", &motion)).advice;
+        advice.effects[dynamics::Effect::LargeDeflection].why.clone()
+    };
+    let spin = BLADE.first();
+    let (slow, fast) = (why(0.2 * spin), why(2.0 * spin));
+    assert!(!slow.contains("about that rest") && fast.contains("`about = \"auto\"` in [modes]"), "{slow} {fast}");
+}
+
+/// Conserved: the same bits from the cache and from a body file, which is refused for another rest.
+#[test]
+fn the_cache_and_a_body_file_carry_the_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    let spin = BLADE.first();
+    let scene = BLADE.spinning("", spin, spin);
+    let path = folder.path().join("blade.body.h5");
+    let made = Builder::with_cache(Cache::new(folder.path().join("cache"), u64::MAX));
+    let first = made.build(&scene, |_| ()).unwrap();
+    made.write_body(&scene, &path, false, |_| ()).unwrap();
+    let computed = made.cache.notes().computed;
+    let second = made.build(&scene, |_| ()).unwrap();
+    assert_eq!(made.cache.notes().computed, computed, "nothing is computed again");
+    let with_file = |about: f64| {
+        let mut scene = BLADE.spinning("", spin, about);
+        let scene::Body::Meshed(body) = scene.body.clone() else { panic!() };
+        scene.body = scene::Body::File(FileBody {
+            file: path.clone(),
+            mesh: None,
+            mesh_size: body.mesh_size,
+            raise_order: body.raise_order,
+            materials: None,
+            point_masses: None,
+        });
+        Model::build(&scene, |_| ())
+    };
+    let third = with_file(spin).unwrap();
+    let constants = |model: &Model| {
+        let forces = model.physics.reference.clone().unwrap().force;
+        (forces, model.body.circular_frequencies.clone(), model.body.inertia_first.clone())
+    };
+    assert!(constants(&first) == constants(&second) && constants(&first) == constants(&third));
+    let refused = with_file(0.9 * spin).unwrap_err().to_string();
+    assert!(refused.contains("modes about a bent body that is not that of the scene"), "{refused}");
 }
 
 #[test]

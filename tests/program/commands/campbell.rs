@@ -259,3 +259,47 @@ fn what_is_no_axis_no_range_of_speeds_and_no_order_is_refused() {
     refused("z", "0:200:5", &["--orders", "1,-2"], &["--orders", "positive"]);
     refused("z", "0:200:5", &["-n", "0"], &["--flexible", "a whole number, 1 or more"]);
 }
+
+/// The swept blade of `crates/model/tests/reference.rs` at 0, 1 and 2 times its first frequency; `more` are options.
+fn blade(speeds: &str, more: &[&str]) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("blade.toml");
+    let mesh = root().join("crates/verification/meshes/swept_blade.msh");
+    let text = format!(
+        "title = \"Blade\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n[body]\nmesh = {mesh:?}\n\
+         material = {{ young_modulus = 2e9, poisson_ratio = 0.3, density = 1000.0 }}\n[modes]\nflexible = 6\n\
+         [[constraints]]\nkind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [1.0, 0.0, 0.0]\ngroup = \"root\"\n\
+         motion = {{ amplitude = 1.0, history = {{ kind = \"constant\" }} }}\n[time]\nend = 1.0\nstep = 1e-3\n"
+    );
+    std::fs::write(&scene, text).unwrap();
+    let out = folder.path().join("out");
+    let mut arguments = vec!["campbell", scene.to_str().unwrap(), "--axis", "x", "--speeds", speeds, "--json"];
+    arguments.extend(["-o", out.to_str().unwrap()]);
+    arguments.extend(more);
+    let output = flexframe(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The frequencies at a speed, rising.
+fn at(report: &Value, speed: usize) -> Vec<f64> {
+    let branches = report["branches"].as_array().unwrap();
+    let mut found: Vec<f64> = branches.iter().map(|branch| branch["frequency"][speed].as_f64().unwrap()).collect();
+    found.sort_by(f64::total_cmp);
+    found
+}
+
+/// Independent reference: eight modes and static shapes about the rest, and the full body (`cargo test -p model --test reference`).
+#[test]
+fn a_blade_that_its_spin_bends_vibrates_about_its_rest_at_each_speed() {
+    let first = at(&blade("0:1:2", &["--about-rest", "never"]), 0)[0];
+    let speeds = format!("0:{}:3", 2.0 * TAU * first);
+    let report = blade(&speeds, &[]);
+    for (found, expected) in at(&report, 2).into_iter().zip([6.20321, 12.82606, 37.7478, 50.2525]) {
+        assert!((found - expected).abs() < 1e-3 * expected, "{found} {expected}");
+    }
+    let deflection: Vec<f64> = report["deflection"].as_array().unwrap().iter().map(|u| u.as_f64().unwrap()).collect();
+    assert!(deflection[0] < 1e-9 && deflection[1] > 0.05 && (deflection[2] - 0.14).abs() < 0.02, "{deflection:?}");
+    let straight = blade(&speeds, &["--about-rest", "never"]);
+    assert!(straight.get("deflection").is_none() && (at(&straight, 2)[0] / 6.20321 - 1.0).abs() > 0.05);
+}

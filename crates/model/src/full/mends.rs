@@ -28,7 +28,7 @@ impl Mend {
             Self::StaticShapes => "static shapes (`[modes] static_correction = true`)",
             Self::MoreModes => "more modes (`[modes] flexible`)",
             Self::LargeModes => "large modes (`[effects] large_deflection = true`)",
-            Self::Reference => "modes about the deformed rest (a prestressed reference), or fewer loads",
+            Self::Reference => "modes about the bent rest (`about` in [modes]), or fewer loads",
         }
     }
 }

@@ -18,6 +18,7 @@ use crate::load::mesh_load::{self, UnitWeight};
 use crate::model::points::{output_points, well_spread};
 use crate::model::{Meshed, Model};
 use crate::progress::{BuildProgress, BuildTimes, timed};
+use crate::reduction::about::proposed;
 use crate::reduction::decide::Decision;
 use crate::reduction::manifold::LargeDeflection;
 use crate::reduction::measured::as_measured;
@@ -64,8 +65,12 @@ pub(crate) fn reduce(
     let survey = Survey::new(&model, modes, on_all_modes, progress)?;
     let has_statics = survey.statics.any() || survey.of_markers.is_some();
     let decision = Decision::new(scene, &survey);
-    let Reduction { modes, modal: reduced, large, backbones, stress, forces, of_markers, warps, advice } =
+    let Reduction { modes, modal: reduced, large, backbones, stress, forces, of_markers, warps, mut advice } =
         Reduction::new(&model, survey, &decision)?;
+    if let Some(proposal) = proposed(&model, &modes, &reduced) {
+        let why = &mut advice.effects[Effect::LargeDeflection].why;
+        *why = format!("{why} {proposal}");
+    }
     if has_statics {
         times.statics = started.elapsed();
     }
