@@ -228,8 +228,7 @@ live-page:
     gzip -9nc target/page/wasm32-unknown-unknown/page/live.wasm >crates/report/web/live.wasm.gz
     .ci/live-sources >crates/report/web/live.sources
 
-# Live pages: in Node against the results files, to 1e-9, with the work of a frame; then in a headless Chromium. Before that, whether
-# their program is what its sources give (npm).
+# Live pages in Node against results files, with the work of a frame, and in a headless Chromium; before that, whether their program is what its sources give (npm).
 live-page-test:
     #!/usr/bin/env bash
     set -euo pipefail
