@@ -1,5 +1,6 @@
 //! `flexframe report`: a results file as one HTML page.
 
+mod compared;
 mod contents;
 mod led_on;
 mod quantities;
@@ -42,6 +43,18 @@ pub enum HtmlReportError {
         /// The part that is another one.
         what: &'static str,
     },
+    /// Runs that have no time in common.
+    #[error(
+        "{}: --compare: found a run whose rows are at other times, expected one with two or more rows in the time of {}\n = \
+         compare runs of the same time",
+        other.display(), results.display()
+    )]
+    Apart {
+        /// The results file.
+        results: PathBuf,
+        /// That of the other run.
+        other: PathBuf,
+    },
     /// A run that a page cannot lead on.
     #[error("{}: no live page can be made of this run: {source}", results.display())]
     Live {
@@ -59,6 +72,19 @@ pub enum HtmlReportError {
 pub fn contents(file: &Path) -> Result<Report, HtmlReportError> {
     let Drawn { results, bodies } = Drawn::open(file, Part::Surface)?;
     contents::contents(file, &results, bodies).ok_or_else(|| HtmlReportError::NoColumns { results: file.to_owned() })
+}
+
+/// The same with another run beside it: ghosts of its bodies, its courses, and their differences.
+///
+/// # Errors
+/// [`HtmlReportError`].
+pub fn compared_contents(file: &Path, other: &Path) -> Result<Report, HtmlReportError> {
+    let mut name = other.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    if other.file_stem() == file.file_stem() {
+        name = other.display().to_string();
+    }
+    let apart = || HtmlReportError::Apart { results: file.to_owned(), other: other.to_owned() };
+    compared::compared(contents(file)?, contents(other)?, &name).ok_or_else(apart)
 }
 
 /// The same with the run itself: the page computes the motion, and lets it be changed. The bodies are built again from the scene

@@ -458,6 +458,7 @@ impl Fault for HtmlReportError {
         match self {
             Self::NoColumns { results } | Self::Changed { results, .. } => Kind::Input.of(results),
             Self::Live { results, .. } => Kind::Usage.of(results),
+            Self::Apart { other, .. } => Kind::Input.of(other),
             Self::Drawn(_) | Self::Page(_) | Self::Scene(_) | Self::Build(_) => Known::default(),
         }
     }
