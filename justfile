@@ -209,6 +209,10 @@ paraview: build
 report-page:
     cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build
 
+# Films of `flexframe animate` (ffmpeg).
+film-test:
+    cargo test --quiet --package flexframe-cli --test program films_have -- --ignored
+
 # The page of reports in a headless Chromium; before that, whether it is what its sources give (npm).
 report-page-test:
     mkdir -p out/report-page
