@@ -155,7 +155,7 @@ function draw(place: HTMLElement, shown: Shown, spectra: Spectrum[], { frequency
         scales: { x: { time: false }, y: { distr: 3, range: [DEPTH * top, 2 * top] } },
         axes: [
             { ...axis, values: (_, ticks) => ticks.map((tick) => number(tick)), size: 28, gap: 3, label: `frequency, ${frequency}`, labelSize: 18, labelFont: axis.font },
-            { ...axis, splits: (_, __, least, most) => powers(least, most), values: (_, ticks) => ticks.map((tick) => number(tick, 2)), size: 68, gap: 4 },
+            { ...axis, splits: (_, __, least, most) => powers(least, most), values: (_, ticks) => ticks.map((tick) => (tick == null ? "" : number(tick, 2))), size: 68, gap: 4 },
         ],
         series: [{}, ...courses.map((_, i) => ({ stroke: () => cssColour(`course-${i % COLOURS}`), width: 1.5, points: { show: false } }))],
         cursor: { drag: { x: true, y: false } },
