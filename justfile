@@ -247,6 +247,9 @@ live-page-test:
     done
     cd crates/report/web && npm ci --silent --no-audit --no-fund
     REPORTS=../../../out/live-page npm run --silent test-live
+# Films of `flexframe animate` (ffmpeg).
+film-test:
+    cargo test --quiet --package flexframe-cli --test program films_have -- --ignored
 
 # The page of reports in a headless Chromium; before that, whether it is what its sources give (npm).
 report-page-test:
@@ -254,7 +257,7 @@ report-page-test:
     cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build -- ../../../out/report-page/page.html
     cmp crates/report/web/page.html out/report-page/page.html || \
         { echo "report-page-test: page.html is not what web/src gives: run ./dev report-page" >&2; exit 1; }
-    for kind in small large unfinished rigid hinged nodes patch several; do \
+    for kind in small large unfinished rigid hinged nodes patch several compared; do \
         cargo run --quiet --package report --example synthetic -- $kind out/report-page/$kind.html; done
     cd crates/report/web && REPORTS=../../../out/report-page npm test --silent
 

@@ -303,6 +303,9 @@ enum Command {
         /// The bodies are built again from the scene in the file, with their meshes.
         #[arg(long)]
         live: bool,
+        /// Show another run beside it: its bodies as ghosts, its courses, and their differences.
+        #[arg(long, value_name = "FILE", conflicts_with = "live")]
+        compare: Option<PathBuf>,
         #[command(flatten)]
         files: FileArgs,
     },
@@ -758,11 +761,14 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             }
             Ok(())
         }
-        Command::Report { file, output, live, files } => {
-            GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
-            let mut contents = || match live {
-                true => html_report::live_contents(&file, &builder, |p| bar.build(p)),
-                false => html_report::contents(&file),
+        Command::Report { file, output, live, compare, files } => {
+            for file in [&file].into_iter().chain(&compare) {
+                GivenFile::expect(file, &[GivenFile::Results], RESULTS)?;
+            }
+            let mut contents = || match &compare {
+                Some(other) => html_report::compared_contents(&file, other),
+                None if live => html_report::live_contents(&file, &builder, |p| bar.build(p)),
+                None => html_report::contents(&file),
             };
             if output.as_deref().is_some_and(output::is_standard) {
                 let page = html_report::page(&contents()?)?;
@@ -770,7 +776,11 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                 return Ok(output::text(&page)?);
             }
             let output = output.unwrap_or_else(|| file.with_extension("html"));
-            outputs_of_results(&file, files.overwrite).claim_as(&Written::PAGE, &output)?;
+            let mut outputs = outputs_of_results(&file, files.overwrite);
+            if let Some(other) = &compare {
+                outputs = outputs.and_input(other);
+            }
+            outputs.claim_as(&Written::PAGE, &output)?;
             html_report::write(&contents()?, &output)?;
             drop(bar);
             output::list(&[output])

@@ -4,14 +4,15 @@
 //!
 //! `small` is a struck plate, `large` one of 60 000 vertices and 40 modes, `unfinished` a run that was stopped, `rigid` a
 //! body without a surface, `hinged` a plate that turns about one end, `nodes` one of which only the nodes are known, `patch`
-//! a square whose displacement and stress are the same everywhere, and `several` three bodies.
+//! a square whose displacement and stress are the same everywhere, `several` three bodies, and `compared` a plate of few rows
+//! with another one that flies beside it.
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use report::{
-    Balance, Body, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind,
+    Balance, Body, Compared, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind,
     StressField, Surface, Units,
 };
 
@@ -30,8 +31,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         "rigid" => plate(4, 2, 0, 500, "Rigid body without a mesh"),
         "patch" => patch(),
         "several" => several(),
+        "compared" => compared(),
         _ => {
-            let expected = "small, large, unfinished, rigid, hinged, nodes, patch or several";
+            let expected = "small, large, unfinished, rigid, hinged, nodes, patch, several or compared";
             return Err(format!("{kind}: expected {expected}").into());
         }
     };
@@ -150,6 +152,30 @@ fn several() -> Report {
         report.histories.extend(of.histories);
         report.balances.extend(of.balances);
     }
+    report
+}
+
+/// A struck plate whose every row is in the page, and another run of it, 200 mm beside it and half as far bent.
+fn compared() -> Report {
+    let mut report = plate(120, 8, 6, 501, "Two runs of a plate");
+    let Report { times, mut bodies, .. } = plate(60, 4, 2, 301, "");
+    let Motion { origins, coordinates, .. } = &mut bodies[0].motion;
+    origins.iter_mut().for_each(|[_, y, _]| *y += 200.0);
+    coordinates.iter_mut().for_each(|q| *q *= 0.5);
+    let half = |name: String, of: &Component| Component { name, values: of.values.iter().map(|x| 0.5 * x).collect() };
+    report.histories = std::mem::take(&mut report.histories)
+        .into_iter()
+        .flat_map(|history| {
+            let difference = history.components.iter().map(|of| half(of.name.clone(), of)).collect();
+            let difference =
+                History { name: format!("{}: difference", history.name), components: difference, ..history.clone() };
+            let theirs: Vec<_> = history.components.iter().map(|of| half(format!("{} (slow)", of.name), of)).collect();
+            let mut both = history;
+            both.components.extend(theirs);
+            [both, difference]
+        })
+        .collect();
+    report.compared = Some(Compared { name: "slow".to_owned(), times, bodies });
     report
 }
 
@@ -291,5 +317,6 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
         },
         warnings: Vec::new(),
         live: None,
+        compared: None,
     }
 }

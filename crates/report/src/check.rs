@@ -1,7 +1,7 @@
 //! Sizes and numbers of a report, checked before anything is written.
 
 use crate::ReportError;
-use crate::report::{Body, Component, Control, Motion, Report, Surface};
+use crate::report::{Body, Compared, Component, Control, Motion, Report, Surface};
 
 /// Shapes that a page can draw: layers of a texture that every graphics processor has.
 const MAX_SHAPES: usize = 256;
@@ -14,19 +14,11 @@ const UNIT_TOLERANCE: f64 = 1e-6;
 /// # Errors
 /// The first thing that is wrong.
 pub(crate) fn check(report: &Report) -> Result<(), ReportError> {
-    check_times(&report.times)?;
+    check_bodies(&report.times, &report.bodies)?;
+    if let Some(Compared { times, bodies, .. }) = &report.compared {
+        check_bodies(times, bodies)?;
+    }
     let rows = report.times.len();
-    if report.bodies.is_empty() {
-        return Err(ReportError::Empty { what: "body".to_owned() });
-    }
-    for body in &report.bodies {
-        check_motion(&body.motion, rows, body.shapes.len())?;
-        if body.shapes.len() > MAX_SHAPES {
-            return Err(ReportError::TooManyShapes { found: body.shapes.len(), most: MAX_SHAPES });
-        }
-        body.surface.as_ref().map_or(Ok(()), check_surface)?;
-        check_shapes(body)?;
-    }
     for history in &report.histories {
         let what = format!("history \"{}: {}\"", history.group, history.name);
         least_range(&what, history.least_range)?;
@@ -46,6 +38,22 @@ pub(crate) fn check(report: &Report) -> Result<(), ReportError> {
         for Control { group, name, range, recorded, .. } in &live.controls {
             finite(&format!("control \"{group}: {name}\""), range.iter().chain([recorded]).copied())?;
         }
+    }
+    Ok(())
+}
+
+fn check_bodies(times: &[f64], bodies: &[Body]) -> Result<(), ReportError> {
+    check_times(times)?;
+    if bodies.is_empty() {
+        return Err(ReportError::Empty { what: "body".to_owned() });
+    }
+    for body in bodies {
+        check_motion(&body.motion, times.len(), body.shapes.len())?;
+        if body.shapes.len() > MAX_SHAPES {
+            return Err(ReportError::TooManyShapes { found: body.shapes.len(), most: MAX_SHAPES });
+        }
+        body.surface.as_ref().map_or(Ok(()), check_surface)?;
+        check_shapes(body)?;
     }
     Ok(())
 }

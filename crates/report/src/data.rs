@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::numbers::Numbers;
 use crate::peak::{length, peak, von_mises};
 use crate::report::{
-    Body, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface,
+    Body, Compared, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface,
 };
 use crate::thin::{Thinning, spread};
 
@@ -44,6 +44,14 @@ pub(crate) struct Data<'a> {
     scene: [&'a str; 2],
     warnings: &'a [String],
     live: Option<LiveData<'a>>,
+    compared: Option<ComparedData<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct ComparedData<'a> {
+    name: &'a str,
+    times: Numbers,
+    bodies: Vec<BodyData<'a>>,
 }
 
 #[derive(Debug, Serialize)]
@@ -154,7 +162,7 @@ impl<'a> Data<'a> {
         let times = &report.times;
         let rows = times.len();
         let thinning = Thinning::new(rows, history_points(report));
-        let kept = motion_rows(report);
+        let kept = motion_rows(times, &report.bodies);
         Self {
             title: &report.title,
             program: &report.program,
@@ -200,6 +208,18 @@ impl<'a> Data<'a> {
             scene: [&report.scene.file, &report.scene.text],
             warnings: &report.warnings,
             live: report.live.as_ref().map(LiveData::new),
+            compared: report.compared.as_ref().map(ComparedData::new),
+        }
+    }
+}
+
+impl<'a> ComparedData<'a> {
+    fn new(Compared { name, times, bodies }: &'a Compared) -> Self {
+        let kept = motion_rows(times, bodies);
+        Self {
+            name,
+            times: Numbers::double(kept.iter().map(|row| times[*row])),
+            bodies: bodies.iter().map(|body| BodyData::new(body, &kept)).collect(),
         }
     }
 }
@@ -233,10 +253,10 @@ fn facts(facts: &[Fact]) -> Vec<[&str; 2]> {
 }
 
 /// The rows of the motion that the page has, evenly spread.
-fn motion_rows(report: &Report) -> Vec<usize> {
+fn motion_rows(times: &[f64], bodies: &[Body]) -> Vec<usize> {
     let of_body = |body: &Body| (3 + 4 + body.shapes.len()) * size_of::<f32>();
-    let bytes = size_of::<f64>() + report.bodies.iter().map(of_body).sum::<usize>();
-    spread(report.times.len(), MOTION_BYTES / bytes)
+    let bytes = size_of::<f64>() + bodies.iter().map(of_body).sum::<usize>();
+    spread(times.len(), MOTION_BYTES / bytes)
 }
 
 /// How many points a history may have.

@@ -18,6 +18,6 @@ mod thin;
 pub use error::ReportError;
 pub use page::{html, write};
 pub use report::{
-    Balance, Body, Component, Control, Effect, Fact, History, Live, LiveBody, Motion, Report, RunState, SceneText,
-    Shape, ShapeKind, StressField, Surface, Units,
+    Balance, Body, Compared, Component, Control, Effect, Fact, History, Live, LiveBody, Motion, Report, RunState,
+    SceneText, Shape, ShapeKind, StressField, Surface, Units,
 };

@@ -27,6 +27,19 @@ pub struct Report {
     pub warnings: Vec<String>,
     /// The run as data, of a page that computes.
     pub live: Option<Live>,
+    /// Another run beside it.
+    pub compared: Option<Compared>,
+}
+
+/// Another run that is shown beside the first: its bodies as ghosts. Its courses are components of the histories.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// Its name, such as that of its file.
+    pub name: String,
+    /// Time of each of its rows, increasing.
+    pub times: Vec<f64>,
+    /// Its bodies.
+    pub bodies: Vec<Body>,
 }
 
 /// A run that the page leads on by itself.

@@ -69,6 +69,7 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
         scene: SceneText { file: "strip.toml".to_owned(), text: "a = 1\n".to_owned() },
         warnings: Vec::new(),
         live: None,
+        compared: None,
     }
 }
 

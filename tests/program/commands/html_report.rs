@@ -250,3 +250,52 @@ fn a_live_page_of_what_a_page_cannot_step_is_refused_by_name() {
         "{words}"
     );
 }
+
+/// Two runs on one page: the second is shorter, and starts with another velocity.
+#[test]
+fn another_run_is_compared_where_both_have_the_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let run = |to: &str, end: &str, more: &[&str]| {
+        let set = format!("time.end={end}");
+        let arguments = ["run", "examples/ring.toml", "--no-check", "-o", to, "--set", &set];
+        succeed(&[&arguments[..], more].concat());
+    };
+    run(&place("a"), "0.02", &[]);
+    run(&place("b"), "0.01", &["--set", "modes.damping_ratio=0.2"]);
+    let [a, b] = ["a/ring.h5", "b/ring.h5"].map(place);
+    let page = place("page.html");
+    succeed(&["report", &a, "--compare", &b, "-o", &page]);
+    let page = data(Path::new(&page));
+
+    let times = numbers(&page["history_times"]);
+    assert!((times[times.len() - 1] - 0.01).abs() < 1e-9);
+    let warnings = page["warnings"].to_string();
+    assert!(warnings.contains("compared from 0 to 0.01 s"), "{warnings}");
+    // Closed form: each difference is that of its two courses, up to single precision.
+    let histories = page["histories"].as_array().unwrap();
+    let pairs = histories.windows(2).filter(|pair| {
+        pair[1]["name"].as_str().unwrap() == format!("{}: difference", pair[0]["name"].as_str().unwrap())
+    });
+    let (mut compared, mut differ) = (0, 0);
+    for pair in pairs {
+        let components = |of: &Value| of["components"].as_array().unwrap().clone();
+        let (both, differences) = (components(&pair[0]), components(&pair[1]));
+        assert_eq!(both.len(), 2 * differences.len());
+        for (i, difference) in differences.iter().enumerate() {
+            let [own, other] = [i, i + differences.len()].map(|k| numbers(&both[k]["values"]));
+            for ((own, other), found) in own.iter().zip(&other).zip(numbers(&difference["values"])) {
+                assert!((own - other - found).abs() <= 2e-7 * (own.abs() + other.abs()), "{own} {other} {found}");
+                differ += usize::from(found != 0.0);
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 10 && differ > 100, "{compared} {differ}");
+    let ghost = &page["compared"];
+    assert_eq!(ghost["bodies"].as_array().unwrap().len(), 1);
+    assert!((numbers(&ghost["times"]).last().unwrap() - 0.01).abs() < 1e-9);
+
+    let refused = flexframe(&["report", &a, "--compare", "examples/ring.toml", "-o", &place("x.html")]);
+    assert_eq!(refused.status.code(), Some(3), "{}", String::from_utf8_lossy(&refused.stderr));
+}

@@ -157,6 +157,63 @@ fn a_results_file_becomes_a_moving_picture() {
     assert_eq!(rows("alone.gif", &[]), all);
 }
 
+#[test]
+fn a_moving_picture_shows_stress_and_modes_and_needs_ffmpeg_for_films_alone() {
+    let desk = Desk::new();
+    desk.done(&["run", "bar.toml", "-o", "out"]);
+    let drawn = |gif: &str, arguments: &[&str]| {
+        desk.done(&[&["animate"], arguments, &["-o", gif, "--frames", "4"]].concat());
+        fs::read(desk.path(gif)).unwrap()
+    };
+    let of_results = drawn("results.gif", &["out/bar.h5"]);
+    let by_stress = drawn("stress.gif", &["out/bar.h5", "--colour", "stress"]);
+    assert_eq!((frames(&by_stress), by_stress == of_results), (4, false));
+    assert_ne!(drawn("xz.gif", &["out/bar.h5", "--view", "xz"]), of_results);
+    // A bar is as thick as it is wide: its first two modes are one, turned. The fourth is longitudinal or torsional.
+    let modes = [
+        drawn("first.gif", &["bar.toml", "--mode", "1"]),
+        drawn("third.gif", &["bar.toml", "--mode", "3"]),
+        drawn("strained.gif", &["bar.toml", "--mode", "1", "--colour", "stress"]),
+    ];
+    assert!(modes.iter().all(|gif| frames(gif) == 4) && modes[0] != modes[1] && modes[0] != modes[2]);
+
+    desk.refused(2, &["animate", "bar.toml", "--mode", "5", "-o", "x.gif"], &["--mode: found 5", "1 to 4"]);
+    desk.refused(2, &["animate", "out/bar.h5", "--mode", "1", "-o", "x.gif"], &["--mode", "a results file", "a scene"]);
+    desk.refused(2, &["animate", "bar.toml", "--mode", "1", "--to", "1", "-o", "x.gif"], &["--mode", "--to"]);
+    desk.refused(2, &["animate", "bar.toml", "--view", "front", "-o", "x.gif"], &["--view", "iso, xy, xz"]);
+    let film = |ending: &str| {
+        let film = format!("x.{ending}");
+        let arguments = ["animate", "out/bar.h5", "-o", &film];
+        let output = desk.command(&arguments).env("FLEXFRAME_FFMPEG", "no-such-program").output().unwrap();
+        assert_eq!(output.status.code(), Some(6));
+        let words = String::from_utf8(output.stderr).unwrap();
+        for part in [&film[..], "`no-such-program` cannot be started", "apt install ffmpeg", "FLEXFRAME_FFMPEG", ".gif"]
+        {
+            assert!(words.contains(part), "{part}: {words}");
+        }
+        assert!(!desk.path(&film).exists());
+    };
+    film("mp4");
+    film("webm");
+}
+
+/// Run by `./dev film-test`, which installs ffmpeg.
+#[test]
+#[ignore = "needs ffmpeg: ./dev film-test"]
+fn films_have_the_frames_of_the_picture() {
+    let desk = Desk::new();
+    desk.done(&["run", "bar.toml", "-o", "out"]);
+    for (film, codec) in [("x.mp4", "h264"), ("x.webm", "vp9")] {
+        desk.done(&["animate", "out/bar.h5", "-o", film]);
+        let fields = "stream=codec_name,width,height,r_frame_rate,nb_read_frames";
+        let asked = ["-v", "error", "-count_frames", "-show_entries", fields, "-of", "csv=p=0", film];
+        let said = Command::new("ffprobe").args(asked).current_dir(desk.path("")).output().unwrap().stdout;
+        // Eleven rows; 0.05 s each.
+        assert_eq!(String::from_utf8(said).unwrap().trim(), format!("{codec},1440,880,20/1,11"));
+    }
+    assert_eq!(fs::read_dir(desk.path("")).unwrap().count(), 5, "nothing else is left");
+}
+
 /// Pictures of a GIF: each has a graphic control extension.
 fn frames(gif: &[u8]) -> usize {
     gif.windows(4).filter(|bytes| *bytes == [0x21, 0xf9, 0x04, 0x04] || *bytes == [0x21, 0xf9, 0x04, 0x00]).count()

@@ -1,136 +1,34 @@
 //! `flexframe animate`: a scene or a results file as a moving picture.
 
+mod error;
 mod film;
 mod mode;
+mod settings;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use dynamics::{Observation, Reached, Simulation, StepError};
-use figures::{Animation, FigureError, Frame, View};
+use figures::{Animation, Frame};
 use model::{BuildError, Builder};
 use nalgebra::Vector3;
 use results::{BodyResults, Shapes, Units};
 use rigid_kin::Attitude;
-use scene::{Rows, SceneError, System};
+use scene::{Rows, System};
 use whole_file::TemporaryFolder;
 
+pub use self::error::AnimationError;
 pub use self::film::FilmError;
 use self::film::Format;
 pub use self::mode::animate_mode;
+pub use self::settings::{AnimationSettings, Coloured, MAX_FRAMES};
 use crate::commands::export::ExportError;
 use crate::commands::modes::require_surface;
 use crate::commands::run::{self, RunError, RunProgress, RunSettings};
-use crate::commands::system_modes::SystemModesError;
 use crate::drawn::{Drawn, Part};
 use crate::report::quantity;
 use crate::rows::units::UnitLabels;
 use crate::surface::Surface;
-
-/// An animation has no more frames.
-pub const MAX_FRAMES: u64 = 10_000;
-
-/// The coloured quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Coloured {
-    /// Length of the displacement by deformation.
-    #[default]
-    Displacement,
-    /// Von Mises stress.
-    Stress,
-}
-
-/// How the picture is made.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AnimationSettings {
-    /// Number of frames, first and last state among them (two to [`MAX_FRAMES`]).
-    pub frames: u64,
-    /// Factor on the deformation that is drawn.
-    pub magnification: f64,
-    /// Time of the first frame; `None` for the start of the run.
-    pub from: Option<f64>,
-    /// Time of the last frame; `None` for the end of the run.
-    pub to: Option<f64>,
-    /// From where the body is seen.
-    pub view: View,
-    /// The coloured quantity.
-    pub coloured: Coloured,
-}
-
-impl Default for AnimationSettings {
-    fn default() -> Self {
-        Self {
-            frames: 60,
-            magnification: 1.0,
-            from: None,
-            to: None,
-            view: View::default(),
-            coloured: Coloured::default(),
-        }
-    }
-}
-
-/// An animation that could not be made.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // the message of a variant says what its fields are
-pub enum AnimationError {
-    /// The scene could not be run.
-    #[error("{0}")]
-    Run(#[from] RunError),
-    /// A step failed, and no picture is drawn.
-    #[error("{}: {source}", scene.display())]
-    Step { scene: PathBuf, source: StepError },
-    /// There is nothing to draw.
-    #[error("{}: a rigid body without a mesh has no surface to draw; give it a mesh and `flexible = 0`", scene.display())]
-    NoMesh { scene: PathBuf },
-    /// The name is not that of a moving picture: it may be that of a file which is not to be replaced.
-    #[error(
-        "{}: the animation is a GIF or a film; give its file a name that ends in .gif, .mp4 or .webm", path.display()
-    )]
-    OtherFormat { path: PathBuf },
-    /// The film could not be made.
-    #[error("{0}")]
-    Film(#[from] FilmError),
-    /// The stress of a body is not known.
-    #[error(
-        "{}: the stress of a body that deforms is not known, because its elements are not\n = leave --colour stress out", file.display()
-    )]
-    NoStress { file: PathBuf },
-    /// A mode that is not there.
-    #[error(
-        "{}: --mode: found {number}, expected 1 to {modes}\n = `flexframe modes` lists them; ask for more in [modes] of the scene",
-        scene.display()
-    )]
-    NoSuchMode { scene: PathBuf, number: usize, modes: usize },
-    /// Modes of bodies that move apart.
-    #[error(
-        "{}: --mode: found {count} bodies or systems that move apart, each with modes of its own, expected one\n = choose a body with \
-         --body NAME",
-        scene.display()
-    )]
-    SeveralMotions { scene: PathBuf, count: usize },
-    /// A body could not be built.
-    #[error("{0}")]
-    Build(#[from] BuildError),
-    /// The scene is refused.
-    #[error("{0}")]
-    Scene(#[from] SceneError),
-    /// The vibrations of a system could not be found.
-    #[error("{0}")]
-    Modes(#[from] SystemModesError),
-    /// The times are not those of the run. `end`: that of the run.
-    #[error(
-        "--from, --to: found the times from {from} to {to}, expected a part of the run, which goes from 0 to {end}\n = \
-         give --from and --to so that 0 ≤ from < to ≤ {end}, or leave them out"
-    )]
-    Times { from: f64, to: f64, end: f64 },
-    /// The results file cannot be shown.
-    #[error("{0}")]
-    Export(#[from] ExportError),
-    /// The picture could not be drawn.
-    #[error("{0}")]
-    Figure(#[from] FigureError),
-}
 
 /// Runs the bodies of a scene and draws them into a moving picture at `path`, which ends in `.gif`, or with ffmpeg in `.mp4` or
 /// `.webm`. Rigid bodies without a mesh are not drawn. Returns a warning where the frames are too few to show the spin.

@@ -1,5 +1,6 @@
 //! `flexframe report`: a results file as one HTML page.
 
+mod compared;
 mod contents;
 mod error;
 mod led_on;
@@ -20,6 +21,19 @@ pub use error::HtmlReportError;
 pub fn contents(file: &Path) -> Result<Report, HtmlReportError> {
     let Drawn { results, bodies } = Drawn::open(file, Part::Surface)?;
     contents::contents(file, &results, bodies).ok_or_else(|| HtmlReportError::NoColumns { results: file.to_owned() })
+}
+
+/// The same with another run beside it: ghosts of its bodies, its courses, and their differences.
+///
+/// # Errors
+/// [`HtmlReportError`].
+pub fn compared_contents(file: &Path, other: &Path) -> Result<Report, HtmlReportError> {
+    let mut name = other.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    if other.file_stem() == file.file_stem() {
+        name = other.display().to_string();
+    }
+    let apart = || HtmlReportError::Apart { results: file.to_owned(), other: other.to_owned() };
+    compared::compared(contents(file)?, contents(other)?, &name).ok_or_else(apart)
 }
 
 /// The same with the run itself: the page computes the motion, and lets it be changed. The bodies are built again from the scene

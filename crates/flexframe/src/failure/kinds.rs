@@ -21,7 +21,7 @@ use sealed::SealedError;
 use slepc::SlepcError;
 
 use super::{Details, FailureReport, Kind};
-use crate::commands::animation::AnimationError;
+use crate::commands::animation::{AnimationError, FilmError};
 use crate::commands::campbell::CampbellError;
 use crate::commands::check::CheckError;
 use crate::commands::cost::CostError;
@@ -431,8 +431,14 @@ impl Fault for AnimationError {
             Self::NoMesh { scene } => Kind::Input.of(scene),
             Self::NoStress { file } => Kind::Input.of(file),
             Self::NoSuchMode { scene, .. } | Self::SeveralMotions { scene, .. } => Kind::Usage.of(scene),
-            Self::OtherFormat { path } => Kind::Usage.of(path),
-            Self::Film(error) => Kind::Io.of(error.path()),
+            Self::Film(FilmError::OtherFormat { path }) => Kind::Usage.of(path),
+            Self::Film(FilmError::Figure(_)) => Known::default(),
+            Self::Film(
+                FilmError::NoProgram { path, .. }
+                | FilmError::NoEncoder { path, .. }
+                | FilmError::Failed { path, .. }
+                | FilmError::Io { path, .. },
+            ) => Kind::Io.of(path),
             Self::Times { from, to, end } => Kind::Usage.with(Details {
                 key: Some("--from, --to".to_owned()),
                 found: Some(format!("{from} to {to}")),
@@ -458,6 +464,7 @@ impl Fault for HtmlReportError {
         match self {
             Self::NoColumns { results } | Self::Changed { results, .. } => Kind::Input.of(results),
             Self::Live { results, .. } => Kind::Usage.of(results),
+            Self::Apart { other, .. } => Kind::Input.of(other),
             Self::Drawn(_) | Self::Page(_) | Self::Scene(_) | Self::Build(_) => Known::default(),
         }
     }

@@ -34,7 +34,10 @@ export interface Report {
     scene: [string, string];
     warnings: string[];
     live: LiveData | null;
+    compared: Compared | null;
 }
+/// Another run, whose bodies are seen as ghosts. Its courses are among the histories.
+export interface Compared { name: string; times: Numbers; bodies: BodyData[] }
 /// A run that the page leads on by itself.
 export interface LiveData {
     program: string; run: string; masses: number[]; controls: Control[];

@@ -7,9 +7,9 @@ export class Motion {
     readonly times: Float64Array;
     readonly bodies: BodyMotion[];
 
-    constructor(report: Report) {
-        this.times = double(report.times);
-        this.bodies = report.bodies.map((body) => new BodyMotion(body));
+    constructor({ times, bodies }: Pick<Report, "times" | "bodies">) {
+        this.times = double(times);
+        this.bodies = bodies.map((body) => new BodyMotion(body));
     }
 
     get start() { return this.times[0]; }

@@ -1,6 +1,7 @@
 // The page in a real browser. REPORTS names the folder of the pages that examples/synthetic.rs has made.
 
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
 import { SCALE } from "../src/picture/scale.mjs";
 import { frame, launch, open, pixels } from "./browser.mjs";
@@ -294,6 +295,104 @@ test("the page follows the dark scheme of the system", async (t) => {
     assert.ok(Math.max(...(await ground())) < 60);
     await page.emulateMedia({ colorScheme: "light" });
     assert.ok(Math.min(...(await ground())) > 200);
+});
+
+/// The bytes that a click lets the browser save, and their name.
+async function saved(page, locator) {
+    const [download] = await Promise.all([page.waitForEvent("download"), locator.click()]);
+    return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
+}
+
+/// Width, height, and the colours of some places of a PNG, as the browser reads it.
+const colours = (page, bytes, places) => page.evaluate(async ([base64, places]) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const at = ([x, y]) => [...context.getImageData(Math.round(x * image.width), Math.round(y * image.height), 1, 1).data];
+    return { size: [image.width, image.height], colours: places.map(at) };
+}, [bytes.toString("base64"), places]);
+
+test("the picture is saved as it is seen, with its background and its legend", async (t) => {
+    const page = await open(t, browser, "small");
+    await page.evaluate(() => window.reportPage.clock.seek(0.02));
+    const { name, bytes } = await saved(page, page.locator("#save-picture"));
+    assert.equal(name, "Free_plate_50_N_end_pulse.at_0.02000_s.png");
+    const place = await page.evaluate(() => {
+        const [stage, bar] = [document.querySelector(".stage"), document.getElementById("legend-bar")].map((part) => part.getBoundingClientRect());
+        const x = (bar.left + bar.width / 2 - stage.left) / stage.width;
+        return { stage: [stage.width, stage.height], bar: [0.02, 0.98].map((part) => [x, (bar.top + part * bar.height - stage.top) / stage.height]) };
+    });
+    const { size, colours: [top, bottom, corner] } = await colours(page, bytes, [...place.bar, [0.01, 0.01]]);
+    assert.deepEqual(size, place.stage.map((length) => 2 * Math.round(length)));
+    const near = (found, level) => Math.hypot(...direction(found.slice(0, 3)).map((c, i) => c - colour(level)[i])) < 0.05;
+    assert.ok(near(top, 0.98) && near(bottom, 0.02), `${top} ${bottom}`);
+    assert.deepEqual(corner, [237, 241, 244, 255], "the colour of the page behind the bodies");
+});
+
+test("standard views look along the axes", async (t) => {
+    const page = await open(t, browser, "small");
+    const seen = () => page.evaluate(() => [...document.querySelectorAll("#triad line")].map((line) =>
+        ["x2", "y2"].map((name) => Math.round(Number(line.getAttribute(name))) + 0)));
+    for (const [name, axes] of [
+        ["xy, from z", [[26, 0], [0, -26], [0, 0]]], ["xz, from −y", [[26, 0], [0, 0], [0, -26]]],
+        ["yz, from x", [[0, 0], [26, 0], [0, -26]]], ["from −z", [[26, 0], [0, 26], [0, 0]]],
+    ]) {
+        await page.selectOption("#view", name);
+        await frame(page);
+        assert.deepEqual(await seen(), axes, name);
+    }
+});
+
+test("the spectrum shows the frequency of a mode, and follows the range that is shown", async (t) => {
+    const page = await open(t, browser, "compared");
+    await page.selectOption("#panel-0 select", "point P2");
+    const button = page.locator("#panel-0 .plot-tools button", { hasText: "Spectrum" }).first();
+    await button.click();
+    const line = await page.locator(".peaks span").nth(2).textContent();
+    // Closed form: a decaying vibration of 12 Hz; the window spreads it over 4 Hz.
+    const [, frequency] = line.match(/^z: ([\d.]+) Hz/);
+    assert.ok(Math.abs(frequency - 12) < 1, line);
+    assert.match(await page.locator(".spectrum").textContent(), /501 rows from 0 to 0.5 s.*Hz; Hann window/);
+    await button.click();
+    assert.equal(await page.locator(".spectrum").count(), 0);
+    // Of a long run not every row is in the page.
+    const long = await open(t, browser, "small");
+    await long.locator("#panel-0 .plot-tools button", { hasText: "Spectrum" }).first().click();
+    assert.match(await long.locator(".spectrum").textContent(), /No spectrum: .*not every row/);
+});
+
+test("a plot is saved as a table and as a picture", async (t) => {
+    const page = await open(t, browser, "compared");
+    const { bytes: csv } = await saved(page, page.locator("#panel-0 .plot-tools button", { hasText: "CSV" }).first());
+    const lines = csv.toString().trimEnd().split("\n");
+    assert.equal(lines.length, 502);
+    assert.match(lines[0], /^"time, s","position of the centre of mass \(global\) x, mm",/);
+    // Closed form: the last row of the motion, x = 400 t, and half of it in the other run.
+    const row = lines[501].split(",").map(Number);
+    assert.deepEqual([row[0], row[1], row[4]], [0.5, 200, 100]);
+    const { bytes } = await saved(page, page.locator("#panel-0 .plot-tools button", { hasText: "PNG" }).first());
+    assert.equal(bytes.toString("latin1", 1, 4), "PNG");
+});
+
+test("another run is there as a ghost, with its courses", async (t) => {
+    const page = await open(t, browser, "compared");
+    const names = await page.locator("#panel-0 .plot-name").allTextContents();
+    assert.ok(names.some((name) => name.endsWith(": difference, mm")), `${names}`);
+    const with_ghost = await pixels(page, 0.02);
+    await page.uncheck("#compared");
+    const without = await pixels(page, 0.02);
+    assert.ok(without.part < with_ghost.part && without.sum !== with_ghost.sum);
+    await page.check("#compared");
+    assert.equal((await pixels(page, 0.02)).sum, with_ghost.sum);
+    await page.selectOption("#subject", "0 0");
+    await page.click("#play"); // it swings
+    const alone = await pixels(page);
+    await page.uncheck("#compared");
+    assert.equal((await pixels(page)).part, alone.part, "not beside a shape");
 });
 
 test("work for each frame of 60 000 vertices and 40 modes", async (t) => {

@@ -5,11 +5,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use figures::Animation;
+use figures::{Animation, FigureError};
 use foreign_program::{ForeignProgram, Limits, ProgramError, Stream, named};
 use whole_file::{TemporaryFolder, write_whole};
-
-use super::AnimationError;
 
 /// Names ffmpeg, where it is not `ffmpeg`.
 const FFMPEG: &str = "FLEXFRAME_FFMPEG";
@@ -20,6 +18,14 @@ const LIMITS: Limits = Limits { time: Some(Duration::from_secs(6 * 3600)), bytes
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum FilmError {
+    /// The name is not that of a moving picture: it may be that of a file which is not to be replaced.
+    #[error(
+        "{}: the animation is a GIF or a film; give its file a name that ends in .gif, .mp4 or .webm", path.display()
+    )]
+    OtherFormat { path: PathBuf },
+    /// A frame could not be drawn, or the GIF not be written.
+    #[error("{0}")]
+    Figure(#[from] FigureError),
     /// There is no ffmpeg.
     #[error(
         "{}: a film is made by ffmpeg, but `{program}` cannot be started: {cause}\n = install ffmpeg (Debian: apt install ffmpeg), \
@@ -42,18 +48,6 @@ pub enum FilmError {
     Io { path: PathBuf, cause: io::Error },
 }
 
-impl FilmError {
-    /// The film.
-    pub fn path(&self) -> &Path {
-        match self {
-            Self::NoProgram { path, .. }
-            | Self::NoEncoder { path, .. }
-            | Self::Failed { path, .. }
-            | Self::Io { path, .. } => path,
-        }
-    }
-}
-
 /// Kind of a moving picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
@@ -69,12 +63,12 @@ impl Format {
     /// The kind that the ending of a name asks for, with what makes it at hand.
     ///
     /// # Errors
-    /// [`AnimationError`] of another ending, and without an encoder.
-    pub(super) fn of(path: &Path) -> Result<Self, AnimationError> {
+    /// [`FilmError`] of another ending, and without an encoder.
+    pub(super) fn of(path: &Path) -> Result<Self, FilmError> {
         let is = |ending: &str| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
         let kinds = [("gif", Self::Gif), ("mp4", Self::Mp4), ("webm", Self::WebM)];
         let format = kinds.into_iter().find(|(ending, _)| is(ending)).map(|(_, format)| format);
-        let format = format.ok_or_else(|| AnimationError::OtherFormat { path: path.to_owned() })?;
+        let format = format.ok_or_else(|| FilmError::OtherFormat { path: path.to_owned() })?;
         format.require_encoder(path)?;
         Ok(format)
     }
@@ -109,7 +103,7 @@ impl Format {
         animation: &Animation<'_>,
         path: &Path,
         mut progress: impl FnMut(f64),
-    ) -> Result<(), AnimationError> {
+    ) -> Result<(), FilmError> {
         let Some((encoder, settings)) = self.encoder() else { return Ok(animation.save_gif(path)?) };
         let folder = temporary(path)?;
         let count = animation.frames.len() as f64;
@@ -141,10 +135,10 @@ impl Format {
         let said = ffmpeg(path, folder.path(), &arguments)?;
         if !said.is_done {
             let said = said.error.unwrap_or_else(|| "it says nothing".to_owned());
-            return Err(FilmError::Failed { path: path.to_owned(), program: program(), said }.into());
+            return Err(FilmError::Failed { path: path.to_owned(), program: program(), said });
         }
         let bytes = fs::read(folder.path().join(film)).map_err(of(path))?;
-        Ok(write_whole(path, bytes).map_err(of(path))?)
+        write_whole(path, bytes).map_err(of(path))
     }
 }
 

@@ -8,8 +8,9 @@ use model::Builder;
 use nalgebra::Vector3;
 use scene::{Scene, System};
 
+use super::error::AnimationError;
 use super::film::Format;
-use super::{AnimationError, AnimationSettings, Coloured, MAX_FRAMES};
+use super::settings::{AnimationSettings, Coloured, MAX_FRAMES};
 use crate::commands::modes::{self, frequency_unit, require_flexible, require_surface};
 use crate::commands::run::{RunError, RunProgress};
 use crate::commands::system_modes::{self, SystemSurface};
@@ -149,6 +150,6 @@ impl Swinging<'_> {
             ground: false,
             traced_point: None,
         };
-        format.write(&animation, path, |part| progress(RunProgress::Motion(part)))
+        Ok(format.write(&animation, path, |part| progress(RunProgress::Motion(part)))?)
     }
 }

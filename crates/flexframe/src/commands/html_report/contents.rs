@@ -46,6 +46,7 @@ pub(super) fn contents(file: &Path, results: &Results, drawn: Vec<DrawnBody>) ->
         },
         warnings: warnings(run),
         live: None,
+        compared: None,
     })
 }
 

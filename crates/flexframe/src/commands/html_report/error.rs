@@ -38,6 +38,18 @@ pub enum HtmlReportError {
         /// The part that is another one.
         what: &'static str,
     },
+    /// Runs that have no time in common.
+    #[error(
+        "{}: --compare: found a run whose rows are at other times, expected one with two or more rows in the time of {}\n = \
+         compare runs of the same time",
+        other.display(), results.display()
+    )]
+    Apart {
+        /// The results file.
+        results: PathBuf,
+        /// That of the other run.
+        other: PathBuf,
+    },
     /// A run that a page cannot lead on.
     #[error("{}: no live page can be made of this run: {source}", results.display())]
     Live {

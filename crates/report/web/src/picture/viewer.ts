@@ -4,6 +4,7 @@ import type { Vector3 } from "three";
 import type { Body, Field } from "./body";
 import { nextStep, type Clock } from "../clock";
 import { onSchemeChange } from "../colours";
+import { Ghosts } from "./compared";
 import { SCALE } from "./scale.mjs";
 import type { Report } from "../data";
 import { minus, number, timeDecimals, withUnit } from "../format";
@@ -25,6 +26,7 @@ export interface BodyShape { body: number; shape: number }
 
 export class Viewer {
     private stage: Stage | null = null;
+    private compared: Ghosts | null = null;
     /// The shape that is shown alone; none where the run is shown.
     private shape: BodyShape | null = null;
     private swinging = true;
@@ -50,6 +52,7 @@ export class Viewer {
         this.fillSubjects();
         this.fillColours();
         this.connect();
+        if (this.stage && report.compared) this.compared = new Ghosts(report.compared, this.stage, () => (this.changed = true));
         clock.onChange(() => this.showTime());
         this.showTime();
         this.showLegend();
@@ -262,6 +265,7 @@ export class Viewer {
 
     recolour() {
         this.stage?.recolour();
+        this.compared?.recolour();
         this.changed = true;
     }
 
@@ -348,6 +352,7 @@ export class Viewer {
     private prepare() {
         const { stage, motion } = this;
         if (!stage) return;
+        this.compared?.place(this.clock.time, this.exaggeration, this.shape === null);
         if (this.shape === null) {
             motion.at(this.clock.time);
             const shown = this.leading?.placed ?? motion.bodies;

@@ -68,8 +68,8 @@ export function peaks({ frequencies, amplitudes, resolution }) {
     const found = [];
     for (let k = 1; k < amplitudes.length - 1; k++) {
         const [a, b, c] = [amplitudes[k - 1], amplitudes[k], amplitudes[k + 1]];
-        // Slower than the first line is what is left of the mean.
-        if (b < a || b <= c || b < LEAST_PEAK * greatest || frequencies[k] < resolution) continue;
+        // What does not go through three periods may be a drift.
+        if (b < a || b <= c || b < LEAST_PEAK * greatest || frequencies[k] < 3 * resolution) continue;
         const [la, lb, lc] = [a, b, c].map((value) => Math.log(Math.max(value, Number.MIN_VALUE)));
         const bend = la - 2 * lb + lc;
         const off = bend < 0 ? (0.5 * (la - lc)) / bend : 0;

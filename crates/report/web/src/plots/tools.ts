@@ -123,7 +123,7 @@ function spectrumOf(shown: Shown, settings: ToolSettings): { part: HTMLElement; 
     part.append(place);
     const chart = draw(place, shown, spectra, settings);
     say(`Spectrum of ${last - first + 1} rows from ${number(times[0])} to ${withUnit(number(times[times.length - 1]), settings.time)}: amplitude in ${
-        shown.unit === "" || shown.unit === "1" ? "the unit of the plot" : shown.unit} over frequency in ${settings.frequency}; Hann window, without the mean. Lines nearer than ${
+        shown.unit === "" || shown.unit === "1" ? "the unit of the plot" : shown.unit} over frequency in ${settings.frequency}; Hann window, without the mean. No peak is told that does not go through three periods; lines nearer than ${
         withUnit(number(2 * resolution, 2), settings.frequency)} are one; the highest frequency is ${withUnit(number(frequencies[frequencies.length - 1]), settings.frequency)}.`);
     const list = document.createElement("p");
     list.className = "peaks";
@@ -144,14 +144,18 @@ function draw(place: HTMLElement, shown: Shown, spectra: Spectrum[], { frequency
     const top = greatest > 0 ? greatest : 1;
     const axis = { stroke: () => cssColour("muted"), grid: { stroke: () => cssColour("grid"), width: 1 },
         ticks: { stroke: () => cssColour("grid"), width: 1 }, font: "12px system-ui, sans-serif" };
-    const courses = spectra.map(({ amplitudes }) => amplitudes.map((value) => Math.max(value, DEPTH * top)));
+    const courses = spectra.map(({ amplitudes }) => [...amplitudes].map((value) => (value < DEPTH * top ? null : value)));
+    const powers = (least: number, most: number) => {
+        const [first, last] = [least, most].map((value) => Math.log10(value));
+        return Array.from({ length: Math.max(0, Math.floor(last) - Math.ceil(first) + 1) }, (_, i) => 10 ** (Math.ceil(first) + i));
+    };
     return new uPlot({
         width: Math.max(200, shown.chart.width), height: HEIGHT,
         legend: { show: false },
         scales: { x: { time: false }, y: { distr: 3, range: [DEPTH * top, 2 * top] } },
         axes: [
             { ...axis, values: (_, ticks) => ticks.map((tick) => number(tick)), size: 28, gap: 3, label: `frequency, ${frequency}`, labelSize: 18, labelFont: axis.font },
-            { ...axis, values: (_, ticks) => ticks.map((tick) => (tick == null || Math.abs(Math.log10(tick) % 1) > 1e-6 ? "" : number(tick, 2))), size: 68, gap: 4 },
+            { ...axis, splits: (_, __, least, most) => powers(least, most), values: (_, ticks) => ticks.map((tick) => (tick == null ? "" : number(tick, 2))), size: 68, gap: 4 },
         ],
         series: [{}, ...courses.map((_, i) => ({ stroke: () => cssColour(`course-${i % COLOURS}`), width: 1.5, points: { show: false } }))],
         cursor: { drag: { x: true, y: false } },

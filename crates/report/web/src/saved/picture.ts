@@ -51,7 +51,9 @@ function write(context: CanvasRenderingContext2D, text: string, x: number, y: nu
 function drawTexts(context: CanvasRenderingContext2D, frame: DOMRect, element: HTMLElement) {
     for (const part of element.children.length > 0 ? [...element.children] as HTMLElement[] : [element]) {
         const style = getComputedStyle(part);
-        const box = part.getBoundingClientRect();
+        const range = document.createRange();
+        range.selectNodeContents(part); // its box may be wider than its text
+        const box = range.getBoundingClientRect();
         if (!part.textContent || box.width === 0 || style.visibility === "hidden") continue;
         const middle = box.left + box.width / 2 - frame.left;
         write(context, part.textContent, middle, box.top + box.height / 2 - frame.top, "center",
