@@ -9,5 +9,6 @@ pub(crate) mod export;
 pub(crate) mod fmu;
 pub(crate) mod html_report;
 pub(crate) mod new_scene;
+pub(crate) mod srs;
 pub(crate) mod sweep;
 pub(crate) mod systems;

@@ -33,7 +33,7 @@ pub mod report;
 mod rows;
 pub mod surface;
 pub use commands::{
-    advise, animation, campbell, check, cost, export, fmu, html_report, mode_shapes, modes, new_scene, paper, run,
+    advise, animation, campbell, check, cost, export, fmu, html_report, mode_shapes, modes, new_scene, paper, run, srs,
     sweep, system_modes,
 };
 pub use files::{given_file, outputs, write_error};

@@ -1,8 +1,8 @@
 //! Shock response spectra of a base motion, and sums of the peaks of modes.
 //!
 //! ```text
-//! z'' + 2 ζ ω z' + ω² z = −a(t)            z = z' = 0 at the first time         (S1)
-//! w = a + z'' = −(2 ζ ω z' + ω² z)          acceleration of the mass             (S2)
+//! z'' + 2 ζ ω z' + ω² z = −a(t)            z = z' = 0 at the first time         (R1)
+//! w = a + z'' = −(2 ζ ω z' + ω² z)          acceleration of the mass             (R2)
 //! ```
 //!
 //! a is the acceleration of the base, z the displacement of an oscillator relative to it. A spectrum has the largest |z| and the

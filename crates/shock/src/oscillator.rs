@@ -1,9 +1,10 @@
 //! Exact steps of an oscillator under an acceleration of its base that is straight in time.
 //!
 //! With the answer g to a unit impulse, `g(τ) = exp(−ζωτ) sin(ω_d τ)/ω_d`, a step of length h under a = a₀ + s t is
+//! Eq. (R3):
 //!
 //! ```text
-//! z(h)  = c z + g v − a₀ ∫g dτ − s ∫g (h − τ) dτ                (S3)
+//! z(h)  = c z + g v − a₀ ∫g dτ − s ∫g (h − τ) dτ
 //! z'(h) = −ω² g z + g' v − a₀ g − s ∫g dτ
 //! ```
 //!
@@ -71,7 +72,7 @@ impl Oscillator {
         }
     }
 
-    /// Acceleration of the mass, Eq. (S2), and its rate.
+    /// Acceleration of the mass, Eq. (R2), and its rate.
     pub fn mass_acceleration(&self, swing: Swing, base: f64) -> [f64; 2] {
         let Self { omega, zeta } = *self;
         let acceleration = -(2.0 * zeta * omega * swing.v + omega * omega * swing.z);

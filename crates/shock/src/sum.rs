@@ -13,7 +13,7 @@ pub struct ModalPeak {
     pub value: f64,
 }
 
-/// How peaks are summed.
+/// How peaks are summed, Eq. (R4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sum {
     /// Σ |r|: an upper bound.
@@ -63,7 +63,7 @@ fn check(peak: &ModalPeak, sum: Sum) -> Result<(), ShockError> {
     Ok(())
 }
 
-/// Correlation of two modes under white noise, Eq. (S5) (Der Kiureghian 1981).
+/// Correlation of two modes under white noise, Eq. (R5) (Der Kiureghian 1981).
 pub fn correlation(a: &ModalPeak, b: &ModalPeak) -> f64 {
     let ratio = b.frequency / a.frequency;
     let (zeta_a, zeta_b) = (a.damping_ratio, b.damping_ratio);

@@ -169,3 +169,58 @@ fn bad_input_is_told_with_its_row() {
     assert!(Sum::Cqc.of(&[mode(0.0, 0.1, 1.0)]).is_err());
     assert!(Sum::Srss.of(&[mode(1.0, 0.1, f64::NAN)]).is_err());
 }
+
+/// Two equal masses, each on a spring of stiffness k above the one below, on a base.
+#[test]
+fn the_absolute_sum_bounds_two_masses() {
+    const STIFFNESS: f64 = 400.0;
+    const ZETA: f64 = 0.03;
+    let motion = pulse(|t| (PI * t).sin() + 0.5 * (7.0 * PI * t).sin());
+    // Closed form: frequencies and shapes of [[2, −1], [−1, 1]] are those of the golden ratio.
+    let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
+    let modes = [golden - 1.0, golden].map(|root| {
+        let omega = STIFFNESS.sqrt() * root;
+        let shape = [1.0, 2.0 - root * root]; // of the lower and of the upper mass
+        let factor = (shape[0] + shape[1]) / (shape[0] * shape[0] + shape[1] * shape[1]);
+        (omega, shape, factor)
+    });
+    let peaks = modes.map(|(omega, shape, factor)| {
+        let displacement = motion.peaks(omega / TAU, ZETA).unwrap().displacement;
+        ModalPeak { frequency: omega / TAU, damping_ratio: ZETA, value: factor * shape[1] * displacement }
+    });
+    // Independent reference: the coupled equations by Runge–Kutta, damping Σ 2ζω φφᵀ/φᵀφ.
+    let rate = |t: f64, y: [f64; 4]| {
+        let base = if t <= 1.0 { (PI * t).sin() + 0.5 * (7.0 * PI * t).sin() } else { 0.0 };
+        let mut out = [y[2], y[3], 0.0, 0.0];
+        let force = [STIFFNESS * (y[1] - 2.0 * y[0]), STIFFNESS * (y[0] - y[1])];
+        for i in 0..2 {
+            let damping: f64 = modes
+                .iter()
+                .map(|(omega, shape, _)| {
+                    let length = shape[0] * shape[0] + shape[1] * shape[1];
+                    2.0 * ZETA * omega * shape[i] * (shape[0] * y[2] + shape[1] * y[3]) / length
+                })
+                .sum();
+            out[2 + i] = force[i] - damping - base;
+        }
+        out
+    };
+    let (mut y, mut most, h) = ([0.0; 4], 0.0_f64, 1e-4);
+    for k in 0..25_000 {
+        let t = f64::from(k) * h;
+        let add = |d: [f64; 4], h: f64| -> [f64; 4] { std::array::from_fn(|i| y[i] + h * d[i]) };
+        let k1 = rate(t, y);
+        let k2 = rate(t + 0.5 * h, add(k1, 0.5 * h));
+        let k3 = rate(t + 0.5 * h, add(k2, 0.5 * h));
+        let k4 = rate(t + h, add(k3, h));
+        y = std::array::from_fn(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+        most = most.max(y[1].abs());
+    }
+    let sum = |rule: Sum| rule.of(&peaks).unwrap();
+    assert!(most <= sum(Sum::Absolute) && most >= peaks[0].value.abs() - peaks[1].value.abs());
+    // Regression only: how far the two others are from the truth for this motion.
+    close(sum(Sum::Srss), most, 0.1);
+    close(sum(Sum::Cqc), most, 0.1);
+    // Closed form: the factors of all modes of a mass add up to 1.
+    close(modes.iter().map(|(_, shape, factor)| factor * shape[1]).sum(), 1.0, 1e-12);
+}
