@@ -11,5 +11,6 @@ pub(crate) mod fmu;
 pub(crate) mod hand_over;
 pub(crate) mod html_report;
 pub(crate) mod new_scene;
+pub(crate) mod srs;
 pub(crate) mod sweep;
 pub(crate) mod systems;

@@ -17,9 +17,10 @@ use flexframe::figures::{self, View};
 use flexframe::fmu::{self, FmuSettings};
 use flexframe::given_file::GivenFile;
 use flexframe::hand_over::{self, Form};
-use flexframe::outputs::{OutputError, Written, outputs_of_results, outputs_of_scene, outputs_of_scenes};
+use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_results, outputs_of_scene, outputs_of_scenes};
 use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
+use flexframe::srs::{self, Frequencies, SrsSettings};
 use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::system_modes::{self, AdviceOnSystems, ModesOfSystems};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
@@ -228,6 +229,29 @@ enum Command {
         output: Option<PathBuf>,
         #[command(flatten)]
         files: FileArgs,
+    },
+    /// Find shock response spectra of a base motion: CSV, and a diagram (docs/method/shock.md).
+    ///
+    /// A spectrum has the peaks of oscillators on the base, against their frequency: displacement relative to the base, and
+    /// acceleration of the mass in both directions, during the motion and in the free vibration after it.
+    Srs {
+        /// CSV file of two columns, time and acceleration of the base; straight between lines, zero after the last.
+        #[arg(value_name = "TABLE")]
+        table: PathBuf,
+        /// Frequencies in cycles per time, at equal ratios: from start to end, both included, count in all.
+        #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies, allow_hyphen_values = true)]
+        frequencies: Frequencies,
+        /// Damping ratios, 0 to less than 1: a spectrum for each.
+        #[arg(long, value_name = "ZETA,ZETA,…", value_delimiter = ',', default_values_t = [0.05], value_parser = finite, allow_hyphen_values = true)]
+        damping: Vec<f64>,
+        /// Folder for srs.csv and the diagram [default: out/<name of the table>].
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
+        /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
+        #[arg(long)]
+        json: bool,
     },
     /// Run the paper's plate and compare it with the paper: every figure, and a report.
     Paper {
@@ -697,6 +721,22 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             drop(bar);
             output::print(&report, json)
         }
+        Command::Srs { table, frequencies, damping, output, files, json } => {
+            GivenFile::expect(
+                &table,
+                &[GivenFile::Table],
+                "a CSV file of times and accelerations (docs/reference/cli.md)",
+            )?;
+            output::require_file("--output", output.as_deref())?;
+            if let Some(folder) = &output {
+                Written::FOLDER.check(folder)?;
+            }
+            let folder = output.unwrap_or_else(|| Path::new("out").join(table.file_stem().unwrap_or("srs".as_ref())));
+            Outputs::new(vec![table.clone()], files.overwrite).claim(&srs::files(&folder))?;
+            let report = srs::srs(&table, &folder, &SrsSettings { frequencies, damping_ratios: damping })?;
+            drop(bar);
+            output::print(&report, json)
+        }
         Command::Paper { scene: SceneArgs { scene, json }, output, files } => {
             output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
@@ -986,6 +1026,11 @@ fn speeds(text: &str) -> Result<Speeds, String> {
         _ => None,
     };
     speeds.ok_or_else(|| "expected start:end:count, such as 0:200:50".to_owned())
+}
+
+fn frequencies(text: &str) -> Result<Frequencies, String> {
+    let Speeds { start, end, count } = speeds(text).map_err(|_| "expected start:end:count, such as 1:2000:200")?;
+    Ok(Frequencies { start, end, count })
 }
 
 /// The refusal of a number of modes, at the option where that has replaced what the scene says.

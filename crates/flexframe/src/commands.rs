@@ -14,5 +14,6 @@ pub mod modes;
 pub mod new_scene;
 pub mod paper;
 pub mod run;
+pub mod srs;
 pub mod sweep;
 pub mod system_modes;

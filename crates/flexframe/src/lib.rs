@@ -34,7 +34,7 @@ mod rows;
 pub mod surface;
 pub use commands::{
     advise, animation, campbell, check, cost, export, fmu, hand_over, html_report, mode_shapes, modes, new_scene,
-    paper, run, sweep, system_modes,
+    paper, run, srs, sweep, system_modes,
 };
 pub use files::{given_file, outputs, write_error};
 pub use rows::{columns, peak_stress, row};

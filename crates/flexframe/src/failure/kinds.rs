@@ -18,6 +18,7 @@ use report::ReportError;
 use results::FileError;
 use scene::SceneError;
 use sealed::SealedError;
+use shock::ShockError;
 use slepc::SlepcError;
 
 use super::{Details, FailureReport, Kind};
@@ -30,6 +31,7 @@ use crate::commands::fmu::FmuError;
 use crate::commands::html_report::HtmlReportError;
 use crate::commands::paper::PaperError;
 use crate::commands::run::RunError;
+use crate::commands::srs::SrsError;
 use crate::commands::sweep::{SWEEP_CURE, SweepError};
 use crate::commands::system_modes::SystemModesError;
 use crate::drawn::DrawnError;
@@ -87,7 +89,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 33] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 34] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
@@ -121,6 +123,7 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 33] = [
     known_by::<CostError>,
     known_by::<PaperError>,
     known_by::<SweepError>,
+    known_by::<SrsError>,
 ];
 
 /// What an error of this type knows, in a box or not.
@@ -478,6 +481,21 @@ impl Fault for CampbellError {
             Self::Full { scene, .. } | Self::Bent { scene, .. } => Kind::Run.of(scene),
             Self::NoAxis { scene, .. } | Self::NoFullBody { scene } => Kind::Usage.of(scene),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
+        }
+    }
+}
+
+impl Fault for SrsError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Figure(_) | Self::Write(_) => Known::default(),
+            Self::Unreadable { path, .. } => Kind::Io.of(path),
+            Self::Line { path, line, .. } | Self::Order { path, line, .. } => {
+                Kind::Input.with(Details { line: Some(*line), ..Details::of_file(path) })
+            }
+            Self::Shock { table, source: ShockError::Rows { .. } } => Kind::Input.of(table),
+            Self::Shock { table, .. } => Kind::Usage.of(table),
+            Self::Frequencies { .. } | Self::Dampings { .. } => Kind::Usage.alone(),
         }
     }
 }

@@ -103,7 +103,10 @@ impl GivenFile {
                     .to_owned()
             }
             Self::Mesh => format!("`flexframe new {path}` writes a scene of it, which the other commands take"),
-            Self::Table => "a history of a load takes it: `history = { kind = \"table\", file = \"…\" }`".to_owned(),
+            Self::Table => format!(
+                "a history of a load takes it: `history = {{ kind = \"table\", file = \"…\" }}`; `flexframe srs {path}` finds its shock \
+                 response spectrum"
+            ),
             Self::Fmu => {
                 "a program that simulates FMUs takes it; flexframe takes the scene that it was made of".to_owned()
             }

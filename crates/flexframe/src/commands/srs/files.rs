@@ -1,0 +1,55 @@
+//! The spectra as a table for programs, and as a diagram.
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use shock::Spectrum;
+use whole_file::write_whole;
+
+use super::diagram::draw;
+use super::error::SrsError;
+use crate::files::write_error::WriteError;
+
+const TABLE: &str = "srs.csv";
+const DIAGRAM: &str = "srs";
+
+/// The files that [`srs`](super::srs) writes to a folder.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    std::iter::once(folder.join(TABLE)).chain(figures::files(&folder.join(DIAGRAM))).collect()
+}
+
+/// Writes `srs.csv`, and `srs` as SVG, PDF and PNG.
+pub(super) fn write(table: &Path, spectra: &[Spectrum], folder: &Path) -> Result<Vec<PathBuf>, SrsError> {
+    std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
+    let path = folder.join(TABLE);
+    write_whole(&path, rows(spectra)).map_err(WriteError::of(&path))?;
+    let figures = draw(table, spectra, &folder.join(DIAGRAM))?;
+    Ok(std::iter::once(path).chain(figures).collect())
+}
+
+/// A row a frequency: for each damping ratio the quantities of a spectrum.
+fn rows(spectra: &[Spectrum]) -> String {
+    let mut csv = "frequency".to_owned();
+    for Spectrum { damping_ratio, .. } in spectra {
+        for quantity in
+            ["displacement", "pseudo_velocity", "pseudo_acceleration", "acceleration_largest", "acceleration_least"]
+        {
+            // Writing to a String cannot fail.
+            let _ = write!(csv, ",{quantity}_{damping_ratio}");
+        }
+    }
+    csv.push('\n');
+    let frequencies = spectra.first().map_or(&[][..], |spectrum| &spectrum.frequencies);
+    for (k, frequency) in frequencies.iter().enumerate() {
+        let omega = TAU * frequency;
+        let _ = write!(csv, "{frequency:e}");
+        for peaks in spectra.iter().map(|spectrum| &spectrum.peaks[k]) {
+            let z = peaks.displacement;
+            let (largest, least) = (peaks.acceleration_largest, peaks.acceleration_least);
+            let _ = write!(csv, ",{z:e},{:e},{:e},{largest:e},{least:e}", omega * z, omega * omega * z);
+        }
+        csv.push('\n');
+    }
+    csv
+}

@@ -1,0 +1,64 @@
+//! Errors of shock response spectra.
+
+/// A spectrum or a sum that has no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ShockError {
+    /// A base motion with too few rows, or lists of other lengths.
+    #[error(
+        "the base motion has {times} times and {accelerations} accelerations; expected as many of both, two or more"
+    )]
+    Rows {
+        /// Its times.
+        times: usize,
+        /// Its accelerations.
+        accelerations: usize,
+    },
+    /// A number that is not finite or out of range.
+    #[error("{what} in row {row}: found {found}, expected {expected}")]
+    Row {
+        /// The number.
+        what: &'static str,
+        /// Its row, from 1.
+        row: usize,
+        /// Its value.
+        found: f64,
+        /// Those expected.
+        expected: &'static str,
+    },
+    /// A number that is not finite or out of range.
+    #[error("{what}: found {found}, expected {expected}")]
+    Value {
+        /// The number.
+        what: &'static str,
+        /// Its value.
+        found: f64,
+        /// Those expected.
+        expected: &'static str,
+    },
+    /// A frequency that swings too often in a base motion.
+    #[error(
+        "frequency {frequency}: found {cycles:.3e} cycles in the base motion, expected at most {most:.0e}; help: cut the base motion \
+         or end the spectrum lower"
+    )]
+    Cycles {
+        /// The frequency, cycles per time.
+        frequency: f64,
+        /// Cycles in the base motion.
+        cycles: f64,
+        /// Most of them.
+        most: f64,
+    },
+    /// A frequency outside of a spectrum.
+    #[error(
+        "frequency {frequency}: found a spectrum from {from} to {to} cycles per time, which does not cover it; help: make the spectrum \
+         over all modes, or keep fewer of them"
+    )]
+    NotCovered {
+        /// The frequency, cycles per time.
+        frequency: f64,
+        /// First frequency of the spectrum.
+        from: f64,
+        /// Last frequency of the spectrum.
+        to: f64,
+    },
+}

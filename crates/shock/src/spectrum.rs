@@ -1,0 +1,156 @@
+//! Shock response spectra.
+
+use std::f64::consts::TAU;
+
+use rayon::prelude::*;
+
+use crate::base_motion::BaseMotion;
+use crate::error::ShockError;
+use crate::extremes::Extremes;
+use crate::oscillator::{Oscillator, Step, Swing};
+
+/// Steps in a period: the extremes between them are then good to 3e-7 of the largest value.
+const STEPS: f64 = 64.0;
+/// Most cycles of an oscillator in a base motion.
+const MOST_CYCLES: f64 = 1e6;
+/// Phase after which a strongly damped oscillator is still.
+const STILL: f64 = 40.0;
+
+/// What an oscillator reaches during a base motion and in the free vibration after it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Peaks {
+    /// Largest magnitude of the displacement relative to the base.
+    pub displacement: f64,
+    /// Largest acceleration of the mass; zero where it is never positive.
+    pub acceleration_largest: f64,
+    /// Least acceleration of the mass; zero where it is never negative.
+    pub acceleration_least: f64,
+}
+
+impl Peaks {
+    /// Largest magnitude of the acceleration of the mass.
+    pub fn acceleration(&self) -> f64 {
+        self.acceleration_largest.max(-self.acceleration_least)
+    }
+}
+
+/// The peaks of oscillators of one damping ratio against their frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectrum {
+    /// Damping ratio ζ.
+    pub damping_ratio: f64,
+    /// Undamped frequencies, cycles per time, rising.
+    pub frequencies: Vec<f64>,
+    /// Peaks at each frequency.
+    pub peaks: Vec<Peaks>,
+}
+
+impl BaseMotion {
+    /// The peaks of one oscillator. Its frequency is in cycles per time.
+    ///
+    /// # Errors
+    /// [`ShockError::Value`], [`ShockError::Cycles`].
+    pub fn peaks(&self, frequency: f64, damping_ratio: f64) -> Result<Peaks, ShockError> {
+        if !(frequency.is_finite() && frequency > 0.0) {
+            let expected = "a positive number of cycles per time";
+            return Err(ShockError::Value { what: "a frequency", found: frequency, expected });
+        }
+        if !(0.0..1.0).contains(&damping_ratio) {
+            let expected = "0 or more, and less than 1";
+            return Err(ShockError::Value { what: "the damping ratio", found: damping_ratio, expected });
+        }
+        let cycles = frequency * self.duration();
+        if cycles > MOST_CYCLES {
+            return Err(ShockError::Cycles { frequency, cycles, most: MOST_CYCLES });
+        }
+        let mut watch = Watch::new(Oscillator { omega: TAU * frequency, zeta: damping_ratio });
+        for (duration, base) in self.pieces() {
+            watch.pass(duration, base);
+        }
+        // Free: an extreme of each sign comes within a period.
+        let Oscillator { omega, .. } = watch.oscillator;
+        watch.pass((TAU / watch.oscillator.damped()).min(STILL / omega), [0.0; 2]);
+        Ok(Peaks {
+            displacement: watch.displacement.magnitude(),
+            acceleration_largest: watch.acceleration.largest,
+            acceleration_least: watch.acceleration.least,
+        })
+    }
+
+    /// The spectrum at rising frequencies, cycles per time.
+    ///
+    /// # Errors
+    /// As [`Self::peaks`]; [`ShockError::Row`] for frequencies that do not rise.
+    pub fn spectrum(&self, frequencies: &[f64], damping_ratio: f64) -> Result<Spectrum, ShockError> {
+        if let Some(k) = (1..frequencies.len()).find(|k| frequencies[*k] <= frequencies[k - 1]) {
+            let expected = "more than in the row before";
+            return Err(ShockError::Row { what: "the frequency", row: k + 1, found: frequencies[k], expected });
+        }
+        let peaks = frequencies.par_iter().map(|frequency| self.peaks(*frequency, damping_ratio));
+        let peaks = peaks.collect::<Result<_, _>>()?;
+        Ok(Spectrum { damping_ratio, frequencies: frequencies.to_vec(), peaks })
+    }
+}
+
+impl Spectrum {
+    /// The displacement at a frequency: between two of the spectrum straight in logarithms.
+    ///
+    /// # Errors
+    /// [`ShockError::NotCovered`].
+    pub fn displacement_at(&self, frequency: f64) -> Result<f64, ShockError> {
+        let list = &self.frequencies;
+        let [from, to] = [list.first(), list.last()].map(|f| f.copied().unwrap_or(f64::NAN));
+        if !(from <= frequency && frequency <= to) {
+            return Err(ShockError::NotCovered { frequency, from, to });
+        }
+        let above = list.partition_point(|f| *f < frequency);
+        let here = self.peaks[above].displacement;
+        if list[above] == frequency {
+            return Ok(here);
+        }
+        let before = self.peaks[above - 1].displacement;
+        let part = (frequency / list[above - 1]).ln() / (list[above] / list[above - 1]).ln();
+        // Without a logarithm of zero.
+        let is_positive = before > 0.0 && here > 0.0;
+        Ok(if is_positive { before * (here / before).powf(part) } else { before + part * (here - before) })
+    }
+}
+
+/// An oscillator on its way, with its extremes.
+struct Watch {
+    oscillator: Oscillator,
+    swing: Swing,
+    displacement: Extremes,
+    acceleration: Extremes,
+    /// The last step and its length: tables mostly have equal ones.
+    step: Option<(f64, Step)>,
+}
+
+impl Watch {
+    fn new(oscillator: Oscillator) -> Self {
+        let [displacement, acceleration] = [Extremes::default(); 2];
+        Self { oscillator, swing: Swing::default(), displacement, acceleration, step: None }
+    }
+
+    /// A piece of the base motion.
+    fn pass(&mut self, duration: f64, base: [f64; 2]) {
+        let count = (duration * self.oscillator.omega / TAU * STEPS).ceil().max(1.0);
+        let h = duration / count;
+        let step = match self.step {
+            Some((length, step)) if length == h => step,
+            _ => self.oscillator.step(h),
+        };
+        self.step = Some((h, step));
+        let at = |k: f64| base[0] + (base[1] - base[0]) * (k / count);
+        for k in 0..count as usize {
+            let base = [at(k as f64), at((k + 1) as f64)];
+            let before = self.swing;
+            let after = step.after(before, base);
+            self.displacement.see_step(h, [[before.z, before.v], [after.z, after.v]]);
+            let accelerations = [(before, base[0]), (after, base[1])]
+                .map(|(swing, base)| self.oscillator.mass_acceleration(swing, base));
+            self.acceleration.see_step(h, accelerations);
+            self.swing = after;
+        }
+    }
+}
