@@ -18,3 +18,4 @@ pub(crate) mod relaxed;
 mod saved;
 pub(crate) mod simulation;
 pub(crate) mod stage;
+mod wrenches;

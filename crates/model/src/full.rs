@@ -7,6 +7,7 @@ pub(crate) mod acting;
 pub(crate) mod check;
 pub(crate) mod mends;
 pub(crate) mod motion;
+pub(crate) mod ties;
 
 use std::borrow::Cow;
 use std::sync::Arc;

@@ -231,3 +231,18 @@ def test_rows_become_a_dataset_and_a_table(ring, program, tmp_path):
     assert [name.split(" [")[0] for name in exported.columns] == list(table.columns)
     assert np.array_equal(exported.to_numpy(), table.to_numpy())
     assert np.array_equal(table.index, results["time"])
+
+
+def test_a_run_says_what_the_full_body_says(tmp_path):
+    scene = flexframe.Scene(EXAMPLES / "ring.toml").with_values({"time.end": 0.01})
+    results = flexframe.run(scene, tmp_path / "checked")
+    (body,) = results.check.values()
+    assert body["not_checked"] is None
+    first = body["rows"][0]
+    assert "largest strain energy" in first["why"]
+    # A state of small displacements: what is left of it is what no mode has.
+    assert 0 < first["error_of_largest"] <= first["error"] < 0.1
+    assert results["time"][first["row"]] == first["time"]
+    squares = sum(size**2 for size, _ in first["parts"].values())
+    assert squares**0.5 == pytest.approx(first["error_of_largest"])
+    assert flexframe.run(scene, tmp_path / "alone", check=False).check is None

@@ -43,6 +43,7 @@ fn a_run_says_how_wrong_it_is_and_the_command_says_more() {
     let said = String::from_utf8(said.stdout).unwrap();
     let line = said.lines().find(|line| line.starts_with("  check ")).unwrap();
     assert!(line.contains("full nonlinear body") && line.contains("large modes"), "{line}");
+    assert!(line.contains("largest strain energy"), "{line}");
     let without = flexframe(&["run", scene, "-o", out, "--overwrite", "--no-check"]);
     assert!(!String::from_utf8(without.stdout).unwrap().contains("  check "));
 
@@ -57,9 +58,22 @@ fn a_run_says_how_wrong_it_is_and_the_command_says_more() {
     assert!((0.02..0.5).contains(&error), "{error}");
     assert_eq!(rows[0]["negative_directions"], 0);
     // By the same check of a row that is named: of the undeformed body there is nothing wrong.
-    let report: Value = serde_json::from_slice(&flexframe(&["check", file, "--json", "--rows", "0,5"]).stdout).unwrap();
-    assert_eq!(report["bodies"][0]["rows"][0]["error"], 0.0);
-    assert_eq!(report["bodies"][0]["rows"][1]["error"], error);
+    let report: Value =
+        serde_json::from_slice(&flexframe(&["check", file, "--json", "--rows", "0,1,5"]).stdout).unwrap();
+    let of_rows = report["bodies"][0]["rows"].as_array().unwrap();
+    assert_eq!(of_rows[0]["error"], 0.0);
+    // A row of smaller displacements is stated against the largest of the run, too: by the ratio of their sizes.
+    let [early, last] =
+        [1, 2].map(|row| ["error", "error_of_largest", "size"].map(|name| of_rows[row][name].as_f64().unwrap()));
+    // The largest of the model is a little larger here than the true displacements.
+    assert!((0.9 * last[0]..=last[0]).contains(&last[1]), "{last:?}");
+    assert!((early[1] - early[0] * early[2] / last[2]).abs() < 0.2 * early[1], "{early:?} {last:?}");
+    assert!(early[1] < 0.5 * early[0], "{early:?}");
+    let parts = of_rows[2]["parts"].as_array().unwrap();
+    let squares: f64 = parts.iter().map(|part| part["size"].as_f64().unwrap().powi(2)).sum();
+    assert!((squares.sqrt() / last[1] - 1.0).abs() < 1e-6);
+    assert!(parts.iter().any(|part| part["mend"] == "large-modes"));
+    assert_eq!(last[0], error);
     let refused = flexframe(&["check", file, "--rows", "6"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(String::from_utf8(refused.stderr).unwrap().contains("no row 6, expected a number from 0 to 5"));
@@ -114,5 +128,37 @@ fn a_body_in_joints_is_checked_under_their_forces() {
         assert!(first.state.error < 1e-4, "{}: {:?}", body.name, first.state);
         // Measured: 1e-4.
         assert!(first.state.frequencies.iter().all(|f| f.error.abs() < 1e-3), "{:?}", first.state.frequencies);
+    }
+}
+
+/// Two bars that a spring, a bushing, a joint with a spring and a motor, and a weld of two patches hold.
+const TIED: &str = "title = 'Tied'\nunits = { length = 'mm', mass = 'Mg', time = 's' }\n\
+[bodies.upper]\nmesh = 'meshes/half_bar.msh'\nmaterial = { young_modulus = 70000.0, poisson_ratio = 0.33, density = 2.7e-9 }\n\
+modes = { flexible = 3, damping_ratio = 0.01 }\nloads = [{ kind = 'gravity', direction = [0, 0, -1], amplitude = 98.1 }]\n\
+markers = { root = { group = 'left' }, middle = { at = [100, 0, 0] }, tip = { group = 'right', patches = 2, along = [0, 1, 0] } }\n\
+[bodies.lower]\nmesh = 'meshes/half_bar.msh'\nmaterial = { young_modulus = 70000.0, poisson_ratio = 0.33, density = 2.7e-9 }\n\
+modes = { flexible = 3, damping_ratio = 0.01 }\ninitial = { position = [200, 0, 0] }\n\
+markers = { root = { group = 'left', patches = 2, along = [0, 1, 0] }, tip = { group = 'right' } }\n\
+[ground.markers.above]\nat = [100, 0, 150]\n\
+[[joints]]\nname = 'hook'\nkind = 'revolute'\nbetween = ['ground', 'upper.root']\naxis = [0, 1, 0]\n\
+spring = { stiffness = 3.0, damping = 0.005 }\nmotor = { amplitude = 2.0, history = { kind = 'ramp', duration = 0.01 } }\n\
+[[joints]]\nname = 'weld'\nkind = 'fixed'\nbetween = ['upper.tip', 'lower.root']\n\
+[[springs]]\nname = 'wire'\nbetween = ['ground.above', 'upper.middle']\nstiffness = 0.02\nfree_length = 120.0\n\
+[[bushings]]\nname = 'foot'\nbetween = ['lower.tip', 'ground']\nstiffness = { translation = [0.005, 0.005, 0.005], rotation = [0.5, 0.5, 0.5] }\n\
+[time]\nend = 0.02\ntolerance = 1e-6\n[output]\ninterval = 1e-3\n";
+
+/// Conserved: as of bodies in joints alone. Without the force of any one of them the error would be of the size of the displacements. It is
+/// that of linear strain: a hundred times the forces have a hundred times this error.
+#[test]
+fn a_body_in_springs_motors_and_patches_is_checked_under_their_forces() {
+    let folder = tempfile::tempdir().unwrap();
+    let system = System::parse(TIED, root().join("tied.toml")).unwrap();
+    let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let found = check(&report.results, &Builder::default(), &CheckRows::Worst, |_| ()).unwrap();
+    for body in &found.bodies {
+        assert_eq!(body.not_checked, None);
+        let first = &body.rows[0];
+        // Measured: 4e-5, 6e-5.
+        assert!(first.state.error < 2e-4, "{}: {:?}", body.name, first.state);
     }
 }

@@ -64,6 +64,13 @@ impl Marker {
         self.body
     }
 
+    /// True if the modes move and turn it as these shapes say.
+    pub fn is_of(&self, point: &PointShapes, turning: &RotationShapes) -> bool {
+        self.position == point.position_body()
+            && self.displacement == point.columns()[6..]
+            && self.rotation == turning.columns()[6..]
+    }
+
     /// Number of modes that move it.
     pub(crate) fn flexible(&self) -> usize {
         self.displacement.len()

@@ -246,16 +246,19 @@ impl Stage {
         let markers = &system.connections.joints[joint].markers;
         let place = |k: usize| markers[k].place(markers[k].body().map(|b| self.body_place(system, b)).as_ref());
         let places = [place(0), place(1)];
-        let motions = [0, 1].map(|k: usize| {
-            let of_body = markers[k].body().map_or([&[][..]; 2], |b| {
-                [self.body_place(system, b).q, &self.velocities[system.first[b]..system.first[b + 1]]]
-            });
-            markers[k].motion(&places[k], of_body)
-        });
+        let motions = [0, 1].map(|k: usize| self.motion_of(system, &markers[k], &places[k]));
         let [turn, slide] = [Coordinate::Turn, Coordinate::Slide]
             .map(|coordinate| coordinate.wrench(places.each_ref(), expected_turn))
             .map(|wrench| [wrench.residual, wrench.rate(motions.each_ref())]);
         JointCoordinates { turn: turn[0], turn_rate: turn[1], slide: slide[0], slide_rate: slide[1] }
+    }
+
+    /// The motion of a marker at its place.
+    pub fn motion_of(&self, system: &System, marker: &Marker, place: &MarkerPlace) -> MarkerMotion {
+        let of_body = marker.body().map_or([&[][..]; 2], |b| {
+            [self.body_place(system, b).q, &self.velocities[system.first[b]..system.first[b + 1]]]
+        });
+        marker.motion(place, of_body)
     }
 
     /// Adds the forces of joints along their coordinates to those of the elements.

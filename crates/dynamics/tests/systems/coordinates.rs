@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use dynamics::{
     ConservativeBody, Coordinate, Coupling, Expression, Friction, History, Joint, JointDrive, JointForce, JointLawFn,
-    Marker, MotionState, Physics, Stops, System, SystemMotion,
+    Marker, MotionState, Observation, Physics, PointSpring, Stops, System, SystemMotion,
 };
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -298,5 +298,47 @@ fn a_controller_from_outside_moves_a_joint_in_closed_form() {
         let found = motion.joint_coordinates(0).turn;
         assert!((found - expected).abs() < 1e-6 && steps < 200, "{found} {expected} in {steps} steps");
         assert!(motion.joint_work(0).drive > 0.0 && imbalance(&motion, 0.0) < 1e-6 * k);
+    }
+}
+
+/// Conserved: the forces on all markers of a body add up to its mass times its acceleration, and their moments to the rate of its spin: of
+/// wheels on hinges with a wound-up spring, a gear between them, and a spring from one to the other.
+#[test]
+fn forces_on_markers_move_their_bodies() {
+    let (stiffness, ratio) = (3.0, -2.0);
+    let wound_up = JointForce { stiffness, ..JointForce::default() };
+    let joints = vec![
+        Joint::revolute("first", [ground(0.0), on(0, 0.0)]).with_force(Coordinate::Turn, wound_up),
+        Joint::revolute("second", [ground(2.0), on(1, 0.0)]),
+    ];
+    let across = PointSpring { markers: [on(0, 0.0), on(1, 0.0)], stiffness: 40.0, damping: 1.0, free_length: 1.0 };
+    let system = System::new(bodies(2), joints).unwrap();
+    let system = system.with_couplings(vec![Coupling::gear("gear", [0, 1], ratio)]).unwrap();
+    let system = system.with_elements(vec![Arc::new(across)]).unwrap();
+    let states = [at(0.0, 0.0, 1.0), at(2.0, 0.0, 1.0 / ratio)];
+    for turn in [0.0, 2.0 * PI, -6.0 * PI] {
+        let mut motion = SystemMotion::new(system.clone(), &states).unwrap().with_turns(&[turn, 0.0]);
+        motion.find_reactions().unwrap();
+        let mut sums = [[Vector3::<f64>::zeros(); 2]; 2];
+        let (mut count, mut largest) = (0, 0.0_f64);
+        motion.each_wrench(|marker, wrench| {
+            count += 1;
+            largest = largest.max(wrench.force_global.norm());
+            let [force, moment] = &mut sums[marker.body().unwrap()];
+            *force += wrench.force_global;
+            *moment += wrench.moment_global;
+        });
+        // Five rows of each hinge, the gear on both wheels, the spring of the hinge, both ends of the spring.
+        assert_eq!(count, 5 + 5 + 2 + 1 + 2);
+        assert!((largest - 40.0).abs() < 1e-9, "{largest}");
+        for (body, [force, moment]) in sums.iter().enumerate() {
+            let mut seen = Observation::new(0, 0);
+            motion.observe(body, &[], &mut seen).unwrap();
+            assert!((force - seen.origin_acceleration_global * MASS).norm() < 1e-7, "{force} {seen:?}");
+            assert!((moment.z - INERTIA * seen.alpha_body.z).abs() < 1e-7, "{moment} {seen:?}");
+        }
+        // Closed form: J (1 + 1/r²) at the first wheel. With θ1 = r θ2, the gear takes J θ2'' / r of the spring's moment.
+        let expected = -stiffness * turn / (1.0 + 1.0 / (ratio * ratio));
+        assert!((sums[0][1].z - expected).abs() < 1e-6, "{turn}: {sums:?} {expected}");
     }
 }

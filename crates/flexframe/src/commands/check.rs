@@ -3,6 +3,7 @@
 //! The model is built again from the scene in the results file and from the mesh, which has to be there as it was.
 
 pub(crate) mod checked_rows;
+mod cost;
 pub(crate) mod error;
 mod joints;
 pub(crate) mod report;

@@ -40,7 +40,7 @@ pub use settings::{RunProgress, RunSettings};
 pub use tied_report::{AssembledReport, TiedReport};
 pub use watch::{Watch, Watched};
 
-use crate::commands::check::checked_rows::{check_run, is_cheap};
+use crate::commands::check::checked_rows::check_run;
 use crate::commands::check::error::CheckError;
 use crate::commands::check::rows::CheckRows;
 use crate::drawn::stored_shapes;
@@ -80,8 +80,8 @@ pub fn run(
     Ok((models, report))
 }
 
-/// Checks the first of the worst rows of each body by the full body. The run is done whatever comes of it: a check that cannot be made
-/// is a warning.
+/// Checks the worst rows of each body by the full body, as many as cost no more than the reduction did. The run is done whatever comes
+/// of it: a check that cannot be made is a warning.
 fn check_by_full_body(
     system: &System,
     models: &[Model],
@@ -89,13 +89,9 @@ fn check_by_full_body(
     report: &mut RunReport,
     mut progress: impl FnMut(RunProgress),
 ) {
-    let may_be = |model: &Model| model.meshed.as_ref().is_none_or(|meshed| is_cheap(&meshed.modes.stats));
-    if !models.iter().all(may_be) {
-        return;
-    }
     let started = Instant::now();
     let checked = Results::open(&report.results, &COLUMNS).map_err(CheckError::from).and_then(|results| {
-        let (file, builder, rows) = (&report.results, &settings.builder, CheckRows::First);
+        let (file, builder, rows) = (&report.results, &settings.builder, CheckRows::Cheap);
         check_run(file, &results, system, models, builder, &rows, |p| progress(RunProgress::Check(p)))
     });
     report.times.add("check", started.elapsed());

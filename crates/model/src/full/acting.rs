@@ -14,9 +14,11 @@ use crate::tie::place::Place;
 pub struct MarkerForce {
     /// Its number among the markers of the body.
     pub marker: usize,
+    /// One of its places, where it is several; `None` for their mean.
+    pub part: Option<usize>,
     /// The force on the body.
     pub force_global: Vector3<f64>,
-    /// The moment on the body about the marker.
+    /// The moment on the body about that place.
     pub moment_global: Vector3<f64>,
 }
 
@@ -29,10 +31,10 @@ impl FullModel {
         for load in &self.loads {
             act(load, time, attitude, &mut dead, &mut others);
         }
-        for MarkerForce { marker, force_global, moment_global } in joints {
-            if let Some(marker) = self.markers.get(*marker) {
+        for MarkerForce { marker, part, force_global, moment_global } in joints {
+            if let Some(place) = self.markers.get(*marker).and_then(|marker| marker.place(*part)) {
                 let [force, moment] = [force_global, moment_global].map(|vector| attitude.to_body(vector));
-                act_at(&marker.whole, &force, moment, &mut dead, &mut others);
+                act_at(place, &force, moment, &mut dead, &mut others);
             }
         }
         others.push(Acting::Dead(dead));

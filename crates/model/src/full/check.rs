@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::error::refuse;
 use crate::full::acting::MarkerForce;
-use crate::full::mends::{Mend, Parts, mends};
+use crate::full::mends::{ErrorPart, Mend, mends, parts};
 use crate::full::{FullError, FullModel};
 use crate::model::Model;
 
@@ -27,10 +27,17 @@ pub struct StateCheck {
     pub time: f64,
     /// Size of the error of the displacements over that of the true ones, over the body: in the norm of its mass.
     pub error: f64,
-    /// The part of it that is along the modes.
+    /// The same size over the largest one of the model's displacements in the run, as far as that is known: what counts where the body
+    /// is hardly deformed.
+    pub error_of_largest: f64,
+    /// Size of the true displacements in the norm of the mass: √mass times length.
+    pub size: f64,
+    /// The part of the error that is along the modes, as `error`.
     pub within_modes: f64,
     /// The part that no combination of the modes has.
     pub beside_modes: f64,
+    /// The error by its directions with what would mend each, as `error_of_largest`.
+    pub parts: [ErrorPart; 3],
     /// Largest error of the displacement of a node, length.
     pub largest_error: f64,
     /// Largest true displacement by deformation of a node, length.
@@ -44,7 +51,7 @@ pub struct StateCheck {
     pub negative_directions: Option<usize>,
     /// Largest growth of a vibration of the full body about the state, 1 per time: positive where it is unstable.
     pub growth: f64,
-    /// Means that would make the error smaller.
+    /// Means that would make the larger parts of the error smaller.
     pub mends: Vec<Mend>,
     /// Factors of the tangent that were made.
     pub factors: usize,
@@ -84,6 +91,7 @@ pub struct Checker<'a> {
     body: &'a FullBody<'a>,
     at_rest: Tangent<'a>,
     points: Vec<(String, Location)>,
+    largest: f64,
 }
 
 impl<'a> Checker<'a> {
@@ -101,7 +109,13 @@ impl<'a> Checker<'a> {
             let located = full.assembled.mesh.locate(at);
             located.map_err(|error| refuse(scene, &key, error).into())
         })?;
-        Ok(Self { full, scene, model, body, at_rest: body.at_rest()?, points })
+        Ok(Self { full, scene, model, body, at_rest: body.at_rest()?, points, largest: 0.0 })
+    }
+
+    /// States errors against displacements of this size, too: the largest of the run, in the norm of the mass.
+    #[must_use]
+    pub fn against(self, largest: f64) -> Self {
+        Self { largest, ..self }
     }
 
     /// Checks the state of a motion under the forces of joints. `frequencies` is true where these are to be compared, too.
@@ -127,12 +141,13 @@ impl<'a> Checker<'a> {
         let [_, answer] = self.body.parts(modes.as_ref(), &found.linear_answer);
         let product: f64 = beside.iter().zip(self.body.momentum(&answer)).map(|(e, a)| e * a).sum();
         let sizes = self.body.mass_norm(&beside) * self.body.mass_norm(&answer);
-        let parts = Parts {
-            error: relative(&found.error),
-            within: relative(&within),
-            beside: relative(&beside),
-            linear: if sizes > 0.0 { (product / sizes).abs().min(1.0) } else { 0.0 },
-        };
+        let [error, within, beside] = [&found.error, &within, &beside].map(|v| relative(v));
+        let linear = if sizes > 0.0 { (product / sizes).abs().min(1.0) } else { 0.0 };
+        // Of a state that is smaller than the largest.
+        let share = if size < self.largest { size / self.largest } else { 1.0 };
+        let (has_static_shapes, has_large_modes) =
+            (self.model.static_shapes() > 0, !self.model.large_modes().is_empty());
+        let parts = parts([within * share, beside * share, linear], has_static_shapes, has_large_modes);
         let follows = state.forces.follow();
         let (frequencies, growth) = match frequencies && self.spin_is_held(&state) {
             true => self.frequencies(&moving, motion, &state, &found)?,
@@ -140,16 +155,19 @@ impl<'a> Checker<'a> {
         };
         Ok(StateCheck {
             time: motion.time,
-            error: parts.error,
-            within_modes: parts.within,
-            beside_modes: parts.beside,
+            error,
+            error_of_largest: error * share,
+            size,
+            within_modes: within,
+            beside_modes: beside,
+            parts,
             largest_error: peak(&found.error),
             largest_displacement: peak(&truth),
             points: self.points.iter().map(|point| checked(point, &truth, &found.error)).collect(),
             frequencies,
             negative_directions: (!follows).then_some(found.negative_pivots),
             growth,
-            mends: mends(&parts, self.model.static_shapes() > 0, !self.model.large_modes().is_empty()),
+            mends: mends(&parts),
             factors: found.factors,
             is_settled: found.factors == 1 || found.last_change <= settings.settled.max(0.5),
         })
@@ -171,12 +189,14 @@ impl<'a> Checker<'a> {
     fn moving(&self, joints: &[MarkerForce]) -> Result<ConservativeBody, FullError> {
         let Model { body, loads, physics, markers, .. } = self.model;
         let mut loads = loads.clone();
-        for MarkerForce { marker, force_global, moment_global } in joints {
+        for MarkerForce { marker, part, force_global, moment_global } in joints {
             let Some(marker) = markers.get(*marker) else { continue };
+            let part = part.and_then(|part| marker.parts.get(part));
+            let (point, turning) = part.map_or((&marker.point, &marker.turning), |part| (&part.point, &part.turning));
             let force: SharedLoad =
-                std::sync::Arc::new(PointForce::dead(marker.point.clone(), *force_global, History::Constant));
+                std::sync::Arc::new(PointForce::dead(point.clone(), *force_global, History::Constant));
             let moment: SharedLoad = std::sync::Arc::new(PointMoment {
-                rotation: marker.turning.clone(),
+                rotation: turning.clone(),
                 moment: *moment_global,
                 frame: LoadFrame::Global,
                 history: History::Constant,

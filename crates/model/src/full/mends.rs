@@ -28,38 +28,72 @@ impl Mend {
             Self::StaticShapes => "static shapes (`[modes] static_correction = true`)",
             Self::MoreModes => "more modes (`[modes] flexible`)",
             Self::LargeModes => "large modes (`[effects] large_deflection = true`)",
-            Self::Reference => "modes about the bent rest (`about` in [modes]), or fewer loads",
+            Self::Reference => "modes about the bent rest (`[modes] about`), or fewer loads",
         }
     }
 }
 
-/// Sizes of an error and its parts, relative to the true displacements.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Parts {
-    pub error: f64,
-    pub within: f64,
-    pub beside: f64,
-    /// Share of the linear answer in the part beside the modes: 0 to 1.
-    pub linear: f64,
+/// A part of an error, and what would make it smaller.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ErrorPart {
+    /// The part.
+    pub direction: ErrorDirection,
+    /// Its size over that of the displacements that the error is stated against.
+    pub size: f64,
+    /// The mend; `None` where it is so small that it needs none.
+    pub mend: Option<Mend>,
 }
 
-/// The mends of an error.
-pub(crate) fn mends(parts: &Parts, has_static_shapes: bool, has_large_modes: bool) -> Vec<Mend> {
-    if parts.error.is_nan() || parts.error < SMALL {
-        return Vec::new();
+/// Directions of an error, at right angles to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ErrorDirection {
+    /// Along the modes: their stiffness is wrong.
+    Modes,
+    /// Beside the modes, along what they leave of the linear answer to the forces.
+    LinearAnswer,
+    /// Beside the modes in other directions, as the foreshortening of a body that bends far.
+    Bending,
+}
+
+impl ErrorDirection {
+    /// The direction in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Modes => "along the modes",
+            Self::LinearAnswer => "left out of the linear answer to the forces",
+            Self::Bending => "beside the modes by bending far",
+        }
     }
-    let counts = |part: f64| part >= PART * parts.error;
-    let linear = parts.beside * parts.linear;
-    // Orthogonal to the linear one.
-    let bent = parts.within.hypot(parts.beside * (1.0 - parts.linear * parts.linear).max(0.0).sqrt());
-    let mut mends = Vec::new();
-    if counts(linear) {
-        mends.push(if has_static_shapes { Mend::MoreModes } else { Mend::StaticShapes });
-    }
-    if counts(bent) {
-        mends.push(if has_large_modes { Mend::Reference } else { Mend::LargeModes });
-    }
-    mends
+}
+
+/// The parts of an error: along the modes, beside them, and the share of the linear answer in the latter (0 to 1), relative to
+/// the displacements that it is stated against.
+pub(crate) fn parts(
+    [within, beside, linear]: [f64; 3],
+    has_static_shapes: bool,
+    has_large_modes: bool,
+) -> [ErrorPart; 3] {
+    let of_loads = if has_static_shapes { Mend::MoreModes } else { Mend::StaticShapes };
+    let of_bending = if has_large_modes { Mend::Reference } else { Mend::LargeModes };
+    let across = (1.0 - linear * linear).max(0.0).sqrt();
+    [
+        (ErrorDirection::Modes, within, of_bending),
+        (ErrorDirection::LinearAnswer, beside * linear, of_loads),
+        (ErrorDirection::Bending, beside * across, of_bending),
+    ]
+    .map(|(direction, size, mend)| ErrorPart { direction, size, mend: (size >= SMALL).then_some(mend) })
+}
+
+/// The mends of the larger parts, each once.
+pub(crate) fn mends(parts: &[ErrorPart; 3]) -> Vec<Mend> {
+    let error = parts.iter().map(|part| part.size * part.size).sum::<f64>().sqrt();
+    let [within, linear, bending] = *parts;
+    // One mend is for both.
+    let bent = within.size.hypot(bending.size);
+    let counts = |size: f64| error >= SMALL && size >= PART * error;
+    let of = |size: f64, parts: [ErrorPart; 2]| parts.iter().filter(|_| counts(size)).find_map(|part| part.mend);
+    [of(linear.size, [linear; 2]), of(bent, [within, bending])].into_iter().flatten().collect()
 }
 
 #[cfg(test)]
@@ -68,11 +102,17 @@ mod tests {
 
     #[test]
     fn each_part_of_an_error_has_its_mend() {
-        let parts = |within, beside, linear| Parts { error: f64::hypot(within, beside), within, beside, linear };
-        assert_eq!(mends(&parts(1e-4, 1e-4, 1.0), false, false), []);
-        assert_eq!(mends(&parts(1e-4, 0.1, 1.0), false, false), [Mend::StaticShapes]);
-        assert_eq!(mends(&parts(1e-4, 0.1, 0.95), true, false), [Mend::MoreModes, Mend::LargeModes]);
-        assert_eq!(mends(&parts(0.1, 0.02, 0.1), true, false), [Mend::LargeModes]);
-        assert_eq!(mends(&parts(0.1, 0.02, 0.1), true, true), [Mend::Reference]);
+        let mends =
+            |sizes, has_static_shapes, has_large_modes| mends(&parts(sizes, has_static_shapes, has_large_modes));
+        assert_eq!(mends([1e-4, 1e-4, 1.0], false, false), []);
+        assert_eq!(mends([1e-4, 0.1, 1.0], false, false), [Mend::StaticShapes]);
+        assert_eq!(mends([1e-4, 0.1, 0.95], true, false), [Mend::MoreModes, Mend::LargeModes]);
+        assert_eq!(mends([0.1, 0.02, 0.1], true, false), [Mend::LargeModes]);
+        assert_eq!(mends([0.1, 0.02, 0.1], true, true), [Mend::Reference]);
+        let [along, left_out, bending] = parts([2e-3, 0.05, 0.6], false, false);
+        assert_eq!([along.mend, left_out.mend], [Some(Mend::LargeModes), Some(Mend::StaticShapes)]);
+        // Closed form: 0.05 split by 0.6 and 0.8.
+        assert!((left_out.size - 0.03).abs() < 1e-15 && (bending.size - 0.04).abs() < 1e-15);
+        assert_eq!(parts([9e-4, 0.0, 0.0], false, false)[0].mend, None);
     }
 }

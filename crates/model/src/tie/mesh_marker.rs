@@ -27,7 +27,7 @@ const MOST_NODES: usize = 100;
 pub(crate) struct MeshMarker {
     name: String,
     axes: Matrix3<f64>,
-    pub(crate) whole: Place,
+    whole: Place,
     /// Where the ends of its joints are several places: these, each with its part in the whole.
     parts: Vec<(f64, Place)>,
     /// Forces on the parts that are put on together (parts × patterns); none where each part has its own.
@@ -134,6 +134,14 @@ impl MeshMarker {
                 let whole = Place::of_patch(Patch::new(nodes, weights, mesh.positions()), mesh);
                 Ok(Self { parts, patterns: Some(patterns(&positions)), ..alone(whole) })
             }
+        }
+    }
+
+    /// One of its places, or without a number the mean of all.
+    pub(crate) fn place(&self, part: Option<usize>) -> Option<&Place> {
+        match part {
+            None => Some(&self.whole),
+            Some(part) => self.parts.get(part).map(|(_, place)| place),
         }
     }
 

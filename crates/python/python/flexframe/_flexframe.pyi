@@ -339,10 +339,14 @@ class Simulation:
     def __iter__(self) -> Simulation: ...
     def __next__(self) -> Row: ...
 
-def run(scene: Scene, folder: _Path, *, overwrite: bool = False, large: bool = False) -> Results:
+def run(
+    scene: Scene, folder: _Path, *, overwrite: bool = False, large: bool = False, check: bool = True
+) -> Results:
     """Runs the bodies of a scene as the program does, and writes their results to `<folder>/<name of the scene>.h5`. Until the
     end they are in `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash. What is there is replaced
-    only with `overwrite`, and what the scene reads never; results of more than 1 GB are written only with `large`."""
+    only with `overwrite`, and what the scene reads never; results of more than 1 GB are written only with `large`. At its end
+    rows are checked by the full nonlinear body, as many as cost no more than the body did: `check` of the results, or with
+    `check=False` none."""
 
 def resume(file: _Path, *, overwrite: bool = False, trust_geometry: bool = False) -> Results:
     """Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit. Another results

@@ -224,6 +224,11 @@ class Results(Columns):
     """Warnings of the run, such as assumptions that did not hold."""
     events: list[tuple[str, float]]
     """The events that a run in memory has passed, and when."""
+    check: dict[str, Any] | None = None
+    """After `run`, for each body by its name: `rows` that were checked by the full nonlinear body, each with `row`, `time`, `why`, the
+    `error` of the displacements over the body, `error_of_largest` (over the largest of the run), its `parts` with their sizes and
+    what would mend them, `points` with their true displacements and the errors of them, `frequencies` (of the model, of the full
+    body), `negative_directions` and `growth`; `not_checked`, the reason where it was not. None where nothing was checked."""
 
     def __init__(self, data: dict[str, Any]) -> None:
         columns, arrays = {}, {}

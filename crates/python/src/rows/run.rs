@@ -11,24 +11,27 @@ use pyo3::prelude::*;
 use crate::builder::builder;
 use crate::errors::{add_note, exception, warn};
 use crate::interrupt::{Stop, interruptible};
+use crate::rows::check::checked;
 use crate::rows::results::read_results;
 use crate::scene::Scene;
 
 /// Runs the bodies of a scene as the program does, and writes their results to `<folder>/<name of the scene>.h5`.
 /// Until the end they are in `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash. What is
 /// there is replaced only with `overwrite`, and what the scene reads never; results of more than 1 GB are written only
-/// with `large`.
+/// with `large`. At its end rows are checked by the full nonlinear body, as many as cost no more than the body did: `check` of
+/// the results, or with `check=False` none.
 #[pyfunction]
-#[pyo3(signature = (scene, folder, *, overwrite=false, large=false))]
+#[pyo3(signature = (scene, folder, *, overwrite=false, large=false, check=true))]
 pub(crate) fn run(
     py: Python<'_>,
     scene: Py<Scene>,
     folder: PathBuf,
     overwrite: bool,
     large: bool,
+    check: bool,
 ) -> PyResult<Bound<'_, PyAny>> {
     let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-    followed(py, (overwrite, large), builder, move |settings, progress| {
+    followed(py, [overwrite, large, check], builder, move |settings, progress| {
         flexframe::run::run(&system, &folder, settings, progress).map(|(_, report)| report)
     })
 }
@@ -43,20 +46,20 @@ pub(crate) fn resume(
     overwrite: bool,
     trust_geometry: bool,
 ) -> PyResult<Bound<'_, PyAny>> {
-    followed(py, (overwrite, false), builder(py, trust_geometry)?, move |settings, progress| {
+    followed(py, [overwrite, false, false], builder(py, trust_geometry)?, move |settings, progress| {
         flexframe::run::resume(&file, settings, progress)
     })
 }
 
 fn followed<'py>(
     py: Python<'py>,
-    (overwrite, large): (bool, bool),
+    [overwrite, large, check]: [bool; 3],
     builder: Builder,
     work: impl FnOnce(&RunSettings, &mut dyn FnMut(RunProgress)) -> Result<RunReport, RunError> + Send + 'static,
 ) -> PyResult<Bound<'py, PyAny>> {
     let stop = Stop::default();
     let in_motion = Arc::new(AtomicBool::new(false));
-    let settings = RunSettings { overwrite, large, stop: stop.flag(), builder, ..RunSettings::default() };
+    let settings = RunSettings { overwrite, large, check, stop: stop.flag(), builder, ..RunSettings::default() };
     let cache = settings.builder.cache.clone();
     let (told, moves) = (stop.clone(), in_motion.clone());
     let run = move || {
@@ -80,7 +83,13 @@ fn followed<'py>(
             Err(error)
         }
         (Some(error), Ok(_)) => Err(error),
-        (None, Ok(report)) => read_results(py, report.results),
+        (None, Ok(report)) => {
+            let results = read_results(py, report.results)?;
+            if let Some(check) = &report.check {
+                results.setattr("check", checked(py, check)?)?;
+            }
+            Ok(results)
+        }
         (None, Err(error)) => Err(exception(py, &error)),
     }
 }

@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use modal::SolveStats;
 use model::{BuildProgress, Builder, Checker, Model};
 use nonlinear::StateErrorSettings;
 use results::Results;
 use scene::System;
 
 use super::error::CheckError;
-use super::joints;
-use super::report::{BodyCheck, CheckReport, RIGID, RowCheck};
+use super::joints::Ties;
+use super::report::{BodyCheck, CheckReport, DEAR, MATRICES, RIGID, RowCheck};
 use super::rows::{self, CheckRows};
 
 /// How far a check has come.
@@ -25,14 +24,6 @@ pub enum CheckProgress {
         /// All.
         total: usize,
     },
-}
-
-/// Most unknowns of a body that a run checks unasked.
-const CHEAP: usize = 30_000;
-
-/// True if the check of a row costs no more than the body did, and next to no memory.
-pub(crate) fn is_cheap(stats: &SolveStats) -> bool {
-    stats.unknowns <= CHEAP
 }
 
 /// Checks the rows of a run whose models are there.
@@ -52,36 +43,42 @@ pub fn check_run(
     if results.rows() == 0 {
         return Err(CheckError::NoRows { file: file.to_owned() });
     }
+    let ties = Ties::new(system, models)?;
     let of_body = |(number, ((_, model), _))| rows::chosen(file, results, number, model, rows);
     let chosen: Vec<_> = bodies().enumerate().map(of_body).collect::<Result<_, _>>()?;
     let total: usize = chosen.iter().map(Vec::len).sum();
     let mut done = 0;
     let mut checked = Vec::with_capacity(models.len());
-    for (number, (((scene, model), metadata), rows)) in bodies().zip(chosen).enumerate() {
+    for (number, (((scene, model), metadata), rows_of_body)) in bodies().zip(chosen).enumerate() {
         let name = metadata.name.clone();
         let not_checked =
             |why: &str| BodyCheck { name: name.clone(), rows: Vec::new(), not_checked: Some(why.to_owned()) };
-        if let Some(why) = joints::unknown(system, number) {
-            checked.push(not_checked(why));
-            continue;
-        }
         if model.body.flexible() == 0 {
             checked.push(not_checked(RIGID));
             continue;
         }
+        if model.meshed.as_ref().is_some_and(|meshed| !meshed.mesh.has_elements()) {
+            checked.push(not_checked(MATRICES));
+            continue;
+        }
+        if model.meshed.is_some() && rows_of_body.is_empty() {
+            checked.push(not_checked(DEAR));
+            continue;
+        }
         let full = builder.full(scene, |p| progress(CheckProgress::Build(p)))?;
         let Some(full) = full else {
-            checked.push(not_checked("it has no elements: it is made of matrices"));
+            checked.push(not_checked(MATRICES));
             continue;
         };
         let in_scene = |source| CheckError::Full { scene: scene.path.clone(), source: Box::new(source) };
         let body = full.body().map_err(in_scene)?;
         progress(CheckProgress::Rows { done, total });
         let checker = Checker::new(&full, scene, model, &body).map_err(in_scene)?;
-        let mut of_rows = Vec::with_capacity(rows.len());
-        for (row, why) in rows {
+        let checker = checker.against(rows::largest_deformation(results, number));
+        let mut of_rows = Vec::with_capacity(rows_of_body.len());
+        for (row, why) in rows_of_body {
             let motion = rows::motion(results, number, row).ok_or(CheckError::NoRows { file: file.to_owned() })?;
-            let forces = joints::forces(results, system, models, number, row);
+            let forces = ties.forces(file, (results, system, models), number, row)?;
             let state = checker.check(&motion, &forces, &StateErrorSettings::default(), true).map_err(in_scene)?;
             of_rows.push(RowCheck { row, why, state });
             done += 1;

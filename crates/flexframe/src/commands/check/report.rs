@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use model::{Mend, StateCheck};
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::commands::modes::frequency_unit;
@@ -47,14 +48,22 @@ pub struct RowCheck {
 }
 
 impl BodyCheck {
-    /// The row with the largest error.
+    /// The row with the largest error, against the largest displacements of the run.
     pub fn worst(&self) -> Option<&RowCheck> {
-        self.rows.iter().max_by(|a, b| a.state.error.total_cmp(&b.state.error))
+        self.rows.iter().max_by(|a, b| a.state.error_of_largest.total_cmp(&b.state.error_of_largest))
     }
 }
 
 /// The reason that a rigid body is not checked.
 pub(super) const RIGID: &str = "it is rigid";
+
+/// The reason that a body of matrices is not checked.
+pub(super) const MATRICES: &str = "it has no elements: it is made of matrices";
+/// The reason that a body is not checked at the end of a run.
+pub(super) const DEAR: &str = "its full body costs more than its reduction did; `flexframe check` does it on demand";
+
+/// A row whose displacements are below this part of the largest of the run is stated against those.
+const QUIET: f64 = 0.5;
 
 /// The limit of the check, in words.
 const UNSEEN: &str = "not seen by it: phase, and the inertia of what the model leaves out";
@@ -101,15 +110,20 @@ impl RowCheck {
         let state = &self.state;
         write!(f, "\n  row {} (time {:.6} {time}: {})", self.row, state.time, self.why.join(", "))?;
         write!(f, "\n    {}", self.error_in_words(length))?;
-        write!(
-            f,
-            "\n    along the modes {}, beside them {}",
-            percent(state.within_modes),
-            percent(state.beside_modes)
-        )?;
+        // Against what the whole is stated against.
+        let scale = if state.error_of_largest > 0.0 { self.stated() / state.error_of_largest } else { 0.0 };
+        for part in &state.parts {
+            let mend = part.mend.map(|mend| format!(": mended by {}", mend.words())).unwrap_or_default();
+            write!(f, "\n      {} {}{mend}", part.direction.words(), percent(scale * part.size))?;
+        }
         for point in &state.points {
             let [x, y, z] = point.displacement;
-            write!(f, "\n    {}: {} of ({x:.4e}, {y:.4e}, {z:.4e}) {length}", point.name, percent(point.relative))?;
+            let error = Vector3::from(point.error).norm();
+            let (name, at) = (&point.name, format!("({x:.4e}, {y:.4e}, {z:.4e}) {length}"));
+            match self.is_quiet() {
+                true => write!(f, "\n    {name}: wrong by {error:.1e} of {at}")?,
+                false => write!(f, "\n    {name}: {} of {at}", percent(point.relative))?,
+            }
         }
         if !state.frequencies.is_empty() {
             let each = state.frequencies.iter().map(|f| format!("{:.4} ({:+.2} %)", f.full, 100.0 * f.error));
@@ -119,16 +133,24 @@ impl RowCheck {
         if let Some(words) = self.stability_in_words() {
             write!(f, "\n    {words}")?;
         }
-        if !state.mends.is_empty() {
-            write!(f, "\n    mended by {}", mends_in_words(&state.mends))?;
-        }
         Ok(())
+    }
+
+    /// The error as words state it.
+    fn stated(&self) -> f64 {
+        if self.is_quiet() { self.state.error_of_largest } else { self.state.error }
+    }
+
+    /// True if the body is hardly deformed, against what it is in the run.
+    fn is_quiet(&self) -> bool {
+        self.state.error_of_largest < QUIET * self.state.error
     }
 
     /// "displacements right to 0.3 % at time 1.2 (largest strain energy)".
     fn in_words(&self, units: &[String; 3]) -> String {
         let [length, _, time] = units;
-        let mut words = format!("{} at time {:.6} {time}", self.error_in_words(length), self.state.time);
+        let why = self.why.join(", ");
+        let mut words = format!("{} at time {:.6} {time} ({why})", self.error_in_words(length), self.state.time);
         if let Some(stability) = self.stability_in_words() {
             words = format!("{words}; {stability}");
         }
@@ -139,11 +161,12 @@ impl RowCheck {
     }
 
     fn error_in_words(&self, length: &str) -> String {
-        let StateCheck { error, largest_error, largest_displacement, is_settled, .. } = self.state;
+        let StateCheck { largest_error, largest_displacement, is_settled, .. } = self.state;
         let about = if is_settled { "" } else { "about " };
+        let of = if self.is_quiet() { " of the largest in the run" } else { "" };
         format!(
-            "displacements wrong by {about}{} by the full nonlinear body (a node by up to {largest_error:.3e} of {largest_displacement:.3e} {length})",
-            percent(error)
+            "displacements wrong by {about}{}{of} by the full nonlinear body (a node by up to {largest_error:.3e} of {largest_displacement:.3e} {length})",
+            percent(self.stated())
         )
     }
 

@@ -7,6 +7,7 @@ use model::Model;
 use results::{BodyResults, Results};
 use rigid_kin::Attitude;
 
+use super::cost::affordable;
 use super::error::CheckError;
 
 /// Which rows are checked.
@@ -14,8 +15,8 @@ use super::error::CheckError;
 pub enum CheckRows {
     /// The rows at which a model is most likely to be wrong: the largest strain energy, the largest stress, the largest spin, the last.
     Worst,
-    /// The first of these alone.
-    First,
+    /// As many of these, in this order, as cost no more than the reduction of the body did.
+    Cheap,
     /// Rows by their numbers, from 0.
     Given(Vec<usize>),
 }
@@ -51,8 +52,8 @@ pub(super) fn chosen(
     add(largest(count, |row| stress(of, row)), "largest stress");
     add(largest(count, |row| spin(of, row)), "largest spin");
     add(count.checked_sub(1), "last");
-    if *rows == CheckRows::First {
-        chosen.truncate(1);
+    if *rows == CheckRows::Cheap {
+        chosen.truncate(affordable(model));
     }
     Ok(chosen)
 }
@@ -81,6 +82,14 @@ fn stress(of: BodyResults<'_>, row: usize) -> f64 {
 fn spin(of: BodyResults<'_>, row: usize) -> f64 {
     let spins = of.vectors::<3>("angular_velocity");
     spins.map_or(0.0, |spins| spins[row].iter().map(|omega| omega * omega).sum::<f64>().sqrt())
+}
+
+/// Size of the largest displacements by deformation in a run, in the norm of the mass: modes are orthonormal in it.
+pub(super) fn largest_deformation(results: &Results, body: usize) -> f64 {
+    let of = results.bodies().nth(body).and_then(|of| of.table("modal/displacement"));
+    let Some(of) = of else { return 0.0 };
+    let size = |row: usize| of.row(row).map_or(0.0, |q| q.iter().map(|q| q * q).sum::<f64>().sqrt());
+    (0..results.rows()).map(size).filter(|size| size.is_finite()).fold(0.0, f64::max)
 }
 
 /// The state of a body in a row.

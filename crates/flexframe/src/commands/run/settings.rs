@@ -32,8 +32,8 @@ pub struct RunSettings {
     pub large: bool,
     /// Leaves the shapes of the body out of the results file, for who reads its rows and throws it away.
     pub rows_alone: bool,
-    /// Checks a row of each body against the full body at the end, where that costs no more than the body did: the row where its
-    /// model is most likely to be wrong ([`check`](crate::check)).
+    /// Checks rows of each body against the full body at the end: those where its model is most likely to be wrong, as many as cost no
+    /// more than its reduction did ([`check`](crate::check)).
     pub check: bool,
     /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
     pub stop: Arc<AtomicBool>,

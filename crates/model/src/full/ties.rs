@@ -1,0 +1,49 @@
+//! Forces of joints, springs and bushings on a body in a state of its system, at its markers.
+
+use dynamics::{Marker, MarkerWrench, MotionState, SystemMotion};
+
+use crate::full::FullError;
+use crate::full::acting::MarkerForce;
+use crate::model::Model;
+use crate::tie::body_marker::BodyMarker;
+use crate::tie::tied::Tied;
+
+impl Tied {
+    /// What joints with their springs and motors, couplings, springs and bushings put on a body where the bodies have these states,
+    /// by its number in [`Tied::bodies`]. `turns`: the turn of each joint, which full turns are counted by.
+    ///
+    /// # Errors
+    /// [`FullError`] for states that do not fit, and where the inertia of a body is singular.
+    pub fn forces_on(
+        &self,
+        body: usize,
+        model: &Model,
+        states: &[MotionState],
+        turns: &[f64],
+    ) -> Result<Vec<MarkerForce>, FullError> {
+        let mut motion = SystemMotion::new(self.system.clone(), states)?.with_turns(turns);
+        let time = motion.time();
+        motion.find_reactions().map_err(|error| dynamics::LoadedError::from(error.in_step(time, 0.0)))?;
+        let mut forces: Vec<MarkerForce> = Vec::new();
+        motion.each_wrench(|marker, MarkerWrench { force_global, moment_global }| {
+            if marker.body() != Some(body) {
+                return;
+            }
+            if let Some((marker, part)) = numbers(&model.markers, marker) {
+                forces.push(MarkerForce { marker, part, force_global, moment_global });
+            }
+        });
+        Ok(forces)
+    }
+}
+
+/// The number of a marker among those of its body, and that of the part that it is.
+fn numbers(markers: &[BodyMarker], marker: &Marker) -> Option<(usize, Option<usize>)> {
+    markers.iter().enumerate().find_map(|(number, of_body)| {
+        let is_part = |part: &crate::tie::body_marker::MarkerPart| marker.is_of(&part.point, &part.turning);
+        match marker.is_of(&of_body.point, &of_body.turning) {
+            true => Some((number, None)),
+            false => of_body.parts.iter().position(is_part).map(|part| (number, Some(part))),
+        }
+    })
+}
