@@ -23,6 +23,7 @@ use slepc::SlepcError;
 use super::{Details, FailureReport, Kind};
 use crate::commands::animation::AnimationError;
 use crate::commands::campbell::CampbellError;
+use crate::commands::linearize::LinearizeError;
 use crate::commands::check::CheckError;
 use crate::commands::cost::CostError;
 use crate::commands::export::ExportError;
@@ -87,7 +88,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 33] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 34] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
@@ -117,6 +118,7 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 33] = [
     known_by::<ExportError>,
     known_by::<HtmlReportError>,
     known_by::<CampbellError>,
+    known_by::<LinearizeError>,
     known_by::<SystemModesError>,
     known_by::<CostError>,
     known_by::<PaperError>,
@@ -465,6 +467,18 @@ impl Fault for CampbellError {
             Self::Eigen { scene, .. } | Self::Steady { scene, .. } => Kind::Run.of(scene),
             Self::NoAxis { scene, .. } => Kind::Usage.of(scene),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
+        }
+    }
+}
+
+impl Fault for LinearizeError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Build(_) | Self::Begin(_) | Self::Write(_) | Self::Figure(_) => Known::default(),
+            Self::Steady { scene, .. } | Self::Rest { scene, .. } => Kind::Run.of(scene),
+            Self::Linear { scene, .. } | Self::Refused { scene, .. } => Kind::Refused.of(scene),
+            Self::NoChannel { scene, .. } | Self::Nothing { scene, .. } => Kind::Usage.of(scene),
+            Self::Ending { .. } | Self::Frequencies { .. } => Kind::Usage.alone(),
         }
     }
 }
