@@ -15,8 +15,10 @@ use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, FailureReport, Kind};
 use flexframe::figures::{self, View};
 use flexframe::fmu::{self, FmuSettings};
+use flexframe::frf::{self, FrfSettings};
 use flexframe::given_file::GivenFile;
 use flexframe::hand_over::{self, Form};
+use flexframe::linearize::{self, LinearSettings};
 use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_results, outputs_of_scene, outputs_of_scenes};
 use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
@@ -253,6 +255,55 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Write the linear model of small motions, x' = A x + B u and y = C x + D u, for control and for other programs.
+    ///
+    /// It is about rest, or about the steady spin that a free body begins with or a driven hinge has. Inputs are the loads of the scene (the factor
+    /// that multiplies each, in the place of its history) and forces along the coordinates of joints; outputs are displacement,
+    /// velocity and acceleration of the points of [output], along the axes of the body, and joint coordinates.
+    Linearize {
+        #[command(flatten)]
+        scene: SceneArgs,
+        #[command(flatten)]
+        about: LinearArgs,
+        /// Order of the model, by balanced truncation; the summary says by how much a response is wrong at the most.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+        order: Option<u64>,
+        /// The file: .mat (MATLAB, version 5) or .json [default: out/<name of the scene file>/linear.mat].
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
+    },
+    /// Compute frequency responses of points and joints to loads: table, CSV and chart.
+    ///
+    /// Inputs and outputs are those of `flexframe linearize`. Static shapes of the loads, where the model has them, are the
+    /// residual flexibility of the modes that are left out.
+    Frf {
+        #[command(flatten)]
+        scene: SceneArgs,
+        #[command(flatten)]
+        about: LinearArgs,
+        /// Frequencies in cycles per time: from start to end, both included, count in all.
+        #[arg(long, value_name = "START:END:COUNT", value_parser = speeds)]
+        frequencies: Speeds,
+        /// Space the frequencies by equal ratios.
+        #[arg(long)]
+        log: bool,
+        /// Inputs, such as loads[0] [default: all].
+        #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+        inputs: Vec<String>,
+        /// Outputs, such as tip.acceleration or tip [default: all].
+        #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+        outputs: Vec<String>,
+        /// Loss factor of structural damping, in the place of the scene's damping.
+        #[arg(long, value_name = "FACTOR", value_parser = positive)]
+        structural: Option<f64>,
+        /// Folder for frf.csv and the chart [default: out/<name of the scene file>].
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
+    },
     /// Run the paper's plate and compare it with the paper: every figure, and a report.
     Paper {
         #[command(flatten)]
@@ -437,6 +488,24 @@ struct SceneArgs {
     /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
     #[arg(long)]
     json: bool,
+}
+
+/// The state that a linear model is about.
+#[derive(Debug, Args)]
+struct LinearArgs {
+    /// Angular velocity of the steady spin about the center of mass, radians per time, global; 0,0,0 is rest [default: that of the scene's
+    /// free body or drive].
+    #[arg(long, value_name = "X,Y,Z", value_parser = angular_velocity, allow_hyphen_values = true)]
+    spin: Option<Spin>,
+    /// Take out the motions that deform no body.
+    #[arg(long)]
+    without_rigid: bool,
+}
+
+impl LinearArgs {
+    fn settings(&self) -> LinearSettings {
+        LinearSettings { spin: self.spin.map(|Spin(omega)| omega), without_rigid: self.without_rigid }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -737,6 +806,46 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             drop(bar);
             output::print(&report, json)
         }
+        Command::Linearize { scene: SceneArgs { scene, json }, about, order, output, files } => {
+            output::require_file("--output", output.as_deref())?;
+            let system = read_system(scene)?;
+            let file = match output {
+                Some(file) => file,
+                None => folder(&system.bodies[0], None)?.join("linear.mat"),
+            };
+            outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(std::slice::from_ref(&file))?;
+            let order = order.map(|order| usize::try_from(order).unwrap_or(usize::MAX));
+            let report = linearize::linearize(&system, &builder, &about.settings(), order, &file, |p| bar.build(p))?;
+            drop(bar);
+            output::print(&report, json)
+        }
+        Command::Frf {
+            scene: SceneArgs { scene, json },
+            about,
+            frequencies,
+            log,
+            inputs,
+            outputs,
+            structural,
+            output,
+            files,
+        } => {
+            output::require_file("--output", output.as_deref())?;
+            let system = read_system(scene)?;
+            let folder = folder(&system.bodies[0], output)?;
+            outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(&frf::files(&folder))?;
+            let settings = FrfSettings {
+                linear: about.settings(),
+                frequencies: (frequencies.start, frequencies.end, frequencies.count),
+                logarithmic: log,
+                inputs,
+                outputs,
+                loss_factor: structural,
+            };
+            let report = frf::frf(&system, &builder, &folder, &settings, |p| bar.build(p))?;
+            drop(bar);
+            output::print(&report, json)
+        }
         Command::Paper { scene: SceneArgs { scene, json }, output, files } => {
             output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
@@ -958,6 +1067,17 @@ fn patience(text: &str) -> Result<Duration, String> {
 /// A direction in the axes of the mesh.
 #[derive(Debug, Clone, Copy)]
 struct Direction([f64; 3]);
+
+/// An angular velocity.
+#[derive(Debug, Clone, Copy)]
+struct Spin([f64; 3]);
+
+fn angular_velocity(text: &str) -> Result<Spin, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let numbers = numbers.ok().and_then(|numbers| <[f64; 3]>::try_from(numbers).ok());
+    let finite = numbers.filter(|omega| omega.iter().all(|x| x.is_finite()));
+    finite.map(Spin).ok_or_else(|| "expected three finite numbers, such as 0,0,6.3".to_owned())
+}
 
 /// An axis by its name, or by three numbers.
 fn axis(text: &str) -> Result<Direction, String> {

@@ -19,7 +19,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-pub use {advice, dynamics, fem_tet10, figures, frames_rk4, modal, model, results, rigid_kin, scene};
+pub use {advice, dynamics, fem_tet10, figures, frames_rk4, linear, modal, model, results, rigid_kin, scene};
 pub use {faer, nalgebra};
 
 mod commands;
@@ -33,8 +33,8 @@ pub mod report;
 mod rows;
 pub mod surface;
 pub use commands::{
-    advise, animation, campbell, check, cost, export, fmu, hand_over, html_report, mode_shapes, modes, new_scene,
-    paper, run, srs, sweep, system_modes,
+    advise, animation, campbell, check, cost, export, fmu, frf, hand_over, html_report, linearize, mode_shapes, modes,
+    new_scene, paper, run, srs, sweep, system_modes,
 };
 pub use files::{given_file, outputs, write_error};
 pub use rows::{columns, peak_stress, row};

@@ -150,6 +150,31 @@ impl Model {
         body.loaded_modes(&self.initial(scene), &amplitudes)
     }
 
+    /// The stiffness of the body for small motions of its modes about its rest under its loads as they are at time 0 (nf×nf), and that
+    /// rest. The drive stands still.
+    ///
+    /// # Errors
+    /// [`LoadedError`].
+    pub fn stiffness_at_rest(&self, scene: &Scene) -> Result<(MotionState, Mat<f64>), LoadedError> {
+        let physics = Physics { drive: None, drive_stiffness: None, ..self.physics.clone() };
+        let initial = self.initial(scene);
+        let body = ConservativeBody::new(&self.body, &self.damping_ratios, self.loads.clone(), &physics)?;
+        let body = body.beginning_at(&initial);
+        let amplitudes: Vec<f64> = self.size.peaks.iter().map(|peak| SMALL * self.size.length / peak).collect();
+        let modal_displacement = body.loaded_rest(&initial, &amplitudes)?;
+        let stiffness = body.loaded_stiffness(&initial, &modal_displacement, &amplitudes)?;
+        let modal_velocity = vec![0.0; modal_displacement.len()];
+        let at_rest = Initial {
+            modal_displacement,
+            modal_velocity,
+            omega: Vector3::zeros(),
+            velocity: Vector3::zeros(),
+            ..initial
+        };
+        let state = body.start(&at_rest)?;
+        Ok((body.motion_state(&state).map_err(|error| error.in_step(0.0, 0.0))?, stiffness))
+    }
+
     /// The motion in which the body rests in its frame under its loads and its drive as they are at time 0, held to its first
     /// attitude.
     ///

@@ -66,6 +66,15 @@ impl SteadySpin {
         Self { circular_frequencies: body.circular_frequencies.clone(), gyroscopic, softening }
     }
 
+    /// K = Λ − Ω² (N_aa − K_aa) and 2Ω G_a at a spin speed in rad per time (nf×nf each).
+    pub fn matrices(&self, speed: f64) -> [Mat<f64>; 2] {
+        let omega = &self.circular_frequencies;
+        let nf = omega.len();
+        let stiffness =
+            Mat::from_fn(nf, nf, |i, j| delta(i, j) * omega[i] * omega[i] - speed * speed * self.softening[(i, j)]);
+        [stiffness, Mat::from_fn(nf, nf, |i, j| 2.0 * speed * self.gyroscopic[(i, j)])]
+    }
+
     /// The vibrations at a spin speed in rad per time, slowest first.
     ///
     /// # Errors

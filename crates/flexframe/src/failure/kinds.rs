@@ -29,6 +29,7 @@ use crate::commands::cost::CostError;
 use crate::commands::export::ExportError;
 use crate::commands::fmu::FmuError;
 use crate::commands::html_report::HtmlReportError;
+use crate::commands::linearize::LinearizeError;
 use crate::commands::paper::PaperError;
 use crate::commands::run::RunError;
 use crate::commands::srs::SrsError;
@@ -89,7 +90,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 34] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 35] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
@@ -119,6 +120,7 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 34] = [
     known_by::<ExportError>,
     known_by::<HtmlReportError>,
     known_by::<CampbellError>,
+    known_by::<LinearizeError>,
     known_by::<SystemModesError>,
     known_by::<CostError>,
     known_by::<PaperError>,
@@ -496,6 +498,18 @@ impl Fault for SrsError {
             Self::Shock { table, source: ShockError::Rows { .. } } => Kind::Input.of(table),
             Self::Shock { table, .. } => Kind::Usage.of(table),
             Self::Frequencies { .. } | Self::Dampings { .. } => Kind::Usage.alone(),
+        }
+    }
+}
+
+impl Fault for LinearizeError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Build(_) | Self::Begin(_) | Self::Write(_) | Self::Figure(_) => Known::default(),
+            Self::Steady { scene, .. } | Self::Rest { scene, .. } => Kind::Run.of(scene),
+            Self::Linear { scene, .. } | Self::Refused { scene, .. } => Kind::Refused.of(scene),
+            Self::NoChannel { scene, .. } | Self::Nothing { scene, .. } => Kind::Usage.of(scene),
+            Self::Ending { .. } | Self::Frequencies { .. } => Kind::Usage.alone(),
         }
     }
 }

@@ -84,6 +84,11 @@ impl Linearization {
         self.springs.iter().map(|(spring, _)| *spring)
     }
 
+    /// The coordinates of a body among those of all.
+    pub fn coordinates_of(&self, body: usize) -> std::ops::Range<usize> {
+        self.first[body]..self.first[body + 1]
+    }
+
     /// Number of independent coordinates.
     pub fn size(&self) -> usize {
         self.basis.ncols()

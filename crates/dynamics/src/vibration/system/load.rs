@@ -8,8 +8,9 @@ use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::cross_matrix;
 
+use crate::body::motion_state::MotionState;
 use crate::conservative::ConservativeBody;
-use crate::load::{Applied, Coordinates, Kinematics};
+use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 use crate::vibration::system::configuration::BodyConfiguration;
 
 /// Step of the differences: of turns in rad, and of displacements and velocities relative to their scales.
@@ -55,7 +56,7 @@ pub(crate) fn load_forces(body: &ConservativeBody, at: &BodyConfiguration, time:
         let [mut ahead, mut back] = [here.clone(), here.clone()];
         change(&mut ahead, step);
         change(&mut back, -step);
-        let [ahead, back] = [ahead, back].map(|seen| forces(body, &seen, time));
+        let [ahead, back] = [ahead, back].map(|seen| forces(body.loads(), &seen, time, false));
         ahead.iter().zip(&back).map(|(a, b)| (a - b) / (2.0 * step)).collect::<Vec<f64>>()
     };
     let column = |k: usize, of_velocity: bool| match (k, of_velocity) {
@@ -74,10 +75,27 @@ pub(crate) fn load_forces(body: &ConservativeBody, at: &BodyConfiguration, time:
         let columns: Vec<Vec<f64>> = (0..n).map(|k| column(k, of_velocity)).collect();
         Mat::from_fn(n, n, |i, k| columns[k][i])
     });
-    LoadForces { forces: forces(body, &here, time), by_place, by_velocity }
+    LoadForces { forces: forces(body.loads(), &here, time, false), by_place, by_velocity }
 }
 
-fn forces(body: &ConservativeBody, seen: &Seen, time: f64) -> Vec<f64> {
+impl ConservativeBody {
+    /// Generalised forces (6+nf) of each of its loads where its history is 1: force and moment about the origin in body axes, and modal
+    /// forces. Inputs of a linear model act by them.
+    pub fn unit_forces(&self, at: &MotionState) -> Vec<Vec<f64>> {
+        let seen = Seen {
+            body_from_global: at.attitude.global_to_body(),
+            origin: at.origin_global,
+            velocity_global: at.velocity_global,
+            omega_body: at.omega_body,
+            q: at.modal_displacement.clone(),
+            rate: at.modal_velocity.clone(),
+        };
+        self.loads().iter().map(|load| forces(std::slice::from_ref(load), &seen, at.time, true)).collect()
+    }
+}
+
+/// `unit`: where histories are 1.
+fn forces(loads: &[SharedLoad], seen: &Seen, time: f64, unit: bool) -> Vec<f64> {
     let mut forces = vec![0.0; 6 + seen.q.len()];
     let coordinates = Coordinates { first: 6, displacement: &seen.q, velocity: &seen.rate, on_manifold: None };
     let motion = Kinematics {
@@ -89,11 +107,11 @@ fn forces(body: &ConservativeBody, seen: &Seen, time: f64) -> Vec<f64> {
         origin_velocity_global: seen.velocity_global,
         omega_body: seen.omega_body,
         coordinates,
-        unit: false,
+        unit,
     };
     let (rigid, modal) = forces.split_at_mut(6);
     let mut applied = Applied::new(coordinates, Vector3::zeros(), modal);
-    body.loads().iter().for_each(|load| load.apply(&motion, &mut applied));
+    loads.iter().for_each(|load| load.apply(&motion, &mut applied));
     rigid[..3].copy_from_slice(applied.force_body.as_slice());
     rigid[3..].copy_from_slice(applied.moment_body.as_slice());
     forces

@@ -67,7 +67,7 @@ pub fn animate_mode(
         return Err(AnimationError::SeveralMotions { scene: scene.path.clone(), count: system.bodies.len() });
     };
     require_surface(scene)?;
-    let (model, _) = modes::modes(scene, builder, |p| progress(RunProgress::Build(p)))?;
+    let (model, _) = modes::modes(scene, builder, None, |p| progress(RunProgress::Build(p)))?;
     let meshed = require_flexible(scene, &model)?;
     let frequencies = meshed.modes.natural_frequencies();
     let frequency = *frequencies.get(index).ok_or_else(|| no_such(frequencies.len()))?;

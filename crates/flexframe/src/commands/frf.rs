@@ -1,0 +1,249 @@
+//! `flexframe frf`: frequency responses of a scene about rest or a steady spin, as a table and as charts.
+
+use std::fmt::{self, Write};
+use std::path::{Path, PathBuf};
+
+use faer::c64;
+use figures::{LineChart, Scale, Series, Stroke};
+use linear::{Channel, Damping, FrequencyResponse, Output, SecondOrder};
+use model::{BuildProgress, Builder};
+use scene::System;
+use serde::Serialize;
+use whole_file::write_whole;
+
+use crate::commands::linearize::{LinearSettings, LinearizeError, linear_model};
+use crate::commands::modes::frequency_unit;
+use crate::files::json;
+use crate::files::write_error::WriteError;
+
+const TABLE: &str = "frf.csv";
+const CHART: &str = "frf";
+/// Curves of a chart.
+const MAX_CURVES: usize = 12;
+/// The most frequencies.
+const MAX_FREQUENCIES: usize = 1_000_000;
+
+/// Settings of frequency responses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrfSettings {
+    /// The state that the equations are about.
+    pub linear: LinearSettings,
+    /// First and last frequency, cycles per time, and their number.
+    pub frequencies: (f64, f64, usize),
+    /// True where frequencies are spaced by equal ratios.
+    pub logarithmic: bool,
+    /// Names of inputs; all where there are none.
+    pub inputs: Vec<String>,
+    /// Names of outputs, or beginnings of them; all where there are none.
+    pub outputs: Vec<String>,
+    /// Loss factor of structural damping in the place of the scene's damping.
+    pub loss_factor: Option<f64>,
+}
+
+/// Report of `flexframe frf`.
+#[derive(Debug, Clone, Serialize)]
+pub struct FrfReport {
+    /// Title of the scene.
+    pub title: String,
+    /// Unit of frequencies.
+    pub frequency_unit: String,
+    /// Files.
+    #[serde(serialize_with = "json::paths")]
+    pub files: Vec<PathBuf>,
+    /// The highest response of each output to each input.
+    pub peaks: Vec<Peak>,
+    /// Reservations about the state.
+    pub warnings: Vec<String>,
+}
+
+/// The highest response of an output to an input.
+#[derive(Debug, Clone, Serialize)]
+pub struct Peak {
+    /// The output.
+    pub output: String,
+    /// Its unit, by that of the input.
+    pub unit: String,
+    /// The input.
+    pub input: String,
+    /// Magnitude.
+    pub magnitude: f64,
+    /// Cycles per time.
+    pub frequency: f64,
+}
+
+/// The files that [`frf`] writes to a folder.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    std::iter::once(folder.join(TABLE)).chain(figures::files(&folder.join(CHART))).collect()
+}
+
+/// Computes the responses of a scene, and writes `frf.csv`, and `frf` as SVG, PDF and PNG to a folder.
+///
+/// # Errors
+/// [`LinearizeError`].
+pub fn frf(
+    system: &System,
+    builder: &Builder,
+    folder: &Path,
+    settings: &FrfSettings,
+    progress: impl FnMut(BuildProgress),
+) -> Result<FrfReport, LinearizeError> {
+    let frequencies = frequencies(settings)?;
+    let scene = &system.bodies[0];
+    let model = linear_model(system, builder, &settings.linear, progress)?;
+    let equations = chosen(&model.equations, settings, &scene.path)?;
+    let damping = settings.loss_factor.map_or(Damping::OfEquations, Damping::Structural);
+    let failed = |source| LinearizeError::Linear { scene: scene.path.clone(), source: Box::new(source) };
+    let response = equations.frequency_response(&frequencies, damping).map_err(failed)?;
+
+    std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
+    let table = folder.join(TABLE);
+    write_whole(&table, csv(&equations, &response)).map_err(WriteError::of(&table))?;
+    let unit = frequency_unit(&scene.units.time);
+    let mut files = vec![table];
+    files.extend(chart(&scene.title, &unit, &equations, &response, settings.logarithmic).save(&folder.join(CHART))?);
+    Ok(FrfReport {
+        title: scene.title.clone(),
+        frequency_unit: unit,
+        files,
+        peaks: peaks(&equations, &response),
+        warnings: model.state.warnings,
+    })
+}
+
+fn frequencies(settings: &FrfSettings) -> Result<Vec<f64>, LinearizeError> {
+    let (start, end, count) = settings.frequencies;
+    let least = if settings.logarithmic { f64::MIN_POSITIVE } else { 0.0 };
+    if !(start >= least && end > start && end.is_finite() && (2..=MAX_FREQUENCIES).contains(&count)) {
+        return Err(LinearizeError::Frequencies { start, end, count });
+    }
+    let part = |k: usize| k as f64 / (count - 1) as f64;
+    Ok((0..count)
+        .map(|k| match settings.logarithmic {
+            true => start * (end / start).powf(part(k)),
+            false => start + (end - start) * part(k),
+        })
+        .collect())
+}
+
+/// The equations with the inputs and outputs that are asked for.
+fn chosen(equations: &SecondOrder, settings: &FrfSettings, scene: &Path) -> Result<SecondOrder, LinearizeError> {
+    let names = |channels: Vec<&Channel>| channels.into_iter().map(|channel| channel.name.clone()).collect::<Vec<_>>();
+    let no_channel = |what, found: &str, known| LinearizeError::NoChannel {
+        scene: scene.to_owned(),
+        what,
+        found: found.to_owned(),
+        known,
+    };
+    let is = |name: &str, wanted: &str| {
+        name == wanted || name.strip_prefix(wanted).is_some_and(|rest| rest.starts_with(['.', '[']))
+    };
+    for wanted in &settings.inputs {
+        if !equations.inputs.iter().any(|input| is(&input.name, wanted)) {
+            return Err(no_channel("input", wanted, names(equations.inputs.iter().collect())));
+        }
+    }
+    for wanted in &settings.outputs {
+        if !equations.outputs.iter().any(|output| is(&output.channel.name, wanted)) {
+            return Err(no_channel("output", wanted, names(equations.outputs.iter().map(|o| &o.channel).collect())));
+        }
+    }
+    let is_asked = |list: &[String], name: &str| list.is_empty() || list.iter().any(|wanted| is(name, wanted));
+    let inputs: Vec<usize> =
+        (0..equations.inputs.len()).filter(|j| is_asked(&settings.inputs, &equations.inputs[*j].name)).collect();
+    let outputs = equations.outputs.iter().filter(|output| is_asked(&settings.outputs, &output.channel.name));
+    Ok(SecondOrder {
+        forces: faer::Mat::from_fn(equations.size(), inputs.len(), |i, j| equations.forces[(i, inputs[j])]),
+        inputs: inputs.iter().map(|j| equations.inputs[*j].clone()).collect(),
+        outputs: outputs.cloned().collect::<Vec<Output>>(),
+        ..equations.clone()
+    })
+}
+
+/// A row a frequency: magnitude and phase (degrees) of each output by each input.
+fn csv(equations: &SecondOrder, response: &FrequencyResponse) -> String {
+    let mut csv = "frequency".to_owned();
+    for input in &equations.inputs {
+        for output in &equations.outputs {
+            // Writing to a String cannot fail.
+            let _ = write!(csv, ",|{o}/{i}|,phase {o}/{i}", o = output.channel.name, i = input.name);
+        }
+    }
+    csv.push('\n');
+    for (frequency, values) in response.frequencies.iter().zip(&response.values) {
+        let _ = write!(csv, "{frequency:e}");
+        for value in values.col_iter().flat_map(|column| column.iter().copied().collect::<Vec<c64>>()) {
+            let _ = write!(csv, ",{:e},{:.6}", value.norm(), value.im.atan2(value.re).to_degrees());
+        }
+        csv.push('\n');
+    }
+    csv
+}
+
+fn peaks(equations: &SecondOrder, response: &FrequencyResponse) -> Vec<Peak> {
+    let mut peaks = Vec::new();
+    for (j, input) in equations.inputs.iter().enumerate() {
+        for (i, output) in equations.outputs.iter().enumerate() {
+            let all = response.frequencies.iter().zip(&response.values).map(|(f, values)| (*f, values[(i, j)].norm()));
+            let (frequency, magnitude) = all.fold((0.0, 0.0), |best, at| if at.1 > best.1 { at } else { best });
+            let unit = format!("{} per {}", output.channel.unit, input.unit);
+            let (output, input) = (output.channel.name.clone(), input.name.clone());
+            peaks.push(Peak { output, unit, input, magnitude, frequency });
+        }
+    }
+    peaks
+}
+
+fn chart(
+    title: &str,
+    unit: &str,
+    equations: &SecondOrder,
+    response: &FrequencyResponse,
+    logarithmic: bool,
+) -> LineChart {
+    let mut series = Vec::new();
+    for (j, input) in equations.inputs.iter().enumerate() {
+        for (i, output) in equations.outputs.iter().enumerate() {
+            let points: Vec<(f64, f64)> =
+                response.frequencies.iter().copied().zip(response.values.iter().map(|h| h[(i, j)].norm())).collect();
+            // An output that sees nothing has no place on a logarithmic axis.
+            if series.len() < MAX_CURVES && points.iter().all(|(_, y)| *y > 0.0) {
+                let label = format!("{} / {}", output.channel.name, input.name);
+                series.push(Series {
+                    label,
+                    points,
+                    stroke: if series.len() < 7 { Stroke::Solid } else { Stroke::Dashed },
+                });
+            }
+        }
+    }
+    LineChart {
+        title: format!("{title}: frequency response"),
+        x_label: format!("Frequency ({unit})"),
+        y_label: "Magnitude".to_owned(),
+        x_scale: if logarithmic { Scale::Log } else { Scale::Linear },
+        y_scale: Scale::Log,
+        series,
+        reference: None,
+    }
+}
+
+impl fmt::Display for FrfReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.title)?;
+        write!(f, "  highest responses")?;
+        for Peak { output, unit, input, magnitude, frequency } in &self.peaks {
+            write!(
+                f,
+                "\n  {output:<28} by {input:<20} {magnitude:.6e} {unit} at {frequency:.6} {}",
+                self.frequency_unit
+            )?;
+        }
+        for file in &self.files {
+            write!(f, "\n  wrote    {}", file.display())?;
+        }
+        for warning in &self.warnings {
+            write!(f, "\n  warning  {warning}")?;
+        }
+        Ok(())
+    }
+}

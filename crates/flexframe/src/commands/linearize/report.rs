@@ -1,0 +1,120 @@
+//! Report of `flexframe linearize`.
+
+use std::f64::consts::TAU;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use faer::c64;
+use linear::{Balanced, StateSpace};
+use scene::Scene;
+use serde::Serialize;
+
+use super::State;
+use crate::commands::modes::frequency_unit;
+use crate::files::json;
+
+/// Poles that are shown.
+const POLES: usize = 20;
+
+/// Report of `flexframe linearize`.
+#[derive(Debug, Clone, Serialize)]
+pub struct LinearReport {
+    /// Title of the scene.
+    pub title: String,
+    /// Unit of frequencies.
+    pub frequency_unit: String,
+    /// The file.
+    #[serde(serialize_with = "json::path")]
+    pub file: PathBuf,
+    /// Angular velocity of the state, global.
+    pub omega_global: [f64; 3],
+    /// Number of states, inputs and outputs of what is written.
+    pub states: usize,
+    /// Names of the inputs.
+    pub inputs: Vec<String>,
+    /// Names of the outputs.
+    pub outputs: Vec<String>,
+    /// States of the whole model.
+    pub whole: usize,
+    /// Bound of the error of a reduced model, largest singular value at any frequency.
+    pub error_bound: Option<f64>,
+    /// Hankel values of the whole model, where it is reduced.
+    pub hankel_values: Vec<f64>,
+    /// Poles, slowest first: one of each conjugate pair.
+    pub poles: Vec<Pole>,
+    /// Reservations about the state.
+    pub warnings: Vec<String>,
+}
+
+/// A pole.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Pole {
+    /// Growth per time.
+    pub growth: f64,
+    /// Cycles per time.
+    pub frequency: f64,
+    /// −growth over the magnitude; 0 of a pole of zero.
+    pub damping_ratio: f64,
+}
+
+impl LinearReport {
+    pub(super) fn new(
+        scene: &Scene,
+        state: &State,
+        whole: &StateSpace,
+        reduced: Option<&Balanced>,
+        written: &StateSpace,
+        poles: &[c64],
+        file: &Path,
+    ) -> Self {
+        let pole = |pole: &c64| Pole {
+            growth: pole.re,
+            frequency: pole.im / TAU,
+            damping_ratio: if pole.norm() > 0.0 { -pole.re / pole.norm() } else { 0.0 },
+        };
+        Self {
+            title: scene.title.clone(),
+            frequency_unit: frequency_unit(&scene.units.time),
+            file: file.to_owned(),
+            omega_global: state.omega_global,
+            states: written.states.len(),
+            inputs: written.inputs.iter().map(|channel| channel.name.clone()).collect(),
+            outputs: written.outputs.iter().map(|channel| channel.name.clone()).collect(),
+            whole: whole.states.len(),
+            error_bound: reduced.map(|reduced| reduced.error_bound),
+            hankel_values: reduced.map_or_else(Vec::new, |reduced| reduced.hankel_values.clone()),
+            poles: poles.iter().filter(|pole| pole.im >= 0.0).map(pole).collect(),
+            warnings: state.warnings.clone(),
+        }
+    }
+}
+
+impl fmt::Display for LinearReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.title)?;
+        let [x, y, z] = self.omega_global;
+        match self.omega_global == [0.0; 3] {
+            true => writeln!(f, "  about    rest")?,
+            false => writeln!(f, "  about    a spin of ({x:.6}, {y:.6}, {z:.6}) rad per time, global")?,
+        }
+        write!(f, "  model    {} states, {} inputs, {} outputs", self.states, self.inputs.len(), self.outputs.len())?;
+        match self.error_bound {
+            Some(bound) => writeln!(f, "; of {} states, no response wrong by more than {bound:.3e}", self.whole)?,
+            None => writeln!(f)?,
+        }
+        writeln!(f, "  inputs   {}", self.inputs.join(", "))?;
+        writeln!(f, "  outputs  {}", self.outputs.join(", "))?;
+        writeln!(f, "  file     {}", self.file.display())?;
+        write!(f, "\n  {:>16}  {:>12}  {:>12}", format!("poles, {}", self.frequency_unit), "damping", "growth")?;
+        for pole in self.poles.iter().take(POLES) {
+            write!(f, "\n  {:>16.6}  {:>12.4e}  {:>12.4e}", pole.frequency, pole.damping_ratio, pole.growth)?;
+        }
+        if self.poles.len() > POLES {
+            write!(f, "\n  … {} in all", self.poles.len())?;
+        }
+        for warning in &self.warnings {
+            write!(f, "\n  warning  {warning}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,30 @@
+//! Linear models of small motions, of plain numbers and names: no mesh, no body.
+//!
+//! ```text
+//! η̈ + C η̇ + K η = B u                       coordinates η, inputs u       (F1)
+//! y = R η,  R η̇  or  R η̈                    outputs                       (F2)
+//! x' = A x + B u,   y = C x + D u,  x = (η, η̇)                            (F3)
+//! H(ω) = R (K − ω² + i ω C)⁻¹ B                                           (F4)
+//! ```
+//!
+//! Equations have the numbers of `docs/method/linear.md`.
+
+#![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
+mod balanced;
+mod error;
+mod frequency_response;
+mod mat_file;
+mod random;
+mod second_order;
+mod state_space;
+
+pub use balanced::Balanced;
+pub use error::LinearError;
+pub use faer;
+pub use frequency_response::{Damping, FrequencyResponse};
+pub use mat_file::{MatArray, mat_file};
+pub use random::{RandomInput, RandomResponse};
+pub use second_order::{Channel, Output, Rate, SecondOrder};
+pub use state_space::StateSpace;
