@@ -41,7 +41,7 @@ fn the_spectrum_of_a_half_sine_is_written() {
         let found = report["spectra"][0]["acceleration_largest"][at].as_f64().unwrap() / 98.1;
         assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
         let row: Vec<f64> = rows[1 + at].split(',').map(|field| field.parse().unwrap()).collect();
-        assert_eq!(row[4] / 98.1, found);
+        assert!((row[4] / 98.1 / found - 1.0).abs() < 1e-14); // a reader of JSON may be off by the last bit
         // Without damping the acceleration of the mass is ω² z.
         assert!((row[3] / 98.1 / expected - 1.0).abs() < 1e-5);
     }
