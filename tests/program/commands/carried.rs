@@ -41,10 +41,10 @@ fn effective_masses_are_those_of_calculix() {
     ];
     for (j, k, along_y, about_y) in pairs {
         let sum = |i: usize| masses[j][i] + masses[k][i];
-        assert!((sum(1) / along_y - 1.0).abs() < 3e-4, "{j}: {} {along_y}", sum(1));
-        assert!((sum(4) / about_y - 1.0).abs() < 3e-4, "{j}: {} {about_y}", sum(4));
+        assert!((sum(1) / along_y - 1.0).abs() < 4e-4, "{j}: {} {along_y}", sum(1));
+        assert!((sum(4) / about_y - 1.0).abs() < 4e-4, "{j}: {} {about_y}", sum(4));
     }
-    assert!((masses[7][0] / 0.442_256_4e-4 - 1.0).abs() < 3e-4 && (masses[6][3] / 0.736_322_2e-3 - 1.0).abs() < 3e-4);
+    assert!((masses[7][0] / 0.442_256_4e-4 - 1.0).abs() < 4e-4 && (masses[6][3] / 0.736_322_2e-3 - 1.0).abs() < 4e-4);
     // What is missed and what is carried make the whole.
     let (missed, cumulated) = (numbers(&carried["missed"]), numbers(&carried["cumulated"][11]));
     assert!(missed.iter().zip(&cumulated).all(|(missed, carried)| (missed + carried - 1.0).abs() < 1e-12));
