@@ -310,7 +310,7 @@ const colours = (page, bytes, places) => page.evaluate(async ([base64, places]) 
     await image.decode();
     const canvas = document.createElement("canvas");
     [canvas.width, canvas.height] = [image.width, image.height];
-    const context = canvas.getContext("2d");
+    const context = canvas.getContext("2d", { willReadFrequently: true });
     context.drawImage(image, 0, 0);
     const at = ([x, y]) => [...context.getImageData(Math.round(x * image.width), Math.round(y * image.height), 1, 1).data];
     return { size: [image.width, image.height], colours: places.map(at) };
@@ -330,7 +330,8 @@ test("the picture is saved as it is seen, with its background and its legend", a
     assert.deepEqual(size, place.stage.map((length) => 2 * Math.round(length)));
     const near = (found, level) => Math.hypot(...direction(found.slice(0, 3)).map((c, i) => c - colour(level)[i])) < 0.05;
     assert.ok(near(top, 0.98) && near(bottom, 0.02), `${top} ${bottom}`);
-    assert.deepEqual(corner, [237, 241, 244, 255], "the colour of the page behind the bodies");
+    const sky = await page.evaluate(() => getComputedStyle(document.querySelector(".stage")).backgroundColor.match(/\d+/g).map(Number));
+    assert.deepEqual(corner, [...sky, 255], "the colour of the page behind the bodies");
 });
 
 test("standard views look along the axes", async (t) => {
@@ -390,9 +391,9 @@ test("another run is there as a ghost, with its courses", async (t) => {
     assert.equal((await pixels(page, 0.02)).sum, with_ghost.sum);
     await page.selectOption("#subject", "0 0");
     await page.click("#play"); // it swings
-    const alone = await pixels(page);
+    const alone = await pixels(page, 0.02);
     await page.uncheck("#compared");
-    assert.equal((await pixels(page)).part, alone.part, "not beside a shape");
+    assert.equal((await pixels(page, 0.03)).part, alone.part, "not beside a shape");
 });
 
 test("work for each frame of 60 000 vertices and 40 modes", async (t) => {
