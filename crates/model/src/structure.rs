@@ -497,14 +497,6 @@ impl Structure<'_> {
         Ok(Extended { body: self.reduced(&shapes.modes)?, shapes, energies })
     }
 
-    /// The parts (nf×k) of fields (3n×k) along M-orthonormal modes and static shapes.
-    pub fn parts(&self, modes: &Modes, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
-        let asked = self.of_body("parts of fields").with_modes(modes).with("fields", &fields);
-        self.ask(asked, [modes.shapes.ncols(), fields.ncols()], || {
-            Ok(modes.shapes.transpose() * self.solver()?.mass().product(fields))
-        })
-    }
-
     /// Fields (3n×k) without their parts along some modes.
     pub fn without_parts(
         &self,
