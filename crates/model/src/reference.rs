@@ -19,7 +19,7 @@ use nalgebra::Vector3;
 use nonlinear::{EquilibriumSettings, ExternalForces, FullBody, NonlinearError, equilibrium};
 use scene::{About, SceneError};
 
-use crate::assembly::AssembledMesh;
+use crate::building::assembly::AssembledMesh;
 use crate::error::BuildError;
 use crate::load::directed::Directed;
 use crate::load::mesh_load::{self, Action, MeshLoad, UnitWeight};

@@ -24,15 +24,15 @@ use modal::{
 use nalgebra::Vector3;
 use slepc::write_folder;
 
-use crate::assembly::{AssembledMesh, MadeOf};
 use crate::body::origin::Origin;
+use crate::building::assembly::{AssembledMesh, MadeOf};
+use crate::building::progress::{BuildProgress, BuildWork};
 use crate::cache::Computing;
 use crate::cache::kept::Keep;
 use crate::cache::store::Store;
 use crate::error::{BuildError, modal, too_many_modes};
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{MatrixChecks, refuse_matrix};
-use crate::progress::{BuildProgress, BuildWork};
 use crate::reference::Reference;
 use crate::stress::about::stress_about;
 use crate::structure::kept::{Basis, Extended, Found, OwnSecondOrder, SecondOrder, StaticResponses};

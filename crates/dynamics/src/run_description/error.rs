@@ -21,7 +21,9 @@ pub enum DescriptionError {
     )]
     Law { joint: String },
     /// Modes about a bent rest.
-    #[error("the modes of a body are about a bent rest, whose forces cannot be written as data; take modes about the undeformed body")]
+    #[error(
+        "the modes of a body are about a bent rest, whose forces cannot be written as data; take modes about the undeformed body"
+    )]
     Reference,
     /// A speed that a program adds to a drive.
     #[error("the drive has a speed that its program adds; only its own history can be written as data")]
