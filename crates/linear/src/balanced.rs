@@ -3,8 +3,8 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side, c64};
 
+use crate::channel::Channel;
 use crate::error::LinearError;
-use crate::second_order::Channel;
 use crate::state_space::StateSpace;
 
 /// A model of lower order.
@@ -68,7 +68,7 @@ impl StateSpace {
         let eigen = self.a.eigen().map_err(|_| failed)?;
         let poles: Vec<c64> = eigen.S().column_vector().iter().copied().collect();
         let fastest = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
-        if let Some(pole) = poles.iter().find(|pole| !(pole.re < -1e-13 * fastest)) {
+        if let Some(pole) = poles.iter().find(|pole| pole.re.is_nan() || pole.re >= -1e-13 * fastest) {
             return Err(LinearError::NotStable { real: pole.re, imaginary: pole.im.abs() });
         }
         let complex =

@@ -13,6 +13,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod balanced;
+mod channel;
 mod error;
 mod frequency_response;
 mod mat_file;
@@ -21,10 +22,11 @@ mod second_order;
 mod state_space;
 
 pub use balanced::Balanced;
+pub use channel::Channel;
 pub use error::LinearError;
 pub use faer;
 pub use frequency_response::{Damping, FrequencyResponse};
 pub use mat_file::{MatArray, mat_file};
 pub use random::{RandomInput, RandomResponse};
-pub use second_order::{Channel, Output, Rate, SecondOrder};
+pub use second_order::{Output, Rate, SecondOrder};
 pub use state_space::StateSpace;

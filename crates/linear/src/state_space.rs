@@ -3,8 +3,8 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
 
+use crate::channel::Channel;
 use crate::error::LinearError;
-use crate::second_order::Channel;
 
 /// x' = A x + B u, y = C x + D u.
 #[derive(Debug, Clone)]

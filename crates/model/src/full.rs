@@ -17,12 +17,12 @@ use modal::NodalMass;
 use nonlinear::{FullBody, NonlinearError};
 use scene::Scene;
 
-use crate::assembly::{Assembled, AssembledMesh};
-use crate::builder::Builder;
+use crate::building::assembly::{Assembled, AssembledMesh};
+use crate::building::builder::Builder;
+use crate::building::progress::BuildProgress;
 use crate::error::BuildError;
 use crate::load::mesh_load::{self, MeshLoad, UnitWeight};
 use crate::mesh::fe_matrices::FeMatrices;
-use crate::progress::BuildProgress;
 use crate::tie::mesh_marker::{self, MeshMarker};
 
 /// The full nonlinear body of a scene.

@@ -20,27 +20,26 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-mod assembly;
 mod body;
-mod builder;
+mod building;
 mod cache;
 mod error;
 mod full;
 mod load;
 mod mesh;
 mod model;
-mod progress;
 mod reduction;
 mod reference;
 mod stress;
 mod structure;
 mod support;
 mod tie;
-mod variants;
 
-pub use assembly::Assembly;
 pub use body::files::files_of_body;
-pub use builder::Builder;
+pub use building::assembly::Assembly;
+pub use building::builder::Builder;
+pub use building::progress::{BuildProgress, BuildTimes, BuildWork};
+pub use building::variants::Variants;
 pub use cache::{Cache, CacheNotes};
 pub use error::{BuildError, StartError};
 pub use full::acting::MarkerForce;
@@ -50,7 +49,6 @@ pub use full::{FullError, FullModel};
 pub use mesh::doubt::{Doubt, doubts};
 pub use mesh::given::MatrixChecks;
 pub use model::{Meshed, Model};
-pub use progress::{BuildProgress, BuildTimes, BuildWork};
 pub use stress::about::stress_about;
 pub use stress::products::ProductStrains;
 pub use stress::shapes::{BodyStress, StressPeak};
@@ -58,4 +56,3 @@ pub use support::reactions::SupportRows;
 pub use tie::body_marker::{BodyMarker, MarkerPart, UnknownTurns};
 pub use tie::tied::{Tied, tie, tie_models};
 pub use tie::warp::Warp;
-pub use variants::Variants;

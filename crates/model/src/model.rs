@@ -18,10 +18,10 @@ use modal::{Modes, NoCycles, ReducedBody};
 use nalgebra::Vector3;
 use scene::{MeshedBody, Scene};
 
+use crate::building::progress::BuildTimes;
 use crate::error::StartError;
 use crate::mesh::given::MatrixChecks;
 use crate::model::initial::initial;
-use crate::progress::BuildTimes;
 use crate::stress::shapes::BodyStress;
 use crate::structure::remainders::Remainders;
 use crate::support::reactions::SupportRows;

@@ -24,15 +24,15 @@ use modal::{
 use nalgebra::Vector3;
 use slepc::write_folder;
 
-use crate::assembly::{AssembledMesh, MadeOf};
 use crate::body::origin::Origin;
+use crate::building::assembly::{AssembledMesh, MadeOf};
+use crate::building::progress::{BuildProgress, BuildWork};
 use crate::cache::Computing;
 use crate::cache::kept::Keep;
 use crate::cache::store::Store;
 use crate::error::{BuildError, modal, too_many_modes};
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{MatrixChecks, refuse_matrix};
-use crate::progress::{BuildProgress, BuildWork};
 use crate::reference::Reference;
 use crate::stress::about::stress_about;
 use crate::structure::kept::{Basis, Extended, Found, OwnSecondOrder, SecondOrder, StaticResponses};
@@ -495,14 +495,6 @@ impl Structure<'_> {
         let shapes = self.solver()?.large_shapes(modes.clone(), large, following, of_products);
         let shapes = shapes.map_err(|error| self.modal(error))?;
         Ok(Extended { body: self.reduced(&shapes.modes)?, shapes, energies })
-    }
-
-    /// The parts (nf×k) of fields (3n×k) along M-orthonormal modes and static shapes.
-    pub fn parts(&self, modes: &Modes, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
-        let asked = self.of_body("parts of fields").with_modes(modes).with("fields", &fields);
-        self.ask(asked, [modes.shapes.ncols(), fields.ncols()], || {
-            Ok(modes.shapes.transpose() * self.solver()?.mass().product(fields))
-        })
     }
 
     /// Fields (3n×k) without their parts along some modes.

@@ -4,10 +4,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::document::NotToml;
-use crate::suggest::{list, nearest};
 use crate::text::example::example;
 use crate::text::place::Place;
 use crate::text::shorten::shorten;
+use crate::text::suggest::{list, nearest};
 
 const TOO_LARGE_CURE: &str = "name a scene file; the mesh goes into a file of its own, named by `body.mesh`, and so does a \
                               long table of a history, named by `file`";

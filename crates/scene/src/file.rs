@@ -7,9 +7,9 @@ use crate::alone::{BodyText, BodyTexts};
 use crate::check::Check;
 use crate::document::{BODIES, Document, Node};
 use crate::error::SceneError;
-use crate::name::ONLY_BODY;
 use crate::scene::Scene;
 use crate::section::Sections;
+use crate::text::name::ONLY_BODY;
 use crate::text::ordinary_file::open_ordinary;
 use crate::text::place::Place;
 

@@ -21,7 +21,7 @@
 //! One file of this crate per idea:
 //! `document` is the TOML tree in which every value knows its key path and its place;
 //! `text` lets serde fill structs from that tree, sets values in the text of a scene from outside of it, and shows places;
-//! `section`, `tie_section`, `scene`, `body`, `loads`, `marker` and `joint` are those structs, and so the list of all keys;
+//! `section`, `scene`, `body`, `loads` and `tie` are those structs, and so the list of all keys;
 //! `check` has the rules on their values.
 //! A new kind of load is a new variant in `loads`, of constraint in `section` and `body`; its rules are in `check`.
 //! The kinds of histories, the effects and the schemes are those of `dynamics`; `check` has the rules on histories.
@@ -35,18 +35,14 @@ mod check;
 mod document;
 mod error;
 mod file;
-mod joint;
 mod loads;
-mod marker;
 mod methods;
-mod name;
 mod scene;
 mod schema;
 mod section;
-mod suggest;
 mod system;
 mod text;
-mod tie_section;
+mod tie;
 
 pub use body::constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use body::effects::{Choice, Effects};
@@ -57,19 +53,19 @@ pub use dynamics::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
 pub use file::{text_from, text_of};
-pub use joint::{
-    AlongAndAbout, Bushing, Coordinate, Coupling, CouplingKind, End, Friction, Joint, JointDrive, JointKind,
-    JointSpring, Locked, Spring, Stops,
-};
 pub use loads::history::{DrivenSpeed, Formula, History, TablePoints};
 pub use loads::load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
-pub use marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace, Tie};
 pub use matrix_import::MatrixFiles;
 pub use methods::{METHODS, method_named};
 pub use scene::{Body, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Time, Units};
 pub use schema::json_schema;
-pub use suggest::one_of;
 pub use system::System;
 pub use text::assign::{AssignError, assign};
 pub use text::place::Place;
 pub use text::shorten::shorten;
+pub use text::suggest::one_of;
+pub use tie::joint::{
+    AlongAndAbout, Bushing, Coordinate, Coupling, CouplingKind, End, Friction, Joint, JointDrive, JointKind,
+    JointSpring, Locked, Spring, Stops,
+};
+pub use tie::marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace, Tie};

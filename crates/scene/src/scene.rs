@@ -18,7 +18,7 @@ use crate::body::constraint::Constraint;
 use crate::body::effects::{Choice, Effects};
 use crate::body::modes::Modes;
 use crate::loads::load::Load;
-use crate::marker::Marker;
+use crate::tie::marker::Marker;
 
 /// A scene that obeys every rule which needs no mesh: all numbers are finite and in range.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,7 +13,7 @@ use crate::body::effects::{Choice, Effects};
 use crate::document::{BODIES, OF_A_BODY, OUTPUT_OF_A_BODY};
 use crate::methods::{formulation_names, scheme_names};
 use crate::section::{BodySection, CountOrAuto, Formulation, NumberOrList, OutputSection, Scheme, Sections};
-use crate::tie_section::{InOrder, TieSections};
+use crate::tie::section::{InOrder, TieSections};
 
 /// The schema of a scene file (JSON Schema, draft 7, which editors of TOML read): keys, types, kinds and their description.
 /// Rules between keys are not in it; the program has them.

@@ -16,7 +16,7 @@ use crate::loads::history::DrivenSpeed;
 use crate::loads::load::Load;
 use crate::methods::{formulation_names, scheme_names};
 use crate::scene::{Frame, Initial, Units};
-use crate::tie_section::{InOrder, MarkerSection};
+use crate::tie::section::{InOrder, MarkerSection};
 
 /// The whole file.
 #[derive(Deserialize, JsonSchema)]

@@ -8,12 +8,12 @@ use crate::check::tie::Ties;
 use crate::document::{BODIES, Document, Node, OF_A_BODY, OUTPUT_OF_A_BODY};
 use crate::error::SceneError;
 use crate::file::{refuse_long, text_of};
-use crate::joint::{Bushing, Coupling, End, Joint, Spring};
-use crate::marker::GroundMarker;
-use crate::name::{GROUND, ONLY_BODY, check_key};
 use crate::scene::Scene;
 use crate::text::deserialize::from_document;
+use crate::text::name::{GROUND, ONLY_BODY, check_key};
 use crate::text::place::Place;
+use crate::tie::joint::{Bushing, Coupling, End, Joint, Spring};
+use crate::tie::marker::GroundMarker;
 
 /// Bodies of a scene at the most.
 const MAX_BODIES: usize = 1000;

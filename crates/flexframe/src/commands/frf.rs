@@ -100,7 +100,7 @@ pub fn frf(
     write_whole(&table, csv(&equations, &response)).map_err(WriteError::of(&table))?;
     let unit = frequency_unit(&scene.units.time);
     let mut files = vec![table];
-    files.extend(chart(&scene.title, &unit, &equations, &response, settings.logarithmic).save(&folder.join(CHART))?);
+    files.extend(chart(&scene.title, &unit, &equations, &response, settings.logarithmic).save(folder.join(CHART))?);
     Ok(FrfReport {
         title: scene.title.clone(),
         frequency_unit: unit,

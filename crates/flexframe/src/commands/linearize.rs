@@ -6,6 +6,7 @@ mod files;
 mod held;
 mod of_system;
 mod report;
+mod state;
 
 use std::path::Path;
 
@@ -16,6 +17,7 @@ use scene::System;
 
 pub use error::LinearizeError;
 pub use report::LinearReport;
+pub use state::State;
 
 /// Settings of a linear model.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -25,17 +27,6 @@ pub struct LinearSettings {
     pub spin: Option<[f64; 3]>,
     /// True where coordinates that deform nothing are taken out.
     pub without_rigid: bool,
-}
-
-/// The state that equations are about.
-#[derive(Debug, Clone, PartialEq)]
-pub struct State {
-    /// Angular velocity, global.
-    pub omega_global: [f64; 3],
-    /// Number of coordinates that deform nothing.
-    pub rigid: usize,
-    /// What the state does besides.
-    pub warnings: Vec<String>,
 }
 
 /// The linearised equations of a scene.

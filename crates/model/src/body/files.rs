@@ -6,7 +6,7 @@ use mesh_import::files_of_mesh;
 use scene::{Body, FileBody, Scene};
 use slepc::Slepc;
 
-use crate::builder::Builder;
+use crate::building::builder::Builder;
 
 impl Builder {
     /// The files that the model of a scene is read from: the scene file and the tables of its histories, those of the body, what

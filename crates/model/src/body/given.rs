@@ -5,7 +5,7 @@ use scene::{FileBody, MeshedBody, Scene, SceneError};
 use sealed::{Format, SealedFile};
 
 use crate::body::origin::Origin;
-use crate::builder::Builder;
+use crate::building::builder::Builder;
 use crate::error::BuildError;
 use crate::mesh::read::{import_settings, mesh_file_at};
 

@@ -13,15 +13,15 @@ use scene::{Body, Scene};
 use sealed::{Declared, Kind, Number, SealedError, SealedFile, Writer};
 use whole_file::TemporaryFolder;
 
-use crate::assembly::Assembled;
 use crate::body::origin::{ElementKeys, ORIGIN, Origin};
-use crate::builder::Builder;
+use crate::building::assembly::Assembled;
+use crate::building::builder::Builder;
+use crate::building::progress::BuildProgress;
 use crate::cache::Cache;
 use crate::cache::kept::{by_columns, group};
 use crate::error::BuildError;
 use crate::mesh::arrays::MeshArrays;
 use crate::model::{Meshed, Model};
-use crate::progress::BuildProgress;
 use crate::stress::shapes::BodyStress;
 
 /// Numbers that are ready to be written.
@@ -118,7 +118,7 @@ impl Builder {
             mesh: body.mesh.display().to_string(),
             mesh_hash: store.mesh_hash().to_string(),
             elements: ElementKeys::of(body),
-            modes: crate::variants::requested(scene),
+            modes: crate::building::variants::requested(scene),
             support: structure.support_hash(),
             reference: structure.reference().map(|reference| reference.hash.to_string()),
         };

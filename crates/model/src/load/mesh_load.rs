@@ -293,10 +293,6 @@ impl MeshLoad {
         self.is_gravity
     }
 
-    pub fn is_moment(&self) -> bool {
-        matches!(self.action, Action::Moment { .. })
-    }
-
     /// "gravity along (0, 0, -1)", for a force or moment in body axes.
     pub fn name_along(&self, vector: &Vector3<f64>) -> String {
         let rounded = |x: f64| (x * 100.0).round() / 100.0 + 0.0;

@@ -6,7 +6,7 @@ use std::path::Path;
 use mesh_import::{ImportError, ImportSettings, Imported, MeshFile, Reader, reader_of};
 use scene::{MeshedBody, Scene, SceneError, shorten};
 
-use crate::builder::Builder;
+use crate::building::builder::Builder;
 use crate::error::{BuildError, refuse};
 
 /// How a mesh file is read.

@@ -12,12 +12,12 @@ use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
 use scene::{Choice, Frame, Scene};
 
-use crate::assembly::AssembledMesh;
+use crate::building::assembly::AssembledMesh;
+use crate::building::progress::{BuildProgress, BuildTimes, timed};
 use crate::error::{BuildError, modal, refuse};
 use crate::load::mesh_load::{self, UnitWeight};
 use crate::model::points::{output_points, well_spread};
 use crate::model::{Meshed, Model};
-use crate::progress::{BuildProgress, BuildTimes, timed};
 use crate::reduction::about::proposed;
 use crate::reduction::decide::Decision;
 use crate::reduction::manifold::LargeDeflection;

@@ -65,7 +65,7 @@ impl Reduction {
             (modes, modal, spin, deflection)
         };
         let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
-        let bent = decision.bent.clone().settled(model, &modes)?.with_moment(model, &statics, &modes)?;
+        let bent = decision.bent.clone().settled(model, &modes)?;
         let (modal, stress, large, of_spin) = if !bent.large.is_empty() {
             let all = bent.all();
             let stressing = statics.without_parts(model, &modes, &all)?;

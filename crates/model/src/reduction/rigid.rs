@@ -8,12 +8,12 @@ use modal::{BodyPoint, ReducedBody, Support};
 use nalgebra::{Matrix3, Vector3};
 use scene::{Frame, RigidBody, Scene};
 
+use crate::building::progress::BuildTimes;
 use crate::error::{BuildError, modal};
 use crate::load::mesh_load;
 use crate::model::initial::initial;
 use crate::model::points::output_points;
 use crate::model::{Model, Size};
-use crate::progress::BuildTimes;
 use crate::reduction::physics;
 use crate::structure::remainders::Remainders;
 use crate::support::support;

@@ -6,8 +6,8 @@ use faer::Mat;
 use modal::Modes;
 use scene::Choice;
 
+use crate::building::progress::BuildProgress;
 use crate::error::BuildError;
-use crate::progress::BuildProgress;
 use crate::reduction::backbones::backbones;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;

@@ -181,12 +181,6 @@ impl OfLoads {
         self.responses.subcols(range.start, range.len())
     }
 
-    /// The response (3n×1) to a load of an amplitude of 1 or −1 in its first attitude.
-    pub fn at_start(&self, i: usize, load: &MeshLoad) -> Mat<f64> {
-        let parts = Col::from_iter(load.parts(self.turned(i)));
-        (self.of_unit(i) * parts).as_mat().to_owned()
-    }
-
     /// The forces or moments that a load is combined of as the body turns, see [`MeshLoad::turned`].
     pub fn turned(&self, load: usize) -> &[Vector3<f64>] {
         &self.columns[load].1

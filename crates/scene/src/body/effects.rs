@@ -103,7 +103,7 @@ pub(crate) fn auto<'v, E: Error>(text: &str, visitor: &impl Visitor<'v>) -> Resu
     const NAMES: &[&str] = &["auto"];
     match text {
         "auto" => Ok(()),
-        _ if crate::suggest::nearest(text, NAMES).is_some() => Err(E::unknown_variant(text, NAMES)),
+        _ if crate::text::suggest::nearest(text, NAMES).is_some() => Err(E::unknown_variant(text, NAMES)),
         _ => Err(E::invalid_type(Unexpected::Str(text), visitor)),
     }
 }

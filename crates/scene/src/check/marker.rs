@@ -7,10 +7,10 @@ use super::constraint::RegionKeys;
 use crate::document::join;
 use crate::error::SceneError;
 use crate::loads::unit_vector::unit;
-use crate::marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace, Tie};
-use crate::name::check_key;
 use crate::scene::Body;
-use crate::tie_section::{GroundMarkerSection, InOrder, MarkerSection, TieName};
+use crate::text::name::check_key;
+use crate::tie::marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace, Tie};
+use crate::tie::section::{GroundMarkerSection, InOrder, MarkerSection, TieName};
 
 /// Sine of the angle between z and x below which they have one direction.
 const PARALLEL: f64 = 1e-6;

@@ -8,15 +8,15 @@ use super::Check;
 use crate::body::effects::Choice;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::joint::{
+use crate::scene::Scene;
+use crate::text::name::{GROUND, ONLY_BODY, is_part_of_path};
+use crate::text::suggest::{nearest, one_of};
+use crate::tie::joint::{
     AlongAndAbout, Bushing, Coordinate, Coupling, CouplingKind, End, Friction, Joint, JointDrive, JointKind,
     JointSpring, Locked, Spring, Stops,
 };
-use crate::marker::GroundMarker;
-use crate::name::{GROUND, ONLY_BODY, is_part_of_path};
-use crate::scene::Scene;
-use crate::suggest::{nearest, one_of};
-use crate::tie_section::{
+use crate::tie::marker::GroundMarker;
+use crate::tie::section::{
     BushingSection, CouplingSection, DriveSection, JointSection, JointSpringSection, SpringSection, StopsSection,
     TieSections,
 };

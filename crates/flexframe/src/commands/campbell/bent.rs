@@ -73,7 +73,7 @@ impl<'a> BentSpin<'a> {
         axis: &Vector3<f64>,
     ) -> Result<Self, CampbellError> {
         let Some(meshed) = &model.meshed else { return Err(CampbellError::NoFullBody { scene: scene.path.clone() }) };
-        let failed = |source| CampbellError::Full { scene: scene.path.clone(), source };
+        let failed = |source| CampbellError::Full { scene: scene.path.clone(), source: Box::new(source) };
         let body = full.body().map_err(failed)?;
         Ok(Self {
             scene,
@@ -89,7 +89,7 @@ impl<'a> BentSpin<'a> {
 
     /// The vibrations at a speed, slowest first.
     pub fn modes(&self, speed: f64) -> Result<Vec<SpinMode>, CampbellError> {
-        let failed = |source| CampbellError::Bent { scene: self.scene.path.clone(), speed, source };
+        let failed = |source| CampbellError::Bent { scene: self.scene.path.clone(), speed, source: Box::new(source) };
         let (omega, settings) = (self.axis * speed, EquilibriumSettings::default());
         let rest = equilibrium(&self.body, &ExternalForces::default(), &omega, None, &settings).map_err(failed)?;
         let size = |u: &[f64]| Vector3::from_column_slice(u).norm();

@@ -37,13 +37,13 @@ pub enum CampbellError {
     NoFullBody { scene: PathBuf },
     /// The full body cannot be made.
     #[error("{}: {source}", scene.display())]
-    Full { scene: PathBuf, source: FullError },
+    Full { scene: PathBuf, source: Box<FullError> },
     /// The bent body has no rest at a speed, or no vibrations about it.
     #[error(
         "{}: at {speed} rad per time: {source}; help: end the speeds before this one, or take vibrations about the undeformed body \
          with `--about-rest never`", scene.display()
     )]
-    Bent { scene: PathBuf, speed: f64, source: NonlinearError },
+    Bent { scene: PathBuf, speed: f64, source: Box<NonlinearError> },
     /// The axis of the spin of a system is not known.
     #[error(
         "{}: {found}; expected --axis, an axis through the center of mass, or --joint, whose axis it is: one of {}", scene.display(), joints.join(", ")

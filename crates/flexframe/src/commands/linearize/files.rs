@@ -7,7 +7,7 @@ use linear::{Channel, MatArray, StateSpace, mat_file};
 use serde_json::{Value, json};
 use whole_file::write_whole;
 
-use super::LinearizeError;
+use super::error::LinearizeError;
 use crate::files::write_error::WriteError;
 
 /// Refuses an ending that no writer has.

@@ -6,8 +6,8 @@ use linear::{Channel, SecondOrder};
 use model::Model;
 use scene::Scene;
 
-use super::LinearizeError;
 use super::channels::{input_channels, point_outputs, unit_of_coordinate};
+use super::error::LinearizeError;
 
 /// A factor of a load below this part of its largest is none.
 const NONE: f64 = 1e-12;

@@ -8,7 +8,8 @@ use nalgebra::Vector3;
 use scene::{Scene, System};
 
 use super::channels::{input_channels, point_outputs, unit_of_coordinate};
-use super::{LinearizeError, State};
+use super::error::LinearizeError;
+use super::state::State;
 use crate::motion::{self, Beginning, Motion};
 use crate::rows::units::UnitLabels;
 

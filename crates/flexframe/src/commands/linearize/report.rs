@@ -9,7 +9,7 @@ use linear::{Balanced, StateSpace};
 use scene::Scene;
 use serde::Serialize;
 
-use super::State;
+use super::state::State;
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 

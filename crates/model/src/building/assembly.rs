@@ -11,7 +11,8 @@ use modal::Support;
 use scene::{Body, Constraint, MeshedBody, RigidBody, Scene};
 
 use crate::body::given::read_body_file;
-use crate::builder::Builder;
+use crate::building::builder::Builder;
+use crate::building::progress::{BuildProgress, BuildTimes, timed};
 use crate::cache::store::Store;
 use crate::error::BuildError;
 use crate::mesh::doubt::doubts;
@@ -19,7 +20,6 @@ use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{Given, MatrixChecks};
 use crate::mesh::other_materials::other_materials;
 use crate::mesh::read::{matrices, mesh_file, mesh_in};
-use crate::progress::{BuildProgress, BuildTimes, timed};
 use crate::reference::Reference;
 use crate::reference::found::Asked;
 use crate::support::support;

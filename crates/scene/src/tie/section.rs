@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use crate::joint::{AlongAndAbout, Coordinate, Friction, JointKind};
 use crate::loads::history::History;
+use crate::tie::joint::{AlongAndAbout, Coordinate, Friction, JointKind};
 
 /// The tables that tie bodies together.
 #[derive(Default, Deserialize, JsonSchema)]

@@ -6,11 +6,11 @@ use std::time::Duration;
 use dynamics::Effect;
 use scene::{Choice, RigidBody, Scene};
 
-use crate::assembly::{Assembled, AssembledMesh, Assembly};
-use crate::builder::Builder;
+use crate::building::assembly::{Assembled, AssembledMesh, Assembly};
+use crate::building::builder::Builder;
+use crate::building::progress::{BuildProgress, BuildTimes, BuildWork, timed};
 use crate::error::BuildError;
 use crate::model::Model;
-use crate::progress::{BuildProgress, BuildTimes, BuildWork, timed};
 use crate::reduction::meshed;
 use crate::reduction::rigid;
 use crate::structure::Structure;

@@ -1,0 +1,12 @@
+//! The state that linear equations are about.
+
+/// The state that equations are about.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Angular velocity, global.
+    pub omega_global: [f64; 3],
+    /// Number of coordinates that deform nothing.
+    pub rigid: usize,
+    /// What the state does besides.
+    pub warnings: Vec<String>,
+}
