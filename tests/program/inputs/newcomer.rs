@@ -64,9 +64,14 @@ impl Desk {
         self.file("x.toml", &text);
     }
 
-    fn output(&self, arguments: &[&str]) -> Output {
+    fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-        command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null()).output().unwrap()
+        command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null());
+        command
+    }
+
+    fn output(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().unwrap()
     }
 
     /// Standard output and standard error of a command that succeeds.
