@@ -1,4 +1,4 @@
-//! Balanced truncation (Moore 1981), with the error bound of Glover (1984) and Enns (1984).
+//! Balanced truncation (Moore 1981), Eq. (F5), with the error bound of Glover (1984) and Enns (1984).
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side, c64};
