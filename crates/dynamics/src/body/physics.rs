@@ -178,11 +178,13 @@ impl Keyed for ReferenceForces {
 impl Keyed for Physics {
     fn key(&self, key: Key) -> Key {
         let Self { effects, drive, drive_stiffness, large_deflection, reference } = self;
-        key.of("physics", 2)
+        let key = key
+            .of("physics", 1)
             .with("effects", effects)
             .with("drive", drive)
             .with("drive stiffness", drive_stiffness)
-            .with("large deflection", large_deflection)
-            .with("reference", reference)
+            .with("large deflection", large_deflection);
+        // Runs without one keep the keys that they had before there was any.
+        reference.iter().fold(key, |key, reference| key.with("reference", reference))
     }
 }

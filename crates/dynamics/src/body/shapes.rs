@@ -215,8 +215,10 @@ impl RotationShapes {
 impl Keyed for PointShapes {
     fn key(&self, key: Key) -> Key {
         let Self { position_body, of_reference, columns, second_order, components: _ } = self;
-        let key = key.of("point", 2).with("position", position_body).with("columns", columns.as_slice());
-        key.with("second order", second_order).with("of reference", of_reference)
+        let key = key.of("point", 1).with("position", position_body).with("columns", columns.as_slice());
+        let key = key.with("second order", second_order);
+        // Points of bodies without a reference keep the keys that they had before there was any.
+        if *of_reference == Vector3::zeros() { key } else { key.with("of reference", of_reference) }
     }
 }
 
