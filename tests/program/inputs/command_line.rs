@@ -346,7 +346,7 @@ fn arguments_beyond_all_bounds_are_refused() {
         (&["animate", "SCENE", "-o", "a.gif", "--frames", "100000000000"], &["--frames", "2..=10000"]),
         (&["animate", "SCENE", "-o", "a.gif", "--magnify", "nan"], &["--magnify", "a finite number"]),
         (&["animate", "SCENE", "-o", "a.gif", "--magnify", "-inf"], &["--magnify", "a finite number"]),
-        (&["animate", "SCENE", "-o", "a.gif", "--view", "w"], &["--view", "x, y, z, or two angles"]),
+        (&["animate", "SCENE", "-o", "a.gif", "--view", "w"], &["--view", "x, y, z, -x, -y, -z, or two angles"]),
         (&["animate", "SCENE", "-o", "a.gif", "--view", "10,95"], &["--view", "from -90 to 90"]),
         (&["run", "SCENE", "--threads", "65535"], &["--threads", "1..=256"]),
         (&["run", "SCENE", "--threads", "0"], &["--threads", "1..=256"]),
