@@ -6,10 +6,14 @@ const ROUNDING: f64 = 1e-6;
 /// Relative difference of numbers that are the same: machines differ in the last digits.
 const SAME: f64 = 1e-4;
 
-/// True if a line of what was printed is the claimed one, but for the space between words; `…` stands for any words.
+/// True if a line of what was printed is the claimed one, but for space and commas between words; `…` stands for any words.
 pub fn says(printed: &str, claimed: &str) -> bool {
-    let claimed: Vec<&str> = claimed.split_whitespace().collect();
-    printed.lines().any(|line| fits(&line.split_whitespace().collect::<Vec<_>>(), &claimed))
+    let claimed = words(claimed);
+    printed.lines().any(|line| fits(&words(line), &claimed))
+}
+
+fn words(line: &str) -> Vec<&str> {
+    line.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty()).collect()
 }
 
 fn fits(words: &[&str], claimed: &[&str]) -> bool {
@@ -21,7 +25,7 @@ fn fits(words: &[&str], claimed: &[&str]) -> bool {
 }
 
 fn is_same(word: &str, claimed: &str) -> bool {
-    let ends = |c: char| "(),;:%[]".contains(c);
+    let ends = |c: char| "();:%[]".contains(c);
     match (word.trim_matches(ends).parse::<f64>(), claimed.trim_matches(ends).parse::<f64>()) {
         (Ok(x), Ok(y)) => (x - y).abs() <= SAME * x.abs().max(y.abs()) || x.abs().max(y.abs()) < ROUNDING,
         _ => word == claimed,
@@ -30,7 +34,7 @@ fn is_same(word: &str, claimed: &str) -> bool {
 
 #[test]
 fn numbers_that_part_and_words_that_part_are_found() {
-    let printed = "  mode   1   441.936528 Hz\n  balance  closed to 2.0e-8, (3, 4)\n";
+    let printed = "  mode   1   441.936528 Hz\n  balance  closed to 2.0e-8, (3, 4)\n0.01,13.884218,7\n";
     for (claimed, is_said) in [
         ("mode 1 441.9365 Hz", true),
         ("mode 1 442.1 Hz", false),
@@ -42,6 +46,8 @@ fn numbers_that_part_and_words_that_part_are_found() {
         ("balance closed to 3.0e-4, (3, 4)", false),
         ("balance closed to 2.0e-8, (3, 5)", false),
         ("balance closed", false),
+        ("0.01,13.8842,…", true),
+        ("0.01,13.9,…", false),
     ] {
         assert_eq!(says(printed, claimed), is_said, "{claimed}");
     }
