@@ -80,6 +80,10 @@ picture: build
     if {{flexframe}} run examples/thrown_plate.toml -o out/picture --overwrite | grep '^  warning'; then exit 1; fi
     {{flexframe}} animate examples/thrown_plate.toml -o docs/start/thrown_plate.gif --frames 80 --overwrite
 
+# The pages of the first hour and of how-to, command by command; makes their pictures again.
+first-hour:
+    FLEXFRAME_ACCEPT=1 cargo test --quiet --package flexframe-cli --test program documentation
+
 # The price of accuracy: docs/evidence/accuracy.md and its diagrams from real runs of three scenes (some minutes).
 accuracy:
     cargo run --release --quiet --package verification --bin accuracy -- docs/evidence/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml --overwrite

@@ -2,6 +2,7 @@
 //! test of each file.
 
 mod commands;
+mod documentation;
 mod examples;
 mod inputs;
 mod library;
