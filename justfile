@@ -84,6 +84,10 @@ picture: build
 first-hour:
     FLEXFRAME_ACCEPT=1 cargo test --quiet --package flexframe-cli --test program documentation
 
+# Pages of the reference that are made of the sources: commands and their options, keys of scenes.
+reference:
+    FLEXFRAME_ACCEPT=1 cargo test --quiet --package flexframe-cli --bin flexframe documentation
+
 # The price of accuracy: docs/evidence/accuracy.md and its diagrams from real runs of three scenes (some minutes).
 accuracy:
     cargo run --release --quiet --package verification --bin accuracy -- docs/evidence/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml --overwrite

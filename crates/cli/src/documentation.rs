@@ -1,4 +1,7 @@
-//! Tests that what the documentation shows works: its commands, its scenes and its Rust.
+//! Tests that what the documentation shows works: its commands, its scenes and its Rust; and pages made of the sources.
+
+mod commands;
+mod keys;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,6 +28,29 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
         }
     }
     found
+}
+
+/// Compares a page with what the sources give, or writes it where `FLEXFRAME_ACCEPT` is set.
+fn is_made(page: &str, text: &str) {
+    let path = root().join(page);
+    if std::env::var_os("FLEXFRAME_ACCEPT").is_some() {
+        fs::write(&path, text).unwrap();
+    }
+    assert!(
+        fs::read_to_string(path).is_ok_and(|found| found == text),
+        "{page} is not what the sources give: run ./dev reference"
+    );
+}
+
+/// Text for a cell of a table.
+fn cell(text: &str) -> String {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
+    // Outside spans of code a `<` begins HTML.
+    let parts = line
+        .split('`')
+        .enumerate()
+        .map(|(k, part)| if k % 2 == 0 { part.replace('<', "&lt;") } else { part.to_owned() });
+    parts.collect::<Vec<_>>().join("`")
 }
 
 /// Names and texts of the pages that users read.
