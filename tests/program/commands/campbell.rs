@@ -301,7 +301,7 @@ fn a_blade_that_its_spin_bends_vibrates_about_its_rest_at_each_speed() {
     let deflection: Vec<f64> = report["deflection"].as_array().unwrap().iter().map(|u| u.as_f64().unwrap()).collect();
     assert!(deflection[0] < 1e-9 && deflection[1] > 0.05 && (deflection[2] - 0.14).abs() < 0.02, "{deflection:?}");
     let straight = blade(&speeds, &["--about-rest", "never"]);
-    assert_eq!(straight["deflection"], serde_json::json!([]));
+    assert!(straight["deflection"].is_null(), "{}", straight["deflection"]);
     let difference = at(&straight, 2)[0] / 6.20321 - 1.0;
-    assert!(difference.abs() > 0.05, "{difference}");
+    assert!(difference < -0.005, "{difference}");
 }
