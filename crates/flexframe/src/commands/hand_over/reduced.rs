@@ -108,13 +108,13 @@ impl<'a> Reduced<'a> {
         Vector3::new(p[(1, 2)] - p[(2, 1)], p[(2, 0)] - p[(0, 2)], p[(0, 1)] - p[(1, 0)])
     }
 
-    /// −∫ [X×][φ_k×] dm.
+    /// `−∫ [X×][φ_k×] dm`.
     pub fn cross_with_position(&self, k: usize) -> Matrix3<f64> {
         let p = &self.with_position[k];
         Matrix3::identity() * p.trace() - p
     }
 
-    /// ∫ [φ_j×][φ_k×] dm.
+    /// `∫ [φ_j×][φ_k×] dm`.
     pub fn double_cross(&self, j: usize, k: usize) -> Matrix3<f64> {
         let p = self.product(j, k);
         p.transpose() - Matrix3::identity() * p.trace()
