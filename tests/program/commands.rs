@@ -10,6 +10,7 @@ pub(crate) mod export;
 pub(crate) mod fmu;
 pub(crate) mod hand_over;
 pub(crate) mod html_report;
+pub(crate) mod linear;
 pub(crate) mod new_scene;
 pub(crate) mod srs;
 pub(crate) mod sweep;

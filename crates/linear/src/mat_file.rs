@@ -16,10 +16,10 @@ pub enum MatArray<'a> {
 /// Types of data elements.
 const INT8: u32 = 1;
 const INT32: u32 = 5;
-const UINT16: u32 = 4;
 const UINT32: u32 = 6;
 const DOUBLE: u32 = 9;
 const MATRIX: u32 = 14;
+const UTF16: u32 = 17;
 /// Classes of arrays.
 const CELL: u32 = 1;
 const CHARACTERS: u32 = 4;
@@ -69,7 +69,7 @@ fn cells(name: &str, words: &[&str]) -> Vec<u8> {
     for word in words {
         let letters: Vec<u16> = word.encode_utf16().collect();
         let mut text = head(CHARACTERS, [1, letters.len()], "");
-        element(&mut text, UINT16, &letters.iter().flat_map(|letter| letter.to_le_bytes()).collect::<Vec<_>>());
+        element(&mut text, UTF16, &letters.iter().flat_map(|letter| letter.to_le_bytes()).collect::<Vec<_>>());
         element(&mut array, MATRIX, &text);
     }
     array
