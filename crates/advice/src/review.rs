@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use dynamics::{Effect, EffectMap, Moment, Observation};
+use dynamics::{DrivenMotion, Effect, EffectMap, Moment, Observation};
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -283,6 +283,9 @@ pub struct Review<'a> {
     /// The most that the modes left out of the static response to the spin and to the acceleration of the drive, when, and the
     /// part of it.
     left_out: [(f64, f64, f64); 2],
+    /// The driven motion, with the part of the static response to its unit acceleration that the modes hold, and how much they
+    /// leave out.
+    held_of_drive: Option<(DrivenMotion, f64, f64)>,
     /// Lowest natural frequency, rad per time. The centrifugal force takes at most Ω² from the stiffness of a mode, so
     /// that below it nothing can be lost.
     lowest: f64,
@@ -341,6 +344,7 @@ impl<'a> Review<'a> {
             fastest: (0.0, Vector3::zeros()),
             looked_up: (0.0, Vector3::zeros()),
             left_out: [(0.0, 0.0, 0.0); 2],
+            held_of_drive: case.drive.zip(held_of_drive(&case)).map(|(drive, (held, left))| (drive.motion, held, left)),
             lowest: case.body.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min),
             deformation: 0.0,
             order: case
@@ -432,8 +436,8 @@ impl<'a> Review<'a> {
             modal_velocity: &observation.modal_velocity,
         });
         self.row = Some(observation.time);
-        if let (Some(drive), Some((held, remainder))) = (self.case.drive, held_of_drive(&self.case)) {
-            let left = remainder * observation.acceleration_of(&drive.motion).abs();
+        if let Some((motion, held, remainder)) = &self.held_of_drive {
+            let left = remainder * observation.acceleration_of(motion).abs();
             if left > self.left_out[1].0 {
                 self.left_out[1] = (left, observation.time, (1.0 - held * held).max(0.0).sqrt());
             }

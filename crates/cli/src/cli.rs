@@ -15,6 +15,7 @@ use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, FailureReport, Kind};
 use flexframe::figures::{self, View};
 use flexframe::fmu::{self, FmuSettings};
+use flexframe::frequencies::Frequencies;
 use flexframe::frf::{self, FrfSettings};
 use flexframe::given_file::GivenFile;
 use flexframe::hand_over::{self, Form};
@@ -22,7 +23,7 @@ use flexframe::linearize::{self, LinearSettings};
 use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_results, outputs_of_scene, outputs_of_scenes};
 use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
-use flexframe::srs::{self, Frequencies, SrsSettings};
+use flexframe::srs::{self, SrsSettings};
 use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::system_modes::{self, AdviceOnSystems, ModesOfSystems};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
@@ -284,8 +285,8 @@ enum Command {
         #[command(flatten)]
         about: LinearArgs,
         /// Frequencies in cycles per time: from start to end, both included, count in all.
-        #[arg(long, value_name = "START:END:COUNT", value_parser = speeds)]
-        frequencies: Speeds,
+        #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies)]
+        frequencies: Frequencies,
         /// Space the frequencies by equal ratios.
         #[arg(long)]
         log: bool,
@@ -836,7 +837,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(&frf::files(&folder))?;
             let settings = FrfSettings {
                 linear: about.settings(),
-                frequencies: (frequencies.start, frequencies.end, frequencies.count),
+                frequencies,
                 logarithmic: log,
                 inputs,
                 outputs,

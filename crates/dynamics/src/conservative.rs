@@ -68,6 +68,6 @@ mod start;
 mod state;
 
 pub use body::ConservativeBody;
-pub(crate) use coordinates::{InCoordinates, pair_weights};
+pub(crate) use coordinates::InCoordinates;
 pub use rates::evaluation::Evaluation;
 pub(crate) use state::{SLOW, Slow, get, part, set};

@@ -18,4 +18,3 @@ pub(crate) mod relaxed;
 mod saved;
 pub(crate) mod simulation;
 pub(crate) mod stage;
-mod wrenches;

@@ -16,7 +16,7 @@ pub enum FigureError {
     /// The drawing library failed on a picture held in memory.
     #[error("cannot draw the figure: {reason}; its numbers are in the tables that come with it: please report this")]
     Draw { reason: String },
-    /// There is nothing to draw.
+    /// Nothing to draw.
     #[error("the figure \"{figure}\" has no {what}; give it at least one")]
     Empty { figure: String, what: &'static str },
     /// A NaN or an infinity in the data. `index`: from 0.

@@ -32,9 +32,10 @@ pub mod plausible;
 pub mod report;
 mod rows;
 pub mod surface;
+pub use commands::linear::{frequencies, frf, linearize, srs};
+pub use commands::pictures::{animation, html_report, mode_shapes};
 pub use commands::{
-    advise, animation, campbell, check, cost, export, fmu, frf, hand_over, html_report, linearize, mode_shapes, modes,
-    new_scene, paper, run, srs, sweep, system_modes,
+    advise, campbell, check, cost, export, fmu, hand_over, modes, new_scene, paper, run, sweep, system_modes,
 };
 pub use files::{given_file, outputs, write_error};
 pub use rows::{columns, peak_stress, row};

@@ -10,7 +10,7 @@ pub enum LinearError {
         what: &'static str,
         /// Its rows and columns.
         found: [usize; 2],
-        /// Those expected.
+        /// The expected ones.
         expected: [usize; 2],
     },
     /// A number that is not finite, or out of range.
@@ -20,7 +20,7 @@ pub enum LinearError {
         what: &'static str,
         /// Its value.
         found: f64,
-        /// Those expected.
+        /// The expected ones.
         expected: &'static str,
     },
     /// The order of a reduced model is out of range.
@@ -61,9 +61,9 @@ pub enum LinearError {
     Spectrum {
         /// The frequency.
         frequency: f64,
-        /// What is wrong with it.
+        /// The fault.
         found: String,
-        /// What is right.
+        /// The expected spectrum.
         expected: &'static str,
     },
     /// An eigenvalue problem that the linear algebra could not solve.

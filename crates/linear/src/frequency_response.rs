@@ -12,7 +12,7 @@ use crate::second_order::{Rate, SecondOrder};
 /// Damping of a frequency response beside that of the equations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
-    /// That of the equations alone.
+    /// The damping of the equations alone.
     OfEquations,
     /// Structural damping in the place of that of the equations: K (1 + i g) with a loss factor g.
     Structural(f64),

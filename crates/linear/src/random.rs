@@ -10,7 +10,7 @@ use crate::frequency_response::FrequencyResponse;
 /// One-sided power spectral densities of the inputs at the frequencies of a response, unit² per cycle per time.
 #[derive(Debug, Clone)]
 pub enum RandomInput {
-    /// Of inputs that are not correlated: one for each input, at each frequency.
+    /// Densities of inputs that are not correlated: one for each input, at each frequency.
     Independent(Vec<Vec<f64>>),
     /// The Hermitian matrix (m×m) of each frequency.
     Correlated(Vec<Mat<c64>>),

@@ -22,7 +22,7 @@ pub enum Rate {
 pub struct Output {
     /// Its name and unit.
     pub channel: Channel,
-    /// What it sees.
+    /// The rate that it sees.
     pub rate: Rate,
     /// Its row of R (n).
     pub row: Vec<f64>,

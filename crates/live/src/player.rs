@@ -1,9 +1,9 @@
 //! The motions of a run, led from time to time and changed on the way.
 
 use dynamics::faer::Mat;
-use dynamics::modal::BodyPoint;
+use dynamics::modal::{BodyPoint, ReducedBody};
 use dynamics::nalgebra::Vector3;
-use dynamics::{Manifold, MotionState, Observation, PointShapes, RunDescription, Work};
+use dynamics::{DescribedBody, Manifold, MotionState, Observation, PointShapes, RunDescription, Work};
 use std::sync::Arc;
 
 use crate::change::Change;
@@ -152,8 +152,7 @@ impl Player {
         target_global: Vector3<f64>,
     ) -> Result<(), LiveError> {
         let [motion, own] = self.run.place_of(body).ok_or(LiveError::Nothing { what: "such body" })?;
-        let described = &self.run.motions[motion].run.bodies()[own];
-        let body_of_shapes = described.physics.large_deflection.as_ref().map_or(&described.body, Manifold::body);
+        let body_of_shapes = body_of_shapes(&self.run.motions[motion].run.bodies()[own]);
         let flexible = body_of_shapes.flexible();
         if shapes.len() != 3 * flexible {
             return Err(LiveError::Shapes { found: shapes.len(), expected: 3 * flexible });
@@ -210,8 +209,7 @@ impl Player {
     /// Number of coordinates of a body's shapes: of its flexible modes, and of the shapes that follow large ones.
     pub fn coordinates(&self, body: usize) -> usize {
         let Some([motion, own]) = self.run.place_of(body) else { return 0 };
-        let described = &self.run.motions[motion].run.bodies()[own];
-        described.physics.large_deflection.as_ref().map_or(&described.body, Manifold::body).flexible()
+        body_of_shapes(&self.run.motions[motion].run.bodies()[own]).flexible()
     }
 
     /// Number of bodies.
@@ -327,6 +325,11 @@ impl Player {
         let velocity = seen.points.last()?.velocity;
         Some([position, pull.force_global(seen.time, position, velocity)])
     }
+}
+
+/// The body whose shapes are drawn: with those that follow large modes.
+fn body_of_shapes(described: &DescribedBody) -> &ReducedBody {
+    described.physics.large_deflection.as_ref().map_or(&described.body, Manifold::body)
 }
 
 /// Work and impulses of a body up to where its motion was made anew, so that its balances go on: what a change of its state gave it

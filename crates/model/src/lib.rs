@@ -48,7 +48,7 @@ pub use full::mends::{ErrorDirection, ErrorPart, Mend};
 pub use full::{FullError, FullModel};
 pub use mesh::doubt::{Doubt, doubts};
 pub use mesh::given::MatrixChecks;
-pub use model::{Meshed, Model};
+pub use model::{AtRest, Meshed, Model};
 pub use stress::about::stress_about;
 pub use stress::products::ProductStrains;
 pub use stress::shapes::{BodyStress, StressPeak};

@@ -86,10 +86,19 @@ pub struct Model {
     /// The damping that the scene does not switch off, where it does not call for it, too (nf).
     pub(crate) all_damping_ratios: Vec<f64>,
     pub(crate) size: Size,
-    /// What the modes leave out of static responses, where that is to be watched.
+    /// Parts of static responses that the modes leave out, where that is to be watched.
     pub(crate) left_out: Remainders,
     /// Backbones of the modes that may bend the body far.
     pub(crate) backbones: Vec<Option<Backbone>>,
+}
+
+/// A body at rest under its loads.
+#[derive(Debug, Clone)]
+pub struct AtRest {
+    /// Generalised forces (6+nf) of each load where its history is 1, as [`ConservativeBody::unit_forces`].
+    pub unit_forces: Vec<Vec<f64>>,
+    /// Stiffness for small motions of the modes (nf×nf).
+    pub stiffness: Mat<f64>,
 }
 
 /// The size of a body and of its modes.
@@ -146,33 +155,27 @@ impl Model {
         let steady = self.loads.iter().filter(is_steady).cloned().collect();
         let physics = Physics { drive: None, drive_stiffness: None, ..self.physics.clone() };
         let body = ConservativeBody::new(&self.body, &self.damping_ratios, steady, &physics)?;
-        let amplitudes: Vec<f64> = self.size.peaks.iter().map(|peak| SMALL * self.size.length / peak).collect();
-        body.loaded_modes(&self.initial(scene), &amplitudes)
+        body.loaded_modes(&self.initial(scene), &self.small_amplitudes())
     }
 
-    /// The stiffness of the body for small motions of its modes about its rest under its loads as they are at time 0 (nf×nf), and that
-    /// rest. The drive stands still.
+    /// Modal displacements (nf) that are small.
+    fn small_amplitudes(&self) -> Vec<f64> {
+        self.size.peaks.iter().map(|peak| SMALL * self.size.length / peak).collect()
+    }
+
+    /// The body at rest under its loads as they are at time 0, with its stiffness for small motions of its modes about that rest. The
+    /// drive stands still.
     ///
     /// # Errors
     /// [`LoadedError`].
-    pub fn stiffness_at_rest(&self, scene: &Scene) -> Result<(MotionState, Mat<f64>), LoadedError> {
+    pub fn at_rest(&self, scene: &Scene) -> Result<AtRest, LoadedError> {
         let physics = Physics { drive: None, drive_stiffness: None, ..self.physics.clone() };
-        let initial = self.initial(scene);
-        let body = ConservativeBody::new(&self.body, &self.damping_ratios, self.loads.clone(), &physics)?;
-        let body = body.beginning_at(&initial);
-        let amplitudes: Vec<f64> = self.size.peaks.iter().map(|peak| SMALL * self.size.length / peak).collect();
-        let modal_displacement = body.loaded_rest(&initial, &amplitudes)?;
-        let stiffness = body.loaded_stiffness(&initial, &modal_displacement, &amplitudes)?;
-        let modal_velocity = vec![0.0; modal_displacement.len()];
-        let at_rest = Initial {
-            modal_displacement,
-            modal_velocity,
-            omega: Vector3::zeros(),
-            velocity: Vector3::zeros(),
-            ..initial
-        };
-        let state = body.start(&at_rest)?;
-        Ok((body.motion_state(&state).map_err(|error| error.in_step(0.0, 0.0))?, stiffness))
+        let initial = Initial { omega: Vector3::zeros(), velocity: Vector3::zeros(), ..self.initial(scene) };
+        let body = self.conservative(&physics, &initial)?;
+        let state = self.rest_of(&body, initial)?;
+        let stiffness =
+            body.loaded_stiffness(&self.initial(scene), &state.modal_displacement, &self.small_amplitudes())?;
+        Ok(AtRest { unit_forces: body.unit_forces(&state), stiffness })
     }
 
     /// The motion in which the body rests in its frame under its loads and its drive as they are at time 0, held to its first
@@ -181,14 +184,21 @@ impl Model {
     /// # Errors
     /// [`LoadedError`].
     pub fn rest(&self, scene: &Scene) -> Result<MotionState, LoadedError> {
-        let Self { body, loads, damping_ratios, physics, .. } = self;
         let initial = self.initial(scene);
-        let body = ConservativeBody::new(body, damping_ratios, loads.clone(), physics)?.beginning_at(&initial);
-        let amplitudes: Vec<f64> = self.size.peaks.iter().map(|peak| SMALL * self.size.length / peak).collect();
-        let modal_displacement = body.loaded_rest(&initial, &amplitudes)?;
+        self.rest_of(&self.conservative(&self.physics, &initial)?, initial)
+    }
+
+    /// The body under its loads, with other physics than its own, where a motion begins.
+    fn conservative(&self, physics: &Physics, initial: &Initial) -> Result<ConservativeBody, LoadedError> {
+        let body = ConservativeBody::new(&self.body, &self.damping_ratios, self.loads.clone(), physics)?;
+        Ok(body.beginning_at(initial))
+    }
+
+    /// The state in which a body rests in its frame, with the velocities of `initial`.
+    fn rest_of(&self, body: &ConservativeBody, initial: Initial) -> Result<MotionState, LoadedError> {
+        let modal_displacement = body.loaded_rest(&initial, &self.small_amplitudes())?;
         let modal_velocity = vec![0.0; modal_displacement.len()];
-        let at_rest = Initial { modal_displacement, modal_velocity, ..initial };
-        let state = body.start(&at_rest)?;
+        let state = body.start(&Initial { modal_displacement, modal_velocity, ..initial })?;
         Ok(body.motion_state(&state).map_err(|error| error.in_step(0.0, 0.0))?)
     }
 

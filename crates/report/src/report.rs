@@ -49,7 +49,7 @@ pub struct Live {
     pub run: Vec<u8>,
     /// The bodies, in the order of the page.
     pub bodies: Vec<LiveBody>,
-    /// What may be changed.
+    /// Controls of what may be changed.
     pub controls: Vec<Control>,
     /// Names of the units of force, energy, momentum and angular momentum.
     pub units: [String; 4],

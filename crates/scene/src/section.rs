@@ -30,7 +30,7 @@ pub(crate) struct Sections {
     pub body: BodySection,
     /// The modes kept and their damping.
     pub modes: Option<ModesSection>,
-    /// Which effects are simulated.
+    /// The effects that are simulated.
     #[serde(default)]
     pub effects: Effects,
     /// The paper's three reference points.
@@ -38,15 +38,15 @@ pub(crate) struct Sections {
     /// The state at the start.
     #[serde(default)]
     pub initial: Initial,
-    /// What holds the body.
+    /// Constraints of the body.
     #[serde(default)]
     pub constraints: Vec<ConstraintSection>,
-    /// What acts on the body.
+    /// Loads on the body.
     #[serde(default)]
     pub loads: Vec<Load>,
     /// How far and how to step.
     pub time: TimeSection,
-    /// What is written.
+    /// The choice of what is written.
     #[serde(default)]
     pub output: OutputSection,
 }

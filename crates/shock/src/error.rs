@@ -22,7 +22,7 @@ pub enum ShockError {
         row: usize,
         /// Its value.
         found: f64,
-        /// Those expected.
+        /// The expected ones.
         expected: &'static str,
     },
     /// A number that is not finite or out of range.
@@ -32,7 +32,7 @@ pub enum ShockError {
         what: &'static str,
         /// Its value.
         found: f64,
-        /// Those expected.
+        /// The expected ones.
         expected: &'static str,
     },
     /// A frequency that swings too often in a base motion.

@@ -16,7 +16,7 @@ const MOST_CYCLES: f64 = 1e6;
 /// Phase after which a strongly damped oscillator is still.
 const STILL: f64 = 40.0;
 
-/// What an oscillator reaches during a base motion and in the free vibration after it.
+/// Peaks of an oscillator during a base motion and in the free vibration after it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peaks {
     /// Largest magnitude of the displacement relative to the base.

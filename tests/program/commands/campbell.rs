@@ -260,7 +260,7 @@ fn what_is_no_axis_no_range_of_speeds_and_no_order_is_refused() {
     refused("z", "0:200:5", &["-n", "0"], &["--flexible", "a whole number, 1 or more"]);
 }
 
-/// The swept blade of `crates/model/tests/reference.rs` at 0, 1 and 2 times its first frequency; `more` are options.
+/// The swept blade of `crates/model/tests/bent/reference.rs` at 0, 1 and 2 times its first frequency; `more` are options.
 fn blade(speeds: &str, more: &[&str]) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("blade.toml");
@@ -289,7 +289,7 @@ fn at(report: &Value, speed: usize) -> Vec<f64> {
     found
 }
 
-/// Independent reference: eight modes and static shapes about the rest, and the full body (`cargo test -p model --test reference`).
+/// Independent reference: eight modes and static shapes about the rest, and the full body (`cargo test -p model --test bent reference`).
 #[test]
 fn a_blade_that_its_spin_bends_vibrates_about_its_rest_at_each_speed() {
     let first = at(&blade("0:1:2", &["--about-rest", "never"]), 0)[0];

@@ -113,7 +113,7 @@ pub struct Physics {
     /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that
     /// of the modes counts.
     pub large_deflection: Option<Manifold>,
-    /// What holds the bent body that the modes are about, where that is not the undeformed one. Data of a run do not have it
+    /// Forces that hold the bent body that the modes are about, where that is not the undeformed one. Data of a run do not have it
     /// ([`crate::DescriptionError`]).
     #[serde(skip)]
     pub reference: Option<ReferenceForces>,

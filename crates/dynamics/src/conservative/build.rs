@@ -10,7 +10,7 @@ use crate::body::effect::{Effect, EffectMap};
 use crate::body::physics::{Drive, DrivenMotion, Physics};
 use crate::body::spin_stiffness::SpinStiffness;
 use crate::conservative::body::{ConservativeBody, Translation};
-use crate::conservative::coordinates::{InCoordinates, pair_weights};
+use crate::conservative::coordinates::InCoordinates;
 use crate::conservative::manifold::Manifold;
 use crate::conservative::reference::Reference;
 use crate::conservative::state;
@@ -69,7 +69,8 @@ impl ConservativeBody {
         let stiffness = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]);
         let stiffness = stiffness.map(|stiffness| SpinStiffness::new(stiffness, manifold));
         let constants = InCoordinates { body, manifold };
-        let pair_weights: Vec<[f64; 6]> = pairs.iter().map(|(i, j)| pair_weights([&axes[*i], &axes[*j]])).collect();
+        let pair_weights: Vec<[f64; 6]> =
+            pairs.iter().map(|(i, j)| ReducedBody::pair_weights([&axes[*i], &axes[*j]])).collect();
         let gyroscopic: Vec<Mat<f64>> = axes[..g_count].iter().map(|axis| constants.gyroscopic(axis)).collect();
         let mut second: Vec<Mat<f64>> =
             pair_weights.iter().map(|weights| constants.inertia_second(weights, stiffness.as_ref())).collect();

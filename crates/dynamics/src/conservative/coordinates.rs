@@ -67,14 +67,6 @@ impl InCoordinates<'_> {
     }
 }
 
-/// Weights of the constants of [`ReducedBody::PAIRS`] in those of a pair of axes.
-pub(crate) fn pair_weights([a, b]: [&Vector3<f64>; 2]) -> [f64; 6] {
-    ReducedBody::PAIRS.map(|(k, l)| {
-        let product = a[k] * b[l];
-        if k == l { product } else { product + a[l] * b[k] }
-    })
-}
-
 fn weighted(matrices: &[Mat<f64>; 6], weights: &[f64; 6], i: usize, j: usize) -> f64 {
     matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
 }

@@ -20,9 +20,9 @@ use crate::body::shapes::PointShapes;
 use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
 use crate::load::SharedLoad;
-use crate::run_description::error::DescriptionError;
 use crate::simulation::Simulation;
 use crate::simulation::plan::{Rows, StepControl};
+use crate::simulation::run_description::error::DescriptionError;
 use crate::simulation::setup::{Method, Setup};
 use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
@@ -39,9 +39,9 @@ const VERSION: u32 = 1;
 /// A run with all that it begins with.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum RunDescription {
-    /// Of one body.
+    /// The run of one body.
     Alone(Box<RunOfBody>),
-    /// Of bodies with joints.
+    /// The run of bodies with joints.
     Tied(Box<RunOfSystem>),
 }
 

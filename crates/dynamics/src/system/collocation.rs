@@ -28,6 +28,14 @@ impl SystemScheme {
             Self::Gauss => "gauss",
         }
     }
+
+    /// Its order: 2s − 1 or 2s with the number of stages s.
+    pub const fn order(self) -> u32 {
+        match self {
+            Self::Radau => 2 * STAGES as u32 - 1,
+            Self::Gauss => 2 * STAGES as u32,
+        }
+    }
 }
 
 /// The constants of the scheme.

@@ -6,6 +6,8 @@
 //!
 //! Eqs. (J10) of `docs/method/systems.md`. Ġ v + ġ_t is found by differences along the motion.
 
+mod wrenches;
+
 use nalgebra::Vector3;
 
 use crate::body::shapes::PointShapes;

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 
 use crate::body::effect::{Effect, EffectMap};
 use crate::body::spin_stiffness::SpinStiffness;
-use crate::conservative::{InCoordinates, pair_weights};
+use crate::conservative::InCoordinates;
 
 /// The constants of the vibrations of a body that spins about an axis.
 #[derive(Debug, Clone)]
@@ -58,7 +58,7 @@ impl SteadySpin {
         let stiffness = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]);
         let stiffness = stiffness.map(|stiffness| SpinStiffness::new(stiffness, None));
         let softening = if effects[Effect::DeformedInertia] {
-            constants.inertia_second(&pair_weights([axis, axis]), stiffness.as_ref())
+            constants.inertia_second(&ReducedBody::pair_weights([axis, axis]), stiffness.as_ref())
         } else {
             Mat::zeros(nf, nf)
         };
@@ -66,13 +66,9 @@ impl SteadySpin {
         Self { circular_frequencies: body.circular_frequencies.clone(), gyroscopic, softening }
     }
 
-    /// K = Λ − Ω² (N_aa − K_aa) and 2Ω G_a at a spin speed in rad per time (nf×nf each).
-    pub fn matrices(&self, speed: f64) -> [Mat<f64>; 2] {
-        let omega = &self.circular_frequencies;
-        let nf = omega.len();
-        let stiffness =
-            Mat::from_fn(nf, nf, |i, j| delta(i, j) * omega[i] * omega[i] - speed * speed * self.softening[(i, j)]);
-        [stiffness, Mat::from_fn(nf, nf, |i, j| 2.0 * speed * self.gyroscopic[(i, j)])]
+    /// Stiffness and damping that the spin adds at a speed in rad per time: −Ω² (N_aa − K_aa) and 2Ω G_a (nf×nf each).
+    pub fn added(&self, speed: f64) -> [Mat<f64>; 2] {
+        [&self.softening * faer::Scale(-speed * speed), &self.gyroscopic * faer::Scale(2.0 * speed)]
     }
 
     /// The vibrations at a spin speed in rad per time, slowest first.

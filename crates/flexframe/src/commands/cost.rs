@@ -18,7 +18,6 @@ mod run;
 mod setting;
 mod settings;
 mod short;
-mod table;
 mod way;
 
 use std::path::Path;

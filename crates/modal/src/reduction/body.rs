@@ -121,6 +121,14 @@ impl ReducedBody {
     /// ij of [`Constants::inertia_first`] and [`Constants::inertia_second`], and of any symmetric 3×3 matrix.
     pub const PAIRS: [(usize, usize); 6] = PAIRS;
 
+    /// Weights of the constants of [`Self::PAIRS`] in those of a pair of vectors: a_i b_j, and of two different axes a_i b_j + a_j b_i.
+    pub fn pair_weights([a, b]: [&Vector3<f64>; 2]) -> [f64; 6] {
+        Self::PAIRS.map(|(k, l)| {
+            let product = a[k] * b[l];
+            if k == l { product } else { product + a[l] * b[k] }
+        })
+    }
+
     /// The body with these constants.
     ///
     /// # Errors

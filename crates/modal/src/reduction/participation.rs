@@ -36,7 +36,7 @@ impl Participation {
 }
 
 impl ReducedBody {
-    /// What each mode carries in a motion of the base that turns about a point, given in the mesh's frame.
+    /// The participation of the modes in a motion of the base that turns about a point, given in the mesh's frame.
     pub fn participation(&self, about: &Vector3<f64>) -> Participation {
         let arm = about - self.origin;
         let base: [SVector<f64, 6>; 6] = std::array::from_fn(|i| {
@@ -70,7 +70,7 @@ impl ReducedBody {
     }
 
     /// The mass matrix of the undeformed body (6×6), of the velocity of its origin and its angular velocity.
-    fn rigid_mass(&self) -> SMatrix<f64, 6, 6> {
+    pub fn rigid_mass(&self) -> SMatrix<f64, 6, 6> {
         let moment = (self.mass * (self.center_of_mass - self.origin)).cross_matrix();
         let mut mass = SMatrix::<f64, 6, 6>::zeros();
         mass.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Matrix3::identity() * self.mass));

@@ -9,7 +9,7 @@ use crate::tie::body_marker::BodyMarker;
 use crate::tie::tied::Tied;
 
 impl Tied {
-    /// What joints with their springs and motors, couplings, springs and bushings put on a body where the bodies have these states,
+    /// Forces that joints with their springs and motors, couplings, springs and bushings put on a body where the bodies have these states,
     /// by its number in [`Tied::bodies`]. `turns`: the turn of each joint, which full turns are counted by.
     ///
     /// # Errors

@@ -396,6 +396,13 @@ impl MeshLoad {
         }
     }
 
+    /// Adds the forces on the nodes of the undeformed body in its first attitude, where the history is 1 (3n).
+    pub(crate) fn add_nodal_forces(&self, forces: &mut [f64]) {
+        let mut unit = vec![0.0; forces.len()];
+        self.add_unit_nodal_forces(None, faer::ColMut::from_slice_mut(&mut unit));
+        forces.iter_mut().zip(unit).for_each(|(sum, force)| *sum += self.size() * force);
+    }
+
     /// Change of a pressure as its surface moves; none of other loads.
     pub(crate) fn follower_change(
         &self,

@@ -1,6 +1,6 @@
 //! Parts of a motion about a bent reference that follow from what it carries already.
 
-use faer::{ColMut, Mat};
+use faer::Mat;
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 use scene::About;
@@ -38,8 +38,8 @@ impl Reference {
             }
         };
         let omega = &self.steady.omega_body;
-        for (stiffness, (i, j)) in of_spin.into_iter().flatten().zip(ReducedBody::PAIRS) {
-            add(stiffness, if i == j { 1.0 } else { 2.0 } * omega[i] * omega[j]);
+        for (stiffness, weight) in of_spin.into_iter().flatten().zip(ReducedBody::pair_weights([omega, omega])) {
+            add(stiffness, weight);
         }
         for (load, directed) in model.loads.iter().zip(of_loads) {
             if self.carries(model, load) {
@@ -67,17 +67,12 @@ pub(crate) fn proposed(model: &MeshModel<'_, '_>, modes: &Modes, on: &ModalModel
     let mut forces = vec![0.0; modes.shapes.nrows()];
     for load in &model.loads {
         if physics::is_steady(model.scene, model.support.motion, model.drive.as_ref(), load) {
-            let mut unit = vec![0.0; forces.len()];
-            load.add_unit_nodal_forces(None, ColMut::from_slice_mut(&mut unit));
-            forces.iter_mut().zip(unit).for_each(|(sum, force)| *sum += load.size() * force);
+            load.add_nodal_forces(&mut forces);
         }
     }
+    let weights = ReducedBody::pair_weights([omega, omega]);
     let answer = |k: usize| {
-        let of_pair = |((i, j), c): ((usize, usize), &Vec<f64>)| {
-            let times = if i == j { 1.0 } else { 2.0 };
-            times * omega[i] * omega[j] * c[k]
-        };
-        let of_spin: f64 = ReducedBody::PAIRS.into_iter().zip(&on.body.inertia_first).map(of_pair).sum();
+        let of_spin: f64 = weights.iter().zip(&on.body.inertia_first).map(|(weight, c)| weight * c[k]).sum();
         let of_loads: f64 = modes.shapes.col(k).iter().zip(&forces).map(|(shape, force)| shape * force).sum();
         (of_spin + of_loads) / modes.eigenvalues[k] * on.size.peaks[k]
     };

@@ -14,7 +14,7 @@ pub(crate) struct Decision {
     pub keep: usize,
     /// True if static shapes are added to them.
     pub has_static_shapes: bool,
-    /// What the modes leave out, where static shapes for it are missing.
+    /// The part that the modes leave out, where static shapes for it are missing.
     pub lacks: Option<Remainders>,
     pub effects: EffectMap<bool>,
     /// Which of the modes that are kept bend the body far.

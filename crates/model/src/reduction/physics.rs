@@ -25,7 +25,7 @@ pub(crate) fn about_reference(scene: &Scene) -> Scene {
 pub(crate) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
     let by_others = !scene.loads.is_empty() || !scene.markers.is_empty();
     let set_off = drive.is_some() || scene.initial.angular_velocity != [0.0; 3] || by_others;
-    turning(scene, motion, drive) != Turning::Not && set_off
+    turns(scene, motion, drive) && set_off
 }
 
 /// True if the stress of loads and drives may stiffen the body.
@@ -37,8 +37,12 @@ pub(crate) fn may_stress(scene: &Scene) -> bool {
 
 /// True if a load stays as it is, seen from the body.
 pub(crate) fn is_steady(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
-    let turns = turning(scene, motion, drive) != Turning::Not;
-    matches!(load.history, dynamics::History::Constant) && (load.follows || !turns)
+    matches!(load.history, dynamics::History::Constant) && (load.follows || !turns(scene, motion, drive))
+}
+
+/// True if the body may turn.
+pub(crate) fn turns(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
+    turning(scene, motion, drive) != Turning::Not
 }
 
 /// The choice to add static shapes to the `flexible` modes that there are.

@@ -4,12 +4,13 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use dynamics::{Drive, DrivenMotion, Effect};
-use faer::{ColMut, Mat};
+use faer::Mat;
 use fem_tet10::{FiniteStrain, Materials, Matrices, Mesh};
+use keys::Key;
 use modal::Support;
 use nalgebra::Vector3;
 use nonlinear::{EquilibriumSettings, ExternalForces, FullBody, NonlinearError, equilibrium};
-use scene::{About, Scene, SceneError};
+use scene::{About, Choice, Scene, SceneError};
 
 use crate::cache::store::Store;
 use crate::error::BuildError;
@@ -46,27 +47,39 @@ impl Asked<'_> {
         }
         let Some(steady) = steady(scene, *drive, about)? else { return Ok(None) };
         let find = || find(self, matrices()?, steady);
-        let found = match store {
+        let kept = store.and_then(|store| Some((store, self.key(store, &steady)?.finish())));
+        let found = match kept {
             None => find()?,
-            Some(store) => {
-                let key = store.key().of("reference", 1).with("support", *support);
-                let key = key.with("spin", &steady.omega_body);
-                let loads = (scene.effects.choices[Effect::Gravity], &scene.loads, scene.initial.attitude);
-                let loads = if steady.loads { format!("{loads:?}") } else { String::new() };
-                let key = key.with("loads", &*loads).finish();
-                match store.recall(&key, 6 * mesh.positions().len())? {
-                    Some(found) => found,
-                    None => {
-                        let found = find()?;
-                        store.keep(&key, &found);
-                        found
-                    }
+            Some((store, key)) => match store.recall(&key, 6 * mesh.positions().len())? {
+                Some(found) => found,
+                None => {
+                    let found = find()?;
+                    store.keep(&key, &found);
+                    found
                 }
-            }
+            },
         };
         let reference = Reference::new(steady, mesh.positions(), &found);
         let is_far = reference.largest() >= FAR * mesh.diagonal();
         Ok((about != About::Auto || is_far).then_some(reference))
+    }
+
+    /// The key with all that the rest follows from, loads by the names that they have in a scene; none where these cannot be told.
+    fn key(&self, store: &Store, steady: &Steady) -> Option<Key> {
+        let Self { scene, support, drive, .. } = self;
+        let key = store.key().of("reference", 2).with("support", *support).with("spin", &steady.omega_body);
+        if !steady.loads {
+            return Some(key);
+        }
+        let gravity = match scene.effects.choices[Effect::Gravity] {
+            Choice::On => Some(true),
+            Choice::Off => Some(false),
+            Choice::Auto => None,
+        };
+        // A file of a table may have a name that is no text.
+        let loads = serde_json::to_string(&scene.loads).ok()?;
+        let key = key.with("loads", &*loads).with("gravity", &gravity).with("attitude", &scene.initial.attitude);
+        Some(key.with("turns", &physics::turns(scene, support.motion, *drive)))
     }
 
     /// Mass, and the stiffness K_T of a bent body.
@@ -141,9 +154,7 @@ fn find(asked: &Asked<'_>, matrices: &Matrices, steady: Steady) -> Result<Vec<f6
                 return Err(scene.refuse(KEY, found, "forces and gravity", help).into());
             }
             if physics::is_steady(scene, support.motion, drive, load) {
-                let mut forces = vec![0.0; dead.len()];
-                load.add_unit_nodal_forces(None, ColMut::from_slice_mut(&mut forces));
-                dead.iter_mut().zip(forces).for_each(|(sum, force)| *sum += load.size() * force);
+                load.add_nodal_forces(&mut dead);
             }
         }
     }

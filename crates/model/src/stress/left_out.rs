@@ -97,12 +97,8 @@ impl LeftOut {
                 .map_or(1.0, |[unit, turned]| turned.dot(&now.attitude.to_body(&unit)) / turned.norm_squared());
             part.size * factor * direction
         };
-        let omega = &now.omega_body;
-        let of_pair = |(i, j): (usize, usize)| {
-            let times = if i == j { 1.0 } else { 2.0 };
-            times * (omega[i] * omega[j] - self.carried[i] * self.carried[j])
-        };
-        let spin = ReducedBody::PAIRS.into_iter().map(of_pair);
+        let [spin, carried] = [&now.omega_body, &self.carried].map(|omega| ReducedBody::pair_weights([omega, omega]));
+        let spin = spin.into_iter().zip(carried).map(|(now, carried)| now - carried);
         let euler = now.alpha_body.iter().map(|alpha| -alpha);
         let slide = self.slide.iter().map(|motion| -now.acceleration_of(motion));
         self.loads.iter().map(of_load).chain(spin).chain(euler).chain(slide).collect()

@@ -40,7 +40,7 @@ pub(crate) struct Statics {
     pub of_spin: Option<Mat<f64>>,
     /// To the forces M (1⊗e) of a slide along e, or M (I⊗[a×]) X of a turn about a (3n × 1).
     pub of_drive: Option<Mat<f64>>,
-    /// Those of the spin and of the drive beside the modes.
+    /// Remainders of the spin and of the drive beside the modes.
     pub remainders: Remainders,
 }
 

@@ -1,81 +1,29 @@
-//! Bodies that steady spins and loads bend far, against the full nonlinear body of the same mesh.
+//! Large modes with those that follow them.
 
-use std::path::Path;
-
-use model::{Builder, Checker, Model, StateCheck};
+use model::StateCheck;
 use nonlinear::StateErrorSettings;
 use scene::Scene;
 
-/// A body of a mesh of the verification in SI, clamped at its root.
-struct Body {
-    mesh: &'static str,
-    tip: [f64; 3],
-    /// Axis of the spin through the origin.
-    axis: [f64; 3],
-}
-
-const CONED: Body = Body { mesh: "rod", tip: [1.0, 0.0, 0.0], axis: [0.05, 0.0, 0.998749] };
-const BLADE: Body = Body { mesh: "swept_blade", tip: [0.0, 0.917722, 0.289357], axis: [1.0, 0.0, 0.0] };
-const ARC: Body = Body { mesh: "quarter_arc", tip: [0.0, 0.8, 0.8], axis: [1.0, 0.0, 0.0] };
-const BRACKET: Body = Body { mesh: "bracket", tip: [0.6, 0.5, 0.0], axis: [0.0, 0.0, 1.0] };
+use crate::bodies::{ARC, BLADE, BRACKET, Body, CLAMP, CONED, CONSTANT, checked};
 
 impl Body {
-    fn scene(&self, modes: &str, rest: &str) -> Scene {
-        let Self { mesh, tip, .. } = self;
-        let text = format!(
-            "title = \"Bent\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n[body]\n\
-             mesh = \"meshes/{mesh}.msh\"\n\
-             material = {{ young_modulus = 2e9, poisson_ratio = 0.3, density = 1000.0 }}\n\
-             [modes]\nflexible = 8\nstatic_correction = true\n{modes}\n[effects]\nrefuse = false\n{rest}\n\
-             [output.points]\ntip = {tip:?}\n[time]\nend = 1.0\nstep = 1e-4\n"
-        );
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../verification/scene.toml");
-        Scene::parse(&text, path).unwrap_or_else(|error| panic!("{error}"))
-    }
-
     /// Spinning at so many times its first frequency at rest.
     fn spinning(&self, modes: &str, part: f64) -> Scene {
-        let clamp = "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n";
-        let omega = built(&self.scene("", clamp)).body.circular_frequencies[0];
-        let axis = self.axis;
-        let spin = part * omega;
-        self.scene(
-            modes,
-            &format!(
-                "[[constraints]]\nkind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = {axis:?}\ngroup = \"root\"\n\
-                 motion = {{ amplitude = {spin:e}, history = {{ kind = \"constant\" }} }}\n"
-            ),
-        )
+        self.scene(modes, &self.driven(part * self.first()))
     }
 
     /// Clamped under a constant dead force at its tip.
     fn pushed(&self, modes: &str, force: [f64; 3]) -> Scene {
-        let amplitude = force.iter().map(|f| f * f).sum::<f64>().sqrt();
-        let direction = force.map(|f| f / amplitude);
-        let tip = self.tip;
-        self.scene(
-            modes,
-            &format!(
-                "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n[[loads]]\nkind = \"force\"\nat = {tip:?}\n\
-                 direction = {direction:?}\namplitude = {amplitude:e}\nhistory = {{ kind = \"constant\" }}\n"
-            ),
-        )
+        self.scene(modes, &format!("{CLAMP}{}", self.force(force, 1.0, CONSTANT)))
     }
 
     /// Clamped under gravity.
     fn hanging(&self, modes: &str, gravity: f64) -> Scene {
         self.scene(
             modes,
-            &format!(
-                "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n[[loads]]\nkind = \"gravity\"\n\
-                 direction = [0.0, -1.0, 0.0]\namplitude = {gravity:e}\n"
-            ),
+            &format!("{CLAMP}[[loads]]\nkind = \"gravity\"\ndirection = [0.0, -1.0, 0.0]\namplitude = {gravity:e}\n"),
         )
     }
-}
-
-fn built(scene: &Scene) -> Model {
-    Model::build(scene, |_| ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The rest of a model against the full body: displacement and error of the tip, and errors of frequencies.
@@ -86,12 +34,7 @@ struct Rest {
 
 impl Rest {
     fn of(scene: &Scene) -> Self {
-        let model = built(scene);
-        let motion = model.rest(scene).unwrap();
-        let full = Builder::default().full(scene, |_| ()).unwrap().unwrap();
-        let full_body = full.body().unwrap();
-        let checker = Checker::new(&full, scene, &model, &full_body).unwrap();
-        let check = checker.check(&motion, &[], &StateErrorSettings::converged(), true).unwrap();
+        let (model, check) = checked(scene, &StateErrorSettings::converged());
         Self { large: model.large_modes().to_vec(), check }
     }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A factor on an amplitude over time, chosen by its key `kind`: the name of the variant.
 pub type History = dynamics::History<TablePoints, Formula>;
@@ -12,7 +12,7 @@ pub type History = dynamics::History<TablePoints, Formula>;
 pub type DrivenSpeed = dynamics::DrivenSpeed<TablePoints, Formula>;
 
 /// A table: straight lines between points, the first and the last value held before and after them.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TablePoints {
     /// Pairs of time and factor, at least two, the times rising: those in the scene, or those read from the file.
@@ -24,7 +24,7 @@ pub struct TablePoints {
 }
 
 /// A formula in the time `t`.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Formula {
     /// As it is written; not empty, and not looked at any further here.

@@ -2,7 +2,7 @@
 
 use dynamics::LoadFrame;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::loads::history::History;
 
@@ -10,7 +10,7 @@ use crate::loads::history::History;
 ///
 /// Every `direction` is a unit vector (the file may give a vector of any length but 0); a negative amplitude acts
 /// against it. The amplitude is the load where its history is 1.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(tag = "kind")]
 pub enum Load {
@@ -28,8 +28,22 @@ pub enum Load {
     BaseAcceleration(BaseAcceleration),
 }
 
+impl Load {
+    /// The name of its kind in a scene.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Force(_) => "force",
+            Self::Moment(_) => "moment",
+            Self::Pressure(_) => "pressure",
+            Self::Traction(_) => "traction",
+            Self::Gravity(_) => "gravity",
+            Self::BaseAcceleration(_) => "base-acceleration",
+        }
+    }
+}
+
 /// A force at a point of the body.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Force {
     /// Where it acts, length, mesh axes.
@@ -47,7 +61,7 @@ pub struct Force {
 }
 
 /// A moment at a point of the body.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Moment {
     /// Where it acts, length, mesh axes.
@@ -67,7 +81,7 @@ pub struct Moment {
 }
 
 /// A pressure on a surface: normal to it, against its outward normal where positive. It follows the body.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pressure {
     /// Name of the physical surface in the mesh.
@@ -80,7 +94,7 @@ pub struct Pressure {
 }
 
 /// A force per area on a surface, in one direction.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Traction {
     /// Name of the physical surface in the mesh.
@@ -98,7 +112,7 @@ pub struct Traction {
 }
 
 /// Gravity: each mass m of the body has the weight m · amplitude · direction.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gravity {
     /// Unit vector of the direction in which things fall, global axes.
@@ -111,7 +125,7 @@ pub struct Gravity {
 }
 
 /// The acceleration of what holds the body; its motion is then seen from there.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BaseAcceleration {
     /// Unit vector of its direction, global axes.

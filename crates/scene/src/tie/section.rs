@@ -84,9 +84,9 @@ pub(crate) struct GroundMarkerSection {
 pub(crate) struct JointSection {
     /// Its name, unlike that of any other joint, spring or bushing.
     pub name: Option<String>,
-    /// What it leaves free.
+    /// The kind: the motions that it leaves free.
     pub kind: Option<JointKind>,
-    /// What a joint without a kind holds: some of "x", "y", "z", "rx", "ry", "rz".
+    /// Motions that a joint without a kind holds: some of "x", "y", "z", "rx", "ry", "rz".
     pub locked: Option<Vec<String>>,
     /// Two ends: "BODY.MARKER", "ground.MARKER" or "ground".
     pub between: Vec<String>,

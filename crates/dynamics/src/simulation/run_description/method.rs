@@ -3,7 +3,7 @@
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::run_description::error::DescriptionError;
+use crate::simulation::run_description::error::DescriptionError;
 use crate::simulation::setup::Method;
 
 const KNOWN: [Method; 2] = [Method::EXPONENTIAL, Method::RKMK4];

@@ -3,7 +3,6 @@
 //! Newton's method with the exact stiffness, over the motions that deform bodies: those that deform none stay where the system has
 //! been put.
 
-use faer::Mat;
 use nalgebra::Vector3;
 
 use crate::body::motion_state::MotionState;
@@ -13,7 +12,7 @@ use crate::vibration::system::configuration::{BodyConfiguration, CommonSpin, Con
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::linearization::Linearization;
 use crate::vibration::system::terms::{Terms, springs};
-use crate::vibration::system::tie::{Sums, Tie};
+use crate::vibration::system::tie::Tie;
 
 /// Most passes of Newton's method, and the change relative to the size of bodies at which it has converged.
 const PASSES: usize = 40;
@@ -53,19 +52,16 @@ impl SystemMotion {
     pub fn steady_state(&self, spin: &CommonSpin) -> Result<SteadyState, SteadyError> {
         SteadyState::near(self, Configuration::of(self, spin), spin)
     }
-}
 
-impl SystemMotion {
     /// The generalised forces, over the coordinates of all bodies, of a unit force or moment along a coordinate of a joint: its change is
     /// their product with the changes of place.
     pub fn coordinate_row(&self, at: &SteadyState, joint: usize, coordinate: Coordinate) -> Vec<f64> {
         let (system, at) = (self.system(), &at.configuration);
-        let n = system.coordinates();
         let of = &system.joints()[joint];
         let mut tie = Tie::new(system, at, of.markers.iter());
         tie.add_coordinate(coordinate, &at.places(&of.markers), at.turns[joint], |_| (1.0, [0.0; 2]));
-        let (mut forces, mut by_place, mut by_velocity) = (vec![0.0; n], Mat::zeros(n, n), Mat::zeros(n, n));
-        tie.add_to(&mut Sums { forces: &mut forces, by_place: &mut by_place, by_velocity: &mut by_velocity });
+        let mut forces = vec![0.0; system.coordinates()];
+        tie.add_forces(&mut forces);
         forces
     }
 }

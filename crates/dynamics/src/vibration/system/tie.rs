@@ -197,21 +197,34 @@ impl Tie {
         }
     }
 
+    /// The ends that are on bodies, with their numbers.
+    fn on_bodies(&self) -> impl Iterator<Item = (usize, &TieEnd)> {
+        self.ends.iter().enumerate().filter_map(|(k, end)| Some((k, end.as_ref()?)))
+    }
+
+    /// Adds its generalised forces to those of all coordinates.
+    pub fn add_forces(&self, forces: &mut [f64]) {
+        for (k, end) in self.on_bodies() {
+            let motion = &end.tangent.motion;
+            let [force, moment] = &self.wrenches[k];
+            for j in 0..motion.ncols() {
+                let work: f64 = (0..3).map(|i| motion[(i, j)] * force[i] + motion[(3 + i, j)] * moment[i]).sum();
+                forces[end.first + j] += work;
+            }
+        }
+    }
+
     /// Adds its generalised forces and their changes to the sums over all coordinates.
     pub fn add_to(&self, sums: &mut Sums<'_>) {
-        let ends = || self.ends.iter().enumerate().filter_map(|(k, end)| Some((k, end.as_ref()?)));
-        for (k, end) in ends() {
+        self.add_forces(sums.forces);
+        for (k, end) in self.on_bodies() {
             let motion = &end.tangent.motion;
             let n = motion.ncols();
             let [force, moment] = &self.wrenches[k];
-            for j in 0..n {
-                let work: f64 = (0..3).map(|i| motion[(i, j)] * force[i] + motion[(3 + i, j)] * moment[i]).sum();
-                sums.forces[end.first + j] += work;
-            }
             let mut own = Mat::zeros(n, n);
             end.tangent.add_force_change([force, moment], &mut own);
             add_block(sums.by_place, [end.first; 2], &own);
-            for (l, other) in ends() {
+            for (l, other) in self.on_bodies() {
                 let block = |matrix: &Mat<f64>| motion.transpose() * matrix.get(6 * k..6 * k + 6, 6 * l..6 * l + 6);
                 let (by_motion, by_velocity) = (block(&self.by_motion), block(&self.by_velocity));
                 let by_place = by_motion * &other.tangent.motion + &by_velocity * &other.tangent.velocity;

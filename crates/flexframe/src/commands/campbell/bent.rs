@@ -39,11 +39,9 @@ pub(super) fn full(scene: &Scene, builder: &Builder) -> Result<FullModel, Campbe
 /// True if the linear answer to a spin bends the body.
 pub(super) fn bends(model: &Model, axis: &Vector3<f64>, speed: f64) -> bool {
     let body = &model.body;
+    let weights = ReducedBody::pair_weights([axis, axis]);
     let answer = |(k, omega): (usize, &f64)| {
-        let of_pair = |((i, j), c): ((usize, usize), &Vec<f64>)| {
-            if i == j { axis[i] * axis[i] * c[k] } else { 2.0 * axis[i] * axis[j] * c[k] }
-        };
-        let force: f64 = ReducedBody::PAIRS.into_iter().zip(&body.inertia_first).map(of_pair).sum();
+        let force: f64 = weights.iter().zip(&body.inertia_first).map(|(weight, c)| weight * c[k]).sum();
         force * (speed / omega).powi(2)
     };
     let q: Vec<f64> = body.circular_frequencies.iter().enumerate().map(answer).collect();
@@ -61,8 +59,16 @@ pub(super) struct BentSpin<'a> {
     circular_frequencies: &'a [f64],
     /// Number of vibrations.
     count: usize,
-    /// Speeds with the largest displacement of a node at each.
-    deflections: RefCell<Vec<(f64, f64)>>,
+    /// Vibrations found so far: those at the highest speed are asked for twice.
+    found: RefCell<Vec<AtSpeed>>,
+}
+
+/// The vibrations at a speed, slowest first, and the largest displacement of a node.
+#[derive(Clone)]
+struct AtSpeed {
+    speed: f64,
+    modes: Vec<SpinMode>,
+    deflection: f64,
 }
 
 impl<'a> BentSpin<'a> {
@@ -82,29 +88,35 @@ impl<'a> BentSpin<'a> {
             momenta: body.momenta_of(meshed.modes.shapes.as_ref()),
             circular_frequencies: &model.body.circular_frequencies,
             count: model.body.natural_modes,
-            deflections: RefCell::default(),
+            found: RefCell::default(),
             body,
         })
     }
 
     /// The vibrations at a speed, slowest first.
     pub fn modes(&self, speed: f64) -> Result<Vec<SpinMode>, CampbellError> {
+        if let Some(known) = self.known(speed) {
+            return Ok(known.modes);
+        }
         let failed = |source| CampbellError::Bent { scene: self.scene.path.clone(), speed, source: Box::new(source) };
         let (omega, settings) = (self.axis * speed, EquilibriumSettings::default());
         let rest = equilibrium(&self.body, &ExternalForces::default(), &omega, None, &settings).map_err(failed)?;
         let size = |u: &[f64]| Vector3::from_column_slice(u).norm();
         let deflection = rest.displacement.chunks_exact(3).map(size).fold(0.0, f64::max);
-        self.deflections.borrow_mut().push((speed, deflection));
         let found = spin_vibrations(&self.body, &rest, &omega, self.shapes.as_ref(), self.count).map_err(failed)?;
         let mut modes: Vec<SpinMode> = found.iter().map(|vibration| self.seen(vibration)).collect();
         modes.sort_by(|a, b| a.circular_frequency.total_cmp(&b.circular_frequency));
+        self.found.borrow_mut().push(AtSpeed { speed, modes: modes.clone(), deflection });
         Ok(modes)
+    }
+
+    fn known(&self, speed: f64) -> Option<AtSpeed> {
+        self.found.borrow().iter().find(|found| found.speed == speed).cloned()
     }
 
     /// The largest displacement of a node at a speed where the vibrations were found.
     pub fn deflection(&self, speed: f64) -> f64 {
-        let found = self.deflections.borrow();
-        found.iter().find(|(at, _)| *at == speed).map_or(0.0, |(_, deflection)| *deflection)
+        self.known(speed).map_or(0.0, |found| found.deflection)
     }
 
     /// A vibration in the coordinates of the modes of the undeformed body.

@@ -1,5 +1,7 @@
 //! Report of a price list.
 
+mod table;
+
 use std::path::PathBuf;
 
 use serde::Serialize;

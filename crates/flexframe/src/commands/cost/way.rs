@@ -37,8 +37,7 @@ impl Way {
     pub fn order(self) -> u32 {
         match self {
             Self::Alone(method) => method.order,
-            Self::Tied(SystemScheme::Radau) => 5,
-            Self::Tied(SystemScheme::Gauss) => 6,
+            Self::Tied(scheme) => scheme.order(),
         }
     }
 

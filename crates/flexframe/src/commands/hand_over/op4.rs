@@ -20,14 +20,8 @@ const PER_LINE: usize = 3;
 pub fn text(body: &Reduced<'_>) -> String {
     let size = BASE + body.count();
     let [mut mass, mut stiffness, mut damping] = [(); 3].map(|()| Mat::<f64>::zeros(size, size));
-    let moment = (body.mass * body.center).cross_matrix();
-    for i in 0..3 {
-        mass[(i, i)] = body.mass;
-        for j in 0..3 {
-            mass[(i, 3 + j)] = -moment[(i, j)];
-            mass[(3 + j, i)] = -moment[(i, j)];
-            mass[(3 + i, 3 + j)] = body.inertia[(i, j)];
-        }
+    for (i, j) in (0..BASE).flat_map(|i| (0..BASE).map(move |j| (i, j))) {
+        mass[(i, j)] = body.rigid_mass[(i, j)];
     }
     for k in 0..body.count() {
         let row = BASE + k;

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use model::{BodyMarker, Model};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix6, Vector3};
 use scene::Scene;
 
 use super::error::HandOverError;
@@ -20,6 +20,8 @@ pub struct Reduced<'a> {
     pub center: Vector3<f64>,
     /// Inertia about the origin.
     pub inertia: Matrix3<f64>,
+    /// Mass matrix of the motions of the base.
+    pub rigid_mass: Matrix6<f64>,
     /// Circular frequencies (n).
     pub omegas: &'a [f64],
     /// Damping ratios (n).
@@ -79,6 +81,7 @@ impl<'a> Reduced<'a> {
             mass: body.mass,
             center: body.center_of_mass - body.origin,
             inertia: body.inertia,
+            rigid_mass: body.rigid_mass(),
             omegas: &body.circular_frequencies,
             damping_ratios: model.damping_ratios(),
             momenta: of(&body.translation_first),

@@ -11,7 +11,8 @@ use scene::System;
 use serde::Serialize;
 use whole_file::write_whole;
 
-use crate::commands::linearize::{LinearSettings, LinearizeError, linear_model};
+use crate::commands::linear::frequencies::Frequencies;
+use crate::commands::linear::linearize::{LinearSettings, LinearizeError, linear_model};
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 use crate::files::write_error::WriteError;
@@ -28,8 +29,8 @@ const MAX_FREQUENCIES: usize = 1_000_000;
 pub struct FrfSettings {
     /// The state that the equations are about.
     pub linear: LinearSettings,
-    /// First and last frequency, cycles per time, and their number.
-    pub frequencies: (f64, f64, usize),
+    /// The frequencies.
+    pub frequencies: Frequencies,
     /// True where frequencies are spaced by equal ratios.
     pub logarithmic: bool,
     /// Names of inputs; all where there are none.
@@ -87,7 +88,12 @@ pub fn frf(
     settings: &FrfSettings,
     progress: impl FnMut(BuildProgress),
 ) -> Result<FrfReport, LinearizeError> {
-    let frequencies = frequencies(settings)?;
+    let Frequencies { start, end, count } = settings.frequencies;
+    let frequencies = match settings.logarithmic {
+        true => settings.frequencies.by_ratios(MAX_FREQUENCIES),
+        false => settings.frequencies.evenly(MAX_FREQUENCIES),
+    };
+    let frequencies = frequencies.ok_or(LinearizeError::Frequencies { start, end, count })?;
     let scene = &system.bodies[0];
     let model = linear_model(system, builder, &settings.linear, progress)?;
     let equations = chosen(&model.equations, settings, &scene.path)?;
@@ -108,21 +114,6 @@ pub fn frf(
         peaks: peaks(&equations, &response),
         warnings: model.state.warnings,
     })
-}
-
-fn frequencies(settings: &FrfSettings) -> Result<Vec<f64>, LinearizeError> {
-    let (start, end, count) = settings.frequencies;
-    let least = if settings.logarithmic { f64::MIN_POSITIVE } else { 0.0 };
-    if !(start >= least && end > start && end.is_finite() && (2..=MAX_FREQUENCIES).contains(&count)) {
-        return Err(LinearizeError::Frequencies { start, end, count });
-    }
-    let part = |k: usize| k as f64 / (count - 1) as f64;
-    Ok((0..count)
-        .map(|k| match settings.logarithmic {
-            true => start * (end / start).powf(part(k)),
-            false => start + (end - start) * part(k),
-        })
-        .collect())
 }
 
 /// The equations with the inputs and outputs that are asked for.

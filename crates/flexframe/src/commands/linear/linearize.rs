@@ -62,10 +62,7 @@ pub fn linear_model(
             if settings.spin.is_some() {
                 return Err(refuse("--spin of a body that is held", "give its hinge the speed, as `motion`"));
             }
-            let (equations, speed) = held::of_held(&system.bodies[0], model)?;
-            let rigid = equations.size() - model.body.flexible();
-            let axis = system.bodies[0].constraint.as_ref().and_then(axis_of).unwrap_or_else(Vector3::zeros);
-            (equations, State { omega_global: (axis * speed).into(), rigid, warnings: Vec::new() })
+            held::of_held(&system.bodies[0], model)?
         }
         models if models.iter().all(is_free) => {
             let initial = || match models {
@@ -97,13 +94,6 @@ pub fn linear_model(
         return nothing("outputs", "name points in [output], or give the scene joints that turn or slide");
     }
     Ok(LinearModel { equations, state })
-}
-
-fn axis_of(constraint: &scene::Constraint) -> Option<Vector3<f64>> {
-    match constraint {
-        scene::Constraint::Hinge { line, .. } => Some(Vector3::from(line.direction())),
-        _ => None,
-    }
 }
 
 /// Writes the state space of a scene to a file, .mat or .json; with an order, that of the balanced truncation.

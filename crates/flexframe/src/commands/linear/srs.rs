@@ -14,35 +14,13 @@ pub use error::SrsError;
 pub use files::files;
 pub use report::{DampingReport, SrsReport};
 
+use crate::commands::linear::frequencies::Frequencies;
 use error::{MAX_DAMPINGS, MAX_FREQUENCIES};
-
-/// Frequencies at equal ratios, both ends included.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frequencies {
-    /// The lowest, cycles per time, > 0.
-    pub start: f64,
-    /// The highest.
-    pub end: f64,
-    /// How many, 2 to 10 000.
-    pub count: usize,
-}
-
-impl Frequencies {
-    fn values(&self) -> Result<Vec<f64>, SrsError> {
-        let &Self { start, end, count } = self;
-        if !(start > 0.0 && end > start && end.is_finite() && (2..=MAX_FREQUENCIES).contains(&count)) {
-            return Err(SrsError::Frequencies { start, end, count });
-        }
-        let last = (count - 1) as f64;
-        let inner = (1..count - 1).map(|k| start * (end / start).powf(k as f64 / last));
-        Ok(std::iter::once(start).chain(inner).chain([end]).collect())
-    }
-}
 
 /// Settings of spectra.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SrsSettings {
-    /// The frequencies.
+    /// The frequencies, at equal ratios.
     pub frequencies: Frequencies,
     /// Damping ratios: a spectrum for each.
     pub damping_ratios: Vec<f64>,
@@ -53,7 +31,9 @@ pub struct SrsSettings {
 /// # Errors
 /// [`SrsError`].
 pub fn srs(table: &Path, folder: &Path, settings: &SrsSettings) -> Result<SrsReport, SrsError> {
-    let frequencies = settings.frequencies.values()?;
+    let Frequencies { start, end, count } = settings.frequencies;
+    let frequencies = settings.frequencies.by_ratios(MAX_FREQUENCIES);
+    let frequencies = frequencies.ok_or(SrsError::Frequencies { start, end, count })?;
     if !(1..=MAX_DAMPINGS).contains(&settings.damping_ratios.len()) {
         return Err(SrsError::Dampings { count: settings.damping_ratios.len() });
     }

@@ -6,7 +6,7 @@ use model::BuildError;
 use results::FileError;
 use rigid_kin::{RigidBodyError, RigidStepError};
 
-use crate::commands::mode_shapes::ShapesError;
+use crate::commands::pictures::mode_shapes::ShapesError;
 use crate::commands::run::RunError;
 use crate::files::write_error::help_of_writing;
 

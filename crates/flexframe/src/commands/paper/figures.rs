@@ -10,7 +10,7 @@ use results::Results;
 use scene::Scene;
 
 use super::rigid_plate::{RigidHistories, WATCHED_POINT, dead_force};
-use crate::commands::mode_shapes::{self, ShapesError};
+use crate::commands::pictures::mode_shapes::{self, ShapesError};
 use crate::rows::units::UnitLabels;
 
 /// The names of the figures, in the order of the paper.

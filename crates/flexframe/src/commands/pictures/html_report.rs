@@ -14,7 +14,7 @@ use report::Report;
 use crate::drawn::{Drawn, Part};
 pub use error::HtmlReportError;
 
-/// What the page about a results file, finished or not, shows.
+/// Contents of the page about a results file, finished or not.
 ///
 /// # Errors
 /// [`HtmlReportError`].

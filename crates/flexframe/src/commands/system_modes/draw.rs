@@ -9,7 +9,7 @@ use scene::System;
 
 use super::report::SystemModes;
 use super::shape::SystemSurface;
-use crate::commands::mode_shapes::ShapesError;
+use crate::commands::pictures::mode_shapes::ShapesError;
 
 /// Largest displacement drawn, as a fraction of the system's size.
 const DRAWN: f64 = 0.08;

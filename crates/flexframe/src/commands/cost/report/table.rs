@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use super::body::CostBody;
-use super::ladder::{LadderRun, Line, Outcome};
-use super::modes::modes_warning;
-use super::report::CostReport;
-use super::short::{duration, setting};
+use super::CostReport;
+use crate::commands::cost::body::CostBody;
+use crate::commands::cost::ladder::{LadderRun, Line, Outcome};
+use crate::commands::cost::modes::modes_warning;
+use crate::commands::cost::short::{duration, setting};
 use crate::commands::modes::frequency_unit;
 
 /// The answer to the target, or, without one, the whole list.

@@ -17,21 +17,10 @@ pub(super) fn input_channels(scene: &Scene, model: &Model, prefix: &str) -> Vec<
     // Gravity that the scene does not call for is not among the loads of the model.
     let all = scene.loads.len() == model.loads().len();
     let acting = scene.loads.iter().enumerate().filter(|(_, load)| all || !matches!(load, Load::Gravity(_)));
-    let names: Vec<String> = acting.map(|(i, load)| format!("{prefix}loads[{i}].{}", kind(load))).collect();
+    let names: Vec<String> = acting.map(|(i, load)| format!("{prefix}loads[{i}].{}", load.kind())).collect();
     (0..model.loads().len())
         .map(|k| Channel::new(names.get(k).cloned().unwrap_or_else(|| format!("{prefix}load{k}")), "factor"))
         .collect()
-}
-
-fn kind(load: &Load) -> &'static str {
-    match load {
-        Load::Force(_) => "force",
-        Load::Moment(_) => "moment",
-        Load::Pressure(_) => "pressure",
-        Load::Traction(_) => "traction",
-        Load::Gravity(_) => "gravity",
-        Load::BaseAcceleration(_) => "base-acceleration",
-    }
 }
 
 /// Displacement, velocity and acceleration of a point along the axes of its body, by its displacement in each coordinate.

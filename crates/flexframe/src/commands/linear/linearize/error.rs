@@ -20,7 +20,7 @@ pub enum LinearizeError {
     /// The bodies cannot be put together.
     #[error("{0}")]
     Begin(#[from] Box<BeginError>),
-    /// There is no steady state.
+    /// A state that is not steady.
     #[error("{}: {source}", scene.display())]
     Steady { scene: PathBuf, source: Box<SteadyError> },
     /// The body finds no rest under its loads.

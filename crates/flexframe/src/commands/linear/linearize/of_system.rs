@@ -5,7 +5,7 @@ use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
 use nalgebra::Vector3;
-use scene::{Scene, System};
+use scene::System;
 
 use super::channels::{input_channels, point_outputs, unit_of_coordinate};
 use super::error::LinearizeError;
@@ -46,11 +46,8 @@ pub(super) fn of_system(
     for (number, (model, state)) in models.iter().zip(steady.states()).enumerate() {
         let scene = &system.bodies[number];
         let own = linear.coordinates_of(number);
-        let prefix = if models.len() > 1 {
-            scene.name.as_ref().map_or(String::new(), |name| format!("{name}."))
-        } else {
-            String::new()
-        };
+        let name = scene.name.as_ref().filter(|_| models.len() > 1);
+        let prefix = name.map_or_else(String::new, |name| format!("{name}."));
         for unit in motion.system().bodies()[number].unit_forces(&state) {
             let mut column = vec![0.0; all];
             column[own.clone()].copy_from_slice(&unit);
@@ -74,17 +71,17 @@ pub(super) fn of_system(
             outputs.extend(point_outputs(scene, &format!("{prefix}{name}"), &columns));
         }
     }
+    let units: UnitLabels = (&scene.units).into();
     let joints = &moving[0].joints;
     for (number, joint) in joints.iter().enumerate() {
         let of = &system.joints[*joint];
         for coordinate in of.kind.coordinates() {
-            let (coordinate, quantity) = match coordinate {
-                scene::Coordinate::Turn => (Coordinate::Turn, "turn"),
-                scene::Coordinate::Slide => (Coordinate::Slide, "slide"),
+            let (coordinate, quantity, [force, unit]) = match coordinate {
+                scene::Coordinate::Turn => (Coordinate::Turn, "turn", [units.moment(), "rad".to_owned()]),
+                scene::Coordinate::Slide => (Coordinate::Slide, "slide", [units.force(), units.length.to_owned()]),
             };
             let row = motion.coordinate_row(&steady, number, coordinate);
             let over: Vec<f64> = (0..n).map(|j| (0..all).map(|k| row[k] * linear.basis[(k, j)]).sum()).collect();
-            let [force, unit] = units(scene, quantity);
             inputs.push(Channel::new(format!("{}.{quantity}", of.name), force));
             columns.push(row);
             for (rate, suffix, unit) in
@@ -109,20 +106,13 @@ pub(super) fn of_system(
     Ok((equations, State { omega_global: omega_global.into(), rigid: linear.rigid, warnings }))
 }
 
-fn units(scene: &Scene, quantity: &str) -> [String; 2] {
-    let units: UnitLabels = (&scene.units).into();
-    match quantity {
-        "turn" => [units.moment(), "rad".to_owned()],
-        _ => [units.force(), units.length.to_owned()],
-    }
-}
-
-/// What the state does besides standing or spinning.
+/// Reservations about a state that does more than stand or spin.
 fn unsteady(motion: &SystemMotion, steady: &SteadyState, omega: &Vector3<f64>) -> Vec<String> {
     let turning = steady.unbalance.angular_accelerations.iter().map(Vector3::norm).fold(0.0, f64::max);
     let moving = steady.unbalance.accelerations.iter().map(Vector3::norm).fold(0.0, f64::max);
     let mut warnings = Vec::new();
-    if turning > UNSTEADY * omega.norm_squared() && turning > 0.0 && (omega.norm() > 0.0 || turning > f64::EPSILON) {
+    let rounding = if omega.norm() > 0.0 { UNSTEADY * omega.norm_squared() } else { f64::EPSILON };
+    if turning > rounding {
         warnings.push(format!(
             "the state is not steady: a body is accelerated by {turning:.3e} rad per time squared; the equations hold for the instant"
         ));

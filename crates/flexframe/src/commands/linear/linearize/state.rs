@@ -7,6 +7,6 @@ pub struct State {
     pub omega_global: [f64; 3],
     /// Number of coordinates that deform nothing.
     pub rigid: usize,
-    /// What the state does besides.
+    /// Reservations about it.
     pub warnings: Vec<String>,
 }

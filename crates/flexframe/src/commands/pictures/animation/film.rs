@@ -26,7 +26,7 @@ pub enum FilmError {
     /// A frame could not be drawn, or the GIF not be written.
     #[error("{0}")]
     Figure(#[from] FigureError),
-    /// There is no ffmpeg.
+    /// No ffmpeg.
     #[error(
         "{}: a film is made by ffmpeg, but `{program}` cannot be started: {cause}\n = install ffmpeg (Debian: apt install ffmpeg), \
          name it in {FFMPEG}, or give the file a name that ends in .gif, which needs no other program",

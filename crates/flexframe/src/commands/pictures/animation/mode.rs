@@ -95,7 +95,7 @@ fn title(scene: &Scene, number: usize, frequency: f64) -> String {
     format!("{}: mode {number}, {frequency:.4} {}", scene.title, frequency_unit(&scene.units.time))
 }
 
-/// What swings.
+/// A mode that swings.
 struct Swinging<'a> {
     title: String,
     triangles: &'a [[u32; 3]],

@@ -13,8 +13,8 @@ use results::{
     Shapes, StressShapes, histories,
 };
 
-use crate::commands::html_report::quantities::Quantities;
 use crate::commands::modes::frequency_unit;
+use crate::commands::pictures::html_report::quantities::Quantities;
 use crate::drawn::DrawnBody;
 use crate::files::scene_file;
 use crate::report::quantity;

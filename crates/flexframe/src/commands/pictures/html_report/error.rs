@@ -47,7 +47,7 @@ pub enum HtmlReportError {
     Apart {
         /// The results file.
         results: PathBuf,
-        /// That of the other run.
+        /// The results file of the other run.
         other: PathBuf,
     },
     /// A run that a page cannot lead on.

@@ -82,13 +82,14 @@ fn factor(group: &str, name: String, change: Change) -> Control {
     Control { group: group.to_owned(), name, unit: String::new(), change: change.numbers(), range, recorded: 1.0 }
 }
 
-/// What may be changed of a body.
+/// Controls of a body.
 fn of_body(group: &str, body: usize, described: &DescribedBody, loads: &[Load]) -> Vec<Control> {
     let mut controls = Vec::new();
     for load in 0..described.loads.len() {
         // Gravity that is left out is not among the loads of the run.
-        let kind = loads.get(load).filter(|_| loads.len() == described.loads.len()).map_or("load", kind);
-        let name = if described.loads.len() > 1 { format!("{kind} (load {})", load + 1) } else { kind.to_owned() };
+        let kind = loads.get(load).filter(|_| loads.len() == described.loads.len()).map_or("load", Load::kind);
+        let kind = kind.replace('-', " ");
+        let name = if described.loads.len() > 1 { format!("{kind} (load {})", load + 1) } else { kind };
         controls.push(factor(group, name, Change::Load { body, load }));
     }
     if described.physics.drive.is_some() {
@@ -100,17 +101,6 @@ fn of_body(group: &str, body: usize, described: &DescribedBody, loads: &[Load]) 
         controls.push(Control { group: group.to_owned(), name, unit: String::new(), change, range, recorded: 0.0 });
     }
     controls
-}
-
-fn kind(load: &Load) -> &'static str {
-    match load {
-        Load::Force(_) => "force",
-        Load::Moment(_) => "moment",
-        Load::Pressure(_) => "pressure",
-        Load::Traction(_) => "traction",
-        Load::Gravity(_) => "gravity",
-        Load::BaseAcceleration(_) => "base acceleration",
-    }
 }
 
 /// True if a body may turn by itself.
@@ -128,7 +118,7 @@ fn beginning_of(motion: &LiveMotion, own: usize) -> [f64; 2] {
     }
 }
 
-/// What may be changed of the joints, springs and bushings of a system.
+/// Controls of the joints, springs and bushings of a system.
 fn of_system(motion: usize, run: &RunDescription, elements: &[String]) -> Vec<Control> {
     let RunDescription::Tied(run) = run else { return Vec::new() };
     let mut controls = Vec::new();
