@@ -107,6 +107,9 @@ enum Command {
         file: PathBuf,
         #[command(flatten)]
         files: FileArgs,
+        /// Leave out the check by the full nonlinear body at the end, as `flexframe run --no-check` does.
+        #[arg(long)]
+        no_check: bool,
         /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
         #[arg(long)]
         json: bool,
@@ -611,9 +614,10 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             drop(bar);
             output::print(&report, json)
         }
-        Command::Resume { file, files, json } => {
+        Command::Resume { file, files, no_check, json } => {
             GivenFile::expect(&file, &[GivenFile::Results], "the unfinished results file of a run")?;
-            let report = run::resume(&file, &settings(&signals, files.overwrite, &builder), |p| {
+            let settings = RunSettings { check: !no_check, ..settings(&signals, files.overwrite, &builder) };
+            let report = run::resume(&file, &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;

@@ -32,6 +32,7 @@ pub mod plausible;
 pub mod report;
 mod rows;
 pub mod surface;
+pub mod trust;
 pub use commands::linear::{frequencies, frf, linearize, srs};
 pub use commands::pictures::{animation, html_report, mode_shapes};
 pub use commands::{

@@ -78,6 +78,7 @@ pub fn write_results(
         bodies: (0..bodies).map(|i| body(format!("B{i}"), modes, points)).collect(),
         joints: Vec::new(),
         warnings: Vec::new(),
+        trust: Vec::new(),
     };
     let mut writer =
         Writer::create(path, &metadata, &[], &COLUMNS, Expected { overwrite: true, ..Expected::default() })?;

@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::numbers::Numbers;
 use crate::peak::{length, peak, von_mises};
 use crate::report::{
-    Body, Compared, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface,
+    Body, Compared, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface, TrustLine,
 };
 use crate::thin::{Thinning, spread};
 
@@ -43,8 +43,25 @@ pub(crate) struct Data<'a> {
     balances: Vec<BalanceData<'a>>,
     scene: [&'a str; 2],
     warnings: &'a [String],
+    trust: TrustData<'a>,
     live: Option<LiveData<'a>>,
     compared: Option<ComparedData<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct TrustData<'a> {
+    lines: Vec<TrustLineData<'a>>,
+    unseen: &'a str,
+}
+
+#[derive(Debug, Serialize)]
+struct TrustLineData<'a> {
+    place: &'a str,
+    body: &'a str,
+    error: Option<f64>,
+    meaning: &'a str,
+    known: &'a str,
+    next: &'a str,
 }
 
 #[derive(Debug, Serialize)]
@@ -207,10 +224,15 @@ impl<'a> Data<'a> {
                 .collect(),
             scene: [&report.scene.file, &report.scene.text],
             warnings: &report.warnings,
+            trust: TrustData { lines: report.trust.lines.iter().map(trust_line).collect(), unseen: &report.trust.unseen },
             live: report.live.as_ref().map(LiveData::new),
             compared: report.compared.as_ref().map(ComparedData::new),
         }
     }
+}
+
+fn trust_line(TrustLine { place, body, error, meaning, known, next }: &TrustLine) -> TrustLineData<'_> {
+    TrustLineData { place, body, error: *error, meaning, known, next }
 }
 
 impl<'a> ComparedData<'a> {

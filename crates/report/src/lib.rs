@@ -19,5 +19,5 @@ pub use error::ReportError;
 pub use page::{html, write};
 pub use report::{
     Balance, Body, Compared, Component, Control, Effect, Fact, History, Live, LiveBody, Motion, Report, RunState,
-    SceneText, Shape, ShapeKind, StressField, Surface, Units,
+    SceneText, Shape, ShapeKind, StressField, Surface, Trust, TrustLine, Units,
 };

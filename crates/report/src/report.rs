@@ -25,10 +25,38 @@ pub struct Report {
     pub scene: SceneText,
     /// Warnings of the run, each a sentence or more.
     pub warnings: Vec<String>,
+    /// The places where the answer may be wrong, the worst first, and what the list does not see.
+    pub trust: Trust,
     /// The run as data, of a page that computes.
     pub live: Option<Live>,
     /// Another run beside it.
     pub compared: Option<Compared>,
+}
+
+/// How far the answer of a run can be trusted.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trust {
+    /// A line for each place, the worst first; none is not shown.
+    pub lines: Vec<TrustLine>,
+    /// Limits of the list.
+    pub unseen: String,
+}
+
+/// A place where the answer may be wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrustLine {
+    /// The place, such as "mesh".
+    pub place: String,
+    /// The body that it is worst in; empty for all.
+    pub body: String,
+    /// The error, relative; `None` where it is not known.
+    pub error: Option<f64>,
+    /// Meaning of the error.
+    pub meaning: String,
+    /// The way in which it is known; may be empty.
+    pub known: String,
+    /// Means that would make it smaller, or known; may be empty.
+    pub next: String,
 }
 
 /// Another run that is shown beside the first: its bodies as ghosts. Its courses are components of the histories.

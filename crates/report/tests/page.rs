@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use report::{
     Balance, Body, Component, History, Motion, Report, ReportError, RunState, SceneText, Shape, ShapeKind, StressField,
-    Surface, Units, html, write,
+    Surface, Trust, Units, html, write,
 };
 use serde_json::Value;
 
@@ -68,6 +68,7 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
         }],
         scene: SceneText { file: "strip.toml".to_owned(), text: "a = 1\n".to_owned() },
         warnings: Vec::new(),
+        trust: Trust::default(),
         live: None,
         compared: None,
     }

@@ -48,7 +48,9 @@ pub use column::{Column, Components, Quantities, Quantity, Role, Scope, SystemRo
 pub use dimension::Dimension;
 pub use error::FileError;
 pub use history::{History, histories};
-pub use metadata::{BodyMetadata, BodyProperties, EffectProperties, JointMetadata, MeshProperties, Metadata, Units};
+pub use metadata::{
+    BodyMetadata, BodyProperties, EffectProperties, JointMetadata, MeshProperties, Metadata, TrustLine, Units,
+};
 pub use paraview::fields::{CellKind, Field, Grid};
 pub use paraview::vtkhdf::{Block, VtkHdf};
 pub use paraview::vtu::{PvdEntry, write_pvd, write_vtu};

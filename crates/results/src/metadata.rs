@@ -94,6 +94,24 @@ pub struct EffectProperties {
     pub reason: String,
 }
 
+/// A line of the trust card of a run: one place where its answer may be wrong.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrustLine {
+    /// The place, such as "mesh".
+    pub place: String,
+    /// The body that it is worst in; `None` in a run of a single one, and where all bodies are alike.
+    pub body: Option<String>,
+    /// The error, relative; `None` where it is not known.
+    pub error: Option<f64>,
+    /// Meaning of the error, or that it is not known and why.
+    pub meaning: String,
+    /// The way in which it is known; empty where it is not.
+    pub known: String,
+    /// Means that would make it smaller, or known; empty where nothing is called for.
+    pub next: String,
+}
+
 /// Everything of one body that does not change with time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -164,6 +182,9 @@ pub struct Metadata {
     pub joints: Vec<JointMetadata>,
     /// Warnings of the run, each a sentence or more: see [`Writer::warn`](crate::Writer::warn).
     pub warnings: Vec<String>,
+    /// The trust card, the worst line first; empty in an unfinished file: see [`Writer::trust`](crate::Writer::trust).
+    #[serde(default)]
+    pub trust: Vec<TrustLine>,
 }
 
 impl BodyProperties {
@@ -253,7 +274,8 @@ impl Metadata {
         {
             check_finite(path, || quantity.to_owned(), values)?;
         }
-        Ok(())
+        let errors = self.trust.iter().filter_map(|line| line.error);
+        check_finite(path, || "trust/error".to_owned(), &errors.collect::<Vec<_>>())
     }
 }
 

@@ -8,7 +8,7 @@ use crate::container::store::{Room, ShapeSource, Store};
 use crate::error::check_length;
 use crate::history::{History, histories};
 use crate::reader::Results;
-use crate::{Column, FileError, Metadata, Shapes};
+use crate::{Column, FileError, Metadata, Shapes, TrustLine};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use whole_file::TemporaryFile;
@@ -276,6 +276,22 @@ impl<R: SystemRow> Writer<R> {
     /// Keeps warnings of the run for [`Writer::finish`] to store; an unfinished file has none.
     pub fn warn(&mut self, warnings: Vec<String>) {
         self.metadata.warnings = warnings;
+    }
+
+    /// Keeps the trust card of the run for [`Writer::finish`] to store; an unfinished file has none.
+    pub fn trust(&mut self, lines: Vec<TrustLine>) {
+        self.metadata.trust = lines;
+    }
+
+    /// The rows so far, as a reader would find them.
+    ///
+    /// # Errors
+    /// [`FileError::Sealed`] if they cannot be written and read back.
+    pub fn results(&mut self) -> Result<Results, FileError> {
+        self.write_waiting()?;
+        let (mut results, _) = Results::read_with_checkpoint(&self.store, self.columns)?;
+        results.truncate(self.rows_written);
+        Ok(results)
     }
 
     /// Writes the results file, puts it into its place, and removes the unfinished one.

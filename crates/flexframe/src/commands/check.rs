@@ -21,6 +21,7 @@ pub use rows::CheckRows;
 
 use crate::commands::run::{bodies, metadata, system_of};
 use crate::rows::columns::COLUMNS;
+use crate::trust;
 
 /// Checks a results file, finished or not.
 ///
@@ -46,5 +47,8 @@ pub fn check(
             return Err(changed("the body"));
         }
     }
-    check_run(file, &results, &system, &models, builder, rows, progress)
+    let mut report = check_run(file, &results, &system, &models, builder, rows, progress)?;
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    report.trust = Some(trust::of_check(&results, &report, &name));
+    Ok(report)
 }

@@ -5,7 +5,7 @@
 
 mod balances;
 mod body;
-mod body_report;
+pub(crate) mod body_report;
 mod checkpoint;
 mod error;
 mod estimate;
@@ -41,7 +41,6 @@ pub use tied_report::{AssembledReport, TiedReport};
 pub use watch::{Watch, Watched};
 
 use crate::commands::check::checked_rows::check_run;
-use crate::commands::check::error::CheckError;
 use crate::commands::check::rows::CheckRows;
 use crate::drawn::stored_shapes;
 use crate::files::outputs::outputs_of_scenes;
@@ -50,6 +49,7 @@ use crate::files::scene_file;
 use crate::motion::{Beginning, begin};
 use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;
+use crate::trust;
 use body::FollowedBody;
 use checkpoint::{checkpoint, restored};
 use estimate::LARGE;
@@ -73,32 +73,50 @@ pub fn run(
     let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
     // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
     progress(RunProgress::Built);
-    let mut report = run_models(system, &models, folder, settings, &mut progress)?;
-    if settings.check {
-        check_by_full_body(system, &models, settings, &mut report, progress);
-    }
+    let report = run_models(system, &models, folder, settings, progress)?;
     Ok((models, report))
 }
 
-/// Checks the worst rows of each body by the full body, as many as cost no more than the reduction did. The run is done whatever comes
-/// of it: a check that cannot be made is a warning.
-fn check_by_full_body(
+/// Checks the worst rows of each body by the full body, as many as cost no more than the reduction did, if the run is to be checked; states
+/// how far its answer can be trusted; and puts the results into their place.
+fn conclude(
     system: &System,
     models: &[Model],
     settings: &RunSettings,
-    report: &mut RunReport,
+    (mut report, mut writer): (RunReport, Writer<Row>),
     mut progress: impl FnMut(RunProgress),
-) {
-    let started = Instant::now();
-    let checked = Results::open(&report.results, &COLUMNS).map_err(CheckError::from).and_then(|results| {
-        let (file, builder, rows) = (&report.results, &settings.builder, CheckRows::Cheap);
-        check_run(file, &results, system, models, builder, &rows, |p| progress(RunProgress::Check(p)))
-    });
-    report.times.add("check", started.elapsed());
-    match checked {
-        Ok(checked) => report.check = Some(checked),
-        Err(error) => report.warnings.push(format!("it could not be checked by the full nonlinear body: {error}")),
+) -> Result<RunReport, RunError> {
+    let file = report.results.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    if !settings.rows_alone {
+        let started = Instant::now();
+        let results = writer.results()?;
+        let checked = settings.check.then(|| {
+            let (path, builder, rows) = (&report.results, &settings.builder, CheckRows::Cheap);
+            check_run(path, &results, system, models, builder, &rows, |p| progress(RunProgress::Check(p)))
+        });
+        // The run is done whatever comes of it.
+        let not_checked = match checked {
+            None => "the run was made without the check",
+            Some(Ok(checked)) => {
+                report.check = Some(checked);
+                ""
+            }
+            Some(Err(error)) => {
+                report.warnings.push(format!("it could not be checked by the full nonlinear body: {error}"));
+                "the check by the full body could not be made"
+            }
+        };
+        let check = report.check.as_ref().ok_or(not_checked);
+        let card = trust::of_run((system, models), &results, &report.bodies, check, &file);
+        writer.trust(card.lines.clone());
+        report.trust = Some(card);
+        report.times.add("check", started.elapsed());
     }
+    let started = Instant::now();
+    writer.warn(report.warnings.clone());
+    writer.finish()?;
+    report.times.add("writing", started.elapsed());
+    Ok(report)
 }
 
 /// Refuses a run that could not write its files.
@@ -157,7 +175,8 @@ pub fn run_models(
     progress(RunProgress::Motion(0.0));
     let mut recorder = Recorder::new(&bodies, movers, writer, estimate);
     recorder.begin()?;
-    recorder.follow(started, settings, progress)
+    let followed = recorder.follow(started, settings, &mut progress)?;
+    conclude(system, models, settings, followed, progress)
 }
 
 /// Goes on with a run that was cut off, from the last checkpoint in its unfinished file (which may be given by the name
@@ -206,7 +225,8 @@ pub fn resume(
         Some(_) => recorder.take_up(&results)?,
         None => recorder.begin()?,
     }
-    recorder.follow(started, settings, progress)
+    let followed = recorder.follow(started, settings, &mut progress)?;
+    conclude(&system, &models, settings, followed, progress)
 }
 
 /// The system of a run, with the bodies that the run has; `None` where one of them is not there.

@@ -222,6 +222,9 @@ class Results(Columns):
     """True if the run came to its end."""
     warnings: list[str]
     """Warnings of the run, such as assumptions that did not hold."""
+    trust: list[dict[str, Any]]
+    """The trust card, the worst line first, each with `place` ("mesh", "modes", "steps", "model"), `body` (of several), `error` (relative, None
+    where it is not known), `meaning`, `known` (the way in which it is) and `next` (what would mend it, or tell); empty of an unfinished run."""
     events: list[tuple[str, float]]
     """The events that a run in memory has passed, and when."""
     check: dict[str, Any] | None = None

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use flexframe::columns::COLUMNS;
-use flexframe::results::{BodyMetadata, Metadata, Results};
+use flexframe::results::{BodyMetadata, Metadata, Results, TrustLine};
 use flexframe::row::Row;
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
@@ -58,6 +58,8 @@ impl Rows {
         data.set_item("scene_file", scene_file)?;
         data.set_item("complete", complete)?;
         data.set_item("warnings", &metadata.warnings)?;
+        let trust = metadata.trust.iter().map(|line| of_trust(py, line)).collect::<PyResult<Vec<_>>>()?;
+        data.set_item("trust", trust)?;
         data.set_item("events", events)?;
         let bodies = metadata.bodies.iter().map(|body| of_body(py, body)).collect::<PyResult<Vec<_>>>()?;
         data.set_item("bodies", bodies)?;
@@ -80,6 +82,19 @@ impl Rows {
         data.set_item("columns", columns)?;
         py.import(MODULE)?.getattr("Results")?.call1((data,))
     }
+}
+
+/// A line of the trust card.
+fn of_trust<'py>(py: Python<'py>, line: &TrustLine) -> PyResult<Bound<'py, PyDict>> {
+    let TrustLine { place, body, error, meaning, known, next } = line;
+    let data = PyDict::new(py);
+    data.set_item("place", place)?;
+    data.set_item("body", body)?;
+    data.set_item("error", error)?;
+    data.set_item("meaning", meaning)?;
+    data.set_item("known", known)?;
+    data.set_item("next", next)?;
+    Ok(data)
 }
 
 /// What is known of a body besides its columns.

@@ -37,16 +37,17 @@ pub(crate) fn run(
 }
 
 /// Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit. Another
-/// results file in its place is replaced only with `overwrite`. `trust_geometry` is that of Scene.
+/// results file in its place is replaced only with `overwrite`. `check` is that of `run`, and `trust_geometry` that of Scene.
 #[pyfunction]
-#[pyo3(signature = (file, *, overwrite=false, trust_geometry=false))]
+#[pyo3(signature = (file, *, overwrite=false, check=true, trust_geometry=false))]
 pub(crate) fn resume(
     py: Python<'_>,
     file: PathBuf,
     overwrite: bool,
+    check: bool,
     trust_geometry: bool,
 ) -> PyResult<Bound<'_, PyAny>> {
-    followed(py, [overwrite, false, false], builder(py, trust_geometry)?, move |settings, progress| {
+    followed(py, [overwrite, false, check], builder(py, trust_geometry)?, move |settings, progress| {
         flexframe::run::resume(&file, settings, progress)
     })
 }

@@ -33,9 +33,12 @@ export interface Report {
     balances: Balance[];
     scene: [string, string];
     warnings: string[];
+    trust: { lines: TrustLine[]; unseen: string };
     live: LiveData | null;
     compared: Compared | null;
 }
+/// A place where the answer may be wrong; the error is relative, and null where it is not known.
+export interface TrustLine { place: string; body: string; error: number | null; meaning: string; known: string; next: string }
 /// Another run, whose bodies are seen as ghosts. Its courses are among the histories.
 export interface Compared { name: string; times: Numbers; bodies: BodyData[] }
 /// A run that the page leads on by itself.

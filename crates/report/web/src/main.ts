@@ -10,6 +10,7 @@ import { panels } from "./plots/panels";
 import { listenToPrinter } from "./print";
 import { offerViews } from "./picture/views";
 import { Viewer } from "./picture/viewer";
+import { showTrust } from "./trust";
 import { offerPicture } from "./saved/picture";
 
 function header(report: Report) {
@@ -27,6 +28,7 @@ function header(report: Report) {
         pair.lastElementChild!.textContent = value;
         facts.append(pair);
     }
+    showTrust(report);
     const warnings = document.getElementById("warnings")!;
     const notes = [...(report.unfinished === null ? [] : [report.unfinished]), ...report.warnings];
     for (const note of notes) {

@@ -5,7 +5,9 @@
 use crate::column::SystemRow;
 use crate::history::{History, histories};
 use crate::metadata::{BODIES, JOINTS};
-use crate::{BodyMetadata, BodyProperties, Column, FileError, JointMetadata, MeshProperties, Metadata, Units};
+use crate::{
+    BodyMetadata, BodyProperties, Column, FileError, JointMetadata, MeshProperties, Metadata, TrustLine, Units,
+};
 use hdf5::Group;
 use hdf5::types::VarLenUnicode;
 use ndarray::{ArrayView2, ArrayViewD, aview0, aview1};
@@ -31,6 +33,7 @@ pub(crate) fn write(path: &Path, file: &hdf5::File, metadata: &Metadata, is_comp
     write_texts(path, file, "input_files", inputs, "files that the run read, where they were")?;
     let warnings = metadata.warnings.iter().map(String::as_str);
     write_texts(path, file, "warnings", warnings, "what should be known of the run; empty in an unfinished file")?;
+    write_trust(path, file, &metadata.trust)?;
     for body in &metadata.bodies {
         write_body(path, file, body, &metadata.units)?;
     }
@@ -41,6 +44,21 @@ pub(crate) fn write(path: &Path, file: &hdf5::File, metadata: &Metadata, is_comp
         write_short_paths(file, body).map_err(SealedError::hdf5(path, "write the short paths"))?;
     }
     Ok(())
+}
+
+/// The trust card, a list for each of its parts.
+fn write_trust(path: &Path, file: &hdf5::File, lines: &[TrustLine]) -> Result<(), FileError> {
+    let group = file.create_group("trust").map_err(SealedError::hdf5(path, "write the trust card"))?;
+    let each = |text: fn(&TrustLine) -> &str| lines.iter().map(text);
+    write_texts(path, &group, "place", each(|line| &line.place), "places where the answer may be wrong, worst first")?;
+    let body = each(|line| line.body.as_deref().unwrap_or_default());
+    write_texts(path, &group, "body", body, "body that it is worst in, of several")?;
+    let errors: Vec<f64> = lines.iter().map(|line| line.error.unwrap_or(f64::NAN)).collect();
+    let described = ["1", "none", "the error, relative; NaN where it is not known"];
+    write_constant(path, &group, "error", aview1(&errors).into_dyn(), described)?;
+    write_texts(path, &group, "meaning", each(|line| &line.meaning), "meaning of the error")?;
+    write_texts(path, &group, "known", each(|line| &line.known), "way in which it is known")?;
+    write_texts(path, &group, "next", each(|line| &line.next), "means that would make it smaller, or known")
 }
 
 /// Links at the root to all that is of a single body, for scripts that know nothing of bodies. Its model is `body` there.

@@ -20,6 +20,7 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
         bodies: vec![body("body", modes, point_names)],
         joints: Vec::new(),
         warnings: Vec::new(),
+        trust: Vec::new(),
     }
 }
 

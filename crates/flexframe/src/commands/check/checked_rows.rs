@@ -92,5 +92,6 @@ pub fn check_run(
         units: [units.length.clone(), units.mass.clone(), units.time.clone()],
         results: file.to_owned(),
         bodies: checked,
+        trust: None,
     })
 }

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
+use crate::trust::card::TrustCard;
 
 /// Report of `flexframe check`.
 #[derive(Debug, Clone, Serialize)]
@@ -22,6 +23,9 @@ pub struct CheckReport {
     pub results: PathBuf,
     /// Each body, in the order of the scene.
     pub bodies: Vec<BodyCheck>,
+    /// The trust card of the file with what the check has found; `None` at the end of a run, which makes its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trust: Option<TrustCard>,
 }
 
 /// The check of a body.
@@ -60,7 +64,7 @@ pub(super) const RIGID: &str = "it is rigid";
 /// The reason that a body of matrices is not checked.
 pub(super) const MATRICES: &str = "it has no elements: it is made of matrices";
 /// The reason that a body is not checked at the end of a run.
-pub(super) const DEAR: &str = "its full body costs more than its reduction did; `flexframe check` does it on demand";
+pub(crate) const DEAR: &str = "its full body costs more than its reduction did; `flexframe check` does it on demand";
 
 /// A row whose displacements are below this part of the largest of the run is stated against those.
 const QUIET: f64 = 0.5;
@@ -85,7 +89,7 @@ impl fmt::Display for CheckReport {
         if self.bodies.iter().any(|body| !body.rows.is_empty()) {
             write!(f, "\n  {UNSEEN}")?;
         }
-        Ok(())
+        self.trust.iter().try_for_each(|trust| write!(f, "\n{trust}"))
     }
 }
 

@@ -46,6 +46,9 @@ pub struct BodyRunReport {
     /// True if the balance of energy is open though the motion is right: modes faster than the steps follow themselves
     /// exactly, but the work on them and their dissipation are summed by the stages.
     pub right_unsummed: bool,
+    /// Expected error of fixed steps, relative to the largest motion; `None` under step control, and where it was not estimated.
+    #[serde(serialize_with = "json::optional")]
+    pub step_error: Option<f64>,
     /// The effects of this body and whether each was computed; none of the paper's formulation, which has its own.
     #[serde(serialize_with = "json::object")]
     pub effects: Vec<(&'static str, bool)>,

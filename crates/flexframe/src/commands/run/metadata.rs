@@ -57,6 +57,7 @@ pub fn metadata(bodies: &[RunBody<'_>]) -> Option<Metadata> {
         bodies: bodies.iter().map(body_metadata).collect(),
         joints: Vec::new(),
         warnings: Vec::new(),
+        trust: Vec::new(),
     })
 }
 

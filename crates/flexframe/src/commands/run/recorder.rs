@@ -85,13 +85,13 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Goes on to the end.
+    /// Goes on to the end. The results are then still in the unfinished file.
     pub fn follow(
         mut self,
         started: Instant,
         settings: &RunSettings,
         mut progress: impl FnMut(RunProgress),
-    ) -> Result<RunReport, RunError> {
+    ) -> Result<(RunReport, Writer<Row>), RunError> {
         let before = self.steps();
         let mut looked_at = 0;
         loop {
@@ -125,7 +125,7 @@ impl<'a> Recorder<'a> {
         let time = started.elapsed();
         let steps = self.steps();
         let tied = self.movers.iter().filter_map(Mover::tied_report).collect();
-        let Self { movers, row, mut writer, rows, estimate, .. } = self;
+        let Self { movers, row, writer, rows, estimate, .. } = self;
         let count = row.bodies.len();
         let mut reports: Vec<_> = movers.into_iter().flat_map(|mover| reports(mover, &row, count)).collect();
         reports.sort_by_key(|report| report.number);
@@ -154,13 +154,12 @@ impl<'a> Recorder<'a> {
             bodies: reports.into_iter().map(|report| report.body).collect(),
             system: SystemReport::of(&row),
             check: None,
+            trust: None,
             warnings,
             times,
         };
-        writer.warn(report.warnings.clone());
-        writer.finish()?;
         report.times.add("motion", started.elapsed());
-        Ok(report)
+        Ok((report, writer))
     }
 
     /// Goes on to the next row of all bodies, or less far.

@@ -11,6 +11,7 @@ use crate::commands::check::report::CheckReport;
 use crate::files::json;
 use crate::report::{Times, list_of_bodies};
 use crate::rows::row::Row;
+use crate::trust::card::TrustCard;
 
 /// Report of `flexframe run`.
 #[derive(Debug, Clone, Serialize)]
@@ -47,6 +48,8 @@ pub struct RunReport {
     /// The row of each body where its model is most likely to be wrong, against the full body; `None` where that was not asked for, would cost
     /// more than the body did, or could not be done.
     pub check: Option<CheckReport>,
+    /// The trust card; `None` where the results are only rows.
+    pub trust: Option<TrustCard>,
     /// Assumptions that did not hold, with the name of the body where there are several.
     pub warnings: Vec<String>,
     /// Where the time went, seconds.

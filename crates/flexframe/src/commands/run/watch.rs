@@ -37,6 +37,8 @@ pub struct Watched {
     pub balances: Balances,
     /// See `right_unsummed` of the report of a body.
     pub right_unsummed: bool,
+    /// See `step_error` of the report of a body.
+    pub step_error: Option<f64>,
     /// See `left_out` of the report of a body.
     pub left_out: Option<f64>,
     /// Angle along the way of the attitude, ∫|ω| dt, rad.
@@ -131,6 +133,7 @@ impl<'a> Watch<'a> {
         Watched {
             balances,
             right_unsummed,
+            step_error: self.step.as_ref().map(StepEstimate::largest),
             left_out: self.review.left_out(),
             turned: self.turn.angle(),
             warnings: (plausible::doubts(scene, model).into_iter())

@@ -35,6 +35,9 @@ impl fmt::Display for RunReport {
         if let Some(check) = &self.check {
             check.write_in_run(f)?;
         }
+        if let Some(trust) = &self.trust {
+            writeln!(f, "{trust}")?;
+        }
         writeln!(f, "  time     {}", self.times)?;
         write!(f, "  results  {} ({} rows)", self.results.display(), self.rows)?;
         for warning in &self.warnings {

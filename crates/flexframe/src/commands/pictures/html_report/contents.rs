@@ -6,7 +6,7 @@ use fem_tet10::von_mises;
 use nalgebra::Vector3;
 use report::{
     Balance, Body, Component, Effect, Fact, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
-    Surface, Units,
+    Surface, Trust, TrustLine, Units,
 };
 use results::{
     BodyProperties, BodyResults, Components, EffectProperties, History, MeshProperties, Metadata, Results, Scope,
@@ -22,6 +22,7 @@ use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;
 use crate::rows::units::UnitLabels;
 use crate::surface;
+use crate::trust::card::TrustCard;
 
 /// All of it; `None` where the file has not got the columns that it needs.
 pub(super) fn contents(file: &Path, results: &Results, drawn: Vec<DrawnBody>) -> Option<Report> {
@@ -45,6 +46,7 @@ pub(super) fn contents(file: &Path, results: &Results, drawn: Vec<DrawnBody>) ->
             text: run.scene_text.clone(),
         },
         warnings: warnings(run),
+        trust: trust(file, run),
         live: None,
         compared: None,
     })
@@ -339,6 +341,20 @@ fn balance(
 fn effect(effect: &EffectProperties) -> Effect {
     let EffectProperties { name, state, measure, reason } = effect.clone();
     Effect { name, state, measure, reason }
+}
+
+/// The trust card of the run.
+fn trust(file: &Path, run: &Metadata) -> Trust {
+    let TrustCard { lines, unseen } = TrustCard::of_file(run, &file.file_name().unwrap_or_default().to_string_lossy());
+    let line = |results::TrustLine { place, body, error, meaning, known, next }| TrustLine {
+        place,
+        body: body.unwrap_or_default(),
+        error,
+        meaning,
+        known,
+        next,
+    };
+    Trust { lines: lines.into_iter().map(line).collect(), unseen: unseen.to_owned() }
 }
 
 /// Known errors of the models, and warnings of the run.

@@ -1,0 +1,45 @@
+//! The error of the steps, from their bound or their estimate and from the balance of energy.
+
+use scene::{Scene, StepControl};
+
+use super::card::{Line, Place, SMALL, percent};
+use crate::commands::run::body_report::BodyRunReport;
+
+/// The line of a body.
+pub(super) fn line(scene: &Scene, report: &BodyRunReport, scene_file: &str) -> Line {
+    let measured = format!("`flexframe cost {scene_file}` measures it");
+    let expected = match scene.time.control {
+        StepControl::Tolerance(tolerance) => Some((tolerance, "bounded by `tolerance`")),
+        // The estimate is that of the body alone.
+        StepControl::Fixed(_) if !scene.tied => {
+            report.step_error.map(|error| (error, "estimated from steps several times shorter"))
+        }
+        StepControl::Fixed(_) => None,
+    };
+    // The equations of the paper do not keep the energy in any steps; modes that follow themselves exactly need no sum.
+    let is_telling = scene.time.method.abilities.keeps_energy && !report.right_unsummed;
+    let open = is_telling.then_some(report.balances.energy);
+    let shorter = match scene.time.control {
+        StepControl::Tolerance(_) => "a smaller `tolerance`",
+        StepControl::Fixed(_) => "a shorter `step`, or `tolerance` in its place",
+    };
+    let next = |error: f64| if error >= SMALL { format!("{shorter}; {measured}") } else { String::new() };
+    let closed = open.map_or_else(String::new, |open| format!("; the energy is closed to {open:.1e}"));
+    match (expected, open) {
+        (Some((error, how)), open) if open.is_none_or(|open| open <= error) => {
+            let most = if matches!(scene.time.control, StepControl::Tolerance(_)) { "at most " } else { "about " };
+            let meaning = format!("motion off by {most}{} of its largest", percent(error));
+            Place::Steps.known(error, meaning, format!("{how}{closed}"), next(error))
+        }
+        (_, Some(open)) => {
+            let meaning = format!("energy off by {} of what there was or came and went", percent(open));
+            let known = match expected {
+                Some((error, how)) => format!("measured by its balance, though {how} to {}", percent(error)),
+                None => "measured by its balance alone".to_owned(),
+            };
+            Place::Steps.known(open, meaning, known, if expected.is_none() { measured } else { next(open) })
+        }
+        // The first arm takes an error without a balance.
+        (_, None) => Place::Steps.not_known("fixed steps that nothing was compared with", measured),
+    }
+}
