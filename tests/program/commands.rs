@@ -15,3 +15,4 @@ pub(crate) mod new_scene;
 pub(crate) mod srs;
 pub(crate) mod sweep;
 pub(crate) mod systems;
+pub(crate) mod trust;

@@ -1,14 +1,11 @@
 //! The report as the page reads it. `web/src/data.ts` has the same fields.
 
-use std::io::Read;
-
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use flate2::Compression;
-use flate2::read::GzEncoder;
 use serde::Serialize;
 
 use crate::numbers::Numbers;
+use crate::packed::packed;
 use crate::peak::{length, peak, von_mises};
 use crate::report::{
     Body, Compared, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface, TrustLine,
@@ -262,14 +259,6 @@ impl<'a> LiveData<'a> {
     }
 }
 
-/// The bytes, packed by gzip.
-fn packed(bytes: &[u8]) -> Vec<u8> {
-    let mut packed = Vec::new();
-    // Reading from a list of bytes does not fail.
-    let _ = GzEncoder::new(bytes, Compression::best()).read_to_end(&mut packed);
-    packed
-}
-
 fn facts(facts: &[Fact]) -> Vec<[&str; 2]> {
     facts.iter().map(|fact| [&*fact.label, &*fact.value]).collect()
 }
@@ -291,8 +280,8 @@ fn history_points(report: &Report) -> usize {
 
 fn components<'a>(components: &'a [Component], thinning: Option<&Thinning>) -> Vec<ComponentData<'a>> {
     let values = |component: &Component| match thinning {
-        Some(thinning) => Numbers::single(thinning.values(&component.values).into_iter()),
-        None => Numbers::single(component.values.iter().copied()),
+        Some(thinning) => Numbers::single(thinning.values(&component.values).into_iter(), 1),
+        None => Numbers::single(component.values.iter().copied(), 1),
     };
     components.iter().map(|component| ComponentData { name: &component.name, values: values(component) }).collect()
 }
@@ -322,7 +311,7 @@ impl SurfaceData {
     fn new(surface: &Surface) -> Self {
         let count = surface.vertices.len();
         Self {
-            vertices: Numbers::single(surface.vertices.as_flattened().iter().map(|x| f64::from(*x))),
+            vertices: Numbers::single(surface.vertices.as_flattened().iter().map(|x| f64::from(*x)), 3),
             triangles: Numbers::indices(surface.triangles.as_flattened(), count),
             edges: Numbers::indices(surface.edges.as_flattened(), count),
         }
@@ -336,7 +325,7 @@ impl<'a> ShapeData<'a> {
             ShapeKind::Static => ("static", None, None),
             ShapeKind::SecondOrder => ("second order", None, None),
         };
-        let displacement = Numbers::quantised(shape.displacement.as_flattened());
+        let displacement = Numbers::quantised(&shape.displacement);
         Self { name: &shape.name, kind, frequency, damping_ratio, displacement }
     }
 }
@@ -353,7 +342,7 @@ impl<'a> StressData<'a> {
             unit: &stress.unit,
             products: &stress.products,
             peak: peak(&shapes, &coordinates, von_mises),
-            shapes: shapes.iter().map(|shape| Numbers::quantised(shape.as_flattened())).collect(),
+            shapes: shapes.iter().map(|shape| Numbers::coarse(shape)).collect(),
         }
     }
 }
@@ -361,10 +350,11 @@ impl<'a> StressData<'a> {
 impl MotionData {
     fn new(motion: &Motion, shapes: usize, kept: &[usize]) -> Self {
         Self {
-            origins: Numbers::single(kept.iter().flat_map(|row| motion.origins[*row])),
-            attitudes: Numbers::single(kept.iter().flat_map(|row| motion.attitudes[*row])),
+            origins: Numbers::single(kept.iter().flat_map(|row| motion.origins[*row]), 3),
+            attitudes: Numbers::single(kept.iter().flat_map(|row| motion.attitudes[*row]), 4),
             coordinates: Numbers::single(
                 kept.iter().flat_map(|row| &motion.coordinates[row * shapes..(row + 1) * shapes]).copied(),
+                shapes,
             ),
         }
     }

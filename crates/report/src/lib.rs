@@ -10,6 +10,7 @@ mod check;
 mod data;
 mod error;
 mod numbers;
+mod packed;
 mod page;
 mod peak;
 mod report;

@@ -17,8 +17,8 @@ const PLACE: &str = "\"the data of the report\"";
 /// The page as one text.
 ///
 /// Long runs are thinned so that the page stays small: of the motion evenly spread rows are kept, of the histories the
-/// least and the greatest value of each range of rows. Shapes are written in steps of 1/32767 of their peak, the rest in
-/// single precision.
+/// least and the greatest value of each range of rows. Shapes are written in steps of 1/32767 of their peak, stresses in steps of
+/// 1/2047, the rest in single precision; all of it is packed.
 ///
 /// # Errors
 /// Lists that do not fit together, numbers that are not finite, more than 256 shapes.

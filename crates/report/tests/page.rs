@@ -1,7 +1,10 @@
 //! Pages from plain data: what is in them, how large they are, and what is refused.
 
+use std::io::Read;
+
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use flate2::read::GzDecoder;
 use report::{
     Balance, Body, Component, History, Motion, Report, ReportError, RunState, SceneText, Shape, ShapeKind, StressField,
     Surface, Trust, Units, html, write,
@@ -80,8 +83,27 @@ fn data(page: &str) -> Value {
     serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
 }
 
+/// The bytes of a list of numbers: differences to the number a stride before, bytes of the same place beside each other.
+fn bytes(numbers: &Value) -> Vec<u8> {
+    let mut planes = Vec::new();
+    let packed = STANDARD.decode(numbers["packed"].as_str().unwrap()).unwrap();
+    GzDecoder::new(&packed[..]).read_to_end(&mut planes).unwrap();
+    let size = match numbers["type"].as_str().unwrap() {
+        "f64" => 8,
+        "f32" | "u32" => 4,
+        _ => 2,
+    };
+    let (count, stride) = (planes.len() / size, numbers["stride"].as_u64().unwrap() as usize);
+    let mut values: Vec<u64> = Vec::with_capacity(count);
+    for i in 0..count {
+        let difference: u64 = (0..size).map(|byte| u64::from(planes[byte * count + i]) << (8 * byte)).sum();
+        values.push(difference.wrapping_add(i.checked_sub(stride).map_or(0, |before| values[before])));
+    }
+    values.iter().flat_map(|value| value.to_le_bytes()[..size].to_vec()).collect()
+}
+
 fn singles(numbers: &Value) -> Vec<f32> {
-    let bytes = STANDARD.decode(numbers["base64"].as_str().unwrap()).unwrap();
+    let bytes = bytes(numbers);
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }
 

@@ -155,10 +155,10 @@ pub struct Frame {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Initial {
-    /// Attitude as a quaternion [w, x, y, z] that takes body components to global ones; its length is made one. `None`
-    /// has the body axes along the global ones.
+    /// Attitude as a quaternion [w, x, y, z] that takes body components to global ones; its length is made one. Without
+    /// it the body axes are along the global ones.
     pub attitude: Option<[f64; 4]>,
-    /// Place of the origin of the mesh axes, length, global. `None` leaves the body where its mesh is, turned about its centre
+    /// Place of the origin of the mesh axes, length, global. Without it the body is where its mesh is, turned about its centre
     /// of mass or the point that is held.
     pub position: Option<[f64; 3]>,
     /// Velocity of the centre of mass, length per time, global.

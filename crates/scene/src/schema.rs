@@ -102,8 +102,9 @@ impl JsonSchema for Effects {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let choice = generator.subschema_for::<Choice>();
+        let of = |effect: Effect| json!({ "description": effect.description(), "allOf": [choice] });
         let mut keys: Map<String, Value> =
-            Effect::ALL.into_iter().map(|effect| (effect.name().to_owned(), choice.clone().to_value())).collect();
+            Effect::ALL.into_iter().map(|effect| (effect.name().to_owned(), of(effect))).collect();
         let about = "Relative influence on the answer below which \"auto\" leaves an effect out.";
         keys.insert("tolerance".into(), json!({ "type": "number", "default": 1e-3, "description": about }));
         let about = "With `false`, a model that is known to be wrong runs all the same.";

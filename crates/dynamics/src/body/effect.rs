@@ -17,6 +17,13 @@ macro_rules! effects {
             /// All of them.
             pub const ALL: [Self; [$($name),*].len()] = [$(Self::$effect),*];
 
+            /// A sentence that says what it is.
+            pub const fn description(self) -> &'static str {
+                match self {
+                    $(Self::$effect => $description,)*
+                }
+            }
+
             /// Its name, as in a scene.
             pub const fn name(self) -> &'static str {
                 match self {

@@ -24,8 +24,9 @@ pub struct Drive {
     pub added: Option<Signal>,
 }
 
-/// A speed over time: the amplitude times the history. As data, tables and expressions have other types `T` and `E` than
-/// those that can be evaluated, as in [`History`].
+/// A speed over time: the amplitude times the history.
+///
+/// As data, tables and expressions have other types `T` and `E` than those that can be evaluated, as in [`History`].
 #[derive(Debug, Clone, PartialEq, Deserialize, serde::Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -113,20 +114,19 @@ pub struct Physics {
     /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that
     /// of the modes counts.
     pub large_deflection: Option<Manifold>,
-    /// Forces that hold the bent body that the modes are about, where that is not the undeformed one. Data of a run do not have it
-    /// ([`crate::DescriptionError`]).
-    #[serde(skip)]
+    /// Forces that hold the bent body that the modes are about, where that is not the undeformed one.
     pub reference: Option<ReferenceForces>,
 }
 
 /// The strain energy g·q + ½ qᵀBq that a body has beside its stiffness and its manifold where its modes are about a bent
 /// reference. g are the internal forces there, which loads and spin of the reference balance; B takes from the stiffness what the
 /// stress of these would count twice, and adds the work of g on displacements of second order.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct ReferenceForces {
     /// g (nf).
     pub force: Vec<f64>,
     /// B (nf×nf), symmetric.
+    #[serde(with = "modal::as_data")]
     pub stiffness: Mat<f64>,
 }
 

@@ -34,7 +34,7 @@ use crate::system::simulation::setup::SystemSetup;
 
 /// Name and version of the data, in front of them.
 const NAME: &str = "flexframe run";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// A run with all that it begins with.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -155,9 +155,6 @@ impl RunDescription {
         for body in self.bodies() {
             if let Some(load) = body.loads.iter().find(|load| loads::data(&***load).is_none()) {
                 return Err(DescriptionError::Load { load: format!("{load:?}") });
-            }
-            if body.physics.reference.is_some() {
-                return Err(DescriptionError::Reference);
             }
             if body.physics.drive.as_ref().is_some_and(|drive| drive.added.is_some()) {
                 return Err(DescriptionError::AddedSpeed);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use dynamics::{
     DescribedBody, DescriptionError, Drive, DrivenMotion, DrivenSpeed, Expression, History, Initial, LoadFn, Method,
-    Observation, Physics, Rows, RunDescription, RunOfBody, ScaledLoad, SharedLoad, Signal, StepControl, Table,
+    Observation, Physics, ReferenceForces, Rows, RunDescription, RunOfBody, ScaledLoad, SharedLoad, Signal, StepControl, Table,
 };
 use faer::Mat;
 use modal::RigidMotion;
@@ -69,7 +69,14 @@ fn a_run_through_its_data_is_the_same_with_every_load_and_history() {
     let physics = Physics { drive: Some(drive), drive_stiffness, ..Physics::default() };
     let mut driven = run(RigidMotion::clamp(Vector3::zeros()), Vec::new(), physics);
     driven.initial = Initial { modal_displacement: vec![0.1, -0.2, 0.05], ..Initial::at_rest(3) };
-    for run in [free, adaptive, driven] {
+    let reference = ReferenceForces {
+        force: vec![0.3, -0.2, 0.1],
+        stiffness: Mat::from_fn(3, 3, |i, j| 0.5 * (1 + i.max(j)) as f64 - 0.2 * i.min(j) as f64),
+    };
+    let physics = Physics { reference: Some(reference), ..Physics::default() };
+    let mut bent = run(RigidMotion::clamp(Vector3::zeros()), Vec::new(), physics);
+    bent.initial = driven.initial.clone();
+    for run in [free, adaptive, driven, bent] {
         let rows_before = rows(&run);
         assert!(rows_before[5].modal_velocity.iter().all(|v| *v != 0.0));
         assert_eq!(rows_before, rows(&through_data(run)));

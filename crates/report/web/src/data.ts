@@ -1,6 +1,9 @@
 // The report as the page receives it; `src/data.rs` of the crate writes the same fields.
 
-export interface Numbers { type: "f64" | "f32" | "i16" | "u16" | "u32"; factor: number; base64: string }
+import { bytesOf, unpacked } from "./packed.mjs";
+
+/// A list of numbers, packed as `src/numbers.rs` of the crate says; `values` is there once the report is read.
+export interface Numbers { type: "f64" | "f32" | "i16" | "u16" | "u32"; factor: number; stride: number; packed: string; values?: ArrayBuffer }
 export interface Component { name: string; values: Numbers }
 export interface History { group: string; name: string; unit: string; least_range: number; components: Component[] }
 export interface Balance {
@@ -53,12 +56,27 @@ export interface Control {
 
 const TYPES = { f64: Float64Array, f32: Float32Array, i16: Int16Array, u16: Uint16Array, u32: Uint32Array };
 
+/// Undoes the packing: bytes of the same place beside each other, of differences to the number a stride before.
+async function unpack(numbers: Numbers) {
+    const planes = new Uint8Array(await unpacked(bytesOf(numbers.packed)));
+    const size = TYPES[numbers.type].BYTES_PER_ELEMENT;
+    const count = planes.length / size;
+    const bytes = new Uint8Array(planes.length);
+    for (let i = 0; i < count; i++) {
+        const before = (i - numbers.stride) * size;
+        let carry = 0;
+        for (let byte = 0; byte < size; byte++) {
+            carry += planes[byte * count + i] + (before < 0 ? 0 : bytes[before + byte]);
+            bytes[i * size + byte] = carry; // the low eight bits
+            carry >>= 8;
+        }
+    }
+    numbers.values = bytes.buffer;
+}
+
 /// The numbers as they are stored, without their factor.
 export function stored<T extends Numbers["type"]>(numbers: Numbers & { type: T }): InstanceType<(typeof TYPES)[T]> {
-    const text = atob(numbers.base64);
-    const bytes = new Uint8Array(text.length);
-    for (let i = 0; i < bytes.length; i++) bytes[i] = text.charCodeAt(i);
-    return new TYPES[numbers.type](bytes.buffer) as InstanceType<(typeof TYPES)[T]>;
+    return new TYPES[numbers.type](numbers.values!.slice(0)) as InstanceType<(typeof TYPES)[T]>;
 }
 
 export const single = (numbers: Numbers) => stored(numbers as Numbers & { type: "f32" });
@@ -66,6 +84,12 @@ export const double = (numbers: Numbers) => stored(numbers as Numbers & { type: 
 export const quantised = (numbers: Numbers) => stored(numbers as Numbers & { type: "i16" });
 export const indices = (numbers: Numbers) => stored(numbers as Numbers & { type: "u16" | "u32" });
 
-export function readReport(): Report {
-    return JSON.parse(document.getElementById("data")!.textContent!) as Report;
+export async function readReport(): Promise<Report> {
+    const lists: Numbers[] = [];
+    const report = JSON.parse(document.getElementById("data")!.textContent!, (_, value) => {
+        if (typeof value?.packed === "string") lists.push(value);
+        return value;
+    }) as Report;
+    await Promise.all(lists.map(unpack));
+    return report;
 }

@@ -41,7 +41,7 @@ function header(report: Report) {
 }
 
 /// Keys for the whole page, but not where they mean something else.
-function keyboard(clock: Clock, viewer: Viewer) {
+function keyboard(report: Report, clock: Clock, viewer: Viewer) {
     document.addEventListener("keydown", (event) => {
         if (event.ctrlKey || event.metaKey || event.altKey) return;
         const target = event.target as HTMLElement;
@@ -73,26 +73,30 @@ function keyboard(clock: Clock, viewer: Viewer) {
     });
 }
 
-const report = readReport();
-header(report);
-const motion = new Motion(report);
-const clock = new Clock(motion);
-const viewer = new Viewer(report, motion, clock);
-listenToPrinter(viewer, panels(report, clock, viewer));
-keyboard(clock, viewer);
-offerViews((direction) => viewer.lookFrom(direction));
-offerPicture(viewer);
-// For the test of the page.
-const page: Record<string, unknown> = { clock, viewer };
-Object.assign(window, { reportPage: page });
-if (report.live) {
-    LiveRun.begin(report, report.live, clock).then((run) => {
-        viewer.lead(run);
-        page.live = run;
-    }, (error) => {
-        const warning = document.createElement("p");
-        warning.className = "warning";
-        warning.textContent = `The live run does not start in this browser: ${error.message ?? error}`;
-        document.getElementById("warnings")!.append(warning);
-    });
+async function begin() {
+    const report = await readReport();
+    header(report);
+    const motion = new Motion(report);
+    const clock = new Clock(motion);
+    const viewer = new Viewer(report, motion, clock);
+    listenToPrinter(viewer, panels(report, clock, viewer));
+    keyboard(report, clock, viewer);
+    offerViews((direction) => viewer.lookFrom(direction));
+    offerPicture(viewer);
+    // For the test of the page.
+    const page: Record<string, unknown> = { clock, viewer };
+    Object.assign(window, { reportPage: page });
+    if (report.live) {
+        LiveRun.begin(report, report.live, clock).then((run) => {
+            viewer.lead(run);
+            page.live = run;
+        }, (error) => {
+            const warning = document.createElement("p");
+            warning.className = "warning";
+            warning.textContent = `The live run does not start in this browser: ${error.message ?? error}`;
+            document.getElementById("warnings")!.append(warning);
+        });
+    }
 }
+
+begin();

@@ -29,6 +29,7 @@ export async function open(t, browser, kind, options = {}) {
         assert.deepEqual(said.filter((text) => !text.includes("GPU stall due to ReadPixels")), []);
     });
     await page.goto(url);
+    await page.waitForFunction(() => window.reportPage);
     await frame(page);
     return page;
 }

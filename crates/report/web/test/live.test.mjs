@@ -5,7 +5,8 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { bytesOf, Program } from "../src/live/program.mjs";
+import { Program } from "../src/live/program.mjs";
+import { bytesOf } from "../src/packed.mjs";
 
 const SCENES = ["bent_rod", "thrown_plate", "double_pendulum", "chain"];
 

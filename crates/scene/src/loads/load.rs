@@ -76,7 +76,7 @@ pub struct Moment {
     /// Factor on the amplitude over time; default constant.
     #[serde(default)]
     pub history: History,
-    /// Radius > 0, length, of the ball whose nodes take the moment; `None` leaves it to what is at the point.
+    /// Radius > 0, length, of the ball whose nodes take the moment; without it, what is at the point takes it.
     pub radius: Option<f64>,
 }
 

@@ -80,8 +80,8 @@ fn walk(schema: &Value, path: &str, silent: &mut Vec<String>) {
         Value::Object(object) => {
             if let Some(Value::Object(properties)) = object.get("properties") {
                 for (key, property) in properties {
-                    // Kinds and effects are told by their names.
-                    let told = key == "kind" || path.ends_with("Effects") || property.get("description").is_some();
+                    // Kinds are told by their names.
+                    let told = key == "kind" || property.get("description").is_some();
                     if !told {
                         silent.push(format!("{path}/{key}"));
                     }

@@ -20,11 +20,6 @@ pub enum DescriptionError {
         "the joint \"{joint}\" has a law that only its program knows; only its springs, dampers, stops, friction and motors can be written as data"
     )]
     Law { joint: String },
-    /// Modes about a bent rest.
-    #[error(
-        "the modes of a body are about a bent rest, whose forces cannot be written as data; take modes about the undeformed body"
-    )]
-    Reference,
     /// A speed that a program adds to a drive.
     #[error("the drive has a speed that its program adds; only its own history can be written as data")]
     AddedSpeed,

@@ -1,4 +1,3 @@
-export function bytesOf(base64: string): Uint8Array<ArrayBuffer>;
 export type Three = [number, number, number];
 export interface LiveBody {
     origin: Float64Array; attitude: Float64Array; omega: Float64Array;

@@ -3,16 +3,7 @@
 /// Numbers of a body before the coordinates of its shapes: `live::BODY_NUMBERS`.
 const BODY_NUMBERS = 27;
 
-export function bytesOf(base64) {
-    const text = atob(base64);
-    const bytes = new Uint8Array(text.length);
-    for (let i = 0; i < bytes.length; i++) bytes[i] = text.charCodeAt(i);
-    return bytes;
-}
-
-async function unpacked(bytes) {
-    return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
-}
+import { unpacked } from "../packed.mjs";
 
 export class Program {
     /// Begins a run; both are bytes packed by gzip. Systems are seen at least every `frame` of their time.

@@ -3,7 +3,8 @@
 import type { Clock } from "../clock";
 import type { LiveData, Report } from "../data";
 import type { Placed } from "../motion";
-import { bytesOf, Program, type Three } from "./program.mjs";
+import { bytesOf } from "../packed.mjs";
+import { Program, type Three } from "./program.mjs";
 
 /// A frame may compute so long; what takes longer lets the film run slower.
 const MOST_MILLISECONDS = 12;
