@@ -377,6 +377,20 @@ test("a plot is saved as a table and as a picture", async (t) => {
     assert.deepEqual([row[0], row[1], row[4]], [0.5, 200, 100]);
     const { bytes } = await saved(page, page.locator("#panel-0 .plot-tools button", { hasText: "PNG" }).first());
     assert.equal(bytes.toString("latin1", 1, 4), "PNG");
+    // Of a long run the table says that it has not got every row.
+    const long = await open(t, browser, "small");
+    const { bytes: thinned } = await saved(long, long.locator("#panel-0 .plot-tools button", { hasText: "CSV" }).first());
+    assert.match(thinned.toString().split("\n")[0], /^# least and greatest values of ranges of rows/);
+});
+
+test("the trust card stands above the body, its worst line first", async (t) => {
+    const page = await open(t, browser, "small");
+    const lines = await page.locator("#trust li").evaluateAll((all) => all.map((line) => [line.className, line.textContent]));
+    assert.deepEqual(lines.map(([kind]) => kind), ["noted", "unknown", "small", "small"]);
+    assert.match(lines[0][1], /^modes.*3.10 %.*to do: static shapes$/);
+    assert.match(lines[1][1], /^model.*not known.*flexframe check plate.h5$/);
+    const below = await page.evaluate(() => ["trust", "viewer"].map((id) => document.getElementById(id).getBoundingClientRect().top));
+    assert.ok(below[0] < below[1]);
 });
 
 test("another run is there as a ghost, with its courses", async (t) => {

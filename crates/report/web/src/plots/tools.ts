@@ -27,6 +27,9 @@ const FEWEST = 16;
 /// Amplitudes are shown down to such a part of the greatest.
 const DEPTH = 1e-5;
 const DIGITS = 8; // of single precision
+/// First line of a table that has not got every row.
+const THINNED =
+    "# least and greatest values of ranges of rows, at the first and the last time of each range; every row: flexframe export --csv";
 
 export function plotTools(shown: Shown, settings: ToolSettings): HTMLElement {
     const tools = document.createElement("span");
@@ -51,7 +54,7 @@ export function plotTools(shown: Shown, settings: ToolSettings): HTMLElement {
         toggle.setAttribute("aria-expanded", String(seen !== null));
     });
     toggle.setAttribute("aria-expanded", "false");
-    button("CSV", "save the rows that are shown as a table", () => saveText(fileName(shown.title, "csv"), "text/csv", table(shown, settings)));
+    button("CSV", settings.thinned ? "save the least and greatest values that are shown as a table" : "save the rows that are shown as a table", () => saveText(fileName(shown.title, "csv"), "text/csv", table(shown, settings)));
     button("PNG", "save the plot as a picture", () => savePng(fileName(shown.title, "png"), picture(shown)));
     return tools;
 }
@@ -63,11 +66,13 @@ function range({ chart, times }: Shown): [number, number] {
     return [rows[0] ?? 0, rows[rows.length - 1] ?? -1];
 }
 
-function table(shown: Shown, { time }: ToolSettings): string {
+/// The rows that are shown. Of a long run each range of rows has two lines, its least and its greatest value: that is said.
+function table(shown: Shown, { time, thinned }: ToolSettings): string {
     const [first, last] = range(shown);
     const quoted = (text: string) => `"${text.replaceAll('"', '""')}"`;
     const heads = [`time, ${time}`, ...shown.names.map((name) => withUnit([shown.title, name].filter(Boolean).join(" ") + ",", shown.unit))];
     const lines = [heads.map((head) => quoted(head.replace(/,$/, ""))).join(",")];
+    if (thinned) lines.unshift(THINNED);
     for (let i = first; i <= last; i++) {
         lines.push([shown.times[i], ...shown.values.map((values) => Number(values[i].toPrecision(DIGITS)))].join(","));
     }
