@@ -39,10 +39,12 @@ pages:
 references *args:
     .ci/references {{args}}
 
-# The documentation as a book with a search: target/book/index.html.
-book:
+# The documentation as a book with a search, target/book/index.html: after the links and names of its pages, its commands and scenes have been tried.
+book: pages
     test -x .tools/bin/mdbook || cargo install --quiet --locked --no-default-features --features search --root .tools mdbook@0.5.4
+    cargo test --quiet --package flexframe-cli --test program documentation
     .tools/bin/mdbook build docs
+    .ci/book target/book
 
 # Everything once with the oldest Rust that is promised (`rust-version` in Cargo.toml).
 msrv:

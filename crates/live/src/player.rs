@@ -138,8 +138,8 @@ impl Player {
         Ok(())
     }
 
-    /// Begins to pull at a place of a body: at `position_body` from its origin, where its flexible modes have the `shapes`, three
-    /// numbers each, towards `target_global`, by a spring and a damper.
+    /// Begins to pull at a place of a body: at `position_body` from its origin, where its [coordinates](Self::coordinates) have the `shapes`,
+    /// three numbers each, towards `target_global`, by a spring and a damper.
     ///
     /// # Errors
     /// [`LiveError`] for a place whose shapes are not those of the body.
@@ -153,14 +153,16 @@ impl Player {
     ) -> Result<(), LiveError> {
         let [motion, own] = self.run.place_of(body).ok_or(LiveError::Nothing { what: "such body" })?;
         let body_of_shapes = body_of_shapes(&self.run.motions[motion].run.bodies()[own]);
-        let flexible = body_of_shapes.flexible();
-        if shapes.len() != 3 * flexible {
-            return Err(LiveError::Shapes { found: shapes.len(), expected: 3 * flexible });
+        let (flexible, coordinates) = (body_of_shapes.flexible(), self.coordinates(body));
+        if shapes.len() != 3 * coordinates {
+            return Err(LiveError::Shapes { found: shapes.len(), expected: 3 * coordinates });
         }
         let numbers = position_body.iter().chain(shapes).chain(&spring_and_damper).chain(&target_global);
         if let Some(found) = numbers.copied().find(|number| !number.is_finite()) {
             return Err(LiveError::Value { what: "a number of a pull", found, expected: "a finite number" });
         }
+        let (shapes, rest) = shapes.split_at(3 * flexible);
+        let position_body = position_body + rest.first_chunk().map_or_else(Vector3::zeros, |rest| Vector3::from(*rest));
         let shapes = Mat::from_fn(3, flexible, |i, k| shapes[3 * k + i]);
         let point = PointShapes::new(body_of_shapes, &BodyPoint { position_body, shapes });
         self.let_go()?;
@@ -206,10 +208,15 @@ impl Player {
         &self.numbers
     }
 
-    /// Number of coordinates of a body's shapes: of its flexible modes, and of the shapes that follow large ones.
+    /// Number of coordinates of a body's shapes: of its flexible modes, of the shapes that follow large ones, and of the bent rest that its
+    /// modes are about, which is always 1.
     pub fn coordinates(&self, body: usize) -> usize {
-        let Some([motion, own]) = self.run.place_of(body) else { return 0 };
-        body_of_shapes(&self.run.motions[motion].run.bodies()[own]).flexible()
+        self.described(body).map_or(0, |of| body_of_shapes(of).flexible() + usize::from(is_about_rest(of)))
+    }
+
+    fn described(&self, body: usize) -> Option<&DescribedBody> {
+        let [motion, own] = self.run.place_of(body)?;
+        self.run.motions.get(motion)?.run.bodies().get(own)
     }
 
     /// Number of bodies.
@@ -303,14 +310,17 @@ impl Player {
 
     /// Adds the coordinates of a body's shapes to a list.
     fn add_coordinates(&self, body: usize, modal_displacement: &[f64], to: &mut Vec<f64>) {
-        let Some([motion, own]) = self.run.place_of(body) else { return };
-        match &self.run.motions[motion].run.bodies()[own].physics.large_deflection {
+        let Some(described) = self.described(body) else { return };
+        match &described.physics.large_deflection {
             Some(manifold) => {
                 let before = to.len();
                 to.resize(before + manifold.body().flexible(), 0.0);
                 manifold.coordinates(modal_displacement, &mut to[before..]);
             }
             None => to.extend(modal_displacement),
+        }
+        if is_about_rest(described) {
+            to.push(1.0);
         }
     }
 
@@ -320,6 +330,8 @@ impl Player {
         let seen = self.seen(*body)?;
         let mut coordinates = Vec::new();
         self.add_coordinates(*body, &seen.modal_displacement, &mut coordinates);
+        // The place on the bent rest has its displacement.
+        coordinates.truncate(body_of_shapes(self.described(*body)?).flexible());
         let arm = pull.point.position_body() + pull.point.deformation(&coordinates);
         let position = seen.origin_global + seen.attitude.to_global(&arm);
         let velocity = seen.points.last()?.velocity;
@@ -330,6 +342,11 @@ impl Player {
 /// The body whose shapes are drawn: with those that follow large modes.
 fn body_of_shapes(described: &DescribedBody) -> &ReducedBody {
     described.physics.large_deflection.as_ref().map_or(&described.body, Manifold::body)
+}
+
+/// True if the modes of a body are about a bent rest.
+fn is_about_rest(described: &DescribedBody) -> bool {
+    described.physics.reference.is_some()
 }
 
 /// Work and impulses of a body up to where its motion was made anew, so that its balances go on: what a change of its state gave it

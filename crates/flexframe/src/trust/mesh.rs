@@ -29,7 +29,7 @@ pub(super) fn line(model: &Model, results: &Results, body: usize, scene: &str) -
                 percent(error),
                 percent(0.5 * error)
             );
-            let known = "estimated from the jumps of stress between elements, at the row of the largest strain energy";
+            let known = "estimated from the jumps of stress between elements, at the largest strain energy";
             let next = match error >= SMALL {
                 true => "a smaller `mesh_size`, or more elements where the stress is large".to_owned(),
                 false => String::new(),

@@ -348,9 +348,9 @@ def run(
     rows are checked by the full nonlinear body, as many as cost no more than the body did: `check` of the results, or with
     `check=False` none."""
 
-def resume(file: _Path, *, overwrite: bool = False, trust_geometry: bool = False) -> Results:
+def resume(file: _Path, *, overwrite: bool = False, check: bool = True, trust_geometry: bool = False) -> Results:
     """Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit. Another results
-    file in its place is replaced only with `overwrite`. `trust_geometry` is that of Scene."""
+    file in its place is replaced only with `overwrite`. `check` is that of `run`, and `trust_geometry` that of Scene."""
 
 def _scene(text: str, path: _Path, body: str | None, trust_geometry: bool) -> Scene:
     """The scene that was pickled."""
