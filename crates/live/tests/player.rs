@@ -8,7 +8,7 @@ use dynamics::modal::{Constants, ReducedBody, RigidMotion};
 use dynamics::nalgebra::{Matrix3, Vector3};
 use dynamics::{
     Coordinate, DescribedBody, History, Initial, Joint, JointForce, Marker, Method, MotionState, Physics, PointForce,
-    PointShapes, Rows, RunDescription, RunOfBody, RunOfSystem, StepControl, SystemScheme,
+    PointShapes, ReferenceForces, Rows, RunDescription, RunOfBody, RunOfSystem, StepControl, SystemScheme,
 };
 use live::{BODY_NUMBERS, Change, LiveError, LiveMotion, LiveRun, Player};
 
@@ -202,6 +202,30 @@ fn a_pulled_body_keeps_its_balances_and_comes_to_the_hand() {
     player.let_go().unwrap();
     assert_eq!(player.numbers()[player.numbers().len() - 6..], [0.0; 6]);
     assert!(!player.is_recorded());
+}
+
+/// Closed form: the coordinate of a bent rest is 1, and a place that is pulled at has its displacement.
+#[test]
+fn a_body_about_a_bent_rest_has_the_rest_as_a_shape() {
+    let mut run = alone(StepControl::Fixed(0.01), 0);
+    run.body.physics.reference = Some(ReferenceForces {
+        force: vec![0.1, -0.2, 0.3],
+        stiffness: Mat::from_fn(3, 3, |i, j| 0.1 * (i + j) as f64),
+    });
+    let bytes = of_body(run.clone()).to_bytes().unwrap();
+    let mut player = Player::new(LiveRun::from_bytes(&bytes).unwrap(), 0.02).unwrap();
+    for row in run.begin().unwrap() {
+        let row = row.unwrap();
+        player.lead_to(row.time).unwrap();
+        assert_eq!(of(&player, 0)[27..], [&row.modal_displacement[..], &[1.0]].concat());
+    }
+    let rest = [0.0, 0.0, 0.7];
+    let shapes = [&[0.0; 9][..], &rest].concat();
+    player.pull(0, Vector3::zeros(), &shapes, [1.0, 0.0], Vector3::zeros()).unwrap();
+    let point = &player.numbers()[player.numbers().len() - 6..];
+    let from_origin = Vector3::new(point[0], point[1], point[2]) - Vector3::from_column_slice(&of(&player, 0)[..3]);
+    assert!((from_origin.norm() - 0.7).abs() < 1e-12, "{from_origin}");
+    assert!(player.pull(0, Vector3::zeros(), &shapes[..9], [1.0, 0.0], Vector3::zeros()).is_err());
 }
 
 /// Closed form: a load of twice the size is the same as two of it; a run whose end is passed goes on as one that ends later.

@@ -8,7 +8,8 @@ use crate::numbers::Numbers;
 use crate::packed::packed;
 use crate::peak::{length, peak, von_mises};
 use crate::report::{
-    Body, Compared, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface, TrustLine,
+    Body, Compared, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface,
+    TrustLine,
 };
 use crate::thin::{Thinning, spread};
 
@@ -221,7 +222,10 @@ impl<'a> Data<'a> {
                 .collect(),
             scene: [&report.scene.file, &report.scene.text],
             warnings: &report.warnings,
-            trust: TrustData { lines: report.trust.lines.iter().map(trust_line).collect(), unseen: &report.trust.unseen },
+            trust: TrustData {
+                lines: report.trust.lines.iter().map(trust_line).collect(),
+                unseen: &report.trust.unseen,
+            },
             live: report.live.as_ref().map(LiveData::new),
             compared: report.compared.as_ref().map(ComparedData::new),
         }

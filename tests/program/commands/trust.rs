@@ -13,24 +13,27 @@ fn flexframe(arguments: &[&str]) -> Output {
     command.args(arguments).env("FLEXFRAME_CACHE", "").output().unwrap()
 }
 
-/// A rod that is held at one end and pushed across the other by a force, with its modes and how it is stepped.
-fn scene(folder: &Path, name: &str, [mesh, modes, force, time, effects]: [&str; 5]) -> PathBuf {
+/// A rod that is held at one end and pushed across the other by a force, with its modes and how it is stepped; a mesh has the place of
+/// its tip beside it.
+fn scene(folder: &Path, name: &str, ([mesh, at], [modes, force, time, effects]): ([&str; 2], [&str; 4])) -> PathBuf {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     fs::copy(root.join(mesh), folder.join(format!("{name}.msh"))).unwrap();
     let text = format!(
         "title = \"Rod\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n[body]\nmesh = \"{name}.msh\"\n\
          material = {{ young_modulus = 7e7, poisson_ratio = 0.0, density = 1000.0 }}\n\
          [modes]\n{modes}\ndamping_ratio = 0.7\n[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n\
-         [[loads]]\nkind = \"force\"\nat = [1.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = {force}\n\
+         [[loads]]\nkind = \"force\"\nat = {at}\ndirection = [0.0, 0.0, 1.0]\namplitude = {force}\n\
          history = {{ kind = \"ramp\", duration = 3.0 }}\n[effects]\n{effects}\nrefuse = false\n\
-         [output]\ninterval = 1.0\npoints = {{ tip = [1.0, 0.0, 0.0] }}\n[time]\nend = 5.0\n{time}\n"
+         [output]\ninterval = 1.0\npoints = {{ tip = {at} }}\n[time]\nend = 5.0\n{time}\n"
     );
     let path = folder.join(format!("{name}.toml"));
     fs::write(&path, text).unwrap();
     path
 }
 
-const COLUMN: &str = "crates/verification/meshes/column.msh";
+const COLUMN: [&str; 2] = ["crates/verification/meshes/column.msh", "[1.0, 0.0, 0.0]"];
+/// An arc with an element across its wall.
+const COARSE: [&str; 2] = ["crates/verification/meshes/quarter_arc.msh", "[0.0, 0.8, 0.8]"];
 const LINEAR: &str = "large_deflection = false";
 const MANY: &str = "flexible = 6\nstatic_correction = true";
 const FINE: &str = "tolerance = 1e-6";
@@ -50,16 +53,19 @@ fn lines(report: &Value) -> &[Value] {
 fn each_fault_of_a_model_stands_first_on_its_card() {
     let folder = tempfile::tempdir().unwrap();
     for (place, next, described) in [
-        ("mesh", "mesh_size", [COLUMN, MANY, "1e-3", FINE, LINEAR]),
-        ("modes", "static shapes", [COLUMN, "flexible = 2\nstatic_correction = false", "1e-3", FINE, LINEAR]),
-        ("steps", "tolerance", [COLUMN, MANY, "1e-3", "tolerance = 0.2", LINEAR]),
-        ("model", "large modes", [COLUMN, MANY, "1.4", FINE, LINEAR]),
+        ("mesh", "mesh_size", (COARSE, [MANY, "1e-3", FINE, LINEAR])),
+        ("modes", "static shapes", (COLUMN, ["flexible = 2\nstatic_correction = false", "1e-3", FINE, LINEAR])),
+        ("steps", "tolerance", (COLUMN, [MANY, "1e-3", "tolerance = 0.2", LINEAR])),
+        ("model", "large modes", (COLUMN, [MANY, "1.4", FINE, LINEAR])),
     ] {
         let scene = scene(folder.path(), place, described);
         let report = run(folder.path(), &scene, &[]);
         let lines = lines(&report);
         let error = |line: &Value| line["error"].as_f64().unwrap();
-        println!("{place}: {:?}", lines.iter().map(|line| (line["place"].as_str().unwrap(), error(line))).collect::<Vec<_>>());
+        println!(
+            "{place}: {:?}",
+            lines.iter().map(|line| (line["place"].as_str().unwrap(), error(line))).collect::<Vec<_>>()
+        );
         assert_eq!(lines.len(), 4);
         assert!(lines.windows(2).all(|pair| error(&pair[0]) >= error(&pair[1])), "{lines:?}");
         assert_eq!(lines[0]["place"], place, "{lines:?}");
@@ -72,7 +78,7 @@ fn each_fault_of_a_model_stands_first_on_its_card() {
 #[test]
 fn the_card_is_the_same_wherever_it_is_shown() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = scene(folder.path(), "rod", [COLUMN, "flexible = 2", "1e-3", FINE, LINEAR]);
+    let scene = scene(folder.path(), "rod", (COLUMN, ["flexible = 2", "1e-3", FINE, LINEAR]));
     let report = run(folder.path(), &scene, &[]);
     let file = folder.path().join("rod.h5");
     let of_file = Results::open(&file, &COLUMNS).unwrap().metadata.trust;
@@ -96,7 +102,10 @@ fn the_card_is_the_same_wherever_it_is_shown() {
     let mut after = said.lines().skip_while(|line| !line.starts_with("  trust "));
     for line in lines(&report) {
         let told = after.next().unwrap();
-        assert!(told.contains(&format!(" {:<6} {}", line["place"].as_str().unwrap(), line["meaning"].as_str().unwrap())), "{told}");
+        assert!(
+            told.contains(&format!(" {:<6} {}", line["place"].as_str().unwrap(), line["meaning"].as_str().unwrap())),
+            "{told}"
+        );
     }
     assert!(after.next().unwrap().contains("Not seen: "));
     // The check of all rows finds no less.
@@ -113,7 +122,7 @@ fn the_card_is_the_same_wherever_it_is_shown() {
 #[test]
 fn what_is_not_known_is_said_with_the_command_that_tells() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = scene(folder.path(), "rod", [COLUMN, MANY, "1e-3", FINE, LINEAR]);
+    let scene = scene(folder.path(), "rod", (COLUMN, [MANY, "1e-3", FINE, LINEAR]));
     let report = run(folder.path(), &scene, &["--no-check"]);
     for place in ["modes", "model"] {
         let line = lines(&report).iter().find(|line| line["place"] == place).unwrap();
@@ -135,7 +144,7 @@ fn what_is_not_known_is_said_with_the_command_that_tells() {
 #[test]
 fn a_rigid_body_is_taken_as_one_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = scene(folder.path(), "rod", [COLUMN, "flexible = 0", "1e-3", FINE, "coriolis = false"]);
+    let scene = scene(folder.path(), "rod", (COLUMN, ["flexible = 0", "1e-3", FINE, "coriolis = false"]));
     let text = fs::read_to_string(&scene).unwrap().replace("[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n", "");
     fs::write(&scene, text).unwrap();
     let report = run(folder.path(), &scene, &[]);
@@ -150,6 +159,7 @@ fn of_several_bodies_the_worst_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     let report = run(folder.path(), &root.join("tests/two.toml"), &["--set", "time.end=0.002"]);
-    let names: Vec<&str> = report["bodies"].as_array().unwrap().iter().map(|body| body["name"].as_str().unwrap()).collect();
+    let names: Vec<&str> =
+        report["bodies"].as_array().unwrap().iter().map(|body| body["name"].as_str().unwrap()).collect();
     assert!(lines(&report).iter().all(|line| names.contains(&line["body"].as_str().unwrap())), "{report}");
 }

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use dynamics::{
     DescribedBody, DescriptionError, Drive, DrivenMotion, DrivenSpeed, Expression, History, Initial, LoadFn, Method,
-    Observation, Physics, ReferenceForces, Rows, RunDescription, RunOfBody, ScaledLoad, SharedLoad, Signal, StepControl, Table,
+    Observation, Physics, ReferenceForces, Rows, RunDescription, RunOfBody, ScaledLoad, SharedLoad, Signal,
+    StepControl, Table,
 };
 use faer::Mat;
 use modal::RigidMotion;

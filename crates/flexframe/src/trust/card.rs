@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-pub use results::TrustLine;
 use results::Metadata;
+pub use results::TrustLine;
 use serde::Serialize;
 
 /// An error below this calls for nothing.
@@ -177,7 +177,10 @@ mod tests {
         let told: Vec<_> = worst.iter().map(|line| (line.place.as_str(), line.body.as_deref().unwrap())).collect();
         assert_eq!(told, [("modes", "a"), ("mesh", "b"), ("model", "a"), ("steps", "a")]);
         let text = TrustCard::new(worst).to_string();
-        assert!(text.contains("model  body a: not known: it was not asked for; to do: `flexframe check run.h5`"), "{text}");
+        assert!(
+            text.contains("model  body a: not known: it was not asked for; to do: `flexframe check run.h5`"),
+            "{text}"
+        );
         assert!(text.contains("Not seen: "), "{text}");
     }
 

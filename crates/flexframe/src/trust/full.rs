@@ -15,16 +15,15 @@ pub(super) fn lines(is_rigid: bool, check: Result<Option<&BodyCheck>, &str>, fil
             Place::Model.not_known(why, next.to_owned()),
         ];
     }
-    let not_known = |why: &str, next: &str| [Place::Modes, Place::Model].map(|place| place.not_known(why, next.to_owned()));
+    let not_known =
+        |why: &str, next: &str| [Place::Modes, Place::Model].map(|place| place.not_known(why, next.to_owned()));
     let command = format!("`flexframe check {file}`");
     match check {
         Err(why) => not_known(why, &command),
         Ok(None) => not_known("the check does not have this body", &command),
         Ok(Some(BodyCheck { rows, not_checked, .. })) => match (rows.is_empty(), not_checked) {
             (false, _) => known(rows),
-            (true, Some(why)) if why != DEAR => {
-                not_known(why, "compare with more modes, and with a mesh of its own")
-            }
+            (true, Some(why)) if why != DEAR => not_known(why, "compare with more modes, and with a mesh of its own"),
             (true, _) => not_known("the full body costs more than the reduction did", &command),
         },
     }

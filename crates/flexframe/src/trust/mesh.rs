@@ -44,7 +44,8 @@ pub(super) fn line(model: &Model, results: &Results, body: usize, scene: &str) -
 fn stiffness_error(meshed: &Meshed, results: &Results, body: usize) -> Option<f64> {
     let of = results.bodies().nth(body)?;
     let energies = of.numbers("energy/strain")?;
-    let (row, _) = energies.iter().enumerate().filter(|(_, energy)| **energy > 0.0).max_by(|a, b| a.1.total_cmp(b.1))?;
+    let (row, _) =
+        energies.iter().enumerate().filter(|(_, energy)| **energy > 0.0).max_by(|a, b| a.1.total_cmp(b.1))?;
     let q = of.table("modal/displacement")?.row(row)?;
     let displacement = &meshed.modes.shapes * Col::from_iter(q.iter().copied());
     let elements = meshed.elements.as_ref()?;

@@ -16,9 +16,7 @@ pub(super) fn line(scene: &Scene, report: &BodyRunReport, scene_file: &str) -> L
         }
         StepControl::Fixed(_) => None,
     };
-    // The equations of the paper do not keep the energy in any steps; modes that follow themselves exactly need no sum.
-    let is_telling = scene.time.method.abilities.keeps_energy && !report.right_unsummed;
-    let open = is_telling.then_some(report.balances.energy);
+    let open = report.energy_tells.then_some(report.balances.energy);
     let shorter = match scene.time.control {
         StepControl::Tolerance(_) => "a smaller `tolerance`",
         StepControl::Fixed(_) => "a shorter `step`, or `tolerance` in its place",

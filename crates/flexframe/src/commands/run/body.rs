@@ -117,7 +117,7 @@ impl<'a> FollowedBody<'a> {
         last: &BodyRow,
         (stats, exchanged, scheme): (&Stats, f64, &str),
     ) -> (BodyRunReport, Vec<String>) {
-        let Watched { balances, right_unsummed, step_error, left_out, turned, warnings } =
+        let Watched { balances, right_unsummed, energy_tells, step_error, left_out, turned, warnings } =
             self.watch.finish(exchanged, stats.longest);
         let RunBody { scene, model } = self.of;
         let report = BodyRunReport {
@@ -137,6 +137,7 @@ impl<'a> FollowedBody<'a> {
             final_energy: last.energy(),
             balances,
             right_unsummed,
+            energy_tells,
             step_error,
             effects: effects::computed(scene, model),
             large_modes: model.large_modes().iter().map(|k| k + 1).collect(),

@@ -37,6 +37,8 @@ pub struct Watched {
     pub balances: Balances,
     /// See `right_unsummed` of the report of a body.
     pub right_unsummed: bool,
+    /// See `energy_tells` of the report of a body.
+    pub energy_tells: bool,
     /// See `step_error` of the report of a body.
     pub step_error: Option<f64>,
     /// See `left_out` of the report of a body.
@@ -125,7 +127,8 @@ impl<'a> Watch<'a> {
         let Self { scene, model, .. } = *self;
         self.monitor.exchanged(exchanged);
         let balances = self.monitor.balances();
-        let right_unsummed = balances.energy > OPEN && self.is_right_unsummed(longest_step);
+        let is_right_unsummed = self.is_right_unsummed(longest_step);
+        let right_unsummed = balances.energy > OPEN && is_right_unsummed;
         let open =
             (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
         let moments = right_unsummed.then(|| pointed_moments(scene)).flatten();
@@ -133,6 +136,8 @@ impl<'a> Watch<'a> {
         Watched {
             balances,
             right_unsummed,
+            // The equations of the paper do not keep the energy in any steps.
+            energy_tells: scene.time.method.abilities.keeps_energy && !is_right_unsummed,
             step_error: self.step.as_ref().map(StepEstimate::largest),
             left_out: self.review.left_out(),
             turned: self.turn.angle(),
