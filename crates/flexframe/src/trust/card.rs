@@ -124,13 +124,16 @@ fn rounded(error: f64) -> f64 {
     format!("{error:.*e}", (DIGITS - 1) as usize).parse().unwrap_or(error)
 }
 
-/// "0.21 %"; with a power of ten where it is small.
+/// "0.21 %", "0.003 %"; with a power of ten where that has too many zeros.
 pub(super) fn percent(part: f64) -> String {
     let percent = 100.0 * part;
-    if percent != 0.0 && percent < 0.01 {
-        return format!("{percent:.0e} %");
+    match percent {
+        0.0 => "0 %".to_owned(),
+        10.0.. => format!("{percent:.0} %"),
+        0.01.. => format!("{percent:.2} %"),
+        1e-5.. => format!("{percent:.*} %", -percent.log10().floor() as usize),
+        _ => format!("{percent:.0e} %"),
     }
-    if percent < 10.0 { format!("{percent:.2} %") } else { format!("{percent:.0} %") }
 }
 
 impl fmt::Display for TrustCard {
@@ -191,6 +194,7 @@ mod tests {
         assert_eq!(error(0.012_345_6), Some(0.0123));
         assert_eq!(error(0.0), Some(0.0));
         assert_eq!([error(f64::INFINITY), error(f64::NAN)], [None, None]);
-        assert_eq!([3e-7, 0.002_13, 0.25].map(percent), ["3e-5 %", "0.21 %", "25 %"]);
+        let told = [0.0, 3e-9, 3.4e-7, 2e-5, 0.002_13, 0.25].map(percent);
+        assert_eq!(told, ["0 %", "3e-7 %", "0.00003 %", "0.002 %", "0.21 %", "25 %"]);
     }
 }
