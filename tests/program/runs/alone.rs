@@ -170,7 +170,12 @@ fn shapes_that_are_not_in_the_results_file_come_from_the_body_file_that_it_names
     run(&scene.clone().into(), &out, &RunSettings::default(), |_| ()).unwrap();
     what_comes_after(desk.path(), "out/of_body.h5");
     let with_shapes = fs::metadata(out.join("of_body.h5")).unwrap().len();
-    let page = |name: &str| fs::read(desk.path().join(name)).unwrap();
+    // Rows alone have no trust card.
+    let page = |name: &str| {
+        let page = fs::read_to_string(desk.path().join(name)).unwrap();
+        let (before, rest) = page.split_once("\"trust\":{").unwrap();
+        [before, rest.split_once("\"live\":").unwrap().1].concat()
+    };
     let expected = page("page.html");
 
     let settings = RunSettings { overwrite: true, rows_alone: true, ..RunSettings::default() };
