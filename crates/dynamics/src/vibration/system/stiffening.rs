@@ -3,7 +3,6 @@
 use faer::{Mat, c64};
 
 use crate::system::radau::SystemMotion;
-use crate::vibration::system::configuration::CommonSpin;
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::linearization::Linearization;
 use crate::vibration::system::mode::SystemMode;
@@ -32,22 +31,10 @@ pub struct BodyStiffening {
 pub struct StiffenedMode {
     /// In the present motion.
     pub moving: f64,
-    /// The same if the forces of joints and elements stiffened no body.
-    pub without_joint_forces: f64,
-    /// At rest in this place, if they stiffened no body.
-    pub at_rest: f64,
-}
-
-impl StiffenedMode {
-    /// Change of the frequency by the forces of joints and elements.
-    pub fn by_joint_forces(&self) -> f64 {
-        self.moving - self.without_joint_forces
-    }
-
-    /// Change by the motion, the forces of joints and elements apart.
-    pub fn by_motion(&self) -> f64 {
-        self.without_joint_forces - self.at_rest
-    }
+    /// The same if the stress of the forces of joints and elements stiffened no body.
+    pub without_stress: f64,
+    /// At rest in this place, if no forces acted.
+    pub unloaded: f64,
 }
 
 impl SystemMotion {
@@ -57,16 +44,16 @@ impl SystemMotion {
     /// # Errors
     /// [`SteadyError`].
     pub fn stiffening(&self) -> Result<Vec<BodyStiffening>, SteadyError> {
-        let (moving, still) = (self.moving_state()?, self.steady_state(&CommonSpin::REST)?);
+        let moving = self.moving_state()?;
         let modes = moving.linear.vibrations()?.modes;
-        let [without, at_rest] = [&moving, &still].map(SteadyState::without_joint_stiffening);
-        let [without, at_rest] = [without.vibrations()?.modes, at_rest.vibrations()?.modes];
+        let [without, unloaded] = [moving.without_joint_stress(), moving.unloaded()];
+        let [without, unloaded] = [without.vibrations()?.modes, unloaded.vibrations()?.modes];
         let of_body = |(body, borne): (usize, &crate::vibration::system::tie::Borne)| {
             let bends = |mode: &&SystemMode| mode.circular_frequency() > 0.0 && mode.elastic[body] >= BENDS;
             let compared = |mode: &SystemMode| StiffenedMode {
                 moving: mode.circular_frequency(),
-                without_joint_forces: like(&moving.linear, mode, &without),
-                at_rest: like(&moving.linear, mode, &at_rest),
+                without_stress: like(&moving.linear, mode, &without),
+                unloaded: like(&moving.linear, mode, &unloaded),
             };
             BodyStiffening {
                 force: borne.force,
@@ -80,8 +67,18 @@ impl SystemMotion {
 }
 
 impl SteadyState {
-    /// The linearised equations if the forces of joints and elements stiffened no body.
-    fn without_joint_stiffening(&self) -> Linearization {
+    /// The linearised equations at rest if no forces acted.
+    fn unloaded(&self) -> Linearization {
+        let mut linear = self.linear.clone();
+        let mut stiffness = self.terms.unloaded.clone();
+        linear.strain.iter().enumerate().for_each(|(k, strain)| stiffness[(k, k)] += strain);
+        linear.stiffness = linear.basis.transpose() * (stiffness * &linear.basis);
+        linear.damping.fill(0.0);
+        linear
+    }
+
+    /// The linearised equations if the stress of the forces of joints and elements stiffened no body.
+    fn without_joint_stress(&self) -> Linearization {
         let mut linear = self.linear.clone();
         for (borne, first) in self.terms.borne.iter().zip(&linear.first) {
             let modes = borne.stiffening.nrows();

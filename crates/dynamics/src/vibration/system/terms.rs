@@ -23,6 +23,8 @@ pub(crate) struct Terms {
     pub damping: Mat<f64>,
     /// K without Λ.
     pub stiffness: Mat<f64>,
+    /// K without Λ if no forces acted: springs, bushings and their like alone.
+    pub unloaded: Mat<f64>,
     /// What the forces of joints and elements do to each body; K has their stiffening.
     pub borne: Vec<Borne>,
     /// G, and g.
@@ -72,6 +74,7 @@ impl Terms {
         let mut terms = Self {
             damping,
             stiffness,
+            unloaded: Mat::zeros(n, n),
             borne: system.first.windows(2).map(|range| Borne::nothing(range[1] - range[0] - 6)).collect(),
             rows,
             residuals: constraints.residuals.clone(),
@@ -94,6 +97,7 @@ impl Terms {
         terms.factor(system, &constraints, &bodies)?;
         (terms.masses, terms.convections) = bodies.into_iter().map(|terms| (terms.mass, terms.convection)).unzip();
         sources.iter().for_each(|tie| terms.add(system, tie));
+        sources.iter().for_each(|tie| tie.add_law(&mut terms.unloaded));
         terms.find_multipliers(system);
         let held: Vec<Tie> = row_ties(system, at, &terms.multipliers);
         let forces = terms.forces.clone();

@@ -1,6 +1,6 @@
 //! Joints and force elements in the linearised equations: Eqs. (L3) to (L5) of `docs/method/systems.md`.
 
-use faer::Mat;
+use faer::{Mat, Scale};
 use nalgebra::Vector3;
 
 use crate::conservative::ConservativeBody;
@@ -249,6 +249,15 @@ impl Tie {
                 add_block(sums.by_place, [end.first, other.first], &by_place);
                 add_block(sums.by_velocity, [end.first, other.first], &(by_velocity * &other.tangent.motion));
             }
+        }
+    }
+
+    /// Adds the stiffness of its own law, without what its forces do where bodies turn and bend.
+    pub fn add_law(&self, stiffness: &mut Mat<f64>) {
+        for ((k, end), (l, other)) in self.on_bodies().flat_map(|one| self.on_bodies().map(move |other| (one, other))) {
+            let by_motion = self.by_motion.get(6 * k..6 * k + 6, 6 * l..6 * l + 6);
+            let block = end.tangent.motion.transpose() * by_motion * &other.tangent.motion * Scale(-1.0);
+            add_block(stiffness, [end.first, other.first], &block);
         }
     }
 

@@ -14,9 +14,6 @@ use crate::report::quantity;
 use crate::rows::units::UnitLabels;
 use crate::surface::Surface;
 
-/// A change of a frequency that a user would see.
-const SEEN: f64 = 0.01;
-
 /// A flexible body of a system, in the motion that it starts with.
 #[derive(Debug, Clone, Serialize)]
 pub struct StiffenedBody {
@@ -42,19 +39,19 @@ pub struct StiffenedFrequency {
     /// In the motion of the start.
     #[serde(serialize_with = "json::number")]
     pub frequency: f64,
-    /// The same if the forces of joints stiffened no body.
+    /// The same if the stress of the forces of joints stiffened no body.
     #[serde(serialize_with = "json::number")]
-    pub without_joint_forces: f64,
-    /// At rest in this place, if they stiffened no body.
+    pub without_stress: f64,
+    /// At rest in this place, if no forces acted.
     #[serde(serialize_with = "json::number")]
-    pub at_rest: f64,
+    pub unloaded: f64,
 }
 
 impl From<&StiffenedMode> for StiffenedFrequency {
     fn from(mode: &StiffenedMode) -> Self {
-        let [frequency, without_joint_forces, at_rest] =
-            [mode.moving, mode.without_joint_forces, mode.at_rest].map(|omega| omega / TAU);
-        Self { frequency, without_joint_forces, at_rest }
+        let [frequency, without_stress, unloaded] =
+            [mode.moving, mode.without_stress, mode.unloaded].map(|omega| omega / TAU);
+        Self { frequency, without_stress, unloaded }
     }
 }
 
@@ -104,46 +101,27 @@ impl StiffenedBody {
         }
         let Some(lowest) = self.modes.first() else { return borne };
         let relative = |mode: &StiffenedFrequency| {
-            [mode.frequency / mode.without_joint_forces - 1.0, mode.without_joint_forces / mode.at_rest - 1.0]
+            [mode.frequency / mode.unloaded - 1.0, mode.frequency / mode.without_stress - 1.0]
         };
         let largest = |k: usize| {
             self.modes.iter().map(|mode| relative(mode)[k]).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
         };
-        let by_motion = if largest(1).abs() < tolerance {
-            String::new()
+        let [change, by_stress] = [0, 1].map(largest);
+        if change.abs() < tolerance {
+            return format!("{borne}; that changes its frequencies by {} % at most", short(100.0 * change.abs()));
+        }
+        let [of_lowest, _] = relative(lowest);
+        let keep = if by_stress.abs() < tolerance {
+            "`geometric_stiffening = false` in its [effects] would do there".to_owned()
         } else {
-            format!(
-                "; the motion alone takes the lowest from {} {unit} at rest to {} {unit}",
-                short(lowest.at_rest),
-                short(lowest.without_joint_forces)
-            )
+            format!("without `geometric_stiffening` a frequency would be off by {} %", short(100.0 * by_stress.abs()))
         };
-        let by_joints = match largest(0) {
-            0.0 => "; that stiffens nothing".to_owned(),
-            change if change.abs() < tolerance => format!(
-                "; these forces change its frequencies by {} % at most, and forces {} times as large by 1 %: up to there \
-                 `geometric_stiffening = false` would do in its [effects]",
-                short(100.0 * change.abs()),
-                short(SEEN / change.abs()),
-            ),
-            change => {
-                let [by_joints, _] = relative(lowest);
-                let sign = if by_joints < 0.0 { "soften" } else { "stiffen" };
-                let most = if (change - by_joints).abs() > 0.1 * change.abs() {
-                    format!(", and one of its lowest three by {:+.2} %", 100.0 * change)
-                } else {
-                    String::new()
-                };
-                format!(
-                    "; these forces {sign} it: its lowest frequency goes from {} to {} {unit} ({:+.2} %){most}. Keep \
-                     `geometric_stiffening` on",
-                    short(lowest.without_joint_forces),
-                    short(lowest.frequency),
-                    100.0 * by_joints
-                )
-            }
-        };
-        format!("{borne}{by_motion}{by_joints}")
+        format!(
+            "{borne}; forces and motion take its lowest frequency from {} to {} {unit} ({:+.2} %); {keep}",
+            short(lowest.unloaded),
+            short(lowest.frequency),
+            100.0 * of_lowest
+        )
     }
 }
 
