@@ -175,7 +175,11 @@ enum Command {
         /// Compare the shapes with those of another body in the same place (MAC): a scene, a body file, or another mesh for this scene.
         #[arg(long, value_name = "OTHER")]
         mac: Option<PathBuf>,
-        /// Folder for a picture of the mode shapes (SVG, PDF and PNG) [default: no picture].
+        /// Of bodies in joints: their vibrations where a run of the scene has them at this time, at rest there [default: the start].
+        #[arg(long, value_name = "TIME", value_parser = at_time, allow_hyphen_values = true)]
+        time: Option<f64>,
+        /// Folder for a picture of the mode shapes (SVG, PDF and PNG), and of bodies in joints a file for ParaView (VTKHDF)
+        /// [default: no picture].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
         #[command(flatten)]
@@ -662,7 +666,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             drop(bar);
             output::print(&report, json)
         }
-        Command::Modes { scene: SceneArgs { scene, json }, flexible, about, mac, output, files, solver } => {
+        Command::Modes { scene: SceneArgs { scene, json }, flexible, about, mac, time, output, files, solver } => {
             let about = about.map(|Place(about)| about);
             output::require_file("--output", output.as_deref())?;
             let mut system = read_system(scene)?;
@@ -674,6 +678,9 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                     help: "name one: --body NAME".to_owned(),
                 }
                 .into());
+            }
+            if let Some(time) = time {
+                check_time(&system, time)?;
             }
             if let Some(count) = flexible {
                 system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
@@ -701,15 +708,20 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             if system.has_connections() {
                 let models = system_modes::build(&system, &builder, |p| bar.build(p))
                     .map_err(|error| of_option(error.into(), flexible))?;
-                let systems = system_modes::system_modes(&system, &models)?;
+                let systems = system_modes::system_modes(&system, &models, time)?;
                 let number = systems.len();
                 for (k, modes) in systems.iter().enumerate() {
                     let Some(folder) = &output else { continue };
                     make_folder(folder)?;
                     let name = if number == 1 { "modes".to_owned() } else { format!("modes.system{}", k + 1) };
                     let stem = folder.join(name);
-                    outputs_of_scenes(scenes, &builder, files.overwrite).claim(&figures::files(&stem))?;
+                    let fields = stem.with_extension("vtkhdf");
+                    let all: Vec<PathBuf> = figures::files(&stem).into_iter().chain([fields.clone()]).collect();
+                    outputs_of_scenes(scenes, &builder, files.overwrite).claim(&all)?;
                     pictures.extend(system_modes::draw(&system, &models, modes, &stem)?.into_iter().flatten());
+                    if system_modes::write_fields(&system, &models, modes, &fields, files.overwrite)? {
+                        pictures.push(fields);
+                    }
                 }
                 let is_tied = |number: &usize| systems.iter().any(|modes| modes.bodies.contains(number));
                 for scene in (0..scenes.len()).filter(|number| !is_tied(number)).map(|number| &scenes[number]) {
@@ -1054,6 +1066,29 @@ fn mode_count(text: &str) -> Result<usize, String> {
 /// A finite number.
 fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
+}
+
+/// A time of a run.
+fn at_time(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|time| *time >= 0.0).ok_or_else(|| "expected a time, 0 or more".to_owned())
+}
+
+/// Refuses a time of a run that bodies which nothing ties do not need, and one after its end.
+fn check_time(system: &System, time: f64) -> Result<(), CliError> {
+    let end = system.bodies.iter().map(|scene| scene.time.end).fold(0.0, f64::max);
+    let (found, expected, help) = if !system.has_connections() {
+        let help = "leave it out: a body alone has the same modes wherever it is";
+        ("a scene of bodies that nothing ties together".to_owned(), "joints, springs or bushings".to_owned(), help)
+    } else if time > end {
+        (
+            format!("{time}"),
+            format!("at most the end of the run, {end}"),
+            "change `end` in [time], or ask for an earlier time",
+        )
+    } else {
+        return Ok(());
+    };
+    Err(CliError::Option { option: "--time", found, expected, help: help.to_owned() })
 }
 
 /// A number above zero.

@@ -46,6 +46,11 @@ pub enum SetupError {
         "a step of {step:e} is beyond the stability limit {limit:.4e} that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4; take a smaller step or fewer modes"
     )]
     StepBeyondLimit { step: f64, limit: f64, mode: usize, frequency: f64 },
+    /// The same of a system of bodies. `body`: from 1.
+    #[error(
+        "a step of {step:e} is beyond the stability limit {limit:.4e} that the fastest shape of body {body} ({frequency:.6} cycles per time) sets for the explicit scheme rkmk4; take a smaller step, or the scheme radau, which has no such limit"
+    )]
+    StepBeyondBody { step: f64, limit: f64, body: usize, frequency: f64 },
     /// A step that the spin is too fast for. `spin`: the largest known before the run, |ω| at the beginning or the
     /// driven speed, rad/time.
     #[error(

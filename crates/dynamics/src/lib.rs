@@ -85,11 +85,12 @@ pub use system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 pub use system::radau::{Failed, SystemMotion, Tried};
 pub use system::simulation::SystemSimulation;
 pub use system::simulation::observation::SystemObservation;
-pub use system::simulation::setup::{Assembled, SystemSetup};
+pub use system::simulation::setup::{Assembled, ShapeLimit, SystemSetup};
 pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 pub use vibration::system::{
-    CommonSpin, Linearization, Spring, SteadyError, SteadyState, SystemMode, Unbalance, Vibrations,
+    BodyStiffening, CommonSpin, Linearization, Spring, SteadyError, SteadyState, StiffenedMode, SystemMode, Unbalance,
+    Vibrations,
 };
 
 /// Crates whose types are in the interface.

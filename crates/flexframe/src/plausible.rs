@@ -106,12 +106,23 @@ fn without_cycles(reason: &NoCycles) -> String {
 fn warping(marker: &BodyMarker) -> Option<String> {
     let warp = marker.warp.as_ref()?;
     let count = warp.patches()?;
+    // A component that is zero but for rounding is shown as zero.
+    let along = warp.along.map_or_else(String::new, |along| {
+        let [x, y, z] = [0, 1, 2].map(|k| if along[k].abs() < 1e-3 { 0.0 } else { (1e3 * along[k]).round() / 1e3 });
+        format!(" with `along = [{x:?}, {y:?}, {z:?}]`")
+    });
+    let left = warp.left_out[count - 1];
+    let still = if warp.along.is_some() && left > 0.5 * warp.left_out[0] {
+        "; the faces extend as far in two directions, and patches help in one: `tie = \"nodes\"` with a fixed joint sees all"
+    } else {
+        ""
+    };
     Some(format!(
         "the marker {:?}: its faces warp by {:.0} % of their displacements under the forces of a joint, which their mean does not see, \
-         so that the joint is too soft; `patches = {count}` leaves out {:.0} %",
+         so that the joint is too soft; `patches = {count}`{along} leaves out {:.0} %{still}",
         marker.name,
         100.0 * warp.left_out[0],
-        100.0 * warp.left_out[count - 1]
+        100.0 * left
     ))
 }
 

@@ -96,6 +96,15 @@ impl StartError {
                 format!("the stability limit that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4"),
                 "take a smaller step or fewer modes",
             ),
+            Self::Setup(SetupError::StepBeyondBody { step, limit, body, frequency }) => (
+                step,
+                limit,
+                format!(
+                    "the stability limit that the fastest shape of the {} body ({frequency:.6} cycles per time) sets for `rkmk4`",
+                    ordinal(*body)
+                ),
+                "take a smaller step, or `scheme = \"radau\"`, which has no such limit",
+            ),
             Self::Setup(SetupError::StepBeyondSpin { step, limit, spin }) => (
                 step,
                 limit,
@@ -106,6 +115,16 @@ impl StartError {
         };
         let (found, expected) = (format!("a step of {step:e}, beyond {why}"), format!("at most {limit:.4e}"));
         Self::Step { at: scene.place("time.step").into(), found, expected, help }
+    }
+}
+
+/// "first", "second", "third", "4th".
+fn ordinal(number: usize) -> String {
+    match number {
+        1 => "first".to_owned(),
+        2 => "second".to_owned(),
+        3 => "third".to_owned(),
+        _ => format!("{number}th"),
     }
 }
 

@@ -19,11 +19,16 @@ pub(crate) fn system_scheme_named(name: &str) -> Option<SystemScheme> {
     SystemScheme::ALL.into_iter().find(|scheme| scheme.name() == name)
 }
 
+/// True of the name of a scheme of a body alone.
+pub(crate) fn is_of_lone_bodies(name: &str) -> bool {
+    METHODS.iter().any(|method| method.scheme == name)
+}
+
 /// The names of all schemes, each once.
 pub(crate) fn scheme_names() -> &'static [&'static str] {
     static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
         let mut names = once_each(|method| method.scheme);
-        names.extend(SystemScheme::ALL.map(SystemScheme::name));
+        names.extend(SystemScheme::ALL.map(SystemScheme::name).iter().filter(|name| !is_of_lone_bodies(name)));
         names
     });
     &NAMES

@@ -11,15 +11,19 @@ pub(crate) fn check_step_of_modes(
     if !(step > 0.0 && step.is_finite()) {
         return Err(SetupError::Value { what: "the step", found: step, expected: "a positive number" });
     }
-    let modes = circular_frequencies.iter().zip(damping_ratios);
-    let limits = modes.map(|(omega, zeta)| stable_step(omega * omega, 2.0 * zeta * omega));
-    let (mode, limit) =
-        limits.enumerate().fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best });
+    let (mode, limit) = stable_step_of_modes(circular_frequencies, damping_ratios);
     if step <= limit {
         return Ok(());
     }
     let frequency = circular_frequencies[mode] / std::f64::consts::TAU;
     Err(SetupError::StepBeyondLimit { step, limit, mode: mode + 1, frequency })
+}
+
+/// The number of the mode that limits the step of classical RK4 most, and the limit; infinite without modes.
+pub(crate) fn stable_step_of_modes(circular_frequencies: &[f64], damping_ratios: &[f64]) -> (usize, f64) {
+    let modes = circular_frequencies.iter().zip(damping_ratios);
+    let limits = modes.map(|(omega, zeta)| stable_step(omega * omega, 2.0 * zeta * omega));
+    limits.enumerate().fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best })
 }
 
 /// Largest step for which RK4 does not amplify `q̈ + d q̇ + λ q = 0`; 2.83/ω without damping.

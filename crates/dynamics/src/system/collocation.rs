@@ -1,4 +1,5 @@
-//! Collocation at three times in a step: Radau IIA of order 5 and Gauss of order 6, in the form of their structured Newton.
+//! Collocation at three times in a step: Radau IIA of order 5 and Gauss of order 6, in the form of their structured Newton; and the
+//! explicit scheme of order 4.
 //!
 //! Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5 and IV.8; Eqs. (J5)–(J7) of `docs/method/systems.md`.
 
@@ -15,25 +16,29 @@ pub enum SystemScheme {
     Radau,
     /// Gauss of order 6: keeps all vibration, and energy better over long times, but needs shorter steps for what rings.
     Gauss,
+    /// Explicit Runge–Kutta–Munthe-Kaas of order 4: for rigid and soft systems, in steps that follow the fastest mode.
+    Rkmk4,
 }
 
 impl SystemScheme {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Radau, Self::Gauss];
+    pub const ALL: [Self; 3] = [Self::Radau, Self::Gauss, Self::Rkmk4];
 
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Radau => "radau",
             Self::Gauss => "gauss",
+            Self::Rkmk4 => "rkmk4",
         }
     }
 
-    /// Its order: 2s − 1 or 2s with the number of stages s.
+    /// Its order: of collocation 2s − 1 or 2s with the number of stages s.
     pub const fn order(self) -> u32 {
         match self {
             Self::Radau => 2 * STAGES as u32 - 1,
             Self::Gauss => 2 * STAGES as u32,
+            Self::Rkmk4 => 4,
         }
     }
 }
@@ -41,6 +46,9 @@ impl SystemScheme {
 /// The constants of the scheme.
 #[derive(Debug, Clone)]
 pub(crate) struct Collocation {
+    /// True of explicit steps: the increments of the stages are then the step times the rates at its start, in its middle, and at its
+    /// end.
+    pub is_explicit: bool,
     /// c: times of the stages, as fractions of the step.
     pub times: [f64; STAGES],
     /// b: the weights of their rates.
@@ -98,6 +106,17 @@ impl Collocation {
         Self::new([0.5 - root / 10.0, 0.5, 0.5 + root / 10.0], a, [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0])
     }
 
+    /// The classical explicit scheme, with the Newton matrix of Radau IIA for the metric of projections.
+    pub fn rkmk4() -> Self {
+        Self {
+            is_explicit: true,
+            times: [0.0, 0.5, 1.0],
+            weights: [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
+            at_end: None,
+            ..Self::radau()
+        }
+    }
+
     fn new(times: [f64; STAGES], a: Matrix3<f64>, weights: [f64; STAGES]) -> Self {
         let inverse = a.try_inverse().unwrap_or_else(Matrix3::zeros);
         let real = real_eigenvalue(&inverse);
@@ -113,6 +132,7 @@ impl Collocation {
             others.map(|j| times[j] / (times[j] - times[i])).product()
         });
         let mut scheme = Self {
+            is_explicit: false,
             times,
             weights,
             inverse,
@@ -131,6 +151,9 @@ impl Collocation {
 
     /// Factors of the increments at the stages in that at a time, counted in steps.
     pub fn at(&self, time: f64) -> [f64; STAGES] {
+        if self.is_explicit {
+            return self.weights_to(time);
+        }
         std::array::from_fn(|i| {
             let others = (0..STAGES).filter(|j| *j != i);
             time / self.times[i]
@@ -140,6 +163,9 @@ impl Collocation {
 
     /// The polynomial of fourth degree whose rate, counted in steps, is 1 at the start and 0 at the stages. It is 0 at both ends.
     pub fn bend(&self, time: f64) -> f64 {
+        if self.is_explicit {
+            return 0.0;
+        }
         let rate = |time: f64| -> f64 { self.times.iter().map(|stage| 1.0 - time / stage).product() };
         // The rate is of third degree, and Simpson's rule is exact.
         time / 6.0 * (rate(0.0) + 4.0 * rate(0.5 * time) + rate(time))

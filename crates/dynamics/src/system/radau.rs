@@ -9,6 +9,7 @@
 
 mod end;
 mod exchange;
+mod explicit;
 mod newton;
 pub(in crate::system) mod stage_rates;
 mod stepping;
@@ -75,7 +76,7 @@ pub struct SystemMotion {
     /// The list of each body, as in a [`State`] of it.
     pub(crate) bodies: Vec<State>,
     pub(super) start: Start,
-    pub(super) first: Stage,
+    pub(crate) first: Stage,
     pub(super) stages: [Stage; STAGES],
     /// λ and μ at the stages.
     pub(super) multipliers: [Vec<f64>; STAGES],
@@ -108,6 +109,8 @@ struct Room {
     real: Solution<f64>,
     complex: Solution<Complex<f64>>,
     y_rates: [Vec<f64>; STAGES],
+    /// Rates of an explicit stage.
+    stage_rates: StageRates,
     /// Residuals or changes of a stage.
     change: [Vec<f64>; 2],
 }
@@ -160,6 +163,7 @@ impl SystemMotion {
                 real: Solution::new(coordinates, &patterns),
                 complex: Solution::new(coordinates, &patterns),
                 y_rates: std::array::from_fn(|_| zeros()),
+                stage_rates: StageRates::new(&flexible, joints),
                 change: [zeros(), zeros()],
             },
             patterns,
@@ -182,6 +186,7 @@ impl SystemMotion {
         let scheme = match scheme {
             SystemScheme::Radau => Collocation::radau(),
             SystemScheme::Gauss => Collocation::gauss(),
+            SystemScheme::Rkmk4 => Collocation::rkmk4(),
         };
         Self { scheme, last_length: 0.0, ..self }
     }
@@ -342,6 +347,9 @@ impl SystemMotion {
         self.begin();
         let branch_time = self.time + 0.5 * h;
         self.evaluate_first(branch_time)?;
+        if self.scheme.is_explicit {
+            return self.try_explicit_step(h, [end, branch_time], tolerance);
+        }
         self.predict(h);
         let passes = self.newton(h, exactness)?;
         let error = self.error(h);

@@ -8,17 +8,18 @@
 
 mod wrenches;
 
-use nalgebra::Vector3;
-
 use crate::body::shapes::PointShapes;
 use crate::conservative::{get, part};
 use crate::equations::Equations;
 use crate::error::RateError;
 use crate::observation::Observation;
+use crate::system::description::System;
+use crate::system::elimination::matrices::Matrices;
+use crate::system::elimination::patterns::Patterns;
 use crate::system::marker::Marker;
 use crate::system::marker::motion::MarkerWrench;
 use crate::system::radau::SystemMotion;
-use crate::system::stage::{put, vector};
+use crate::system::stage::{Stage, Start, put, vector};
 
 /// Time of the differences, relative to a turn of the fastest body by one radian.
 const SHORT: f64 = 1e-4;
@@ -32,42 +33,18 @@ impl SystemMotion {
     pub fn find_reactions(&mut self) -> Result<(), RateError> {
         self.begin();
         self.evaluate_first(self.time)?;
-        let velocities = std::mem::take(&mut self.first.velocities);
-        let mut change = std::mem::take(&mut self.reactions);
-        self.find_row_accelerations(&velocities, &mut change);
-        self.first.velocities = velocities;
-        let Self { first, system, matrices, patterns, .. } = self;
-        if !matrices.factor_mass(system, patterns, first) {
-            return Err(RateError::Inertia);
-        }
-        for (b, body) in system.bodies.iter().enumerate() {
-            let own = system.first[b]..system.first[b + 1];
-            let forces = &first.element_forces[own.clone()];
-            let force_global = first.attitudes[b].tr_mul(&vector(forces, 0));
-            let e = &mut first.evaluations[b];
-            body.add_forces([&force_global, &vector(forces, 3)], &forces[6..], e);
-            let spin_rate = body.find_accelerations(0.0, e)?;
-            let velocities = &first.velocities[own.clone()];
-            let [velocity, omega] = [vector(velocities, 0), vector(velocities, 3)];
-            let acceleration = first.attitudes[b] * get(e.rates.slow(), part::MOMENTUM) / body.mass();
-            let accelerations = &mut first.x_rates[own];
-            // V has the axes of the body, which turn.
-            put(accelerations, 0, &(acceleration - omega.cross(&velocity)));
-            put(accelerations, 3, &spin_rate);
-            accelerations[6..].copy_from_slice(&e.acceleration);
-        }
-        first.constraints.add_rates(1.0, &first.x_rates, &mut change);
-        change.iter_mut().for_each(|sum| *sum = -*sum);
-        matrices.of_mass.solve(&patterns.rows, &mut change);
+        let after = self.time + short_time(&self.system, &self.first.velocities);
+        let Self { first, stages: [scratch, ..], system, start, matrices, patterns, reactions, .. } = self;
+        let times = [start.time, after];
+        Index1 { system, start, matrices, patterns, scratch }.find(first, times, reactions)?;
         let forces = &mut first.x_rates;
         forces.fill(0.0);
-        first.constraints.add_forces(&change, forces);
+        first.constraints.add_forces(reactions, forces);
         for (b, body) in system.bodies.iter().enumerate() {
             let forces = &forces[system.first[b]..system.first[b + 1]];
             let force_global = first.attitudes[b].tr_mul(&vector(forces, 0));
             body.add_forces([&force_global, &vector(forces, 3)], &forces[6..], &mut first.evaluations[b]);
         }
-        self.reactions = change;
         Ok(())
     }
 
@@ -122,26 +99,83 @@ impl SystemMotion {
         let joints = &self.system.connections.joints;
         self.reactions[joints.iter().map(|joint| joint.row_count()).sum::<usize>() + coupling]
     }
+}
 
-    /// out = Ġ v + ġ_t for these velocities, where the first stage is.
-    pub(super) fn find_row_accelerations(&mut self, velocities: &[f64], out: &mut Vec<f64>) {
-        let omegas = self.system.first[..self.system.bodies.len()].iter().map(|first| vector(velocities, first + 3));
-        let fastest = omegas.map(|omega| omega.norm()).fold(0.0, f64::max);
-        let short = SHORT / fastest.max(1.0);
-        out.clear();
-        out.resize(self.system.rows(), 0.0);
-        let Self { stages: [scratch, ..], first, system, start, .. } = self;
-        for sign in [1.0, -1.0] {
-            scratch.x.iter_mut().zip(velocities).for_each(|(x, v)| *x = sign * short * v);
-            for (first_of_body, attitude) in system.first.iter().zip(&first.attitudes) {
-                let moved: Vector3<f64> = attitude.tr_mul(&vector(&scratch.x, *first_of_body));
-                put(&mut scratch.x, *first_of_body, &moved);
-            }
-            scratch.place(system, start);
-            let time = start.time + sign * short;
-            scratch.find_constraints(system, start, [time, start.time + short]);
-            scratch.constraints.rates(velocities, &mut scratch.constraint_rates);
-            out.iter_mut().zip(&scratch.constraint_rates).for_each(|(sum, rate)| *sum += sign * rate / (2.0 * short));
+/// A motion from a place: increments since the start of a step, velocities, and the rates of the increments.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Passing<'a> {
+    pub x: &'a [f64],
+    pub x_rates: &'a [f64],
+    pub velocities: &'a [f64],
+}
+
+/// Finds multipliers of index 1.
+pub(super) struct Index1<'a> {
+    pub system: &'a System,
+    pub start: &'a Start,
+    pub matrices: &'a mut Matrices,
+    pub patterns: &'a Patterns,
+    pub scratch: &'a mut Stage,
+}
+
+impl Index1<'_> {
+    /// λ at a time, by the branch of another, where a stage has been evaluated and has x' of its velocities. The rates of its bodies
+    /// then have the forces of elements and of joints along their coordinates.
+    pub fn find(&mut self, stage: &mut Stage, times: [f64; 2], out: &mut Vec<f64>) -> Result<(), RateError> {
+        let Stage { x, x_rates, velocities, .. } = &*stage;
+        let passing = Passing { x, x_rates, velocities };
+        find_row_accelerations((self.system, self.start), self.scratch, passing, times, out);
+        let Self { system, matrices, patterns, scratch, .. } = self;
+        if !matrices.factor_mass(system, patterns, stage) {
+            return Err(RateError::Inertia);
         }
+        for (b, body) in system.bodies.iter().enumerate() {
+            let own = system.first[b]..system.first[b + 1];
+            let forces = &stage.element_forces[own.clone()];
+            let force_global = stage.attitudes[b].tr_mul(&vector(forces, 0));
+            let e = &mut stage.evaluations[b];
+            body.add_forces([&force_global, &vector(forces, 3)], &forces[6..], e);
+            let spin_rate = body.find_accelerations(0.0, e)?;
+            let velocities = &stage.velocities[own.clone()];
+            let [velocity, omega] = [vector(velocities, 0), vector(velocities, 3)];
+            let acceleration = stage.attitudes[b] * get(e.rates.slow(), part::MOMENTUM) / body.mass();
+            let accelerations = &mut scratch.x_rates[own];
+            // V has the axes of the body, which turn.
+            put(accelerations, 0, &(acceleration - omega.cross(&velocity)));
+            put(accelerations, 3, &spin_rate);
+            accelerations[6..].copy_from_slice(&e.acceleration);
+        }
+        stage.constraints.add_rates(1.0, &scratch.x_rates, out);
+        out.iter_mut().for_each(|sum| *sum = -*sum);
+        matrices.of_mass.solve(&patterns.rows, out);
+        Ok(())
+    }
+}
+
+/// A time in which nothing turns far.
+pub(super) fn short_time(system: &System, velocities: &[f64]) -> f64 {
+    let omegas = system.first[..system.bodies.len()].iter().map(|first| vector(velocities, first + 3));
+    SHORT / omegas.map(|omega| omega.norm()).fold(0.0, f64::max).max(1.0)
+}
+
+/// out = Ġ v + ġ_t for a motion at a time, by the branch of another.
+pub(super) fn find_row_accelerations(
+    (system, start): (&System, &Start),
+    scratch: &mut Stage,
+    Passing { x, x_rates, velocities }: Passing<'_>,
+    times: [f64; 2],
+    out: &mut Vec<f64>,
+) {
+    let short = short_time(system, velocities);
+    out.clear();
+    out.resize(system.rows(), 0.0);
+    for sign in [1.0, -1.0] {
+        for (passed, (x, rate)) in scratch.x.iter_mut().zip(x.iter().zip(x_rates)) {
+            *passed = x + sign * short * rate;
+        }
+        scratch.place(system, start);
+        scratch.find_constraints(system, start, [times[0] + sign * short, times[1]]);
+        scratch.constraints.rates(velocities, &mut scratch.constraint_rates);
+        out.iter_mut().zip(&scratch.constraint_rates).for_each(|(sum, rate)| *sum += sign * rate / (2.0 * short));
     }
 }

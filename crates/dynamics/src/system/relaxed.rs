@@ -13,6 +13,7 @@ use crate::conservative::{get, part};
 use crate::system::elimination::inverse::{Inertia, Inverse};
 use crate::system::elimination::joint_matrix::JointMatrix;
 use crate::system::radau::{Failed, SystemMotion};
+use crate::system::reactions::{Passing, find_row_accelerations, short_time};
 use crate::system::stage::{put, vector};
 
 /// Passes: the deformation changes the forces a little.
@@ -27,22 +28,37 @@ impl SystemMotion {
     pub fn relax(&mut self) -> Result<[f64; 2], Failed> {
         let mut left = self.assemble()?;
         for _ in 0..PASSES {
-            let multipliers = self.rigid_multipliers()?;
+            let (multipliers, _) = self.rigid_forces()?;
             self.deform(&multipliers);
             left = self.assemble()?;
         }
         Ok(left)
     }
 
-    /// λ of rigid bodies where the system is.
-    fn rigid_multipliers(&mut self) -> Result<Vec<f64>, Failed> {
+    /// V' and ω' of rigid bodies where the system is, in body axes, over the coordinates of all bodies.
+    ///
+    /// # Errors
+    /// [`Failed`] where the inertia of a body is singular.
+    pub(crate) fn rigid_accelerations(&mut self) -> Result<Vec<f64>, Failed> {
+        self.begin();
+        self.evaluate_first(self.time)?;
+        Ok(self.rigid_forces()?.1)
+    }
+
+    /// λ of rigid bodies where the first stage is, and their V' and ω'.
+    fn rigid_forces(&mut self) -> Result<(Vec<f64>, Vec<f64>), Failed> {
         let mut velocities = self.first.velocities.clone();
+        let mut x_rates = self.first.x_rates.clone();
         for (b, first) in self.system.first[..self.system.bodies.len()].iter().enumerate() {
-            velocities[first + 6..self.system.first[b + 1]].fill(0.0);
+            let modes = first + 6..self.system.first[b + 1];
+            velocities[modes.clone()].fill(0.0);
+            x_rates[modes].fill(0.0);
         }
-        let mut change = vec![0.0; self.system.rows()];
-        self.find_row_accelerations(&velocities, &mut change);
-        let Self { first, system, patterns, matrices, .. } = self;
+        let mut change = Vec::new();
+        let Self { first, stages: [scratch, ..], system, start, patterns, matrices, .. } = self;
+        let passing = Passing { x: &first.x, x_rates: &x_rates, velocities: &velocities };
+        let times = [start.time, start.time + short_time(system, &velocities)];
+        find_row_accelerations((system, start), scratch, passing, times, &mut change);
         let mut acceleration = vec![0.0; system.coordinates()];
         let inverses = rigid_inverses(&first.inertia).ok_or(Failed::Newton)?;
         for (b, inverse) in inverses.iter().enumerate() {
@@ -66,7 +82,13 @@ impl SystemMotion {
         of_rigid.assemble(&patterns.rows, &first.constraints, &inverses);
         of_rigid.factor(&patterns.rows, &mut matrices.is_left_out, true);
         of_rigid.solve(&patterns.rows, &mut change);
-        Ok(change)
+        let mut by_joints = vec![0.0; system.coordinates()];
+        first.constraints.add_forces(&change, &mut by_joints);
+        for (b, inverse) in inverses.iter().enumerate() {
+            inverse.apply(&mut by_joints[system.first[b]..system.first[b + 1]]);
+        }
+        acceleration.iter_mut().zip(&by_joints).for_each(|(sum, part)| *sum += part);
+        Ok((change, acceleration))
     }
 
     /// For each row of the joints and couplings, true if others imply it where bodies are rigid: what such rows share is not

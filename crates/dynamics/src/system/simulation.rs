@@ -24,10 +24,12 @@ use crate::system::joint::observation::JointObservation;
 use crate::system::radau::{EXACTNESS, SystemMotion};
 use crate::system::simulation::last_step::{EXACT, LastStep, of_step};
 use crate::system::simulation::observation::SystemObservation;
-use crate::system::simulation::setup::{Assembled, SystemSetup, assemble, size};
+use crate::system::simulation::setup::{Assembled, ShapeLimit, SystemSetup, assemble, size};
 
 /// First step that is tried under step control, as a part of the run.
 const FIRST: f64 = 1e-3;
+/// Longest step of an explicit scheme under step control, as a part of what the fastest shape allows.
+const STABLE: f64 = 0.9;
 
 /// A run of bodies with joints in progress. Its steps end where they like, and at discontinuities and stops: a row within a step is
 /// that of the step's polynomials.
@@ -41,6 +43,7 @@ pub struct SystemSimulation {
     end: f64,
     steps_since_row: u64,
     longest_step: LongestStep,
+    shape_limit: Option<ShapeLimit>,
     points: Vec<Vec<PointShapes>>,
     size: f64,
     assembled: Vec<Assembled>,
@@ -99,6 +102,7 @@ impl SystemSimulation {
     /// [`SetupError`]: numbers out of range, states that do not fit their bodies, and joints that cannot be closed.
     pub fn new(setup: SystemSetup) -> Result<Self, SetupError> {
         setup.check()?;
+        let shape_limit = setup.shape_limit();
         let SystemSetup { system, states, relaxed, scheme, control, end, rows, points } = setup;
         let mut motion = SystemMotion::new(system, &states)?.with_scheme(scheme);
         let size = size(motion.system(), &states);
@@ -133,6 +137,7 @@ impl SystemSimulation {
             end,
             steps_since_row: 0,
             longest_step,
+            shape_limit,
             points,
             size,
             assembled,
@@ -196,6 +201,11 @@ impl SystemSimulation {
     /// Sum of |work of loads, joints and elements| + |dissipation| of all steps, of a body.
     pub fn exchanged(&self, body: usize) -> f64 {
         self.exchanged[body].sum
+    }
+
+    /// The limit that shapes set for the steps, if the scheme is one that they limit and steps have come near to it.
+    pub fn met_shape_limit(&self) -> Option<ShapeLimit> {
+        self.shape_limit.filter(|of| self.stats.longest > 0.9 * STABLE * of.limit)
     }
 
     /// Cost of the run so far.
@@ -496,7 +506,11 @@ impl SystemSimulation {
             return Some(segment);
         }
         let segment = self.plan.next_segment()?;
-        let longest = self.longest_step.in_segment(&segment);
+        let longest = match (self.shape_limit, self.control) {
+            (Some(ShapeLimit { limit, .. }), StepControl::Tolerance(_)) => STABLE * limit,
+            _ => f64::INFINITY,
+        };
+        let longest = longest.min(self.longest_step.in_segment(&segment));
         if let StepControl::Fixed(step) = self.control {
             self.walk.equal = EqualSteps::new(segment, step.min(longest));
         }

@@ -17,6 +17,7 @@ mod load;
 mod mode;
 mod spin;
 mod steady;
+mod stiffening;
 pub(crate) mod terms;
 pub(crate) mod tie;
 
@@ -25,4 +26,5 @@ pub use error::SteadyError;
 pub use linearization::Linearization;
 pub use mode::{SystemMode, Vibrations};
 pub use steady::{SteadyState, Unbalance};
+pub use stiffening::{BodyStiffening, StiffenedMode};
 pub use terms::Spring;

@@ -2,7 +2,10 @@
 
 use std::sync::{Arc, OnceLock};
 
-use dynamics::{History, Joint, Marker, MotionState, Observation, PointForce, System, SystemMotion};
+use dynamics::{
+    CommonSpin, Expression, History, Joint, JointDrive, Marker, MotionState, Observation, PointForce, PointSpring,
+    System, SystemMode, SystemMotion,
+};
 use fem_tet10::Material;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
@@ -87,4 +90,137 @@ fn joints_that_stiffen_keep_energy_and_momenta() {
         drifts.push(drift);
     }
     assert!(drifts[1] < 1e-7, "{drifts:?}");
+}
+
+/// First circular frequency of a cantilever of stiffness EI, mass per length and length, under a tension along it that is linear from the
+/// root to the free end: EI w⁗ − (T w′)′ = m ω² w, by shooting.
+fn of_pulled_cantilever([bending, mass, length]: [f64; 3], [root, end]: [f64; 2]) -> f64 {
+    let slope = (end - root) / length;
+    let determinant = |omega: f64| {
+        let solution = |start: [f64; 4]| {
+            let rates = |x: f64, w: [f64; 4]| {
+                let fourth = ((root + slope * x) * w[2] + slope * w[1] + mass * omega * omega * w[0]) / bending;
+                [w[1], w[2], w[3], fourth]
+            };
+            let steps = 400;
+            let h = length / f64::from(steps);
+            let mut w = start;
+            for step in 0..steps {
+                let x = h * f64::from(step);
+                let plus = |k: [f64; 4], part: f64| std::array::from_fn(|i| w[i] + part * h * k[i]);
+                let first = rates(x, w);
+                let second = rates(x + 0.5 * h, plus(first, 0.5));
+                let third = rates(x + 0.5 * h, plus(second, 0.5));
+                let fourth = rates(x + h, plus(third, 1.0));
+                w = std::array::from_fn(|i| w[i] + h / 6.0 * (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]));
+            }
+            [w[2], bending * w[3] - end * w[1]]
+        };
+        let [a, b] = [solution([0.0, 0.0, 1.0, 0.0]), solution([0.0, 0.0, 0.0, 1.0])];
+        a[0] * b[1] - a[1] * b[0]
+    };
+    let beam = (bending / mass).sqrt() / (length * length);
+    let (mut low, mut step) = (0.5 * beam, 0.1 * beam);
+    let sign = determinant(low).signum();
+    while step > 1e-10 * beam {
+        if determinant(low + step).signum() == sign {
+            low += step;
+        } else {
+            step *= 0.5;
+        }
+    }
+    low
+}
+
+/// Closed form: frequencies of a beam under tension. A bar on a weld is pulled at its end by a long soft spring: only forces of joints and
+/// elements stiffen it.
+#[test]
+fn forces_of_a_joint_and_a_spring_raise_a_frequency_as_the_tension_of_a_beam() {
+    let bar = bar();
+    let (bending, mass) = (YOUNG * 1e4 / 12.0, 2.7e-9 * 100.0);
+    let pull = 4.0 * bending / (LENGTH * LENGTH);
+    let far = 1e9;
+    let spring = PointSpring {
+        markers: [bar.stiffening_marker(0, 1), Marker::on_ground(Vector3::x() * (far + LENGTH), Matrix3::identity())],
+        stiffness: pull / far,
+        damping: 0.0,
+        free_length: 0.0,
+    };
+    let weld =
+        Joint::fixed("weld", [Marker::on_ground(Vector3::zeros(), Matrix3::identity()), bar.stiffening_marker(0, 0)]);
+    let system = System::new(vec![bar.conservative()], vec![weld]).unwrap();
+    let system = system.with_elements(vec![Arc::new(spring)]).unwrap();
+    let start = bar.at_rest(Vector3::new(0.5 * LENGTH, 0.0, 0.0), Attitude::identity());
+    let mut motion = SystemMotion::new(system, &[start]).unwrap();
+    motion.assemble().unwrap();
+    let [found] = &motion.stiffening().unwrap()[..] else { panic!() };
+    let beam = |tension: f64| of_pulled_cantilever([bending, mass, LENGTH], [tension; 2]);
+    let expected = beam(pull) / beam(0.0);
+    // Free bending of a clamped beam, 1.8751² √(EI/m)/l².
+    assert!((beam(0.0) * LENGTH * LENGTH / (bending / mass).sqrt() / 3.516_015_3 - 1.0).abs() < 1e-6);
+    assert!((found.force / pull - 1.0).abs() < 1e-6, "{} {pull}", found.force);
+    // Two planes.
+    for mode in &found.modes[..2] {
+        let ratio = mode.moving / mode.unloaded;
+        println!("{mode:?} {ratio} {expected}");
+        assert!((ratio / expected - 1.0).abs() < 0.02, "{ratio} {expected}");
+        assert!((mode.unloaded / beam(0.0) - 1.0).abs() < 0.03);
+        assert!(mode.unloaded < mode.without_stress && mode.without_stress < mode.moving);
+    }
+}
+
+/// Closed form: a cantilever whose root is pulled along it with the acceleration a bears m a (L − x), as one that hangs from its root.
+#[test]
+fn a_bar_that_is_pulled_faster_and_faster_stiffens_as_one_that_hangs() {
+    let bar = bar();
+    let (bending, mass) = (YOUNG * 1e4 / 12.0, 2.7e-9 * 100.0);
+    let pull = 8.0 * bending / (LENGTH * LENGTH);
+    let acceleration = pull / (mass * LENGTH);
+    // The z axis of a slide is along x.
+    let slide = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+    let history = History::Expression(Expression::new("-0.5*t*t", Vec::new()).unwrap());
+    let ends = [Marker::on_ground(Vector3::zeros(), slide), bar.turned_stiffening_marker(0, 0, slide)];
+    let rail = Joint::prismatic("rail", ends).moved_by(JointDrive { amplitude: acceleration, history });
+    let system = System::new(vec![bar.conservative()], vec![rail]).unwrap();
+    let start = bar.at_rest(Vector3::new(0.5 * LENGTH, 0.0, 0.0), Attitude::identity());
+    let mut motion = SystemMotion::new(system, &[start]).unwrap();
+    motion.assemble().unwrap();
+    let [found] = &motion.stiffening().unwrap()[..] else { panic!() };
+    let beam = |tension: f64| of_pulled_cantilever([bending, mass, LENGTH], [tension, 0.0]);
+    let expected = beam(pull) / beam(0.0);
+    println!("{found:?} {expected}");
+    assert!((found.force / pull - 1.0).abs() < 0.01, "{} {pull}", found.force);
+    for mode in &found.modes[..2] {
+        let ratio = mode.moving / mode.unloaded;
+        assert!((ratio / expected - 1.0).abs() < 0.02, "{ratio} {expected}");
+    }
+}
+
+/// Conserved: a pair that spins as one has in its motion the vibrations of the common spin.
+#[test]
+fn a_common_spin_is_a_motion_like_others() {
+    let bar = bar();
+    let weld = Joint::fixed("weld", [bar.stiffening_marker(0, 1), bar.stiffening_marker(1, 0)]);
+    let system = System::new(vec![bar.conservative(), bar.conservative()], vec![weld]).unwrap();
+    let omega = Vector3::new(0.0, 0.0, 200.0);
+    let start = |x: f64| MotionState {
+        velocity_global: omega.cross(&Vector3::new(x, 0.0, 0.0)),
+        omega_body: omega,
+        ..bar.at_rest(Vector3::new(x, 0.0, 0.0), Attitude::identity())
+    };
+    let mut motion = SystemMotion::new(system, &[start(-100.0), start(100.0)]).unwrap();
+    motion.assemble().unwrap();
+    let spin = CommonSpin { omega_global: omega, point_global: Vector3::zeros() };
+    let [expected, found] = [motion.steady_state(&spin), motion.moving_state()].map(Result::unwrap);
+    assert_eq!(expected.spin(), Some(&spin));
+    assert_eq!(found.spin(), None);
+    let [of_spin, of_motion] = [&expected, &found].map(|state| state.linear.vibrations().unwrap().modes);
+    let frequencies = |modes: &[SystemMode]| -> Vec<f64> {
+        modes.iter().map(SystemMode::circular_frequency).filter(|omega| *omega > 1.0).collect()
+    };
+    let [of_spin, of_motion] = [of_spin, of_motion].map(|modes| frequencies(&modes));
+    assert_eq!(of_spin.len(), of_motion.len());
+    for (a, b) in of_spin.iter().zip(&of_motion) {
+        assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
+    }
 }

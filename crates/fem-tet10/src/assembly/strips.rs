@@ -51,6 +51,20 @@ impl Mesh {
         (next < ALIKE * eigenvalues[longest]).then(|| eigenvectors.column(longest).into())
     }
 
+    /// Two directions at right angles in the plane of faces (unit vectors, axes of the mesh): the first is the nearest to an axis of the
+    /// mesh. None of faces without area.
+    pub fn directions(&self, faces: &[[u32; 6]]) -> Vec<Vector3<f64>> {
+        let at = |node: u32| Vector3::from(self.positions()[node as usize]);
+        // The sum of the areas would vanish over a closed surface.
+        let normals = faces.iter().map(|face| (at(face[1]) - at(face[0])).cross(&(at(face[2]) - at(face[0]))));
+        let spread: Matrix3<f64> = normals.map(|normal| normal * normal.transpose()).sum();
+        let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(spread);
+        let normal: Vector3<f64> = eigenvectors.column(eigenvalues.imax()).into();
+        let axis = Vector3::ith(normal.iamin(), 1.0);
+        let first = (axis - normal * normal.dot(&axis)).try_normalize(f64::MIN_POSITIVE);
+        first.map_or_else(Vec::new, |first| vec![first, normal.cross(&first)])
+    }
+
     /// Faces in `count` strips of equal width side by side along a direction.
     pub fn strips(&self, faces: &[[u32; 6]], along: &Vector3<f64>, count: usize) -> Vec<Strip> {
         let place = |node: u32| Vector3::from(self.positions()[node as usize]).dot(along);

@@ -6,18 +6,21 @@ mod draw;
 mod error;
 mod report;
 mod shape;
+mod stiffening;
 
 use dynamics::CommonSpin;
 use model::{BuildError, BuildProgress, Builder, Model};
 use scene::System;
 
 pub use advice::{AdviceOnSystems, SystemAdvice};
+use assembled::tied_motions_at;
 pub(crate) use assembled::{TiedMotion, tied_motions};
-pub use draw::draw;
+pub use draw::{FieldsError, draw, write_fields};
 pub use error::SystemModesError;
 pub(crate) use report::body_names;
 pub use report::{ModesOfSystems, Share, SystemModeReport, SystemModes, SystemModesReport};
 pub(crate) use shape::SystemSurface;
+pub use stiffening::{StiffenedBody, StiffenedFrequency};
 
 /// Builds the bodies of a scene.
 ///
@@ -32,15 +35,23 @@ pub fn build(
 }
 
 /// Finds the vibrations of all bodies of a scene that joints, springs or bushings tie together, at rest where they stand at the
-/// start; the bodies are deformed as their loads ask, and drives hold still.
+/// start, or where a run has them at a time; the bodies are deformed as their loads ask, and drives hold still.
 ///
 /// # Errors
 /// [`SystemModesError`].
-pub fn system_modes(system: &System, models: &[Model]) -> Result<Vec<SystemModes>, SystemModesError> {
-    tied_motions(system, models)?.iter().map(|motion| of_motion(system, motion)).collect()
+pub fn system_modes(
+    system: &System,
+    models: &[Model],
+    time: Option<f64>,
+) -> Result<Vec<SystemModes>, SystemModesError> {
+    let motions = match time {
+        Some(time) if time > 0.0 => tied_motions_at(system, models, time)?,
+        _ => tied_motions(system, models)?,
+    };
+    motions.iter().map(|motion| of_motion(system, motion)).collect()
 }
 
-/// Advice on the systems of a scene, by their vibrations at rest.
+/// Advice on the systems of a scene: by their vibrations at rest, and by what the forces of the start do to these.
 ///
 /// # Errors
 /// [`SystemModesError`].
@@ -50,11 +61,15 @@ pub fn system_advice(
     progress: impl FnMut(BuildProgress),
 ) -> Result<Vec<SystemAdvice>, SystemModesError> {
     let models = build(system, builder, progress)?;
-    let of_system = |modes: &SystemModes| {
-        let flexible = modes.bodies.iter().copied().filter(|body| models[*body].body.flexible() > 0);
-        SystemAdvice::new(&modes.report, &body_names(system, &flexible.collect::<Vec<_>>()))
+    let of_system = |motion: &TiedMotion| {
+        let modes = of_motion(system, motion)?;
+        let flexible = motion.bodies.iter().copied().filter(|body| models[*body].body.flexible() > 0);
+        let flexible = body_names(system, &flexible.collect::<Vec<_>>());
+        let scene = &system.bodies[motion.bodies[0]];
+        let advice = SystemAdvice::new(&modes.report, &flexible);
+        Ok(advice.with_stiffening(stiffening::stiffened(system, &models, motion), scene, &modes.report.frequency_unit))
     };
-    Ok(system_modes(system, &models)?.iter().map(of_system).collect())
+    tied_motions(system, &models)?.iter().map(of_system).collect()
 }
 
 fn of_motion(system: &System, motion: &TiedMotion) -> Result<SystemModes, SystemModesError> {

@@ -255,6 +255,7 @@ impl Fault for SetupError {
         match self {
             Self::FormulaTooFast { .. }
             | Self::StepBeyondLimit { .. }
+            | Self::StepBeyondBody { .. }
             | Self::StepBeyondSpin { .. }
             | Self::MotionLeft { .. }
             | Self::CollinearPoints(_)
@@ -519,7 +520,7 @@ impl Fault for SystemModesError {
         match self {
             Self::Build(_) => Known::default(),
             Self::Setup { scene, .. } => in_file(scene),
-            Self::Steady { scene, .. } => Kind::Run.of(scene),
+            Self::Run { scene, .. } | Self::Steady { scene, .. } => Kind::Run.of(scene),
         }
     }
 }

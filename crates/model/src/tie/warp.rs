@@ -18,6 +18,9 @@ pub struct Warp {
     /// The largest root mean square, over the faces and over the static shapes of the marker, of what the mean displacement and the
     /// mean rotation leave out of the displacements of the faces, over these: of 1, 2, 3, … patches.
     pub left_out: Vec<f64>,
+    /// Direction (unit vector, mesh axes) in which these patches follow each other, where the faces extend as far in two directions and
+    /// do not tell it themselves.
+    pub along: Option<Vector3<f64>>,
 }
 
 impl Warp {
@@ -29,9 +32,29 @@ impl Warp {
         Some(enough.map_or(self.left_out.len(), |place| place + 1))
     }
 
-    /// Warp of faces in responses of the mesh to forces on them (N×k). None where the faces extend as far in two directions.
+    /// Warp of faces in responses of the mesh to forces on them (N×k). Where they extend as far in two directions, that one counts whose
+    /// patches leave out less.
     pub fn new(mesh: &Mesh, faces: &[[u32; 6]], dofs: usize, responses: MatRef<'_, f64>) -> Option<Self> {
-        let along = mesh.longest(faces)?;
+        if let Some(along) = mesh.longest(faces) {
+            let left_out = Self::left_out(mesh, faces, dofs, responses, &along);
+            return Some(Self { left_out, along: None });
+        }
+        let of_direction = |along: Vector3<f64>| {
+            let left_out = Self::left_out(mesh, faces, dofs, responses, &along);
+            Self { left_out, along: Some(along) }
+        };
+        let sum = |warp: &Self| warp.left_out.iter().sum::<f64>();
+        mesh.directions(faces).into_iter().map(of_direction).min_by(|a, b| sum(a).total_cmp(&sum(b)))
+    }
+
+    /// What patches that follow each other along a direction leave out.
+    fn left_out(
+        mesh: &Mesh,
+        faces: &[[u32; 6]],
+        dofs: usize,
+        responses: MatRef<'_, f64>,
+        along: &Vector3<f64>,
+    ) -> Vec<f64> {
         let field =
             |column: usize, node: u32| Vector3::from_fn(|axis, _| responses[(dofs * node as usize + axis, column)]);
         // Means of the squares of all displacements, and of what is left of them.
@@ -51,7 +74,7 @@ impl Warp {
             [sum(&|node| field(column, node)), sum(&left)]
         };
         let left_out = (1..=MOST).map(|count| {
-            let strips = mesh.strips(faces, &along, count);
+            let strips = mesh.strips(faces, along, count);
             let of_column = |column: usize| {
                 let parts = strips.iter().map(|strip| squares(&strip.patch, column).map(|square| strip.part * square));
                 let [all, left] = parts.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
@@ -59,6 +82,6 @@ impl Warp {
             };
             (0..responses.ncols()).map(of_column).fold(0.0, f64::max)
         });
-        Some(Self { left_out: left_out.collect() })
+        left_out.collect()
     }
 }

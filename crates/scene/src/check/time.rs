@@ -5,7 +5,7 @@ use dynamics::{Method, Rows, StepControl, SystemScheme};
 use super::Check;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::methods::{METHODS, method_named, system_scheme_named};
+use crate::methods::{METHODS, is_of_lone_bodies, method_named, system_scheme_named};
 use crate::scene::{Body, Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 use crate::text::shorten::shorten;
@@ -55,7 +55,7 @@ impl Check<'_> {
         Ok(Time { end, control, method, system_scheme })
     }
 
-    /// Bodies in joints move by `radau`, which needs no name, or by `gauss`.
+    /// Bodies in joints move by `radau`, which needs no name, by `gauss` or by `rkmk4`.
     fn scheme_of_ties(
         &self,
         formulation: Option<Formulation>,
@@ -72,7 +72,7 @@ impl Check<'_> {
             }
             (_, Some(Scheme(name))) => match system_scheme_named(name) {
                 Some(scheme) => Ok(scheme),
-                None => refuse("scheme", name, "`radau`, `gauss`, or none"),
+                None => refuse("scheme", name, "`radau`, `gauss`, `rkmk4`, or none"),
             },
             _ => Ok(SystemScheme::default()),
         }
@@ -87,7 +87,7 @@ impl Check<'_> {
                 Method::EXPONENTIAL
             });
         };
-        if system_scheme_named(name).is_some() {
+        if !is_of_lone_bodies(name) {
             return Err(self.document.place("time.scheme").refuse(
                 format!("the scheme `{name}` without joints, springs and bushings"),
                 "a scheme of a body alone",

@@ -122,6 +122,19 @@ impl MarkerTangent {
     }
 }
 
+impl MarkerTangent {
+    /// Adds the stiffness of the modes by a force and a moment (global, at the marker), that of their stress: f_i K_i + t_i K'_i
+    /// (nf×nf).
+    pub fn add_stiffening(&self, [force, moment]: [&Vector3<f64>; 2], to: &mut Mat<f64>) {
+        let [f, t] = [force, moment].map(|vector| self.body_from_global * vector);
+        for (second_order, vector) in self.second_order.iter().zip([&f, &self.tangent.tr_mul(&t)]) {
+            if let Some(second_order) = second_order {
+                second_order.add_stiffness(1.0, vector, to.as_mut());
+            }
+        }
+    }
+}
+
 /// ∂(T(θ)ᵀ t)/∂θ, where Tᵀt = t − a θ×t + b θ×(θ×t).
 fn turned_back_change(theta: &Vector3<f64>, t: &Vector3<f64>) -> Matrix3<f64> {
     let square = theta.norm_squared();

@@ -2,33 +2,18 @@
 
 use crate::conservative::part;
 use crate::system::collocation::STAGES;
+use crate::system::description::System;
 use crate::system::joint::work::JointWork;
 use crate::system::radau::SystemMotion;
+use crate::system::radau::stage_rates::StageRates;
+use crate::system::stage::Stage;
 
 impl SystemMotion {
-    /// Finds the rates at the stages of a step. What joints and elements do to a body counts as its loads do, so that its balances
-    /// close.
+    /// Finds the rates at the stages of a step.
     pub(super) fn find_stage_rates(&mut self) {
         let Self { stages, multipliers, system, stage_rates, .. } = self;
         for ((stage, lambda), rates) in stages.iter_mut().zip(&*multipliers).zip(stage_rates) {
-            stage.find_y_rates(system, lambda, &mut rates.y);
-            let mut of_rows = lambda.iter().zip(&stage.constraints.own_rates);
-            for (joint, powers) in system.connections.joints.iter().zip(&mut rates.joints) {
-                let drive = of_rows.by_ref().take(joint.row_count()).map(|(lambda, rate)| -lambda * rate).sum();
-                *powers = JointWork { drive, ..JointWork::default() };
-            }
-            for ((joint, ..), power) in system.connections.joint_forces().zip(&stage.joint_powers) {
-                let powers = &mut rates.joints[joint];
-                powers.drive += power.motor;
-                powers.spring += power.spring;
-                powers.loss -= power.friction;
-            }
-            rates.elements = stage.element_power;
-            stage.find_joint_forces(lambda);
-            for (b, rates) in rates.bodies.iter_mut().enumerate() {
-                rates.copy_from_slice(stage.evaluations[b].rates.slow());
-                stage.add_joint_exchange(system, b, rates);
-            }
+            rates.find(system, stage, lambda);
         }
     }
 
@@ -51,5 +36,44 @@ impl SystemMotion {
                 list.set_slow(&slow);
             }
         }
+    }
+}
+
+impl StageRates {
+    /// Finds the rates at a stage with these multipliers. What joints and elements do to a body counts as its loads do, so that its
+    /// balances close.
+    pub(super) fn find(&mut self, system: &System, stage: &mut Stage, lambda: &[f64]) {
+        stage.find_y_rates(system, lambda, &mut self.y);
+        let mut of_rows = lambda.iter().zip(&stage.constraints.own_rates);
+        for (joint, powers) in system.connections.joints.iter().zip(&mut self.joints) {
+            let drive = of_rows.by_ref().take(joint.row_count()).map(|(lambda, rate)| -lambda * rate).sum();
+            *powers = JointWork { drive, ..JointWork::default() };
+        }
+        for ((joint, ..), power) in system.connections.joint_forces().zip(&stage.joint_powers) {
+            let powers = &mut self.joints[joint];
+            powers.drive += power.motor;
+            powers.spring += power.spring;
+            powers.loss -= power.friction;
+        }
+        self.elements = stage.element_power;
+        stage.find_joint_forces(lambda);
+        for (b, rates) in self.bodies.iter_mut().enumerate() {
+            rates.copy_from_slice(stage.evaluations[b].rates.slow());
+            stage.add_joint_exchange(system, b, rates);
+        }
+    }
+
+    /// Takes the mean of its rates and others.
+    pub(super) fn average(&mut self, other: &Self) {
+        let mean = |own: &mut f64, other: &f64| *own = 0.5 * (*own + other);
+        let of_bodies = self.bodies.iter_mut().flatten().zip(other.bodies.iter().flatten());
+        of_bodies.for_each(|(own, other)| mean(own, other));
+        self.y.iter_mut().zip(&other.y).for_each(|(own, other)| mean(own, other));
+        for (own, other) in self.joints.iter_mut().zip(&other.joints) {
+            mean(&mut own.drive, &other.drive);
+            mean(&mut own.spring, &other.spring);
+            mean(&mut own.loss, &other.loss);
+        }
+        mean(&mut self.elements, &other.elements);
     }
 }

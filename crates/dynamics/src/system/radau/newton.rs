@@ -118,7 +118,7 @@ impl SystemMotion {
             largest_energy,
             ..
         } = self;
-        let Room { real, complex, y_rates, change: residuals } = room;
+        let Room { real, complex, y_rates, change: residuals, .. } = room;
         // Residuals in the axes of the bodies at each stage, transformed.
         real.clear();
         complex.clear();

@@ -4,8 +4,10 @@ use nalgebra::Vector3;
 
 use crate::body::motion_state::MotionState;
 use crate::body::shapes::PointShapes;
+use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
 use crate::history::positive;
+use crate::scheme::mode_limit::stable_step_of_modes;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
@@ -53,7 +55,12 @@ impl SystemSetup {
     pub(super) fn check(&self) -> Result<(), SetupError> {
         positive("the end", self.end)?;
         match self.control {
-            StepControl::Fixed(step) => positive("the step", step)?,
+            StepControl::Fixed(step) => {
+                positive("the step", step)?;
+                if let Some(ShapeLimit { body, frequency, limit }) = self.shape_limit().filter(|of| of.limit < step) {
+                    return Err(SetupError::StepBeyondBody { step, limit, body: body + 1, frequency });
+                }
+            }
             StepControl::Tolerance(tolerance) => positive("the tolerance", tolerance)?,
         }
         match self.rows {
@@ -61,6 +68,32 @@ impl SystemSetup {
             Rows::Interval(interval) => positive("the interval of the rows", interval),
         }
     }
+
+    /// The limit that shapes set for the steps, if the scheme is one that they limit.
+    pub(super) fn shape_limit(&self) -> Option<ShapeLimit> {
+        if self.scheme != SystemScheme::Rkmk4 {
+            return None;
+        }
+        let of_body = |(body, of): (usize, &ConservativeBody)| {
+            let (mode, limit) = stable_step_of_modes(&of.circular_frequencies, &of.damping_ratios);
+            let omega = of.circular_frequencies.get(mode)?;
+            Some(ShapeLimit { body, frequency: omega / std::f64::consts::TAU, limit })
+        };
+        let limits = self.system.bodies().iter().enumerate().filter_map(of_body);
+        limits.min_by(|a, b| a.limit.total_cmp(&b.limit))
+    }
+}
+
+/// The longest step of an explicit scheme in which no shape of a body grows. Joints do not make shapes faster; stiff springs and
+/// bushings do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShapeLimit {
+    /// The body with the fastest shape, by its number in the system.
+    pub body: usize,
+    /// Frequency of that shape, cycles per time.
+    pub frequency: f64,
+    /// The longest step.
+    pub limit: f64,
 }
 
 /// Largest distance of bodies from the first, or the largest radius of gyration.

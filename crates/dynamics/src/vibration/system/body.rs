@@ -1,4 +1,4 @@
-//! One body in the linearised equations: Eqs. (L1) and (L2) of `docs/method/systems.md`.
+//! One body in the linearised equations: Eqs. (L1), (L2) and (L9) of `docs/method/systems.md`.
 
 use faer::Mat;
 use modal::ReducedBody;
@@ -20,12 +20,12 @@ pub(crate) struct BodyTerms {
     pub stiffness: Mat<f64>,
     /// L: δv = ξ̇ + L ξ.
     pub convection: Mat<f64>,
-    /// Forces of inertia, modes and loads in steady motion.
+    /// Forces of inertia, modes and loads in its motion.
     pub forces: Vec<f64>,
 }
 
 impl BodyTerms {
-    /// At a time, in steady motion.
+    /// At a time, in its motion.
     pub fn new(body: &ConservativeBody, at: &BodyConfiguration, time: f64) -> Self {
         let nf = at.q.len();
         let n = 6 + nf;
@@ -45,15 +45,7 @@ impl BodyTerms {
             (_, 3..6) => inertia.coupling[j - 3][i - 6],
             _ => f64::from(u8::from(i == j)),
         });
-        // Changes of momenta by those of q at the same velocities.
-        let mut by_modes = Mat::zeros(n, nf);
-        for k in 0..nf {
-            let turned = 2.0 * inertia.slope(k) * omega;
-            (0..3).for_each(|i| by_modes[(3 + i, k)] = turned[i]);
-            for i in 0..nf {
-                by_modes[(6 + i, k)] = (0..3).map(|axis| omega[axis] * inertia.gyroscopic[axis][(i, k)]).sum();
-            }
-        }
+        let by_modes = inertia.change_of_momenta(omega);
         let mut convection = Mat::zeros(n, n);
         put(&mut convection, [0, 0], &cross);
         put(&mut convection, [0, 3], &cross_matrix(&at.velocity));
@@ -104,8 +96,31 @@ impl BodyTerms {
             forces[6 + k] = omega.dot(&(inertia.slope(k) * omega)) - strain;
         }
         let mut terms = Self { mass, damping, stiffness, convection, forces };
+        terms.add_acceleration(&inertia, at);
         terms.add_loads(body, at, time);
         terms
+    }
+
+    /// Adds what the rates of V and ω do: −M v' to the forces, and M L' + ∂(M v')/∂q to K.
+    fn add_acceleration(&mut self, inertia: &InertiaWhere, at: &BodyConfiguration) {
+        let [velocity, omega] = [&at.velocity_rate, &at.omega_rate];
+        if *velocity == Vector3::zeros() && *omega == Vector3::zeros() {
+            return;
+        }
+        let n = self.forces.len();
+        let mut convection_rate = Mat::zeros(n, n);
+        put(&mut convection_rate, [0, 0], &cross_matrix(omega));
+        put(&mut convection_rate, [0, 3], &cross_matrix(velocity));
+        put(&mut convection_rate, [3, 3], &cross_matrix(omega));
+        self.stiffness += &self.mass * &convection_rate;
+        let by_modes = inertia.change_of_momenta(omega);
+        for (i, k) in (0..n - 6).flat_map(|k| (0..n).map(move |i| (i, k))) {
+            self.stiffness[(i, 6 + k)] += by_modes[(i, k)];
+        }
+        for (i, force) in self.forces.iter_mut().enumerate() {
+            let rates = velocity.iter().chain(omega).enumerate();
+            *force -= rates.map(|(k, rate)| self.mass[(i, k)] * rate).sum::<f64>();
+        }
     }
 
     /// Adds the loads of the body.
@@ -137,6 +152,16 @@ impl InertiaWhere {
     /// ½ ∂J/∂q_k
     fn slope(&self, k: usize) -> Matrix3<f64> {
         symmetric(|pair| self.first[pair][k])
+    }
+
+    /// Changes of the momenta of a spin by those of q (n×nf): ∂(M v)/∂q.
+    fn change_of_momenta(&self, omega: &Vector3<f64>) -> Mat<f64> {
+        let nf = self.first[0].len();
+        Mat::from_fn(6 + nf, nf, |i, k| match i {
+            0..3 => 0.0,
+            3..6 => (2.0 * self.slope(k) * omega)[i - 3],
+            _ => (0..3).map(|axis| omega[axis] * self.gyroscopic[axis][(i - 6, k)]).sum(),
+        })
     }
 
     /// ½ ∂²J/∂q_k∂q_j

@@ -7,8 +7,9 @@ use crate::conservative::{get, part};
 use crate::system::description::System;
 use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
 use crate::system::radau::SystemMotion;
+use crate::system::stage::vector;
 
-/// The bodies of a system at one time, in steady motion: modes do not move.
+/// The bodies of a system at one time; modes do not move.
 #[derive(Debug, Clone)]
 pub(crate) struct Configuration {
     pub time: f64,
@@ -27,6 +28,9 @@ pub(crate) struct BodyConfiguration {
     /// V and ω in body axes.
     pub velocity: Vector3<f64>,
     pub omega: Vector3<f64>,
+    /// V' and ω', the rates of their components; zero in a common spin.
+    pub velocity_rate: Vector3<f64>,
+    pub omega_rate: Vector3<f64>,
 }
 
 /// A turn about an axis that does not move, at a steady speed.
@@ -52,6 +56,22 @@ impl CommonSpin {
 impl Configuration {
     /// Where a motion is, in a common spin.
     pub fn of(motion: &SystemMotion, spin: &CommonSpin) -> Self {
+        let mut configuration = Self::still(motion);
+        configuration.spin(spin);
+        configuration
+    }
+
+    /// Where a motion is, with these velocities and their rates over the coordinates of all bodies, of which the modal ones do not count.
+    pub fn moving(motion: &SystemMotion, [velocities, rates]: [&[f64]; 2]) -> Self {
+        let mut configuration = Self::still(motion);
+        for (body, first) in configuration.bodies.iter_mut().zip(&motion.system().first) {
+            [body.velocity, body.omega] = [0, 3].map(|part| vector(velocities, first + part));
+            [body.velocity_rate, body.omega_rate] = [0, 3].map(|part| vector(rates, first + part));
+        }
+        configuration
+    }
+
+    fn still(motion: &SystemMotion) -> Self {
         let system = motion.system();
         let of_body = |(body, state): (&crate::ConservativeBody, &crate::state::State)| {
             let list = body.list(state);
@@ -62,15 +82,15 @@ impl Configuration {
                 q: list.q().to_vec(),
                 velocity: Vector3::zeros(),
                 omega: Vector3::zeros(),
+                velocity_rate: Vector3::zeros(),
+                omega_rate: Vector3::zeros(),
             }
         };
-        let mut configuration = Self {
+        Self {
             time: motion.time(),
             bodies: system.bodies.iter().zip(&motion.bodies).map(of_body).collect(),
             turns: (0..system.joints().len()).map(|joint| motion.joint_coordinates(joint).turn).collect(),
-        };
-        configuration.spin(spin);
-        configuration
+        }
     }
 
     /// Gives the bodies the velocities of a common spin.
@@ -81,16 +101,18 @@ impl Configuration {
         }
     }
 
-    /// Moves the bodies by ρ and φ in body axes, and δq, and gives them the velocities of a common spin.
-    pub fn change(&mut self, system: &System, by: &[f64], spin: &CommonSpin) {
+    /// Moves the bodies by ρ and φ in body axes, and δq, and gives them the velocities of a common spin, if there is one.
+    pub fn change(&mut self, system: &System, by: &[f64], spin: Option<&CommonSpin>) {
         for (body, first) in self.bodies.iter_mut().zip(&system.first) {
-            let [moved, turned] = [0, 3].map(|part| crate::system::stage::vector(by, first + part));
+            let [moved, turned] = [0, 3].map(|part| vector(by, first + part));
             body.origin += body.body_from_global.tr_mul(&moved);
             body.attitude = body.attitude.advanced_by(&turned);
             body.body_from_global = body.attitude.global_to_body();
             body.q.iter_mut().zip(&by[first + 6..]).for_each(|(q, change)| *q += change);
         }
-        self.spin(spin);
+        if let Some(spin) = spin {
+            self.spin(spin);
+        }
     }
 
     /// The place of a body.

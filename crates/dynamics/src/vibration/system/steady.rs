@@ -1,5 +1,7 @@
 //! The steady state of a system, Eq. (L7) of `docs/method/systems.md`: its bodies deformed as their loads, joints and spin ask.
 //!
+//! Eq. (L9) has the same for bodies that move against each other, whose accelerations are those of rigid bodies.
+//!
 //! Newton's method with the exact stiffness, over the motions that deform bodies: those that deform none stay where the system has
 //! been put.
 
@@ -40,7 +42,7 @@ pub struct SteadyState {
     pub linear: Linearization,
     /// The forces that do not balance.
     pub unbalance: Unbalance,
-    spin: CommonSpin,
+    spin: Option<CommonSpin>,
 }
 
 impl SystemMotion {
@@ -50,7 +52,18 @@ impl SystemMotion {
     /// # Errors
     /// [`SteadyError`].
     pub fn steady_state(&self, spin: &CommonSpin) -> Result<SteadyState, SteadyError> {
-        SteadyState::near(self, Configuration::of(self, spin), spin)
+        SteadyState::near(self, Configuration::of(self, spin), Some(spin))
+    }
+
+    /// The state of all bodies in the motion that they have: each deformed as the forces of that motion and of its joints ask, with
+    /// accelerations as of rigid bodies. Its linearised equations are those of this instant, as if it lasted.
+    ///
+    /// # Errors
+    /// [`SteadyError`].
+    pub fn moving_state(&self) -> Result<SteadyState, SteadyError> {
+        let mut motion = self.clone();
+        let rates = motion.rigid_accelerations().map_err(|_| SteadyError::Inertia)?;
+        SteadyState::near(self, Configuration::moving(self, [&motion.first.velocities, &rates]), None)
     }
 
     /// The generalised forces, over the coordinates of all bodies, of a unit force or moment along a coordinate of a joint: its change is
@@ -67,9 +80,9 @@ impl SystemMotion {
 }
 
 impl SteadyState {
-    /// The common spin.
-    pub fn spin(&self) -> &CommonSpin {
-        &self.spin
+    /// The common spin; `None` where bodies move against each other.
+    pub fn spin(&self) -> Option<&CommonSpin> {
+        self.spin.as_ref()
     }
 
     /// Modal displacements of a body.
@@ -87,12 +100,14 @@ impl SteadyState {
         self.terms.is_implied.iter().filter(|is_implied| **is_implied).count()
     }
 
-    fn near(motion: &SystemMotion, mut at: Configuration, spin: &CommonSpin) -> Result<Self, SteadyError> {
+    fn near(motion: &SystemMotion, mut at: Configuration, spin: Option<&CommonSpin>) -> Result<Self, SteadyError> {
         let system = motion.system();
         let sizes: Vec<f64> = system.bodies.iter().map(crate::ConservativeBody::radius_of_gyration).collect();
         for pass in 0.. {
             let terms = Terms::new(system, &at)?;
-            check_spin(motion, &terms, &at, &sizes)?;
+            if spin.is_some() {
+                check_spin(motion, &terms, &at, &sizes)?;
+            }
             let linear = Linearization::new(system, &terms, Vec::new())?;
             let mut change = terms.closing(system, &terms.residuals);
             let mut forces = linear.project(&terms.forces);
@@ -108,7 +123,7 @@ impl SteadyState {
                 let springs = springs(system, &at);
                 let linear = Linearization { springs, ..linear };
                 let unbalance = unbalance(motion, &linear, &terms);
-                return Ok(Self { configuration: at, terms, linear, unbalance, spin: *spin });
+                return Ok(Self { configuration: at, terms, linear, unbalance, spin: spin.copied() });
             }
             if pass == PASSES {
                 break;

@@ -10,7 +10,7 @@ use crate::system::relaxed::rigid_inverses;
 use crate::vibration::system::body::BodyTerms;
 use crate::vibration::system::configuration::Configuration;
 use crate::vibration::system::error::SteadyError;
-use crate::vibration::system::tie::{Sums, Tie, add_block};
+use crate::vibration::system::tie::{Borne, Sums, Tie, add_block};
 
 /// M ξ̈ + C ξ̇ + K ξ = Gᵀ δλ with G ξ = 0, over the changes of place ξ of all bodies.
 #[derive(Debug, Clone)]
@@ -23,16 +23,20 @@ pub(crate) struct Terms {
     pub damping: Mat<f64>,
     /// K without Λ.
     pub stiffness: Mat<f64>,
+    /// K without Λ if no forces acted: springs, bushings and their like alone.
+    pub unloaded: Mat<f64>,
+    /// What the forces of joints and elements do to each body; K has their stiffening.
+    pub borne: Vec<Borne>,
     /// G, and g.
     pub rows: Mat<f64>,
     pub residuals: Vec<f64>,
-    /// λ of steady motion; zero for rows that others imply.
+    /// λ of the motion; zero for rows that others imply.
     pub multipliers: Vec<f64>,
     /// True for rows that others imply.
     pub is_implied: Vec<bool>,
-    /// Generalised forces of steady motion, but for those of the multipliers.
+    /// Generalised forces in the motion, but for those of the multipliers.
     pub forces: Vec<f64>,
-    /// G v: rates of the rows in the steady motion, but for those of drives.
+    /// G v: rates of the rows in the motion, but for those of drives.
     pub row_rates: Vec<f64>,
     /// Number of motions that deform no body.
     pub rigid_motions: usize,
@@ -42,7 +46,7 @@ pub(crate) struct Terms {
 }
 
 impl Terms {
-    /// Where the bodies are, in their steady motion.
+    /// Where the bodies are, in their motion.
     pub fn new(system: &System, at: &Configuration) -> Result<Self, SteadyError> {
         let n = system.coordinates();
         let bodies: Vec<BodyTerms> =
@@ -70,6 +74,8 @@ impl Terms {
         let mut terms = Self {
             damping,
             stiffness,
+            unloaded: Mat::zeros(n, n),
+            borne: system.first.windows(2).map(|range| Borne::nothing(range[1] - range[0] - 6)).collect(),
             rows,
             residuals: constraints.residuals.clone(),
             multipliers: vec![0.0; m],
@@ -91,6 +97,7 @@ impl Terms {
         terms.factor(system, &constraints, &bodies)?;
         (terms.masses, terms.convections) = bodies.into_iter().map(|terms| (terms.mass, terms.convection)).unzip();
         sources.iter().for_each(|tie| terms.add(system, tie));
+        sources.iter().for_each(|tie| tie.add_law(&mut terms.unloaded));
         terms.find_multipliers(system);
         let held: Vec<Tie> = row_ties(system, at, &terms.multipliers);
         let forces = terms.forces.clone();
@@ -105,6 +112,7 @@ impl Terms {
         let n = system.coordinates();
         let (mut by_place, mut by_velocity) = (Mat::zeros(n, n), Mat::zeros(n, n));
         tie.add_to(&mut Sums { forces: &mut self.forces, by_place: &mut by_place, by_velocity: &mut by_velocity });
+        tie.add_borne(&mut self.borne);
         self.stiffness -= by_place;
         for (convection, first) in self.convections.iter().zip(&system.first) {
             let columns = convection.ncols();

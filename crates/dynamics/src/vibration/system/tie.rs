@@ -1,6 +1,6 @@
 //! Joints and force elements in the linearised equations: Eqs. (L3) to (L5) of `docs/method/systems.md`.
 
-use faer::Mat;
+use faer::{Mat, Scale};
 use nalgebra::Vector3;
 
 use crate::conservative::ConservativeBody;
@@ -30,9 +30,27 @@ pub(crate) struct Tie {
     by_velocity: Mat<f64>,
 }
 
+/// What the forces of ties do to a body.
+#[derive(Debug, Clone)]
+pub(crate) struct Borne {
+    /// The largest force and moment on one marker.
+    pub force: f64,
+    pub moment: f64,
+    /// The part of K that is the stress of these forces (nf×nf).
+    pub stiffening: Mat<f64>,
+}
+
+impl Borne {
+    /// Nothing, on a body with so many modes.
+    pub fn nothing(modes: usize) -> Self {
+        Self { force: 0.0, moment: 0.0, stiffening: Mat::zeros(modes, modes) }
+    }
+}
+
 /// A marker that is not on the ground.
 #[derive(Debug, Clone)]
 struct TieEnd {
+    body: usize,
     first: usize,
     tangent: MarkerTangent,
 }
@@ -53,7 +71,7 @@ impl Tie {
             let body = marker.body()?;
             let of = &at.bodies[body];
             let tangent = marker.tangent(&at.place(body), of.q.len(), [&of.velocity, &of.omega]);
-            Some((TieEnd { first: system.first[body], tangent }, &of.velocity, &of.omega))
+            Some((TieEnd { body, first: system.first[body], tangent }, &of.velocity, &of.omega))
         };
         let mut ends = Vec::new();
         let mut velocities = Vec::new();
@@ -234,11 +252,30 @@ impl Tie {
         }
     }
 
+    /// Adds the stiffness of its own law, without what its forces do where bodies turn and bend.
+    pub fn add_law(&self, stiffness: &mut Mat<f64>) {
+        for ((k, end), (l, other)) in self.on_bodies().flat_map(|one| self.on_bodies().map(move |other| (one, other))) {
+            let by_motion = self.by_motion.get(6 * k..6 * k + 6, 6 * l..6 * l + 6);
+            let block = end.tangent.motion.transpose() * by_motion * &other.tangent.motion * Scale(-1.0);
+            add_block(stiffness, [end.first, other.first], &block);
+        }
+    }
+
+    /// Adds what its forces do to each body.
+    pub fn add_borne(&self, borne: &mut [Borne]) {
+        for (k, end) in self.on_bodies() {
+            let [force, moment] = &self.wrenches[k];
+            let of = &mut borne[end.body];
+            end.tangent.add_stiffening([force, moment], &mut of.stiffening);
+            (of.force, of.moment) = (of.force.max(force.norm()), of.moment.max(moment.norm()));
+        }
+    }
+
     /// Displacements and turns of the markers by changes of place of all bodies, real or imaginary parts.
     pub fn motions(&self, changes: &[f64]) -> Vec<f64> {
         let mut motions = vec![0.0; 6 * self.ends.len()];
         for (k, end) in self.ends.iter().enumerate() {
-            let Some(TieEnd { first, tangent }) = end else { continue };
+            let Some(TieEnd { first, tangent, .. }) = end else { continue };
             for j in 0..tangent.motion.ncols() {
                 (0..6).for_each(|i| motions[6 * k + i] += tangent.motion[(i, j)] * changes[first + j]);
             }

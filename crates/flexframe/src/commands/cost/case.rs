@@ -80,7 +80,9 @@ impl<'a> PreparedScene<'a> {
             match self.try_begin(way, StepControl::Fixed(longest)) {
                 Err(BeginError::Start { source, .. }) => match *source {
                     StartError::Setup(
-                        SetupError::StepBeyondLimit { limit, .. } | SetupError::StepBeyondSpin { limit, .. },
+                        SetupError::StepBeyondLimit { limit, .. }
+                        | SetupError::StepBeyondBody { limit, .. }
+                        | SetupError::StepBeyondSpin { limit, .. },
                     ) if limit < longest => longest = limit,
                     _ => break,
                 },

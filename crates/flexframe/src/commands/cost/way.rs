@@ -48,6 +48,9 @@ impl Way {
 
     /// True if the frequencies of the modes limit its steps.
     pub fn is_limited_by_modes(self) -> bool {
-        matches!(self, Self::Alone(method) if method.is_limited_by_modes())
+        match self {
+            Self::Alone(method) => method.is_limited_by_modes(),
+            Self::Tied(scheme) => scheme == SystemScheme::Rkmk4,
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use dynamics::SystemSimulation;
+use dynamics::{ShapeLimit, SystemSimulation};
 use serde::Serialize;
 
 use crate::files::json;
@@ -28,6 +28,21 @@ pub struct TiedReport {
     pub assembled: Vec<AssembledReport>,
     /// Steps taken.
     pub steps: u64,
+    /// The limit that the shapes of a body set for the steps of an explicit scheme, where steps came near to it.
+    pub step_limit: Option<StepLimitReport>,
+}
+
+/// The longest step that the fastest shape of a body allows.
+#[derive(Debug, Clone, Serialize)]
+pub struct StepLimitReport {
+    /// The body.
+    pub body: String,
+    /// Frequency of the shape, cycles per time.
+    #[serde(serialize_with = "json::number")]
+    pub frequency: f64,
+    /// The longest step.
+    #[serde(serialize_with = "json::number")]
+    pub limit: f64,
 }
 
 /// Change of a body at the beginning.
@@ -73,6 +88,11 @@ impl TiedReport {
             redundant: simulation.redundant().to_vec(),
             assembled: assembled.filter(is_told).collect(),
             steps: simulation.stats().accepted,
+            step_limit: simulation.met_shape_limit().map(|ShapeLimit { body, frequency, limit }| StepLimitReport {
+                body: bodies[body].clone(),
+                frequency,
+                limit,
+            }),
             bodies,
         }
     }
@@ -107,6 +127,14 @@ impl fmt::Display for TiedReport {
                 f,
                 "  closed   {body} moved by {moved} and turned by {turned} rad, its velocity changed by {velocity} and \
                  its angular velocity by {angular_velocity} rad per time, so that the joints hold at the start"
+            )?;
+        }
+        if let Some(StepLimitReport { body, frequency, limit }) = &self.step_limit {
+            let [frequency, limit] = [frequency, limit].map(|x| quantity(format!("{x:.3e}").parse().unwrap_or(*x)));
+            writeln!(
+                f,
+                "  steps    of `rkmk4` are at most {limit} long, which the fastest shape of {body} allows ({frequency} cycles per \
+                 time); `radau` has no such limit"
             )?;
         }
         Ok(())

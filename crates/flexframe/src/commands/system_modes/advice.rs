@@ -2,9 +2,12 @@
 
 use std::fmt;
 
+use dynamics::SteadyError;
+use scene::Scene;
 use serde::Serialize;
 
 use super::report::{SystemModeReport, SystemModesReport};
+use super::stiffening::StiffenedBody;
 use crate::report::quantity;
 
 /// Part of the elastic energy of a mode below which a body is as good as rigid in it.
@@ -17,6 +20,8 @@ pub struct SystemAdvice {
     pub bodies: Vec<String>,
     /// Sentences about them.
     pub sentences: Vec<String>,
+    /// The flexible bodies in the motion that they start with; `None` where their forces find no rest.
+    pub stiffening: Option<Vec<StiffenedBody>>,
 }
 
 /// Reports on each body of a scene, and advice on its systems.
@@ -83,7 +88,28 @@ impl SystemAdvice {
             ));
         }
         sentences.extend(report.warnings.iter().cloned());
-        Self { bodies: report.bodies.clone(), sentences }
+        Self { bodies: report.bodies.clone(), sentences, stiffening: None }
+    }
+
+    /// The same with what the forces of the start do to each body.
+    pub(super) fn with_stiffening(
+        mut self,
+        found: Result<Vec<StiffenedBody>, SteadyError>,
+        scene: &Scene,
+        frequency_unit: &str,
+    ) -> Self {
+        match found {
+            Ok(found) => {
+                let tolerance = scene.effects.tolerance;
+                let sentence = |body: &StiffenedBody| body.sentence((&scene.units).into(), frequency_unit, tolerance);
+                self.sentences.extend(found.iter().map(sentence));
+                self.stiffening = Some(found);
+            }
+            Err(error) => {
+                self.sentences.push(format!("what the forces of the start do to stiffness is not known: {error}"))
+            }
+        }
+        self
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use dynamics::SteadyError;
+use dynamics::{SteadyError, StepError};
 use model::{BuildError, StartError};
 
 /// Vibrations of a system that could not be found.
@@ -15,6 +15,9 @@ pub enum SystemModesError {
     /// The bodies cannot be put together.
     #[error("{}", source.in_scene(scene))]
     Setup { scene: PathBuf, source: Box<StartError> },
+    /// The run does not come to the time that is asked for.
+    #[error("{}: {source}", scene.display())]
+    Run { scene: PathBuf, source: Box<StepError> },
     /// The system has no steady state, or its vibrations cannot be found.
     #[error("{}: {source}", scene.display())]
     Steady { scene: PathBuf, source: SteadyError },

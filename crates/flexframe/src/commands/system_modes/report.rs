@@ -41,6 +41,9 @@ pub struct SystemModesReport {
     pub frequency_unit: String,
     /// Label of the unit of time.
     pub time_unit: String,
+    /// Time of the run at which the system stands so.
+    #[serde(serialize_with = "json::number")]
+    pub time: f64,
     /// Names of the bodies.
     pub bodies: Vec<String>,
     /// Names of the joints.
@@ -115,6 +118,7 @@ impl SystemModesReport {
             title: scene.title.clone(),
             frequency_unit: frequency_unit(time),
             time_unit: time.clone(),
+            time: motion.simulation.time(),
             rows: steady.multipliers().len(),
             redundant: motion.simulation.redundant().to_vec(),
             degrees_of_freedom: steady.linear.size(),
@@ -212,6 +216,9 @@ impl fmt::Display for SystemModesReport {
         writeln!(f, "{}", self.title)?;
         let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
         writeln!(f, "  bodies   {}", list(&self.bodies))?;
+        if self.time > 0.0 {
+            writeln!(f, "  place    at the time {} {} of a run, at rest there", quantity(self.time), self.time_unit)?;
+        }
         let elements = if self.elements.is_empty() { String::new() } else { format!("; {}", self.elements.join(", ")) };
         writeln!(f, "  joints   {}{elements}: {} rows", list(&self.joints), self.rows)?;
         for (name, rows) in &self.redundant {

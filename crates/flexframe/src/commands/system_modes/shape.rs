@@ -22,6 +22,8 @@ pub(crate) struct SystemSurface<'a> {
 }
 
 struct Part<'a> {
+    /// Number of the body in the scene.
+    number: usize,
     surface: Surface,
     /// Origin of the body frame, mesh axes.
     origin: Vector3<f64>,
@@ -58,9 +60,18 @@ impl<'a> SystemSurface<'a> {
             made.edges.extend(surface.edges.iter().map(|ends| ends.map(|end| end + offset)));
             let bent = surface.displacements(&state.modal_displacement);
             made.points.extend(surface.placed(&origin, &state.origin_global, &state.attitude, &bent));
-            made.parts.push(Part { surface, origin, state, range });
+            made.parts.push(Part { number: *number, surface, origin, state, range });
         }
         Ok(made)
+    }
+
+    /// Number in the scene, triangles and number of points of each body that has a surface, in the order of the points.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = (usize, &[[u32; 3]], usize)> {
+        let of_part = |part| {
+            let Part { number, surface, .. }: &Part<'_> = part;
+            (*number, &surface.triangles[..], surface.shapes.positions.len())
+        };
+        self.parts.iter().map(of_part)
     }
 
     /// Length of the diagonal of the box around it.
