@@ -89,7 +89,7 @@ pub use system::simulation::setup::{Assembled, SystemSetup};
 pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 pub use vibration::system::{
-    CommonSpin, Linearization, Spring, SteadyError, SteadyState, SystemMode, Unbalance, Vibrations,
+    CommonSpin, Linearization, ReactionRows, Spring, SteadyError, SteadyState, SystemMode, Unbalance, Vibrations,
 };
 
 /// Crates whose types are in the interface.
