@@ -14,13 +14,14 @@ mod rigid;
 mod settings;
 mod state;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use dynamics::{Initial, MotionState};
 use linear::{SecondOrder, StateSpace};
 use model::{BuildProgress, Builder, Model};
 use nalgebra::Vector3;
-use scene::System;
+use scene::{Scene, System};
 
 use at_time::{moving_modes, states_at};
 pub use error::LinearizeError;
@@ -49,8 +50,13 @@ pub fn linear_model(
     settings: &LinearSettings,
     mut progress: impl FnMut(BuildProgress),
 ) -> Result<LinearModel, LinearizeError> {
+    // A motion of a free body that the scene does not call for is one that an input may.
+    let scenes: Vec<Cow<'_, Scene>> = match &system.bodies[..] {
+        [scene] if scene.constraint.is_none() => vec![Cow::Owned(scene.clone().for_unknown_forces())],
+        scenes => scenes.iter().map(Cow::Borrowed).collect(),
+    };
     let models: Vec<Model> =
-        system.bodies.iter().map(|scene| builder.build(scene, &mut progress)).collect::<Result<_, _>>()?;
+        scenes.iter().map(|scene| builder.build(scene, &mut progress)).collect::<Result<_, _>>()?;
     let refuse = |found: &str, help| LinearizeError::Refused {
         scene: system.bodies[0].path.clone(),
         found: found.to_owned(),
