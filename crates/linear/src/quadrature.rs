@@ -16,8 +16,11 @@ const GAUSS: [[f64; 2]; 4] = [
     [0.796_666_477_413_626_7, 0.222_381_034_453_374_5],
     [0.960_289_856_497_536_3, 0.101_228_536_290_376_26],
 ];
-/// A growth, or a decay, below this part of the fastest pole, or of the pole itself, is none.
-const NONE: [f64; 2] = [1e-11, 1e-9];
+/// A growth below this part of the fastest pole is none, or below that of the pole itself: double poles, as rigid motions have in a spin,
+/// have the root of rounding.
+const NO_GROWTH: [f64; 2] = [1e-10, 1e-6];
+/// A decay below this part of the pole is none.
+const NO_DECAY: f64 = 1e-6;
 /// Panels shorter than this part of the band's end are none.
 const LEAST: f64 = 1e-14;
 
@@ -46,8 +49,8 @@ impl Quadrature {
     pub fn of_poles([start, end]: [f64; 2], breaks: &[f64], poles: &[c64]) -> Result<Self, LinearError> {
         let fastest = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
         for pole in poles {
-            let grows = pole.re > NONE[0] * fastest;
-            let lasts = pole.re > -NONE[1] * pole.norm() || pole.norm() == 0.0;
+            let grows = pole.re > NO_GROWTH[0] * fastest && pole.re > NO_GROWTH[1] * pole.norm();
+            let lasts = pole.re > -NO_DECAY * pole.norm() || pole.norm() == 0.0;
             if grows || pole.re.is_nan() || (lasts && (start..=end).contains(&(pole.im.abs() / TAU))) {
                 return Err(LinearError::NotStable { real: pole.re, imaginary: pole.im.abs() });
             }
