@@ -173,7 +173,7 @@ python profile="release":
         echo "python: the library in the wheel has debugging information" >&2
         exit 1
     fi
-    .tools/wheel/bin/pip install -q pytest matplotlib pandas pandas-stubs xarray h5py mypy
+    .tools/wheel/bin/pip install -q pytest matplotlib pandas pandas-stubs xarray h5py mypy control
     FLEXFRAME="$built/flexframe" FLEXFRAME_EXAMPLES="$built/examples" FLEXFRAME_FIGURES="$PWD/out/python" \
         .tools/wheel/bin/python -m pytest -q -p no:cacheprovider crates/python
     ls target/wheels/flexframe-*.whl

@@ -269,7 +269,7 @@ enum Command {
         about: LinearArgs,
         /// Lower the order to N states, by balanced truncation (balanced:N; the summary says by how much a response is wrong at the most) or to
         /// the slowest modes with the static response of the others (modal:N). Rigid, undamped and unstable motions stay.
-        #[arg(long, value_name = "WAY:N", value_parser = reduction)]
+        #[arg(long, value_name = "WAY:N")]
         reduce: Option<Reduction>,
         /// The file: .mat (MATLAB, version 5) or .json [default: out/<name of the scene file>/linear.mat].
         #[arg(short, long, value_name = "FILE")]
@@ -1206,18 +1206,6 @@ fn band(text: &str) -> Result<[f64; 2], String> {
     let (start, end) = text.split_once(':').ok_or_else(expected)?;
     let [start, end] = [start, end].map(|number| finite(number.trim()));
     Ok([start.map_err(|_| expected())?, end.map_err(|_| expected())?])
-}
-
-/// A way to a model of lower order.
-fn reduction(text: &str) -> Result<Reduction, String> {
-    let expected = || "expected balanced:N or modal:N, such as balanced:12".to_owned();
-    let (way, order) = text.split_once(':').ok_or_else(expected)?;
-    let order = order.parse().ok().filter(|order: &usize| *order > 0).ok_or_else(expected)?;
-    match way {
-        "balanced" => Ok(Reduction::Balanced(order)),
-        "modal" => Ok(Reduction::Modal(order)),
-        _ => Err(expected()),
-    }
 }
 
 /// The refusal of a number of modes, at the option where that has replaced what the scene says.

@@ -62,9 +62,9 @@ impl StateSpace {
             while next < group.len() {
                 let at = group[next];
                 next += 1;
-                for other in 0..n {
+                for (other, is_free) in is_free.iter_mut().enumerate() {
                     let is_coupled = self.a[(at, other)] != 0.0 || self.a[(other, at)] != 0.0;
-                    if is_coupled && std::mem::take(&mut is_free[other]) {
+                    if is_coupled && std::mem::take(is_free) {
                         group.push(other);
                     }
                 }

@@ -295,7 +295,7 @@ fn eight_masses_respond_as_in_another_program() {
     let modes: Vec<(f64, f64)> = (1..=n)
         .map(|r| {
             let angle = std::f64::consts::PI * f64::from(r) / f64::from(n + 1);
-            let omega = 2.0 * (stiffness / mass as f64).sqrt() * (0.5 * angle).sin();
+            let omega = 2.0 * f64::sqrt(stiffness / mass) * (0.5 * angle).sin();
             (omega, (2.0 / (f64::from(n + 1) * mass)).sqrt() * (4.0 * angle).sin())
         })
         .collect();

@@ -25,7 +25,7 @@ use scene::{Scene, System};
 
 use at_time::{moving_modes, states_at};
 pub use error::LinearizeError;
-pub use reduction::Reduction;
+pub use reduction::{Reduced, Reduction};
 pub use report::LinearReport;
 pub use settings::LinearSettings;
 pub use state::State;

@@ -55,12 +55,14 @@ struct Pair {
     phase: Option<usize>,
 }
 
+/// Names of inputs, and their columns.
+type Inputs = Vec<(String, usize)>;
+
 /// Spectra of random inputs.
 #[derive(Debug, Clone)]
 pub struct Spectra {
     path: PathBuf,
-    /// Names of the inputs, and their columns.
-    inputs: Vec<(String, usize)>,
+    inputs: Inputs,
     pairs: Vec<Pair>,
     /// Rows: frequency, then the columns.
     rows: Vec<Vec<f64>>,
@@ -212,7 +214,7 @@ impl Spectra {
 }
 
 /// Inputs and pairs of a header.
-fn columns(path: &Path, header: &str) -> Result<(Vec<(String, usize)>, Vec<Pair>), SpectraError> {
+fn columns(path: &Path, header: &str) -> Result<(Inputs, Vec<Pair>), SpectraError> {
     let refuse = |found: String| Err(SpectraError::Header { path: path.to_owned(), found });
     let names: Vec<&str> = header.split(',').map(str::trim).collect();
     if names[0] != "frequency" || names.len() < 2 {
@@ -220,7 +222,7 @@ fn columns(path: &Path, header: &str) -> Result<(Vec<(String, usize)>, Vec<Pair>
     }
     let is_pair = |name: &str| name.starts_with("coherence ") || name.starts_with("phase ");
     let numbered = || names.iter().copied().enumerate().skip(1);
-    let inputs: Vec<(String, usize)> =
+    let inputs: Inputs =
         numbered().filter(|(_, name)| !is_pair(name)).map(|(column, name)| (name.to_owned(), column)).collect();
     if let Some((name, _)) = inputs.iter().enumerate().find_map(|(k, input)| {
         let again = inputs[..k].iter().any(|other| other.0 == input.0);
