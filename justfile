@@ -117,6 +117,7 @@ check-table:
 bench:
     cargo bench --quiet --package dynamics --bench steps
     cargo bench --quiet --package dynamics --bench chain
+    cargo bench --quiet --package linear --bench response
     cargo bench --quiet --package flexframe-cli --bench effects
 
 # The factor of K + sM and its solutions against faer's, in turn: the table of docs/evidence/factor.md (gmsh; ten minutes, on a quiet machine).
