@@ -119,6 +119,7 @@ check-table:
 bench:
     cargo bench --quiet --package dynamics --bench steps
     cargo bench --quiet --package dynamics --bench chain
+    cargo bench --quiet --package linear --bench response
     cargo bench --quiet --package flexframe-cli --bench effects
 
 # The factor of K + sM and its solutions against faer's, in turn: the table of docs/evidence/factor.md (gmsh; ten minutes, on a quiet machine).
@@ -175,7 +176,7 @@ python profile="release":
         echo "python: the library in the wheel has debugging information" >&2
         exit 1
     fi
-    .tools/wheel/bin/pip install -q pytest matplotlib pandas pandas-stubs xarray h5py mypy
+    .tools/wheel/bin/pip install -q pytest matplotlib pandas pandas-stubs xarray h5py mypy control
     FLEXFRAME="$built/flexframe" FLEXFRAME_EXAMPLES="$built/examples" FLEXFRAME_FIGURES="$PWD/out/python" \
         .tools/wheel/bin/python -m pytest -q -p no:cacheprovider crates/python
     ls target/wheels/flexframe-*.whl

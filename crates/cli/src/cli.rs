@@ -19,8 +19,9 @@ use flexframe::frequencies::Frequencies;
 use flexframe::frf::{self, FrfSettings};
 use flexframe::given_file::GivenFile;
 use flexframe::hand_over::{self, Form};
-use flexframe::linearize::{self, LinearSettings};
+use flexframe::linearize::{self, LinearSettings, Reduction};
 use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_results, outputs_of_scene, outputs_of_scenes};
+use flexframe::psd::{self, PsdSettings};
 use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::srs::{self, SrsSettings};
@@ -273,9 +274,10 @@ enum Command {
         scene: SceneArgs,
         #[command(flatten)]
         about: LinearArgs,
-        /// Order of the model, by balanced truncation; the summary says by how much a response is wrong at the most.
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-        order: Option<u64>,
+        /// Lower the order to N states, by balanced truncation (balanced:N; the summary says by how much a response is wrong at the most) or to
+        /// the slowest modes with the static response of the others (modal:N). Rigid, undamped and unstable motions stay.
+        #[arg(long, value_name = "WAY:N")]
+        reduce: Option<Reduction>,
         /// The file: .mat (MATLAB, version 5) or .json [default: out/<name of the scene file>/linear.mat].
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
@@ -297,16 +299,38 @@ enum Command {
         /// Space the frequencies by equal ratios.
         #[arg(long)]
         log: bool,
-        /// Inputs, such as loads[0] [default: all].
-        #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-        inputs: Vec<String>,
-        /// Outputs, such as tip.acceleration or tip [default: all].
-        #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-        outputs: Vec<String>,
         /// Loss factor of structural damping, in the place of the scene's damping.
         #[arg(long, value_name = "FACTOR", value_parser = positive)]
         structural: Option<f64>,
         /// Folder for frf.csv and the chart [default: out/<name of the scene file>].
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
+    },
+    /// Compute the response to stationary random inputs: root mean squares, apparent frequencies, CSV and chart.
+    ///
+    /// A column of the table is the one-sided power spectral density of an input, in its unit² per cycle per time. Outputs are those of
+    /// `flexframe linearize`; with `stress = true` in [output] the equivalent stress of von Mises is among them.
+    Psd {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// CSV file: frequency, then an input by its name each, and for two of them `coherence A & B` and `phase A & B` (degrees, of B before
+        /// A). Densities are straight between rows on logarithmic axes.
+        #[arg(long, value_name = "TABLE")]
+        spectra: PathBuf,
+        #[command(flatten)]
+        about: AboutArgs,
+        /// Outputs, such as tip.acceleration or tip [default: points, stresses and coordinates of joints].
+        #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+        outputs: Vec<String>,
+        /// Lowest and highest frequency in cycles per time [default: those of the table].
+        #[arg(long, value_name = "START:END", value_parser = band)]
+        band: Option<[f64; 2]>,
+        /// Loss factor of structural damping, in the place of the scene's damping.
+        #[arg(long, value_name = "FACTOR", value_parser = positive)]
+        structural: Option<f64>,
+        /// Folder for psd.csv and the chart [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
         #[command(flatten)]
@@ -500,19 +524,42 @@ struct SceneArgs {
 
 /// The state that a linear model is about.
 #[derive(Debug, Args)]
-struct LinearArgs {
+struct AboutArgs {
     /// Angular velocity of the steady spin about the center of mass, radians per time, global; 0,0,0 is rest [default: that of the scene's
     /// free body or drive].
     #[arg(long, value_name = "X,Y,Z", value_parser = angular_velocity, allow_hyphen_values = true)]
     spin: Option<Spin>,
+    /// Time of the run at which bodies are where they then are, under the loads of that time [default: the beginning].
+    #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
+    time: Option<f64>,
     /// Take out the motions that deform no body.
     #[arg(long)]
     without_rigid: bool,
 }
 
+impl AboutArgs {
+    fn settings(&self, inputs: Vec<String>, outputs: Vec<String>) -> LinearSettings {
+        let spin = self.spin.map(|Spin(omega)| omega);
+        LinearSettings { spin, time: self.time, without_rigid: self.without_rigid, inputs, outputs }
+    }
+}
+
+/// A linear model: its state and its channels.
+#[derive(Debug, Args)]
+struct LinearArgs {
+    #[command(flatten)]
+    about: AboutArgs,
+    /// Inputs, such as loads[0], base.acceleration.z, drive or hinge.drive [default: loads, and forces along the coordinates of joints].
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    inputs: Vec<String>,
+    /// Outputs, such as tip.acceleration, tip, reaction.force or hinge.moment [default: points, stresses and coordinates of joints].
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    outputs: Vec<String>,
+}
+
 impl LinearArgs {
-    fn settings(&self) -> LinearSettings {
-        LinearSettings { spin: self.spin.map(|Spin(omega)| omega), without_rigid: self.without_rigid }
+    fn settings(self) -> LinearSettings {
+        self.about.settings(self.inputs, self.outputs)
     }
 }
 
@@ -823,7 +870,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             drop(bar);
             output::print(&report, json)
         }
-        Command::Linearize { scene: SceneArgs { scene, json }, about, order, output, files } => {
+        Command::Linearize { scene: SceneArgs { scene, json }, about, reduce, output, files } => {
             output::require_file("--output", output.as_deref())?;
             let system = read_system(scene)?;
             let file = match output {
@@ -831,35 +878,34 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
                 None => folder(&system.bodies[0], None)?.join("linear.mat"),
             };
             outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(std::slice::from_ref(&file))?;
-            let order = order.map(|order| usize::try_from(order).unwrap_or(usize::MAX));
-            let report = linearize::linearize(&system, &builder, &about.settings(), order, &file, |p| bar.build(p))?;
+            let report = linearize::linearize(&system, &builder, &about.settings(), reduce, &file, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)
         }
-        Command::Frf {
-            scene: SceneArgs { scene, json },
-            about,
-            frequencies,
-            log,
-            inputs,
-            outputs,
-            structural,
-            output,
-            files,
-        } => {
+        Command::Frf { scene: SceneArgs { scene, json }, about, frequencies, log, structural, output, files } => {
             output::require_file("--output", output.as_deref())?;
             let system = read_system(scene)?;
             let folder = folder(&system.bodies[0], output)?;
             outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(&frf::files(&folder))?;
-            let settings = FrfSettings {
-                linear: about.settings(),
-                frequencies,
-                logarithmic: log,
-                inputs,
-                outputs,
-                loss_factor: structural,
-            };
+            let settings =
+                FrfSettings { linear: about.settings(), frequencies, logarithmic: log, loss_factor: structural };
             let report = frf::frf(&system, &builder, &folder, &settings, |p| bar.build(p))?;
+            drop(bar);
+            output::print(&report, json)
+        }
+        Command::Psd { scene: SceneArgs { scene, json }, spectra, about, outputs, band, structural, output, files } => {
+            GivenFile::expect(
+                &spectra,
+                &[GivenFile::Table],
+                "a CSV file of frequencies and densities (docs/reference/cli.md)",
+            )?;
+            output::require_file("--output", output.as_deref())?;
+            let system = read_system(scene)?;
+            let folder = folder(&system.bodies[0], output)?;
+            let read = system.bodies.iter().flat_map(|scene| builder.files(scene)).chain([spectra.clone()]);
+            Outputs::new(read.collect(), files.overwrite).claim(&psd::files(&folder))?;
+            let settings = PsdSettings { linear: about.settings(Vec::new(), outputs), band, loss_factor: structural };
+            let report = psd::psd(&system, &builder, &spectra, &folder, &settings, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)
         }
@@ -1191,6 +1237,14 @@ fn speeds(text: &str) -> Result<Speeds, String> {
 fn frequencies(text: &str) -> Result<Frequencies, String> {
     let Speeds { start, end, count } = speeds(text).map_err(|_| "expected start:end:count, such as 1:2000:200")?;
     Ok(Frequencies { start, end, count })
+}
+
+/// A band of frequencies.
+fn band(text: &str) -> Result<[f64; 2], String> {
+    let expected = || "expected start:end, such as 20:2000".to_owned();
+    let (start, end) = text.split_once(':').ok_or_else(expected)?;
+    let [start, end] = [start, end].map(|number| finite(number.trim()));
+    Ok([start.map_err(|_| expected())?, end.map_err(|_| expected())?])
 }
 
 /// The refusal of a number of modes, at the option where that has replaced what the scene says.

@@ -3,32 +3,46 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side, c64};
 
-use crate::channel::Channel;
 use crate::error::LinearError;
 use crate::state_space::StateSpace;
 
 /// A model of lower order.
 #[derive(Debug, Clone)]
 pub struct Balanced {
-    /// The model, in balanced states.
+    /// The model: states that do not decay, then balanced ones.
     pub model: StateSpace,
-    /// Hankel values σ of the whole model, falling.
+    /// Number of states that do not decay: rigid motions, undamped vibrations, unstable motions. They are kept as they are.
+    pub lasting: usize,
+    /// Hankel values σ of what decays, falling.
     pub hankel_values: Vec<f64>,
     /// 2 Σ σ of what is left out: no response differs by more, at no frequency, in the largest singular value.
     pub error_bound: f64,
 }
 
 impl StateSpace {
-    /// Balanced truncation to an order.
+    /// Balanced truncation to an order, which counts all states. What does not decay has no Hankel values, and stays.
     ///
     /// # Errors
-    /// [`LinearError::NotStable`] for a model with a pole that does not decay, [`LinearError::Order`],
-    /// [`LinearError::Unconnected`], [`LinearError::Eigen`].
+    /// [`LinearError::Order`] for an order below the number of states that do not decay, [`LinearError::Unconnected`],
+    /// [`LinearError::Eigen`].
     pub fn balanced(&self, order: usize) -> Result<Balanced, LinearError> {
-        let n = self.a.nrows();
-        if !(1..=n).contains(&order) {
-            return Err(LinearError::Order { found: order, most: n });
+        let parts = self.parts()?;
+        let lasting = parts.lasting.a.nrows();
+        let (least, most) = (lasting.max(1), self.a.nrows());
+        if !(least..=most).contains(&order) {
+            return Err(LinearError::Order { found: order, least, most });
         }
+        if order == lasting && parts.decaying.a.nrows() == 0 {
+            let model = parts.lasting.beside(&parts.decaying, "balanced");
+            return Ok(Balanced { model, lasting, hankel_values: Vec::new(), error_bound: 0.0 });
+        }
+        let Balanced { model, hankel_values, error_bound, .. } = parts.decaying.balanced_decaying(order - lasting)?;
+        Ok(Balanced { model: parts.lasting.beside(&model, "balanced"), lasting, hankel_values, error_bound })
+    }
+
+    /// Balanced truncation of a model that decays.
+    fn balanced_decaying(&self, order: usize) -> Result<Balanced, LinearError> {
+        let n = self.a.nrows();
         let [reach, sight] = self.gramians()?;
         // In states of like size, so that squares lose little.
         let sizes: Vec<f64> = (0..n).map(|i| if reach[(i, i)] > 0.0 { reach[(i, i)].sqrt() } else { 1.0 }).collect();
@@ -48,17 +62,9 @@ impl StateSpace {
         let left = sight * svd.U().get(.., ..kept);
         let right = Mat::from_fn(n, kept, |i, k| sizes[i] * right[(i, k)] / roots[k]);
         let left = Mat::from_fn(n, kept, |i, k| left[(i, k)] / (sizes[i] * roots[k]));
-        let model = StateSpace {
-            a: left.transpose() * (&self.a * &right),
-            b: left.transpose() * &self.b,
-            c: &self.c * &right,
-            d: self.d.clone(),
-            states: (1..=kept).map(|k| Channel::new(format!("balanced{k}"), "")).collect(),
-            inputs: self.inputs.clone(),
-            outputs: self.outputs.clone(),
-        };
+        let model = self.in_states(&right, &left.transpose().to_owned(), self.d.clone());
         let error_bound = 2.0 * hankel_values[kept..].iter().sum::<f64>();
-        Ok(Balanced { model, hankel_values, error_bound })
+        Ok(Balanced { model, lasting: 0, hankel_values, error_bound })
     }
 
     /// P of A P + P Aᵀ + B Bᵀ = 0, and Q of Aᵀ Q + Q A + Cᵀ C = 0, in the eigenvectors of A.
@@ -67,10 +73,6 @@ impl StateSpace {
         let failed = LinearError::Eigen { size: n };
         let eigen = self.a.eigen().map_err(|_| failed)?;
         let poles: Vec<c64> = eigen.S().column_vector().iter().copied().collect();
-        let fastest = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
-        if let Some(pole) = poles.iter().find(|pole| pole.re.is_nan() || pole.re >= -1e-13 * fastest) {
-            return Err(LinearError::NotStable { real: pole.re, imaginary: pole.im.abs() });
-        }
         let complex =
             |matrix: &Mat<f64>| Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0));
         let vectors = eigen.U().to_owned();

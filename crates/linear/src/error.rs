@@ -24,17 +24,22 @@ pub enum LinearError {
         expected: &'static str,
     },
     /// The order of a reduced model is out of range.
-    #[error("order {found}: expected 1 to {most}, the order of the model that is reduced")]
+    #[error(
+        "order {found}: expected {least} to {most}, from the states that do not decay to the order of the model that is reduced, and no \
+         conjugate pair split"
+    )]
     Order {
         /// It.
         found: usize,
+        /// The smallest.
+        least: usize,
         /// The largest.
         most: usize,
     },
-    /// Balanced truncation of a model that does not decay.
+    /// A motion that goes on or grows under random inputs.
     #[error(
-        "a pole {real:.3e} ± {imaginary:.6e} i per time does not decay, so no order can be balanced; expected damping of all modes, \
-         and rigid motions taken out (without rigid motions, `damping_ratio` in `[modes]`)"
+        "a pole {real:.3e} ± {imaginary:.6e} i per time does not decay, so that the response to random inputs has no mean square; \
+         expected damping of all modes (`damping_ratio` in `[modes]`), a band above 0 where motions are rigid, and no motion that grows"
     )]
     NotStable {
         /// Growth of the pole.

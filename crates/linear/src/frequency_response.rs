@@ -1,22 +1,15 @@
-//! Frequency responses, Eq. (F4).
+//! Frequency responses, Eq. (F4), at a cost that goes with the number of modes.
 
 use std::f64::consts::TAU;
 
-use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
 use rayon::prelude::*;
 
 use crate::error::LinearError;
-use crate::second_order::{Rate, SecondOrder};
-
-/// Damping of a frequency response beside that of the equations.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Damping {
-    /// The damping of the equations alone.
-    OfEquations,
-    /// Structural damping in the place of that of the equations: K (1 + i g) with a loss factor g.
-    Structural(f64),
-}
+use crate::modal_form::Coupled;
+use crate::rows::Rows;
+use crate::second_order::{Damping, SecondOrder};
+use crate::values::Values;
 
 /// Responses of all outputs to unit inputs at some frequencies.
 #[derive(Debug, Clone)]
@@ -28,7 +21,9 @@ pub struct FrequencyResponse {
 }
 
 impl SecondOrder {
-    /// The responses at frequencies ≥ 0, cycles per time. Coordinates that nothing couples to others cost a division each.
+    /// The responses at frequencies ≥ 0, cycles per time. Each mode costs a division at each frequency; coordinates that nothing
+    /// couples to others are modes, of others the complex modes are found once. Where these are too near to each other to be told
+    /// apart, their dynamic stiffness is factored at each frequency.
     ///
     /// # Errors
     /// [`LinearError::Resonance`] at a frequency of an undamped vibration or a rigid motion; as [`Self::check`].
@@ -42,63 +37,32 @@ impl SecondOrder {
         {
             return Err(LinearError::Value { what: "the loss factor", found, expected: "a finite number, 0 or more" });
         }
-        let coupled = self.coupled(damping);
-        let values = frequencies.par_iter().map(|frequency| self.response(*frequency, damping, &coupled));
-        let values = values.collect::<Result<Vec<_>, _>>()?;
-        Ok(FrequencyResponse { frequencies: frequencies.to_vec(), values })
+        let together = self.together(damping);
+        let alone: Vec<usize> = (0..self.size()).filter(|k| !together.contains(k)).collect();
+        let rows = Rows::new(self);
+        let coupled = Coupled::new(self, &rows, together, damping);
+        let values = frequencies.par_iter().map(|frequency| {
+            let omega = TAU * frequency;
+            let mut values = Values::new(&rows, self.inputs.len());
+            for k in &alone {
+                let z = self.dynamic_stiffness([*k; 2], omega, damping);
+                values.add_coordinate(&rows, *k, omega, |j| {
+                    // Nothing moves what has no force on it, not even at its resonance.
+                    let force = self.forces[(*k, j)];
+                    if force == 0.0 { c64::new(0.0, 0.0) } else { c64::new(force, 0.0) / z }
+                });
+            }
+            coupled.add_to(self, &rows, omega, &mut values);
+            values.finished(&rows, *frequency)
+        });
+        Ok(FrequencyResponse { frequencies: frequencies.to_vec(), values: values.collect::<Result<_, _>>()? })
     }
 
     /// Coordinates that stiffness or damping couples to others.
-    fn coupled(&self, damping: Damping) -> Vec<usize> {
+    fn together(&self, damping: Damping) -> Vec<usize> {
         let n = self.size();
         let damps = damping == Damping::OfEquations;
         let is_coupled = |i: usize, j: usize| self.stiffness[(i, j)] != 0.0 || (damps && self.damping[(i, j)] != 0.0);
         (0..n).filter(|i| (0..n).any(|j| *i != j && (is_coupled(*i, j) || is_coupled(j, *i)))).collect()
-    }
-
-    /// The dynamic stiffness K − ω² + i ω C between two coordinates.
-    fn dynamic_stiffness(&self, [i, j]: [usize; 2], omega: f64, damping: Damping) -> c64 {
-        let own = if i == j { omega * omega } else { 0.0 };
-        let stiffness = self.stiffness[(i, j)];
-        match damping {
-            Damping::OfEquations => c64::new(stiffness - own, omega * self.damping[(i, j)]),
-            Damping::Structural(loss) => c64::new(stiffness - own, loss * stiffness),
-        }
-    }
-
-    fn response(&self, frequency: f64, damping: Damping, coupled: &[usize]) -> Result<Mat<c64>, LinearError> {
-        let omega = TAU * frequency;
-        let (n, m) = (self.size(), self.inputs.len());
-        let mut eta = Mat::<c64>::zeros(n, m);
-        let mut is_coupled = vec![false; n];
-        coupled.iter().for_each(|k| is_coupled[*k] = true);
-        for k in (0..n).filter(|k| !is_coupled[*k]) {
-            let z = self.dynamic_stiffness([k, k], omega, damping);
-            for j in 0..m {
-                // Nothing moves what has no force on it, not even at its resonance.
-                let force = self.forces[(k, j)];
-                eta[(k, j)] = if force == 0.0 { c64::new(0.0, 0.0) } else { c64::new(force, 0.0) / z };
-            }
-        }
-        if !coupled.is_empty() {
-            let c = coupled.len();
-            let z = Mat::from_fn(c, c, |i, j| self.dynamic_stiffness([coupled[i], coupled[j]], omega, damping));
-            let forces = Mat::from_fn(c, m, |i, j| c64::new(self.forces[(coupled[i], j)], 0.0));
-            let solved = z.partial_piv_lu().solve(forces);
-            (0..m).for_each(|j| coupled.iter().enumerate().for_each(|(i, k)| eta[(*k, j)] = solved[(i, j)]));
-        }
-        let values = Mat::from_fn(self.outputs.len(), m, |i, j| {
-            let output = &self.outputs[i];
-            let factor = match output.rate {
-                Rate::Place => c64::new(1.0, 0.0),
-                Rate::Velocity => c64::new(0.0, omega),
-                Rate::Acceleration => c64::new(-omega * omega, 0.0),
-            };
-            let seen: c64 =
-                output.row.iter().zip(eta.col(j).iter()).filter(|(r, _)| **r != 0.0).map(|(r, x)| *x * *r).sum();
-            seen * factor
-        });
-        let is_finite = values.col_iter().all(|column| column.iter().all(|x| x.re.is_finite() && x.im.is_finite()));
-        if is_finite { Ok(values) } else { Err(LinearError::Resonance { frequency }) }
     }
 }

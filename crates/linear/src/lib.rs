@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! η̈ + C η̇ + K η = B u                       coordinates η, inputs u       (F1)
-//! y = R η,  R η̇  or  R η̈                    outputs                       (F2)
+//! y = R₀ η + R₁ η̇ + R₂ η̈ + D₀ u              outputs                       (F2)
 //! x' = A x + B u,   y = C x + D u,  x = (η, η̇)                            (F3)
-//! H(ω) = R (K − ω² + i ω C)⁻¹ B                                           (F4)
+//! H(ω) = (R₀ + i ω R₁ − ω² R₂) (K − ω² + i ω C)⁻¹ B + D₀                  (F4)
 //! ```
 //!
 //! Equations have the numbers of `docs/method/linear.md`.
@@ -17,16 +17,23 @@ mod channel;
 mod error;
 mod frequency_response;
 mod mat_file;
+mod modal;
+mod modal_form;
+mod parts;
+mod quadrature;
 mod random;
+mod rows;
 mod second_order;
 mod state_space;
+mod values;
 
 pub use balanced::Balanced;
 pub use channel::Channel;
 pub use error::LinearError;
 pub use faer;
-pub use frequency_response::{Damping, FrequencyResponse};
+pub use frequency_response::FrequencyResponse;
 pub use mat_file::{MatArray, mat_file};
+pub use quadrature::Quadrature;
 pub use random::{RandomInput, RandomResponse};
-pub use second_order::{Output, Rate, SecondOrder};
+pub use second_order::{Damping, Output, Rate, SecondOrder};
 pub use state_space::StateSpace;

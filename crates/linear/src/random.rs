@@ -1,11 +1,14 @@
-//! Responses to stationary random inputs: S_y = H S_u Hᴴ.
+//! Responses to stationary random inputs, Eq. (F6): S_y = H S_u Hᴴ.
 
 use std::f64::consts::TAU;
 
-use faer::{Mat, c64};
+use faer::{Mat, Side, c64};
 
 use crate::error::LinearError;
 use crate::frequency_response::FrequencyResponse;
+
+/// A part of the trace by which rounding may make a matrix of densities negative.
+const ROUNDING: f64 = 1e-10;
 
 /// One-sided power spectral densities of the inputs at the frequencies of a response, unit² per cycle per time.
 #[derive(Debug, Clone)]
@@ -28,7 +31,7 @@ pub struct RandomResponse {
 }
 
 impl RandomResponse {
-    /// Upward crossings of a level per time, by Rice: ν = σ'/(2πσ) exp(−level²/2σ²).
+    /// Upward crossings of a level per time, by Rice, Eq. (F7): ν = σ'/(2πσ) exp(−level²/2σ²). Of the level 0 it is the apparent frequency.
     pub fn crossings(&self, level: f64) -> f64 {
         let Self { rms, rate_rms, .. } = *self;
         if rms > 0.0 { rate_rms / (TAU * rms) * (-0.5 * (level / rms).powi(2)).exp() } else { 0.0 }
@@ -36,62 +39,84 @@ impl RandomResponse {
 }
 
 impl FrequencyResponse {
-    /// The responses of all outputs to random inputs; integrals by the trapezoidal rule over the frequencies.
+    /// The responses of all outputs to random inputs, with the weights of an integral over the frequencies
+    /// ([`Quadrature`](crate::Quadrature)).
     ///
     /// # Errors
-    /// [`LinearError::Spectrum`] for densities that are negative or of other sizes.
-    pub fn random(&self, input: &RandomInput) -> Result<Vec<RandomResponse>, LinearError> {
-        let cross = self.cross_densities(input)?;
+    /// [`LinearError::Spectrum`] for densities that are negative or of other sizes, [`LinearError::Size`].
+    pub fn random(&self, input: &RandomInput, weights: &[f64]) -> Result<Vec<RandomResponse>, LinearError> {
         let outputs = self.values.first().map_or(0, Mat::nrows);
-        let of_output = |i: usize| {
-            let density: Vec<f64> = cross.iter().map(|s| s[(i, i)].re).collect();
-            let of_rate: Vec<f64> = density.iter().zip(&self.frequencies).map(|(s, f)| s * (TAU * f).powi(2)).collect();
-            let [rms, rate_rms] = [&density, &of_rate].map(|list| self.integral(list).max(0.0).sqrt());
-            RandomResponse { density, rms, rate_rms }
-        };
-        Ok((0..outputs).map(of_output).collect())
+        let forms: Vec<Vec<(usize, usize, f64)>> = (0..outputs).map(|i| vec![(i, i, 1.0)]).collect();
+        self.quadratic(input, weights, &forms)
     }
 
-    /// The root mean square of the equivalent stress of six outputs, the components xx, yy, zz, xy, yz, xz of one place: the
-    /// quadratic form sᵀ Q s of von Mises, by Segalman, Fulcher, Reese and Field (1998).
+    /// The equivalent stress of six outputs, the components xx, yy, zz, xy, yz, xz of one place: the quadratic form σᵀ Q σ of von Mises,
+    /// Eq. (F8), by Segalman, Fulcher, Reese and Field (1998). Its density is that of the form's mean square.
     ///
     /// # Errors
     /// As [`Self::random`].
-    pub fn random_von_mises(&self, stress: [usize; 6], input: &RandomInput) -> Result<f64, LinearError> {
-        let cross = self.cross_densities(input)?;
-        let density: Vec<f64> = cross
-            .iter()
-            .map(|s| {
-                let at = |i: usize, j: usize| s[(stress[i], stress[j])].re;
-                let normal = (0..3).map(|i| at(i, i)).sum::<f64>() - at(0, 1) - at(1, 2) - at(0, 2);
-                normal + 3.0 * (3..6).map(|i| at(i, i)).sum::<f64>()
-            })
-            .collect();
-        Ok(self.integral(&density).max(0.0).sqrt())
+    pub fn random_von_mises(
+        &self,
+        stress: [usize; 6],
+        input: &RandomInput,
+        weights: &[f64],
+    ) -> Result<RandomResponse, LinearError> {
+        let mut form = Vec::new();
+        for i in 0..3 {
+            form.extend([(i, i, 1.0), (i, (i + 1) % 3, -1.0), (3 + i, 3 + i, 3.0)]);
+        }
+        let form = form.into_iter().map(|(i, j, factor)| (stress[i], stress[j], factor)).collect();
+        let mut found = self.quadratic(input, weights, &[form])?;
+        Ok(found.remove(0))
     }
 
-    /// S_y (p×p) at each frequency.
-    fn cross_densities(&self, input: &RandomInput) -> Result<Vec<Mat<c64>>, LinearError> {
+    /// Mean squares Σ factor·E[y_i y_j] of some forms, each a list of i, j and factor.
+    fn quadratic(
+        &self,
+        input: &RandomInput,
+        weights: &[f64],
+        forms: &[Vec<(usize, usize, f64)>],
+    ) -> Result<Vec<RandomResponse>, LinearError> {
         let size = match input {
             RandomInput::Independent(lists) => lists.len(),
             RandomInput::Correlated(matrices) => matrices.len(),
         };
-        if size != self.frequencies.len() {
-            let (found, expected) = ([size, 1], [self.frequencies.len(), 1]);
-            return Err(LinearError::Size { what: "the spectra of the inputs", found, expected });
+        for (what, found) in [("the spectra of the inputs", size), ("the weights of the frequencies", weights.len())] {
+            if found != self.frequencies.len() {
+                return Err(LinearError::Size { what, found: [found, 1], expected: [self.frequencies.len(), 1] });
+            }
         }
-        self.values.iter().enumerate().map(|(k, h)| Ok(h * self.density(input, k, h.ncols())? * h.adjoint())).collect()
+        let mut densities = vec![Vec::with_capacity(size); forms.len()];
+        for (k, h) in self.values.iter().enumerate() {
+            let by_input = h * self.density(input, k, h.ncols())?;
+            let cross =
+                |i: usize, j: usize| (0..h.ncols()).map(|m| (by_input[(i, m)] * h[(j, m)].conj()).re).sum::<f64>();
+            for (list, form) in densities.iter_mut().zip(forms) {
+                list.push(form.iter().map(|(i, j, factor)| factor * cross(*i, *j)).sum::<f64>().max(0.0));
+            }
+        }
+        let integral = |density: &[f64], factor: &dyn Fn(f64) -> f64| {
+            let terms = density.iter().zip(weights).zip(&self.frequencies);
+            terms.map(|((s, weight), f)| s * weight * factor(*f)).sum::<f64>().max(0.0).sqrt()
+        };
+        let response = |density: Vec<f64>| RandomResponse {
+            rms: integral(&density, &|_| 1.0),
+            rate_rms: integral(&density, &|f| (TAU * f).powi(2)),
+            density,
+        };
+        Ok(densities.into_iter().map(response).collect())
     }
 
     fn density(&self, input: &RandomInput, k: usize, inputs: usize) -> Result<Mat<c64>, LinearError> {
         let frequency = self.frequencies[k];
         let refuse = |found: String, expected| Err(LinearError::Spectrum { frequency, found, expected });
-        let matrix = match input {
+        let (matrix, is_diagonal) = match input {
             RandomInput::Independent(lists) => {
                 let list = &lists[k];
-                Mat::from_fn(list.len(), list.len(), |i, j| c64::new(if i == j { list[i] } else { 0.0 }, 0.0))
+                let own = |i: usize, j: usize| c64::new(if i == j { list[i] } else { 0.0 }, 0.0);
+                (Mat::from_fn(list.len(), list.len(), own), true)
             }
-            RandomInput::Correlated(matrices) => matrices[k].clone(),
+            RandomInput::Correlated(matrices) => (matrices[k].clone(), false),
         };
         if matrix.nrows() != inputs || matrix.ncols() != inputs {
             return refuse(format!("of {} inputs", matrix.nrows()), "one for each input of the response");
@@ -99,7 +124,7 @@ impl FrequencyResponse {
         for i in 0..inputs {
             let own = matrix[(i, i)];
             if !(own.re >= 0.0 && own.re.is_finite() && own.im == 0.0) {
-                return refuse(format!("{own}"), "a density that is not negative");
+                return refuse(format!("{}", own.re), "a density that is not negative");
             }
             for j in 0..i {
                 let (one, other) = (matrix[(i, j)], matrix[(j, i)].conj());
@@ -112,11 +137,17 @@ impl FrequencyResponse {
                 }
             }
         }
+        if !is_diagonal && inputs > 2 {
+            let trace: f64 = (0..inputs).map(|i| matrix[(i, i)].re).sum();
+            let failed = LinearError::Eigen { size: inputs };
+            let least = matrix.self_adjoint_eigenvalues(Side::Lower).map_err(|_| failed)?[0];
+            if least < -ROUNDING * trace {
+                return refuse(
+                    format!("one of eigenvalue {least:.3e}"),
+                    "coherences and phases that inputs can have together: no eigenvalue below 0",
+                );
+            }
+        }
         Ok(matrix)
-    }
-
-    fn integral(&self, density: &[f64]) -> f64 {
-        let steps = self.frequencies.windows(2).zip(density.windows(2));
-        steps.map(|(f, s)| 0.5 * (f[1] - f[0]) * (s[0] + s[1])).sum()
     }
 }

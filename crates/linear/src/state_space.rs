@@ -26,18 +26,52 @@ pub struct StateSpace {
 }
 
 impl StateSpace {
-    /// Eigenvalues of A, slowest first.
+    /// Eigenvalues of A, slowest first. States that nothing couples are apart, so that a motion that nothing resists has poles of zero and no
+    /// rounding.
     ///
     /// # Errors
     /// [`LinearError::Eigen`].
     pub fn poles(&self) -> Result<Vec<c64>, LinearError> {
-        let size = self.a.nrows();
-        if size == 0 {
-            return Ok(Vec::new());
+        let mut poles = Vec::with_capacity(self.a.nrows());
+        for group in self.groups() {
+            let size = group.len();
+            if let [x, v] = group[..] {
+                let at = |i: usize, j: usize| self.a[(i, j)];
+                let (mean, half) = (0.5 * (at(x, x) + at(v, v)), 0.5 * (at(x, x) - at(v, v)));
+                let root = c64::new(half * half + at(x, v) * at(v, x), 0.0).sqrt();
+                poles.extend([root, -root].map(|root| root + mean));
+                continue;
+            }
+            let own = Mat::from_fn(size, size, |i, j| self.a[(group[i], group[j])]);
+            poles.extend(own.eigenvalues().map_err(|_| LinearError::Eigen { size })?);
         }
-        let mut poles = self.a.eigenvalues().map_err(|_| LinearError::Eigen { size })?;
         poles.sort_by(|a, b| a.norm().total_cmp(&b.norm()).then(a.im.total_cmp(&b.im)));
         Ok(poles)
+    }
+
+    /// States that A couples, directly or by others.
+    fn groups(&self) -> Vec<Vec<usize>> {
+        let n = self.a.nrows();
+        let mut is_free = vec![true; n];
+        let mut groups = Vec::new();
+        for first in 0..n {
+            if !std::mem::take(&mut is_free[first]) {
+                continue;
+            }
+            let (mut group, mut next) = (vec![first], 0);
+            while next < group.len() {
+                let at = group[next];
+                next += 1;
+                for (other, is_free) in is_free.iter_mut().enumerate() {
+                    let is_coupled = self.a[(at, other)] != 0.0 || self.a[(other, at)] != 0.0;
+                    if is_coupled && std::mem::take(is_free) {
+                        group.push(other);
+                    }
+                }
+            }
+            groups.push(group);
+        }
+        groups
     }
 
     /// C (iω − A)⁻¹ B + D (p×m) at a circular frequency, rad per time.

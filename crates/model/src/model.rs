@@ -3,13 +3,14 @@
 pub(crate) mod initial;
 pub(crate) mod point_rotations;
 pub(crate) mod points;
+pub(crate) mod rest;
 
 use std::sync::Arc;
 
 use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
 use dynamics::{
-    ConservativeBody, Equations, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, MotionState, Physics,
-    PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl,
+    ConservativeBody, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, Physics, PointShapes, Rows,
+    Setup, SharedLoad, Simulation, StepControl,
 };
 use faer::Mat;
 use fem_tet10::Mesh;
@@ -92,15 +93,6 @@ pub struct Model {
     pub(crate) backbones: Vec<Option<Backbone>>,
 }
 
-/// A body at rest under its loads.
-#[derive(Debug, Clone)]
-pub struct AtRest {
-    /// Generalised forces (6+nf) of each load where its history is 1, as [`ConservativeBody::unit_forces`].
-    pub unit_forces: Vec<Vec<f64>>,
-    /// Stiffness for small motions of the modes (nf×nf).
-    pub stiffness: Mat<f64>,
-}
-
 /// The size of a body and of its modes.
 #[derive(Debug, Clone)]
 pub(crate) struct Size {
@@ -159,47 +151,8 @@ impl Model {
     }
 
     /// Modal displacements (nf) that are small.
-    fn small_amplitudes(&self) -> Vec<f64> {
+    pub(crate) fn small_amplitudes(&self) -> Vec<f64> {
         self.size.peaks.iter().map(|peak| SMALL * self.size.length / peak).collect()
-    }
-
-    /// The body at rest under its loads as they are at time 0, with its stiffness for small motions of its modes about that rest. The
-    /// drive stands still.
-    ///
-    /// # Errors
-    /// [`LoadedError`].
-    pub fn at_rest(&self, scene: &Scene) -> Result<AtRest, LoadedError> {
-        let physics = Physics { drive: None, drive_stiffness: None, ..self.physics.clone() };
-        let initial = Initial { omega: Vector3::zeros(), velocity: Vector3::zeros(), ..self.initial(scene) };
-        let body = self.conservative(&physics, &initial)?;
-        let state = self.rest_of(&body, initial)?;
-        let stiffness =
-            body.loaded_stiffness(&self.initial(scene), &state.modal_displacement, &self.small_amplitudes())?;
-        Ok(AtRest { unit_forces: body.unit_forces(&state), stiffness })
-    }
-
-    /// The motion in which the body rests in its frame under its loads and its drive as they are at time 0, held to its first
-    /// attitude.
-    ///
-    /// # Errors
-    /// [`LoadedError`].
-    pub fn rest(&self, scene: &Scene) -> Result<MotionState, LoadedError> {
-        let initial = self.initial(scene);
-        self.rest_of(&self.conservative(&self.physics, &initial)?, initial)
-    }
-
-    /// The body under its loads, with other physics than its own, where a motion begins.
-    fn conservative(&self, physics: &Physics, initial: &Initial) -> Result<ConservativeBody, LoadedError> {
-        let body = ConservativeBody::new(&self.body, &self.damping_ratios, self.loads.clone(), physics)?;
-        Ok(body.beginning_at(initial))
-    }
-
-    /// The state in which a body rests in its frame, with the velocities of `initial`.
-    fn rest_of(&self, body: &ConservativeBody, initial: Initial) -> Result<MotionState, LoadedError> {
-        let modal_displacement = body.loaded_rest(&initial, &self.small_amplitudes())?;
-        let modal_velocity = vec![0.0; modal_displacement.len()];
-        let state = body.start(&Initial { modal_displacement, modal_velocity, ..initial })?;
-        Ok(body.motion_state(&state).map_err(|error| error.in_step(0.0, 0.0))?)
     }
 
     /// How many static shapes follow the natural modes.

@@ -1,5 +1,6 @@
 //! The class Body.
 
+use std::error::Error;
 use std::sync::Arc;
 
 use flexframe::faer::{ColRef, MatRef};
@@ -93,7 +94,7 @@ impl Body {
         let build = move |told: &mut dyn FnMut(BuildProgress)| {
             let assembly = builder.assemble(&of_thread, &mut *told)?;
             let model = assembly.variants()?.build(&of_thread, told)?;
-            Ok((model, assembly.without_matrices()))
+            Ok::<_, BuildError>((model, assembly.without_matrices()))
         };
         let (model, assembly) = built(py, &scene, build)?;
         Ok(Self { scene, of, model: Arc::new(model), assembly: Arc::new(assembly) })
@@ -255,10 +256,10 @@ impl Body {
 }
 
 /// Does the work of building for a scene in a thread, and tells as warnings what is doubtful.
-pub(crate) fn built<T: Send + 'static>(
+pub(crate) fn built<T: Send + 'static, E: Error + Send + 'static>(
     py: Python<'_>,
     scene: &Py<Scene>,
-    build: impl FnOnce(&mut dyn FnMut(BuildProgress)) -> Result<T, BuildError> + Send + 'static,
+    build: impl FnOnce(&mut dyn FnMut(BuildProgress)) -> Result<T, E> + Send + 'static,
 ) -> PyResult<T> {
     let stop = Stop::default();
     let told = stop.clone();

@@ -3,6 +3,7 @@
 //! The package is in `python/flexframe`; the types of everything here are in `_flexframe.pyi` there.
 //! `scene`, `body`, `system` and `motion::simulation` are the classes of these names; `builder` has the cache of the user;
 //! `motion` lets Python functions act on a body; `rows` gives rows under the names of the columns of a results file;
+//! `linear` gives the matrices of linear models to `linear.py`;
 //! `values` takes numbers and dicts and gives arrays and tables: the only unsafe code is in `arrays`, which look into a body without a
 //! copy; `interrupt` lets Ctrl-C stop long work; `threads` lets it be done in a forked process; `errors` turns errors into exceptions
 //! with the same words.
@@ -16,6 +17,7 @@ mod body;
 mod builder;
 mod errors;
 mod interrupt;
+mod linear;
 mod motion;
 mod rows;
 mod scene;
@@ -30,6 +32,8 @@ mod _flexframe {
 
     #[pymodule_export]
     use super::body::Body;
+    #[pymodule_export]
+    use super::linear::linearized;
     #[pymodule_export]
     use super::motion::joint_force::JointForce;
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! `flexframe linearize` and `flexframe frf`. Needs a Python with SciPy, which `FLEXFRAME_READERS` names (`./dev test` sees to it).
+//! `flexframe linearize`, `flexframe frf` and `flexframe psd`. Needs a Python with SciPy, which `FLEXFRAME_READERS` names (`./dev test` sees to it).
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,13 @@ fn json(arguments: &[&str]) -> Value {
 
 /// The bar on a support, pushed at its tip.
 fn bar(folder: &Path, support: &str, history: &str, time: &str) -> String {
-    let text = format!(
+    let path = folder.join("bar.toml");
+    std::fs::write(&path, bar_text(support, history, time)).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+fn bar_text(support: &str, history: &str, time: &str) -> String {
+    format!(
         "title = \"Bar\"\nunits = {{ length = \"mm\", mass = \"Mg\", time = \"s\" }}\n[body]\nmesh = \"{}\"\n\
          material = {{ young_modulus = 70000.0, poisson_ratio = 0.3, density = 2.7e-9 }}\n[modes]\nflexible = 6\n\
          damping_ratio = 0.05\nstatic_correction = false\n{support}\n[[loads]]\nkind = \"force\"\nat = [202.07, 0.0, 0.0]\n\
@@ -31,10 +37,7 @@ fn bar(folder: &Path, support: &str, history: &str, time: &str) -> String {
          [effects]\ndamping = true\nlarge_deflection = false\ngeometric_stiffening = false\n[output]\n\
          points = {{ tip = [202.07, 0.0, 0.0] }}\n",
         root().join("meshes/rotating_bar.msh").display()
-    );
-    let path = folder.join("bar.toml");
-    std::fs::write(&path, text).unwrap();
-    path.to_str().unwrap().to_owned()
+    )
 }
 
 const CLAMP: &str = "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"";
@@ -225,7 +228,15 @@ fn what_has_no_linear_model_is_refused_in_words() {
         words.iter().for_each(|word| assert!(text.contains(word), "{word}: {text}"));
     };
     refused(&["linearize", &scene, "-o", &at("x.csv")], 2, &[".mat or .json"]);
-    refused(&["linearize", &scene, "-o", &at("x.mat"), "--order", "99"], 4, &["order 99", "1 to 12"]);
+    refused(&["linearize", &scene, "-o", &at("x.mat"), "--reduce", "balanced:99"], 4, &["order 99", "1 to 12"]);
+    refused(&["linearize", &scene, "-o", &at("x.mat"), "--reduce", "modal:5"], 4, &["order 5", "no conjugate pair"]);
+    refused(&["linearize", &scene, "-o", &at("x.mat"), "--reduce", "krylov:5"], 2, &["balanced:N or modal:N"]);
+    refused(&["linearize", &scene, "-o", &at("x.mat"), "--time", "7"], 2, &["time 7", "0 to 0.01"]);
+    refused(
+        &["linearize", &scene, "-o", &at("x.mat"), "--inputs", "bass"],
+        2,
+        &["no input `bass`", "base.acceleration.x", "loads[0].force"],
+    );
     refused(&["linearize", &scene, "-o", &at("x.mat"), "--spin", "0,0,1"], 4, &["--spin of a body that is held"]);
     refused(&["frf", &scene, "--frequencies", "5:1:9", "-o", &at("f")], 2, &["5:1:9", "0 ≤ start < end"]);
     refused(
@@ -233,6 +244,347 @@ fn what_has_no_linear_model_is_refused_in_words() {
         2,
         &["no output `top`", "tip.displacement.x"],
     );
-    let balanced = json(&["linearize", &scene, "-o", &at("x.mat"), "--order", "4"]);
-    assert!(balanced["error_bound"].as_f64().unwrap() > 0.0 && balanced["states"] == 4);
+    for (way, has_bound) in [("balanced:4", true), ("modal:4", false)] {
+        let reduced = json(&["linearize", &scene, "-o", &at("x.mat"), "--overwrite", "--reduce", way]);
+        assert_eq!((reduced["error_bound"].is_number(), reduced["states"].as_u64()), (has_bound, Some(4)), "{way}");
+    }
+}
+
+#[test]
+fn spectra_that_are_none_are_refused_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = bar(folder.path(), CLAMP, "\"constant\"", "end = 0.01\ntolerance = 1e-6");
+    let undamped = bar_text(CLAMP, "\"constant\"", "end = 0.01\ntolerance = 1e-6")
+        .replace("damping_ratio = 0.05", "damping_ratio = 0.0");
+    let undamped_scene = folder.path().join("undamped.toml");
+    std::fs::write(&undamped_scene, undamped.replace("damping = true", "damping = false")).unwrap();
+    let table = folder.path().join("spectra.csv");
+    let refused = |scene: &str, text: &str, more: &[&str], words: &[&str]| {
+        std::fs::write(&table, text).unwrap();
+        let arguments = ["psd", scene, "--spectra", table.to_str().unwrap(), "-o", "out/none"];
+        let output = flexframe(&[&arguments, more].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success(), "{text}");
+        words.iter().for_each(|word| assert!(message.contains(word), "{word}: {message}"));
+    };
+    let flat = "frequency,loads[0].force\n10,1\n9000,1\n";
+    refused(&scene, "frequency,loads[0].force\n10,1\n90,-2\n", &[], &["spectra.csv:3", "density -2", "0 or more"]);
+    refused(&scene, "frequency,loads[0].force\n10,1\n5,2\n", &[], &["spectra.csv:3", "frequency 5"]);
+    refused(&scene, "frequency,loads[0].force\n10,1\n20\n", &[], &["spectra.csv:3", "1 field(s)", "2 numbers"]);
+    refused(&scene, "time,loads[0].force\n10,1\n20,1\n", &[], &["spectra.csv:1", "expected `frequency`"]);
+    refused(&scene, flat, &["--band", "5:9000"], &["from 10 to 9000", "leave out 0.001"]);
+    refused(&scene, flat, &["--band", "9:5"], &["band 9:5"]);
+    refused(&scene, "frequency,loads[7].force\n10,1\n20,1\n", &[], &["no input `loads[7].force`", "loads[0].force"]);
+    refused(
+        &scene,
+        "frequency,loads[0].force,coherence loads[0].force & base\n10,1,1\n20,1,1\n",
+        &[],
+        &["coherence loads[0].force & base", "no column"],
+    );
+    refused(undamped_scene.to_str().unwrap(), flat, &[], &["does not decay", "no mean square"]);
+}
+
+/// A, B, C and D of a linear model with its channels, as JSON has them.
+fn linear_model(scene: &str, folder: &Path, more: &[&str]) -> Value {
+    let file = folder.join("linear.json");
+    json(&[&["linearize", scene, "-o", file.to_str().unwrap(), "--overwrite"], more].concat());
+    serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap()
+}
+
+fn numbers(matrix: &Value) -> Vec<Vec<f64>> {
+    let row = |row: &Value| row.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+    matrix.as_array().unwrap().iter().map(row).collect()
+}
+
+/// Closed form: the mean square of a sum of oscillators under white noise, Σ_r Σ_s of the modes of the linear model.
+#[test]
+fn white_noise_gives_the_mean_square_of_its_closed_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = bar(folder.path(), CLAMP, "\"constant\"", "end = 0.01\ntolerance = 1e-6");
+    let stress = ["--set", "output.stress=true"];
+    let space = linear_model(&scene, folder.path(), &[&stress[..], &["--outputs", "tip"]].concat());
+    let [a, b, c] = ["A", "B", "C"].map(|name| numbers(&space[name]));
+    let n = a.len() / 2;
+    let modes: Vec<[f64; 2]> = (0..n).map(|k| [(-a[n + k][k]).sqrt(), -0.5 * a[n + k][n + k]]).collect();
+    // ∫₀^∞ Re(H_r H_s*) df of two oscillators.
+    let together = |[wa, da]: [f64; 2], [wb, db]: [f64; 2]| {
+        let below = (wa * wa - wb * wb).powi(2) + 4.0 * (da + db) * (da * wb * wb + db * wa * wa);
+        (da + db) / below
+    };
+    let density = 0.25;
+    let cross = |row: &[f64], other: &[f64]| -> f64 {
+        let pair = |r: usize, s: usize| row[r] * other[s] * b[n + r][0] * b[n + s][0] * together(modes[r], modes[s]);
+        density * (0..n).flat_map(|r| (0..n).map(move |s| (r, s))).map(|(r, s)| pair(r, s)).sum::<f64>()
+    };
+    let names: Vec<&str> =
+        space["outputs"].as_array().unwrap().iter().map(|output| output["name"].as_str().unwrap()).collect();
+    let row = |name: &str| &c[names.iter().position(|other| *other == name).unwrap()][..];
+
+    let table = folder.path().join("white.csv");
+    std::fs::write(&table, format!("frequency,loads[0]\n0,{density}\n1e9,{density}\n")).unwrap();
+    let out = folder.path().join("psd");
+    let arguments = ["psd", &scene, "--spectra", table.to_str().unwrap(), "-o", out.to_str().unwrap()];
+    let report = json(&[&arguments, &stress[..]].concat());
+    let rms = |name: &str| {
+        let all = report["outputs"].as_array().unwrap();
+        all.iter().find(|output| output["output"] == name).unwrap()["rms"].as_f64().unwrap()
+    };
+    for name in ["tip.displacement.y", "tip.stress.xx", "tip.stress.xy"] {
+        let expected = cross(row(name), row(name)).sqrt();
+        assert!((rms(name) / expected - 1.0).abs() < 1e-8, "{name}: {} {expected}", rms(name));
+    }
+    let [xx, yy, zz, xy, yz, zx] =
+        ["xx", "yy", "zz", "xy", "yz", "zx"].map(|letters| row(&format!("tip.stress.{letters}")));
+    let normal = cross(xx, xx) + cross(yy, yy) + cross(zz, zz) - cross(xx, yy) - cross(yy, zz) - cross(zz, xx);
+    let expected = (normal + 3.0 * (cross(xy, xy) + cross(yz, yz) + cross(zx, zx))).sqrt();
+    assert!((rms("tip.von_mises") / expected - 1.0).abs() < 1e-8, "{} {expected}", rms("tip.von_mises"));
+    // The velocity is an output of its own.
+    let of_tip = report["outputs"].as_array().unwrap().iter().find(|o| o["output"] == "tip.displacement.y").unwrap();
+    let apparent = of_tip["crossings"][0].as_f64().unwrap();
+    let expected = rms("tip.velocity.y") / rms("tip.displacement.y") / TAU;
+    assert!((apparent / expected - 1.0).abs() < 1e-9, "{apparent} {expected}");
+    let ratio = of_tip["crossings"][3].as_f64().unwrap() / apparent;
+    assert!((ratio / (-4.5_f64).exp() - 1.0).abs() < 1e-9, "{ratio}");
+    let csv = std::fs::read_to_string(out.join("psd.csv")).unwrap();
+    assert!(csv.starts_with("frequency,tip.displacement.x") && csv.lines().next().unwrap().ends_with("tip.von_mises"));
+}
+
+/// Conserved: inputs in step with each other are one input of both, and against each other they take each other away; that of two
+/// forces alike.
+#[test]
+fn coherence_and_phase_of_two_inputs_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = bar(folder.path(), CLAMP, "\"constant\"", "end = 0.01\ntolerance = 1e-6");
+    let text = std::fs::read_to_string(&one).unwrap();
+    let load = text[text.find("[[loads]]").unwrap()..text.find("[time]").unwrap()].to_owned();
+    let two = folder.path().join("two.toml");
+    std::fs::write(&two, text.replace("[time]", &format!("{load}[time]"))).unwrap();
+    let rms = |more: &str, numbers: &str| {
+        let table = folder.path().join("spectra.csv");
+        let header = format!("frequency,loads[0].force,loads[1].force{more}");
+        std::fs::write(&table, format!("{header}\n10,1,1{numbers}\n90000,1,1{numbers}\n")).unwrap();
+        let out = folder.path().join("psd");
+        let arguments = ["psd", two.to_str().unwrap(), "--spectra", table.to_str().unwrap(), "-o"];
+        let report = json(&[&arguments, &[out.to_str().unwrap(), "--overwrite"][..]].concat());
+        report["outputs"][1]["rms"].as_f64().unwrap()
+    };
+    let coherence = ",coherence loads[0].force & loads[1].force";
+    let both = format!("{coherence},phase loads[0].force & loads[1].force");
+    let apart = rms("", "");
+    assert!((rms(coherence, ",1") / apart - 2.0_f64.sqrt()).abs() < 1e-9);
+    assert!((rms(coherence, ",0") / apart - 1.0).abs() < 1e-9);
+    assert!((rms(&both, ",1,90") / apart - 1.0).abs() < 1e-9);
+    assert!((rms(&both, ",0.25,0") / apart - 1.5_f64.sqrt()).abs() < 1e-9);
+    assert!(rms(&both, ",1,180") < 1e-6 * apart);
+}
+
+/// Responses by name at a frequency: real and imaginary part.
+fn response(scene: &str, folder: &Path, input: &str, outputs: &str, frequency: f64, more: &[&str]) -> Vec<[f64; 2]> {
+    let out = folder.join("frf");
+    let at = format!("{frequency:e}:{:e}:2", frequency + 1.0);
+    let (out, at) = (out.to_str().unwrap(), at.as_str());
+    let arguments =
+        ["frf", scene, "--frequencies", at, "-o", out, "--overwrite", "--inputs", input, "--outputs", outputs];
+    json(&[&arguments, more].concat());
+    let table = std::fs::read_to_string(Path::new(out).join("frf.csv")).unwrap();
+    let row: Vec<f64> = table.lines().nth(1).unwrap().split(',').map(|x| x.parse().unwrap()).collect();
+    row[1..]
+        .chunks(2)
+        .map(|pair| [pair[0] * pair[1].to_radians().cos(), pair[0] * pair[1].to_radians().sin()])
+        .collect()
+}
+
+#[track_caller]
+fn assert_alike(found: &[[f64; 2]], expected: &[[f64; 2]], bound: f64) {
+    let size = expected.iter().map(|[re, im]| re.hypot(*im)).fold(0.0, f64::max);
+    assert!(size > 0.0 && found.len() == expected.len());
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a[0] - b[0]).hypot(a[1] - b[1]) < bound * size, "{found:?} {expected:?}");
+    }
+}
+
+/// Independent reference: a load of kind "base-acceleration", which is a static force on the modes.
+/// Closed form: at frequency 0 the whole body has the acceleration of its base, and the support carries its mass.
+#[test]
+fn a_base_motion_is_an_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = bar(folder.path(), CLAMP, "\"constant\"", "end = 0.01\ntolerance = 1e-6");
+    let text = std::fs::read_to_string(&scene).unwrap();
+    let load = "[[loads]]\nkind = \"base-acceleration\"\ndirection = [0, 1, 0]\namplitude = 1.0\nhistory = { kind = \"step\", at = 1.0 }\n";
+    let shaken = folder.path().join("shaken.toml");
+    std::fs::write(&shaken, text.replace("[time]", &format!("{load}[time]"))).unwrap();
+    let shaken = shaken.to_str().unwrap();
+    let at = |input: &str, outputs: &str, f: f64| response(shaken, folder.path(), input, outputs, f, &[]);
+    assert_alike(&at("base.acceleration.y", "tip.displacement", 50.0), &at("loads[1]", "tip.displacement", 50.0), 1e-9);
+    assert_alike(&at("base.acceleration.y", "tip.acceleration.y", 0.0), &[[1.0, 0.0]], 1e-9);
+    // A turn of the base about the origin: ω × x.
+    let turned = at("base.angular_acceleration.z", "tip.acceleration.y", 0.0);
+    assert_alike(&turned, &[[202.07, 0.0]], 1e-9);
+    let mass = json(&["modes", shaken])["body"]["mass"].as_f64().unwrap();
+    assert_alike(&at("base.acceleration.y", "reaction.force.y", 0.0), &[[mass, 0.0]], 1e-6);
+    // The support holds the load, and is above it near the resonance.
+    assert_alike(&at("loads[0]", "reaction.force.y", 0.0), &[[-1e-3 / 1.25_f64.sqrt(), 0.0]], 1e-9);
+    // About the origin: −x × F.
+    assert_alike(&at("loads[0]", "reaction.moment.z", 0.0), &[[-202.07e-3 / 1.25_f64.sqrt(), 0.0]], 1e-6);
+}
+
+/// Independent reference: the same bar in a fixed joint of a free body, whose equations are linearised in another way.
+#[test]
+fn the_reaction_of_a_joint_is_that_of_a_support() {
+    let folder = tempfile::tempdir().unwrap();
+    let joint = "[[joints]]\nname = \"weld\"\nkind = \"fixed\"\nbetween = [\"ground\", \"body.root\"]\n";
+    let held = bar(folder.path(), CLAMP, "\"constant\"", "end = 0.01\ntolerance = 1e-6");
+    let text = std::fs::read_to_string(&held).unwrap().replace(CLAMP, "");
+    let free = folder.path().join("free.toml");
+    let text = text.replace("[modes]\nflexible = 6", "[modes]\nflexible = 16").replace("static_correction = false", "");
+    std::fs::write(
+        &free,
+        text.replace("[time]", &format!("{joint}[time]"))
+            .replace("[output]", "[body.markers]\nroot = { group = \"root\" }\n[output]"),
+    )
+    .unwrap();
+    let free = free.to_str().unwrap();
+    for (outputs, of_joint) in [("reaction.force.y", "weld.force.y"), ("reaction.moment.z", "weld.moment.z")] {
+        // Slow against the first mode, so that the other shapes of the two bodies do not count.
+        let expected = response(&held, folder.path(), "loads[0]", outputs, 1.0, &[]);
+        let found = response(free, folder.path(), "loads[0]", of_joint, 1.0, &[]);
+        assert_alike(&found, &expected, 1e-3);
+    }
+}
+
+/// Independent reference: a run whose drive is shaken by 1e-4 of its speed beside it, in a spin, swung in.
+#[test]
+fn a_drive_in_a_spin_is_an_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let (spin, shaken, frequency) = (300.0, 0.03, 40.0);
+    let hinge = |history: &str| {
+        format!(
+            "[[constraints]]\nkind = \"hinge\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\ngroup = \"root\"\nmotion = {{ amplitude = {spin:?}, \
+             history = {history} }}"
+        )
+    };
+    let none = "{ kind = \"step\", at = 1e3 }";
+    let formula = format!("1 + {:?}*sin(2*pi*{frequency:?}*t)", shaken / spin);
+    let formula = format!("{{ kind = \"expression\", formula = \"{formula}\" }}");
+    let end = 0.3;
+    let scene = bar(folder.path(), &hinge(&formula), none, &format!("end = {end}\ntolerance = 1e-10"));
+    let out = folder.path().join("out");
+    let interval = format!("output.interval={:e}", 1.0 / frequency / 40.0);
+    json(&["run", &scene, "--no-check", "-o", out.to_str().unwrap(), "--set", &interval]);
+    let csv = folder.path().join("bar.csv");
+    let (file, csv_file) = (out.join("bar.h5"), csv.to_str().unwrap());
+    let columns = "points/tip/elastic_displacement_body,reaction/moment_body";
+    let written = flexframe(&["export", file.to_str().unwrap(), "--csv", csv_file, "--columns", columns]);
+    assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+    let text = std::fs::read_to_string(&csv).unwrap();
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
+        .filter(|row: &Vec<f64>| row[0] > end - 4.0 / frequency)
+        .collect();
+    let quiet = bar(folder.path(), &hinge("\"constant\""), none, "end = 0.01\ntolerance = 1e-6");
+    for (name, output) in [
+        ("points/tip/elastic_displacement_body y", "tip.displacement.y"),
+        ("reaction/moment_body z", "reaction.moment.z"),
+    ] {
+        let column = header.iter().position(|column| column.starts_with(name)).unwrap();
+        // Least squares of a sin + b cos + c.
+        let basis = |t: f64| [(TAU * frequency * t).sin(), (TAU * frequency * t).cos(), 1.0];
+        let found = least_squares(rows.iter().map(|row| (basis(row[0]), row[column])));
+        // The acceleration is 2πf shaken cos.
+        let amplitude = TAU * frequency * shaken;
+        let [re, im] = response(&quiet, folder.path(), "drive", output, frequency, &[])[0];
+        let expected = [-im * amplitude, re * amplitude];
+        let size = expected[0].hypot(expected[1]);
+        assert!(
+            (found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-5 * size,
+            "{output} {found:?} {expected:?}"
+        );
+    }
+}
+
+/// Independent reference: the bar on a driven hinge of its support, whose equations are linearised in another way; at rest.
+#[test]
+fn a_driven_joint_is_an_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let hinge = "[[constraints]]\nkind = \"hinge\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\ngroup = \"root\"\n\
+                 motion = { amplitude = 1.0, history = { kind = \"step\", at = 1.0 } }";
+    let none = "{ kind = \"step\", at = 1.0 }";
+    let held = bar(folder.path(), hinge, none, "end = 0.01\ntolerance = 1e-6");
+    let joint = "[[joints]]\nname = \"pin\"\nkind = \"revolute\"\nbetween = [\"ground\", \"body.root\"]\naxis = [0, 0, 1]\n\
+                 drive = { amplitude = 1.0, history = { kind = \"step\", at = 1.0 } }\n[time]";
+    let text = std::fs::read_to_string(&held).unwrap().replace(hinge, "");
+    let text = text.replace("[modes]\nflexible = 6", "[modes]\nflexible = 16").replace("static_correction = false", "");
+    let markers = "[body.markers]\nroot = { group = \"root\" }\n[output]";
+    let free = folder.path().join("free.toml");
+    std::fs::write(&free, text.replace("[time]", joint).replace("[output]", markers)).unwrap();
+    let free = free.to_str().unwrap();
+    for (of_joint, outputs) in [("pin.moment.z", "reaction.moment.z"), ("pin.force.y", "reaction.force.y")] {
+        // Slow against the first mode, so that the other shapes of the two bodies do not count.
+        let expected = response(&held, folder.path(), "drive", outputs, 1.0, &[]);
+        let found = response(free, folder.path(), "pin.drive", of_joint, 1.0, &[]);
+        assert_alike(&found, &expected, 1e-3);
+    }
+}
+
+/// a, b and c of a₀ x₀ + a₁ x₁ + a₂ x₂ = y.
+fn least_squares(rows: impl Iterator<Item = ([f64; 3], f64)>) -> [f64; 3] {
+    let mut system = [[0.0; 4]; 3];
+    for (basis, y) in rows {
+        for i in 0..3 {
+            (0..3).for_each(|j| system[i][j] += basis[i] * basis[j]);
+            system[i][3] += basis[i] * y;
+        }
+    }
+    for i in 0..3 {
+        for k in (0..3).filter(|k| *k != i) {
+            let factor = system[k][i] / system[i][i];
+            (0..4).for_each(|j| system[k][j] -= factor * system[i][j]);
+        }
+    }
+    std::array::from_fn(|i| system[i][3] / system[i][i])
+}
+
+/// Independent reference: the spin that a drive has at that time, given from the beginning.
+#[test]
+fn a_model_may_be_about_a_later_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let hinge = |amplitude: f64, history: &str| {
+        format!(
+            "[[constraints]]\nkind = \"hinge\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\ngroup = \"root\"\n\
+             motion = {{ amplitude = {amplitude:?}, history = {history} }}"
+        )
+    };
+    let none = "{ kind = \"step\", at = 1e3 }";
+    let poles = |support: &str, more: &[&str]| -> Vec<f64> {
+        let scene = bar(folder.path(), support, none, "end = 0.02\ntolerance = 1e-6");
+        let file = folder.path().join("x.json");
+        let report = json(&[&["linearize", &scene, "-o", file.to_str().unwrap(), "--overwrite"], more].concat());
+        report["poles"].as_array().unwrap().iter().map(|pole| pole["frequency"].as_f64().unwrap()).collect()
+    };
+    let rising = "{ kind = \"expression\", formula = \"100*t\" }";
+    let later = poles(&hinge(200.0, rising), &["--time", "0.01"]);
+    let steady = poles(&hinge(200.0, "\"constant\""), &[]);
+    let still = poles(&hinge(200.0, rising), &[]);
+    assert!(later.iter().zip(&steady).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{later:?} {steady:?}");
+    assert!((still[0] / steady[0] - 1.0).abs() > 1e-3, "{still:?}");
+}
+
+/// Closed form: motions that nothing resists have poles of zero, and not of rounding.
+#[test]
+fn rigid_motions_have_poles_of_zero() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = bar(folder.path(), "", "{ kind = \"step\", at = 1.0 }", "end = 0.01\ntolerance = 1e-6");
+    let file = folder.path().join("free.json");
+    let report = json(&["linearize", &scene, "-o", file.to_str().unwrap()]);
+    let poles: Vec<f64> =
+        report["poles"].as_array().unwrap().iter().map(|pole| pole["frequency"].as_f64().unwrap()).collect();
+    let zeros = poles.iter().take_while(|frequency| **frequency == 0.0).count();
+    assert!(zeros == 12 && poles[12] > 100.0, "{poles:?}");
+    // Balanced truncation keeps them.
+    let reduced = json(&["linearize", &scene, "-o", file.to_str().unwrap(), "--overwrite", "--reduce", "balanced:16"]);
+    assert_eq!(reduced["states"], 16);
+    assert!(reduced["error_bound"].as_f64().unwrap() > 0.0);
 }

@@ -55,7 +55,7 @@ const fn case(
     Case { arguments, writes, reads, to_the_end: true }
 }
 
-const CASES: [Case; 21] = [
+const CASES: [Case; 22] = [
     case(&["new", "bar.msh", "-o", "new.toml"], &["new.toml"], &["bar.msh"]),
     case(&["run", "bar.toml", "-o", "o"], &["o/bar.h5"], &OF_SCENE),
     case(&["reduce", "bar.toml", "-o", "o/b.h5"], &["o/b.h5"], &OF_SCENE),
@@ -98,6 +98,11 @@ const CASES: [Case; 21] = [
         &["frf", "bar.toml", "--frequencies", "1:2:2", "-o", "o"],
         &["o/frf.csv", "o/frf.svg", "o/frf.pdf", "o/frf.png"],
         &OF_SCENE,
+    ),
+    case(
+        &["psd", "bar.toml", "--spectra", "spectra.csv", "-o", "o"],
+        &["o/psd.csv", "o/psd.svg", "o/psd.pdf", "o/psd.png"],
+        &["bar.toml", "bar.msh", "pulse.csv", "spectra.csv"],
     ),
     case(
         &["srs", "pulse.csv", "--frequencies", "1e3:1e5:5", "-o", "o"],
@@ -144,6 +149,7 @@ impl Desk {
                 &SCENE.replace("mesh = \"bar.msh\"", "file = \"body.h5\"").replace("material", "# material"),
             ),
             ("pulse.csv", "0, 0\n1e-4, 1\n2e-4, 0\n"),
+            ("spectra.csv", "frequency,loads[0]\n10,1\n100,1\n"),
             ("sweep.toml", SWEEP),
             ("lib.so", &format!("{} fmi2DoStep", marker())),
         ] {

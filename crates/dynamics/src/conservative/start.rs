@@ -23,7 +23,7 @@ impl ConservativeBody {
     }
 
     /// The same at another time, when the drive is as fast as it then is.
-    fn start_at(&self, initial: &Initial, time: f64) -> Result<State, SetupError> {
+    pub(crate) fn start_at(&self, initial: &Initial, time: f64) -> Result<State, SetupError> {
         initial.check(self.flexible())?;
         let mut e = self.room();
         let [q, _] = e.at.modes_mut();

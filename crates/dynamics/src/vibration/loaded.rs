@@ -63,7 +63,7 @@ pub enum LoadedError {
 
 impl ConservativeBody {
     /// A of the body at rest in the attitude of `initial` about the modal displacements `rest` (nf), with its loads as they
-    /// are at time 0 (nf×nf). It is the central difference between displacements by ±`amplitudes` (nf); without large modes
+    /// are at a time (nf×nf). It is the central difference between displacements by ±`amplitudes` (nf); without large modes
     /// that is exact for the loads of this crate.
     ///
     /// # Errors
@@ -73,6 +73,7 @@ impl ConservativeBody {
         initial: &Initial,
         rest: &[f64],
         amplitudes: &[f64],
+        time: f64,
     ) -> Result<Mat<f64>, LoadedError> {
         let nf = self.flexible();
         let mut stiffness = Mat::zeros(nf, nf);
@@ -80,7 +81,7 @@ impl ConservativeBody {
             for sign in [1.0, -1.0] {
                 let mut q = rest.to_vec();
                 q[k] += sign * amplitude;
-                for (i, force) in self.forces_at_rest(initial, q)?.into_iter().enumerate() {
+                for (i, force) in self.forces_at_rest(initial, q, time)?.into_iter().enumerate() {
                     stiffness[(i, k)] -= sign * 0.5 * force / amplitude;
                 }
             }
@@ -88,18 +89,18 @@ impl ConservativeBody {
         Ok(stiffness)
     }
 
-    /// The modal displacements (nf) at which the body is at rest under its loads as they are at time 0, in the attitude of
+    /// The modal displacements (nf) at which the body is at rest under its loads as they are at a time, in the attitude of
     /// `initial`, by Newton's iteration from the undeformed body. `amplitudes` (nf) are small displacements.
     ///
     /// # Errors
     /// [`LoadedError::NoRest`] where it comes to none.
-    pub fn loaded_rest(&self, initial: &Initial, amplitudes: &[f64]) -> Result<Vec<f64>, LoadedError> {
+    pub fn loaded_rest(&self, initial: &Initial, amplitudes: &[f64], time: f64) -> Result<Vec<f64>, LoadedError> {
         let nf = self.flexible();
         let mut q = vec![0.0; nf];
         for _ in 0..MOST {
-            let force = self.forces_at_rest(initial, q.clone())?;
+            let force = self.forces_at_rest(initial, q.clone(), time)?;
             let force = Mat::from_fn(nf, 1, |i, _| force[i]);
-            let way = self.loaded_stiffness(initial, &q, amplitudes)?.partial_piv_lu().solve(&force);
+            let way = self.loaded_stiffness(initial, &q, amplitudes, time)?.partial_piv_lu().solve(&force);
             let size = (0..nf).map(|k| (way[(k, 0)] / amplitudes[k]).abs()).fold(0.0, f64::max);
             if !size.is_finite() {
                 break;
@@ -114,9 +115,14 @@ impl ConservativeBody {
     }
 
     /// p' of the body that is at rest with some modal displacements.
-    fn forces_at_rest(&self, initial: &Initial, modal_displacement: Vec<f64>) -> Result<Vec<f64>, LoadedError> {
+    fn forces_at_rest(
+        &self,
+        initial: &Initial,
+        modal_displacement: Vec<f64>,
+        time: f64,
+    ) -> Result<Vec<f64>, LoadedError> {
         let at = Initial { attitude: initial.attitude, modal_displacement, ..Initial::at_rest(self.flexible()) };
-        let [_, force] = self.mode_rates(&self.start(&at)?)?;
+        let [_, force] = self.mode_rates(&self.start_at(&at, time)?)?;
         Ok(force)
     }
 
@@ -142,7 +148,7 @@ impl ConservativeBody {
         Ok(inverse)
     }
 
-    /// q' and p' at a state at the beginning.
+    /// q' and p' at a state.
     fn mode_rates(&self, state: &State) -> Result<[Vec<f64>; 2], StepError> {
         let mut e = self.evaluation();
         e.place_mut().copy_from_slice(&state.values);
@@ -158,10 +164,10 @@ impl ConservativeBody {
     /// [`LoadedError`].
     pub fn loaded_modes(&self, initial: &Initial, amplitudes: &[f64]) -> Result<Vec<LoadedMode>, LoadedError> {
         let squares = if self.manifold.is_some() {
-            let rest = self.loaded_rest(initial, amplitudes)?;
-            self.inverse_mass(initial, &rest)? * self.loaded_stiffness(initial, &rest, amplitudes)?
+            let rest = self.loaded_rest(initial, amplitudes, 0.0)?;
+            self.inverse_mass(initial, &rest)? * self.loaded_stiffness(initial, &rest, amplitudes, 0.0)?
         } else {
-            self.loaded_stiffness(initial, &vec![0.0; self.flexible()], amplitudes)?
+            self.loaded_stiffness(initial, &vec![0.0; self.flexible()], amplitudes, 0.0)?
         };
         let eigenvalues: Vec<c64> = squares.eigenvalues().map_err(|_| EigenError { size: self.flexible() })?;
         let mut modes: Vec<LoadedMode> = eigenvalues

@@ -1,6 +1,9 @@
-//! Linear answers: state spaces, frequency responses, shock response spectra.
+//! Linear answers: state spaces, frequency responses, random responses, shock response spectra.
 
 pub mod frequencies;
 pub mod frf;
 pub mod linearize;
+mod names;
+pub mod psd;
+pub mod spectra;
 pub mod srs;

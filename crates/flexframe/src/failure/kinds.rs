@@ -28,6 +28,8 @@ use crate::commands::cost::CostError;
 use crate::commands::export::ExportError;
 use crate::commands::fmu::FmuError;
 use crate::commands::linear::linearize::LinearizeError;
+use crate::commands::linear::psd::PsdError;
+use crate::commands::linear::spectra::SpectraError;
 use crate::commands::linear::srs::SrsError;
 use crate::commands::paper::PaperError;
 use crate::commands::pictures::animation::{AnimationError, FilmError};
@@ -90,7 +92,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 35] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 37] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
@@ -121,6 +123,8 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 35] = [
     known_by::<HtmlReportError>,
     known_by::<CampbellError>,
     known_by::<LinearizeError>,
+    known_by::<PsdError>,
+    known_by::<SpectraError>,
     known_by::<SystemModesError>,
     known_by::<CostError>,
     known_by::<PaperError>,
@@ -509,8 +513,36 @@ impl Fault for LinearizeError {
             Self::Build(_) | Self::Begin(_) | Self::Write(_) | Self::Figure(_) => Known::default(),
             Self::Steady { scene, .. } | Self::Rest { scene, .. } => Kind::Run.of(scene),
             Self::Linear { scene, .. } | Self::Refused { scene, .. } => Kind::Refused.of(scene),
-            Self::NoChannel { scene, .. } | Self::Nothing { scene, .. } => Kind::Usage.of(scene),
+            Self::Run { scene, .. } => Kind::Run.of(scene),
+            Self::State { scene, .. } => Kind::Refused.of(scene),
+            Self::NoChannel { scene, .. } | Self::Nothing { scene, .. } | Self::Time { scene, .. } => {
+                Kind::Usage.of(scene)
+            }
             Self::Ending { .. } | Self::Frequencies { .. } => Kind::Usage.alone(),
+        }
+    }
+}
+
+impl Fault for PsdError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Linearize(_) | Self::Spectra(_) | Self::Write(_) | Self::Figure(_) => Known::default(),
+            Self::Linear { scene, .. } => Kind::Refused.of(scene),
+        }
+    }
+}
+
+impl Fault for SpectraError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Unreadable { path, .. } => Kind::Io.of(path),
+            Self::Row { path, line, .. } => Kind::Input.with(Details { line: Some(*line), ..Details::of_file(path) }),
+            Self::Header { path, .. } | Self::Input { path, .. } => {
+                Kind::Input.with(Details { line: Some(1), ..Details::of_file(path) })
+            }
+            Self::Few { path, .. } => Kind::Input.of(path),
+            Self::Short { path, .. } => Kind::Usage.of(path),
+            Self::Band { .. } => Kind::Usage.alone(),
         }
     }
 }

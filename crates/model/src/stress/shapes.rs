@@ -93,6 +93,11 @@ impl BodyStress {
         self.points.len()
     }
 
+    /// The stress of a unit of each coordinate at the points of the output, for each material there.
+    pub fn of_points(&self) -> &[Vec<Vec<[f64; 6]>>] {
+        &self.points
+    }
+
     /// The stress at all points; where materials meet, that of the material with the larger von Mises stress.
     pub fn at_points(&self, modal_displacement: &[f64]) -> impl Iterator<Item = [f64; 6]> + '_ {
         let coordinates = self.coordinates(modal_displacement);

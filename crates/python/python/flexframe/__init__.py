@@ -26,6 +26,7 @@ from flexframe._flexframe import (
     run,
 )
 from flexframe.errors import Error, FileError, InputError, RefusedError, RunError
+from flexframe.linear import Channel, LinearModel, linearize
 from flexframe.mesh import write_mesh
 from flexframe.results import BodyResults, Column, Results
 
@@ -34,12 +35,14 @@ __version__ = _flexframe.VERSION
 __all__ = [
     "Body",
     "BodyResults",
+    "Channel",
     "Column",
     "Error",
     "FileError",
     "Force",
     "InputError",
     "JointForce",
+    "LinearModel",
     "ModalForce",
     "Motion",
     "Reached",
@@ -50,6 +53,7 @@ __all__ = [
     "Scene",
     "Simulation",
     "System",
+    "linearize",
     "read_results",
     "resume",
     "run",

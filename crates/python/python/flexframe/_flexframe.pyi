@@ -22,6 +22,7 @@ __all__ = [
     "Simulation",
     "System",
     "_scene",
+    "linearized",
     "read_results",
     "resume",
     "run",
@@ -357,3 +358,15 @@ def _scene(text: str, path: _Path, body: str | None, trust_geometry: bool) -> Sc
 
 def read_results(path: _Path) -> Results:
     """Reads a results file, finished or not."""
+
+def linearized(
+    scene: Scene,
+    *,
+    spin: list[float] | None,
+    time: float | None,
+    without_rigid: bool,
+    inputs: list[str],
+    outputs: list[str],
+    reduce: str | None,
+) -> dict[str, Any]:
+    """The state space of small motions of a scene, for `flexframe.linearize`: A, B, C, D, and names and units."""

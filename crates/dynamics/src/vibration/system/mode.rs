@@ -114,6 +114,31 @@ impl Linearization {
         Ok(Vibrations { rigid: &self.basis * rigid, zeros, modes })
     }
 
+    /// The same equations with the motions that nothing resists as the first coordinates, and their number: their rows and columns of K and C
+    /// are zero, and not rounding.
+    ///
+    /// # Errors
+    /// As [`Self::vibrations`].
+    pub fn with_loose_apart(&self) -> Result<(Self, usize), SteadyError> {
+        let (rest, loose) = self.without_rigid()?;
+        let (size, count) = (self.size(), loose.ncols());
+        if count == 0 {
+            return Ok((self.clone(), 0));
+        }
+        let turn = Mat::from_fn(size, size, |i, j| if j < count { loose[(i, j)] } else { rest[(i, j - count)] });
+        let turned = |matrix: &Mat<f64>| {
+            let whole = turn.transpose() * (matrix * &turn);
+            Mat::from_fn(size, size, |i, j| if i < count || j < count { 0.0 } else { whole[(i, j)] })
+        };
+        let apart = Self {
+            basis: &self.basis * &turn,
+            stiffness: turned(&self.stiffness),
+            damping: turned(&self.damping),
+            ..self.clone()
+        };
+        Ok((apart, count))
+    }
+
     /// Orthonormal bases of the coordinates that are not rigid motions without forces, and of those that are.
     fn without_rigid(&self) -> Result<(Mat<f64>, Mat<f64>), SteadyError> {
         let (size, count) = (self.size(), self.rigid);

@@ -150,15 +150,21 @@ impl Terms {
 
     /// λ that leaves the least of the forces.
     fn find_multipliers(&mut self, system: &System) {
-        let mut accelerations = self.forces.clone();
+        let against: Vec<f64> = self.forces.iter().map(|force| -force).collect();
+        self.multipliers = self.multipliers_of(system, &against);
+    }
+
+    /// S f = (G M⁻¹Gᵀ)⁻¹ G M⁻¹ f: the multipliers whose forces are nearest to these in the metric of M⁻¹.
+    pub fn multipliers_of(&self, system: &System, forces: &[f64]) -> Vec<f64> {
+        let mut accelerations = forces.to_vec();
         for (inverse, range) in self.mass_inverses.iter().zip(system.first.windows(2)) {
             inverse.apply(&mut accelerations[range[0]..range[1]]);
         }
         let mut multipliers = (0..self.rows.nrows())
-            .map(|row| -accelerations.iter().enumerate().map(|(k, a)| self.rows[(row, k)] * a).sum::<f64>())
+            .map(|row| accelerations.iter().enumerate().map(|(k, a)| self.rows[(row, k)] * a).sum::<f64>())
             .collect::<Vec<f64>>();
         self.of_mass.solve(&self.pattern, &mut multipliers);
-        self.multipliers = multipliers;
+        multipliers
     }
 
     /// The change of place that closes gaps of the rows, in the metric of M.

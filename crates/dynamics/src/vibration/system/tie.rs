@@ -283,6 +283,18 @@ impl Tie {
         motions
     }
 
+    /// Force and moment on a marker, by its number.
+    pub fn wrench(&self, marker: usize) -> [Vector3<f64>; 2] {
+        self.wrenches[marker]
+    }
+
+    /// Their changes by changes of place of all bodies, at the same velocities and multipliers.
+    pub fn wrench_change(&self, marker: usize, changes: &[f64]) -> [Vector3<f64>; 2] {
+        let z = self.motions(changes);
+        let row = |i: usize| z.iter().enumerate().map(|(j, z)| self.by_motion[(6 * marker + i, j)] * z).sum::<f64>();
+        [Vector3::from_fn(|i, _| row(i)), Vector3::from_fn(|i, _| row(3 + i))]
+    }
+
     /// Twice the energy that small changes of place put into it: −zᵀ (change of the wrenches by z), z the motions of the markers.
     pub fn twice_energy(&self, changes: &[f64]) -> f64 {
         let z = self.motions(changes);

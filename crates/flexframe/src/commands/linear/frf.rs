@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use faer::c64;
 use figures::{LineChart, Scale, Series, Stroke};
-use linear::{Channel, Damping, FrequencyResponse, Output, SecondOrder};
+use linear::{Damping, FrequencyResponse, SecondOrder};
 use model::{BuildProgress, Builder};
 use scene::System;
 use serde::Serialize;
@@ -33,10 +33,6 @@ pub struct FrfSettings {
     pub frequencies: Frequencies,
     /// True where frequencies are spaced by equal ratios.
     pub logarithmic: bool,
-    /// Names of inputs; all where there are none.
-    pub inputs: Vec<String>,
-    /// Names of outputs, or beginnings of them; all where there are none.
-    pub outputs: Vec<String>,
     /// Loss factor of structural damping in the place of the scene's damping.
     pub loss_factor: Option<f64>,
 }
@@ -96,58 +92,28 @@ pub fn frf(
     let frequencies = frequencies.ok_or(LinearizeError::Frequencies { start, end, count })?;
     let scene = &system.bodies[0];
     let model = linear_model(system, builder, &settings.linear, progress)?;
-    let equations = chosen(&model.equations, settings, &scene.path)?;
-    let damping = settings.loss_factor.map_or(Damping::OfEquations, Damping::Structural);
+    let equations = &model.equations;
     let failed = |source| LinearizeError::Linear { scene: scene.path.clone(), source: Box::new(source) };
-    let response = equations.frequency_response(&frequencies, damping).map_err(failed)?;
+    let response = equations.frequency_response(&frequencies, damping_of(settings.loss_factor)).map_err(failed)?;
 
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let table = folder.join(TABLE);
-    write_whole(&table, csv(&equations, &response)).map_err(WriteError::of(&table))?;
+    write_whole(&table, csv(equations, &response)).map_err(WriteError::of(&table))?;
     let unit = frequency_unit(&scene.units.time);
     let mut files = vec![table];
-    files.extend(chart(&scene.title, &unit, &equations, &response, settings.logarithmic).save(folder.join(CHART))?);
+    files.extend(chart(&scene.title, &unit, equations, &response, settings.logarithmic).save(folder.join(CHART))?);
     Ok(FrfReport {
         title: scene.title.clone(),
         frequency_unit: unit,
         files,
-        peaks: peaks(&equations, &response),
+        peaks: peaks(equations, &response),
         warnings: model.state.warnings,
     })
 }
 
-/// The equations with the inputs and outputs that are asked for.
-fn chosen(equations: &SecondOrder, settings: &FrfSettings, scene: &Path) -> Result<SecondOrder, LinearizeError> {
-    let names = |channels: Vec<&Channel>| channels.into_iter().map(|channel| channel.name.clone()).collect::<Vec<_>>();
-    let no_channel = |what, found: &str, known| LinearizeError::NoChannel {
-        scene: scene.to_owned(),
-        what,
-        found: found.to_owned(),
-        known,
-    };
-    let is = |name: &str, wanted: &str| {
-        name == wanted || name.strip_prefix(wanted).is_some_and(|rest| rest.starts_with(['.', '[']))
-    };
-    for wanted in &settings.inputs {
-        if !equations.inputs.iter().any(|input| is(&input.name, wanted)) {
-            return Err(no_channel("input", wanted, names(equations.inputs.iter().collect())));
-        }
-    }
-    for wanted in &settings.outputs {
-        if !equations.outputs.iter().any(|output| is(&output.channel.name, wanted)) {
-            return Err(no_channel("output", wanted, names(equations.outputs.iter().map(|o| &o.channel).collect())));
-        }
-    }
-    let is_asked = |list: &[String], name: &str| list.is_empty() || list.iter().any(|wanted| is(name, wanted));
-    let inputs: Vec<usize> =
-        (0..equations.inputs.len()).filter(|j| is_asked(&settings.inputs, &equations.inputs[*j].name)).collect();
-    let outputs = equations.outputs.iter().filter(|output| is_asked(&settings.outputs, &output.channel.name));
-    Ok(SecondOrder {
-        forces: faer::Mat::from_fn(equations.size(), inputs.len(), |i, j| equations.forces[(i, inputs[j])]),
-        inputs: inputs.iter().map(|j| equations.inputs[*j].clone()).collect(),
-        outputs: outputs.cloned().collect::<Vec<Output>>(),
-        ..equations.clone()
-    })
+/// The damping of the equations, or structural damping with a loss factor.
+pub(super) fn damping_of(loss_factor: Option<f64>) -> Damping {
+    loss_factor.map_or(Damping::OfEquations, Damping::Structural)
 }
 
 /// A row a frequency: magnitude and phase (degrees) of each output by each input.

@@ -1,33 +1,34 @@
 //! `flexframe linearize`: the state space of small motions about rest or a steady spin, for control and for other programs.
 
+mod at_time;
+mod base;
 mod channels;
+mod driven;
 mod error;
 mod files;
 mod held;
 mod of_system;
+mod reduction;
 mod report;
+mod rigid;
+mod settings;
 mod state;
 
+use std::borrow::Cow;
 use std::path::Path;
 
+use dynamics::{Initial, MotionState};
 use linear::{SecondOrder, StateSpace};
 use model::{BuildProgress, Builder, Model};
 use nalgebra::Vector3;
-use scene::System;
+use scene::{Scene, System};
 
+use at_time::{moving_modes, states_at};
 pub use error::LinearizeError;
+pub use reduction::{Reduced, Reduction};
 pub use report::LinearReport;
+pub use settings::LinearSettings;
 pub use state::State;
-
-/// Settings of a linear model.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct LinearSettings {
-    /// Angular velocity of the steady spin, global, radians per time, about the center of mass; `None` is that which a free body of the
-    /// scene begins with, or of its drive, and rest of bodies in joints.
-    pub spin: Option<[f64; 3]>,
-    /// True where coordinates that deform nothing are taken out.
-    pub without_rigid: bool,
-}
 
 /// The linearised equations of a scene.
 #[derive(Debug, Clone)]
@@ -38,8 +39,8 @@ pub struct LinearModel {
     pub state: State,
 }
 
-/// Builds the bodies of a scene and linearises their equations of motion: exactly, but for the first order of loads, which is exact for
-/// those that are of second degree in the motion.
+/// Builds the bodies of a scene and linearises their equations of motion: exactly; the first order of loads by differences
+/// that are exact for laws of fourth degree in the motion.
 ///
 /// # Errors
 /// [`LinearizeError`].
@@ -49,31 +50,48 @@ pub fn linear_model(
     settings: &LinearSettings,
     mut progress: impl FnMut(BuildProgress),
 ) -> Result<LinearModel, LinearizeError> {
+    // A motion of a free body that the scene does not call for is one that an input may.
+    let scenes: Vec<Cow<'_, Scene>> = match &system.bodies[..] {
+        [scene] if scene.constraint.is_none() => vec![Cow::Owned(scene.clone().for_unknown_forces())],
+        scenes => scenes.iter().map(Cow::Borrowed).collect(),
+    };
     let models: Vec<Model> =
-        system.bodies.iter().map(|scene| builder.build(scene, &mut progress)).collect::<Result<_, _>>()?;
+        scenes.iter().map(|scene| builder.build(scene, &mut progress)).collect::<Result<_, _>>()?;
     let refuse = |found: &str, help| LinearizeError::Refused {
         scene: system.bodies[0].path.clone(),
         found: found.to_owned(),
         help,
     };
     let is_free = |model: &Model| model.body.motion.is_free() && model.physics.drive.is_none();
-    let (equations, state) = match &models[..] {
-        [model] if !is_free(model) && !system.has_connections() => {
+    let states = settings.time.map(|time| states_at(system, &models, time)).transpose()?;
+    let is_alone = models.len() == 1 && !system.has_connections();
+    let (channels, mut state) = match &models[..] {
+        [model] if is_alone && !is_free(model) => {
             if settings.spin.is_some() {
                 return Err(refuse("--spin of a body that is held", "give its hinge the speed, as `motion`"));
             }
-            held::of_held(&system.bodies[0], model)?
+            let initial = match states.as_deref() {
+                Some([state, ..]) => Initial {
+                    attitude: state.attitude,
+                    origin: Some(state.origin_global),
+                    ..Initial::at_rest(model.body.flexible())
+                },
+                _ => model.initial(&system.bodies[0]),
+            };
+            held::of_held(&system.bodies[0], model, (&initial, settings.time.unwrap_or(0.0)), settings)?
         }
         models if models.iter().all(is_free) => {
-            let initial = || match models {
-                [model] if !system.has_connections() => {
+            let of_state = |state: &MotionState| state.attitude.global_to_body().transpose() * state.omega_body;
+            let own = || match (models, states.as_deref()) {
+                ([_], Some([state, ..])) if is_alone => Some(of_state(state)),
+                ([model], None) if is_alone => {
                     let initial = model.initial(&system.bodies[0]);
                     Some(initial.attitude.global_to_body().transpose() * initial.omega)
                 }
                 _ => None,
             };
-            let spin = settings.spin.map(Vector3::from).or_else(initial);
-            of_system::of_system(system, models, spin)?
+            let spin = settings.spin.map(Vector3::from).or_else(own);
+            of_system::of_system(system, models, spin, states.as_deref(), settings)?
         }
         _ => {
             return Err(refuse(
@@ -82,21 +100,18 @@ pub fn linear_model(
             ));
         }
     };
+    if let Some(states) = &states {
+        state.warnings.extend(moving_modes(&models, states));
+    }
+    let equations = channels.chosen(settings, &system.bodies[0])?;
     let equations = match settings.without_rigid {
         true => equations.without(&(0..state.rigid).collect::<Vec<_>>()),
         false => equations,
     };
-    let nothing = |what, help| Err(LinearizeError::Nothing { scene: system.bodies[0].path.clone(), what, help });
-    if equations.inputs.is_empty() {
-        return nothing("inputs", "give the scene loads (their history does not matter), or joints that turn or slide");
-    }
-    if equations.outputs.is_empty() {
-        return nothing("outputs", "name points in [output], or give the scene joints that turn or slide");
-    }
     Ok(LinearModel { equations, state })
 }
 
-/// Writes the state space of a scene to a file, .mat or .json; with an order, that of the balanced truncation.
+/// Writes the state space of a scene to a file, .mat or .json, or that of a model of lower order.
 ///
 /// # Errors
 /// [`LinearizeError`].
@@ -104,7 +119,7 @@ pub fn linearize(
     system: &System,
     builder: &Builder,
     settings: &LinearSettings,
-    order: Option<usize>,
+    reduction: Option<Reduction>,
     output: &Path,
     progress: impl FnMut(BuildProgress),
 ) -> Result<LinearReport, LinearizeError> {
@@ -113,7 +128,7 @@ pub fn linearize(
     let scene = &system.bodies[0];
     let failed = |source| LinearizeError::Linear { scene: scene.path.clone(), source: Box::new(source) };
     let space = model.equations.state_space().map_err(failed)?;
-    let reduced = order.map(|order| space.balanced(order)).transpose().map_err(failed)?;
+    let reduced = reduction.map(|reduction| reduction.of(&space)).transpose().map_err(failed)?;
     let written: &StateSpace = reduced.as_ref().map_or(&space, |reduced| &reduced.model);
     let poles = written.poles().map_err(failed)?;
     files::write(written, output)?;

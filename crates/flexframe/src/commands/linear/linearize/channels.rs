@@ -1,11 +1,58 @@
 //! Names and units of inputs and outputs.
 
-use linear::{Channel, Output, Rate};
+use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
 use nalgebra::Vector3;
 use scene::{Load, Scene};
 
+use super::error::LinearizeError;
+use super::settings::LinearSettings;
+use crate::commands::linear::names::{STRESS, is_asked};
 use crate::rows::units::UnitLabels;
+
+/// Equations with all the channels that a scene may have.
+pub(super) struct Channels {
+    pub equations: SecondOrder,
+    /// Numbers of inputs and of outputs that are there unless others are asked for: the first ones.
+    pub usual: [usize; 2],
+    /// Inputs that would be there if they were asked for.
+    pub more_inputs: Vec<String>,
+}
+
+impl Channels {
+    /// The equations with the channels that are asked for.
+    pub fn chosen(self, settings: &LinearSettings, scene: &Scene) -> Result<SecondOrder, LinearizeError> {
+        let Self { equations, usual, more_inputs } = self;
+        let inputs: Vec<&str> = equations.inputs.iter().map(|channel| &channel.name[..]).collect();
+        let outputs: Vec<&str> = equations.outputs.iter().map(|output| &output.channel.name[..]).collect();
+        let pick = |what, list: &[&str], more: &[String], asked: &[String], usual: usize| {
+            if let Some(found) = asked.iter().find(|asked| !list.iter().any(|name| is_asked(name, asked))) {
+                let known = list.iter().map(|name| (*name).to_owned()).chain(more.iter().cloned()).collect();
+                let (scene, found) = (scene.path.clone(), found.clone());
+                return Err(LinearizeError::NoChannel { scene, what, found, known });
+            }
+            let is_picked = |k: &usize| match asked {
+                [] => *k < usual,
+                asked => asked.iter().any(|asked| is_asked(list[*k], asked)),
+            };
+            Ok((0..list.len()).filter(is_picked).collect::<Vec<_>>())
+        };
+        let inputs = pick("input", &inputs, &more_inputs, &settings.inputs, usual[0])?;
+        let outputs = pick("output", &outputs, &[], &settings.outputs, usual[1])?;
+        let nothing = |what, help| Err(LinearizeError::Nothing { scene: scene.path.clone(), what, help });
+        if inputs.is_empty() {
+            return nothing(
+                "inputs",
+                "give the scene loads (their history does not matter) or joints that turn or slide, or ask for the motion of the base \
+                 or of a drive (--inputs base)",
+            );
+        }
+        if outputs.is_empty() {
+            return nothing("outputs", "name points in [output], or give the scene joints that turn or slide");
+        }
+        Ok(equations.with_channels(&inputs, &outputs))
+    }
+}
 
 /// The unit of a coordinate of unit mass: √mass · length.
 pub(super) fn unit_of_coordinate(scene: &Scene) -> String {
@@ -35,12 +82,39 @@ pub(super) fn point_outputs(scene: &Scene, name: &str, columns: &[Vector3<f64>])
     for (rate, quantity, unit) in rates {
         for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
             let row = columns.iter().map(|column| column[axis]).collect();
-            outputs.push(Output {
-                channel: Channel::new(format!("{name}.{quantity}.{letter}"), unit.clone()),
-                rate,
-                row,
-            });
+            let channel = Channel::new(format!("{name}.{quantity}.{letter}"), unit.clone());
+            outputs.push(Output::new(channel, rate, row));
         }
     }
     outputs
+}
+
+/// Stress components of a point, body axes, by those of each modal displacement in each material there; `over` makes a row over the
+/// coordinates of one over the modes.
+pub(super) fn stress_outputs(
+    scene: &Scene,
+    name: &str,
+    materials: &[Vec<[f64; 6]>],
+    over: impl Fn(&[f64]) -> Vec<f64>,
+) -> Vec<Output> {
+    let unit = UnitLabels::from(&scene.units).stress();
+    let mut outputs = Vec::new();
+    for (number, shapes) in materials.iter().enumerate() {
+        let material = if materials.len() > 1 { format!("[{number}]") } else { String::new() };
+        for (component, letters) in STRESS.into_iter().enumerate() {
+            let of_modes: Vec<f64> = shapes.iter().map(|stress| stress[component]).collect();
+            let channel = Channel::new(format!("{name}.stress{material}.{letters}"), unit.clone());
+            outputs.push(Output::new(channel, Rate::Place, over(&of_modes)));
+        }
+    }
+    outputs
+}
+
+/// Names and units of the six components of a force and a moment.
+pub(super) fn wrench_channels(scene: &Scene, name: &str) -> Vec<Channel> {
+    let units = UnitLabels::from(&scene.units);
+    let of = |quantity: &'static str, unit: String| {
+        ["x", "y", "z"].map(|axis| Channel::new(format!("{name}.{quantity}.{axis}"), unit.clone()))
+    };
+    of("force", units.force()).into_iter().chain(of("moment", units.moment())).collect()
 }

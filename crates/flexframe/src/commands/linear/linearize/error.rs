@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use dynamics::{LoadedError, SteadyError};
+use dynamics::{LoadedError, SetupError, SteadyError, StepError};
 use figures::FigureError;
 use linear::LinearError;
 use model::BuildError;
@@ -35,6 +35,15 @@ pub enum LinearizeError {
     /// An input or an output that is not there.
     #[error("{}: no {what} `{found}`; expected one of {}", scene.display(), known.join(", "))]
     NoChannel { scene: PathBuf, what: &'static str, found: String, known: Vec<String> },
+    /// A time that the run does not have.
+    #[error("{}: time {time}: expected 0 to {end}, the end of the run", scene.display())]
+    Time { scene: PathBuf, time: f64, end: f64 },
+    /// The state of the run is none of the system that is made linear.
+    #[error("{}: {source}", scene.display())]
+    State { scene: PathBuf, source: Box<SetupError> },
+    /// The run to the state fails.
+    #[error("{}: {source}", scene.display())]
+    Run { scene: PathBuf, source: Box<StepError> },
     /// A model without inputs or outputs.
     #[error("{}: no {what}; {help}", scene.display())]
     Nothing { scene: PathBuf, what: &'static str, help: &'static str },

@@ -1,33 +1,40 @@
 //! Small motions of a body that is held, or held in a driven spin.
 
-use dynamics::{DrivenMotion, Load, SteadySpin};
+use dynamics::{DrivenMotion, Initial, SteadySpin};
 use faer::Mat;
-use linear::{Channel, SecondOrder};
+use linear::{Channel, Output, Rate, SecondOrder};
 use model::{AtRest, Model};
 use nalgebra::Vector3;
 use scene::Scene;
 
-use super::channels::{input_channels, point_outputs, unit_of_coordinate};
+use super::base::{Held, base_channels};
+use super::channels::{Channels, input_channels, point_outputs, stress_outputs, unit_of_coordinate};
+use super::driven::Driven;
 use super::error::LinearizeError;
+use super::rigid::{acts_on, rigid_motions};
+use super::settings::LinearSettings;
 use super::state::State;
+use crate::commands::linear::names::is_asked;
 
-/// A force on the motions of the whole body below this part of the largest of a load is none.
-const NONE: f64 = 1e-12;
-
-/// The equations about rest under the loads of time 0, or about the spin of a drive at time 0.
-pub(super) fn of_held(scene: &Scene, model: &Model) -> Result<(SecondOrder, State), LinearizeError> {
+/// The equations about rest under the loads of a time, or about the spin of a drive then.
+pub(super) fn of_held(
+    scene: &Scene,
+    model: &Model,
+    (initial, time): (&Initial, f64),
+    settings: &LinearSettings,
+) -> Result<(Channels, State), LinearizeError> {
     let refuse =
         |found: &str, help| Err(LinearizeError::Refused { scene: scene.path.clone(), found: found.to_owned(), help });
     if model.physics.large_deflection.is_some() {
         return refuse("a body with large modes", "give `large_deflection = false` in [effects]");
     }
     let failed = |source| LinearizeError::Rest { scene: scene.path.clone(), source: Box::new(source) };
-    let AtRest { unit_forces, mut stiffness } = model.at_rest(scene).map_err(failed)?;
+    let AtRest { unit_forces, mut stiffness } = model.at_rest(initial, time).map_err(failed)?;
     // Rigid motions that are left: none of a drive, which is given.
     let rigid = if model.physics.drive.is_none() { rigid_motions(model) } else { Vec::new() };
-    if unit_forces.iter().zip(model.loads()).any(|(unit, load)| acts_on(&rigid, unit, &**load)) {
+    if unit_forces.iter().zip(model.loads()).any(|(unit, load)| acts_on(&rigid, unit, &**load, time)) {
         return refuse(
-            "loads at time 0 act on a body that can turn or slide, which gives it a stiffness or an acceleration",
+            "loads act on a body that can turn or slide, which gives it a stiffness or an acceleration",
             "say the support as a joint to the ground ([[joints]]), whose linear model has it",
         );
     }
@@ -35,69 +42,125 @@ pub(super) fn of_held(scene: &Scene, model: &Model) -> Result<(SecondOrder, Stat
     let mut damping = Mat::from_fn(nf, nf, |i, j| {
         if i == j { 2.0 * model.damping_ratios()[i] * model.body.circular_frequencies[i] } else { 0.0 }
     });
+    let drive = Driven::new(model, time);
     let mut omega_global = Vector3::zeros();
-    if let Some(drive) = &model.physics.drive
-        && let DrivenMotion::Turn { axis } = drive.motion
-    {
-        let speed = drive.speed.amplitude * drive.speed.history.at(0.0, 0.0);
-        let [of_spin, gyroscopic] = SteadySpin::new(&model.body, &axis, &model.physics.effects).added(speed);
+    if let Some(Driven { motion: DrivenMotion::Turn { axis }, speed, .. }) = &drive {
+        let [of_spin, gyroscopic] = SteadySpin::new(&model.body, axis, &model.physics.effects).added(*speed);
         stiffness += of_spin;
         damping += gyroscopic;
-        omega_global = axis * speed;
+        omega_global = initial.attitude.global_to_body().transpose() * axis * *speed;
     }
-    let (r, n) = (rigid.len(), rigid.len() + nf);
-    let with_rigid =
-        |matrix: &Mat<f64>| Mat::from_fn(n, n, |i, j| if i >= r && j >= r { matrix[(i - r, j - r)] } else { 0.0 });
-    let forces = Mat::from_fn(n, unit_forces.len(), |i, j| match rigid.get(i) {
-        Some(motion) => motion.force(&unit_forces[j]),
-        None => unit_forces[j][6 + i - r],
-    });
+    // The slopes need a body that only its modes move.
+    let slopes = match rigid.is_empty() {
+        true => Some(model.held_slopes(initial, time).map_err(failed)?),
+        false => None,
+    };
+    let asked_drive = drive.filter(|_| settings.inputs.iter().any(|asked| is_asked(Driven::INPUT, asked)));
+    let (r, d) = (rigid.len(), usize::from(asked_drive.is_some()));
+    let n = r + nf + d;
+    let of_modes = |matrix: &Mat<f64>| {
+        let is_mode = |i: usize| (r..r + nf).contains(&i);
+        Mat::from_fn(n, n, |i, j| if is_mode(i) && is_mode(j) { matrix[(i - r, j - r)] } else { 0.0 })
+    };
+    let mut columns: Vec<Vec<f64>> = unit_forces
+        .iter()
+        .map(|unit| {
+            let of_rigid = rigid.iter().map(|motion| motion.force(unit));
+            of_rigid.chain(unit[6..].iter().copied()).chain(std::iter::repeat_n(0.0, d)).collect()
+        })
+        .collect();
+    let mut inputs = input_channels(scene, model, "");
+    let usual_inputs = inputs.len();
     let names = (1..=r).map(|k| format!("rigid{k}")).chain((1..=nf).map(|k| format!("mode{k}")));
     let unit = unit_of_coordinate(scene);
-    let outputs = model.points.iter().flat_map(|(name, point)| {
-        let columns = rigid.iter().map(|motion| motion.number).chain(6..6 + nf);
-        point_outputs(scene, name, &columns.map(|k| point.columns()[k]).collect::<Vec<_>>())
-    });
-    let equations = SecondOrder {
-        stiffness: with_rigid(&stiffness),
-        damping: with_rigid(&damping),
-        forces,
-        inputs: input_channels(scene, model, ""),
-        outputs: outputs.collect(),
-        coordinates: names.map(|name| Channel::new(name, unit.clone())).collect(),
-    };
-    Ok((equations, State { omega_global: omega_global.into(), rigid: r, warnings: Vec::new() }))
-}
-
-/// A motion of unit modal mass that the support leaves the body as a whole.
-struct Rigid {
-    /// Its number among the six of [`dynamics::PointShapes::columns`].
-    number: usize,
-    /// Velocity of the origin, or angular velocity.
-    direction: Vector3<f64>,
-}
-
-impl Rigid {
-    /// The force on its coordinate by a load: force and moment about the origin are the first six of its generalised forces.
-    fn force(&self, unit: &[f64]) -> f64 {
-        let first = 3 * (self.number / 3);
-        self.direction.iter().zip(&unit[first..]).map(|(direction, force)| direction * force).sum()
+    let mut coordinates: Vec<Channel> = names.map(|name| Channel::new(name, unit.clone())).collect();
+    let (stiffness, mut damping) = (of_modes(&stiffness), of_modes(&damping));
+    let mut outputs = Vec::new();
+    let mut arms = Vec::new();
+    for (name, point) in &model.points {
+        let numbers = rigid.iter().map(|motion| motion.number).chain(6..6 + nf);
+        let shapes = numbers.map(|k| point.columns()[k]).chain(std::iter::repeat_n(Vector3::zeros(), d));
+        outputs.extend(point_outputs(scene, name, &shapes.collect::<Vec<_>>()));
+        let q = slopes.as_ref().map_or_else(|| vec![0.0; nf], |slopes| slopes.modal_displacement.clone());
+        arms.push(model.arm(point, &q));
     }
-}
+    let motions = outputs.len();
+    let of_stress = model.stress.as_ref().map_or(&[][..], |stress| stress.of_points());
+    for ((name, _), materials) in model.points.iter().zip(of_stress) {
+        let over = |row: &[f64]| {
+            let zeros = |count| std::iter::repeat_n(0.0, count);
+            zeros(r).chain(row[..nf].iter().copied()).chain(zeros(d)).collect()
+        };
+        outputs.extend(stress_outputs(scene, name, materials, over));
+    }
+    let usual_outputs = outputs.len();
 
-fn rigid_motions(model: &Model) -> Vec<Rigid> {
-    let bases = [&model.body.translation_basis, &model.body.rotation_basis];
-    let all = (0..6).map(|number| Rigid { number, direction: bases[number / 3].column(number % 3).into() });
-    all.filter(|motion| motion.direction.norm() > 0.0).collect()
-}
-
-/// True of a load that acts at time 0 on the motions of the body as a whole.
-fn acts_on(rigid: &[Rigid], unit: &[f64], load: &dyn Load) -> bool {
-    let factor = load.history().map_or(1.0, |history| history.at(0.0, 0.0));
-    let parts = |motion: &Rigid| {
-        let first = 3 * (motion.number / 3);
-        motion.direction.iter().zip(&unit[first..]).map(|(direction, force)| (direction * force).abs()).sum::<f64>()
-    };
-    let size = unit.iter().map(|x| x.abs()).fold(0.0, f64::max);
-    factor != 0.0 && rigid.iter().map(parts).fold(0.0, f64::max) > NONE * size
+    // Reactions, by input; base and drive.
+    let mut direct: Vec<[f64; 6]> = Vec::new();
+    let mut more_inputs = Vec::new();
+    if let Some(slopes) = &slopes {
+        let held = Held { model, slopes };
+        let momenta = held.momenta();
+        // What a force on the modes gives the support by their accelerations, less what a load gives it itself.
+        let by_modes = |column: &[f64], i: usize| -> f64 {
+            column[r..r + nf].iter().zip(&momenta).map(|(force, momentum)| force * momentum[i]).sum()
+        };
+        for (unit, column) in unit_forces.iter().zip(&columns) {
+            direct.push(std::array::from_fn(|i| by_modes(column, i) - unit[i]));
+        }
+        // The motion of the base that an input is.
+        let mut accelerations: Vec<Option<usize>> = vec![None; direct.len()];
+        if drive.is_none() {
+            for (motion, channel) in base_channels(scene).into_iter().enumerate() {
+                let column: Vec<f64> = momenta.iter().map(|momentum| -momentum[motion]).collect();
+                let whole = held.rigid(motion);
+                direct.push(std::array::from_fn(|i| whole[i] + by_modes(&column, i)));
+                accelerations.push(Some(motion));
+                columns.push(column);
+                inputs.push(channel);
+            }
+        }
+        if let (Some(driven), Some([by_speed, by_rate])) = (&asked_drive, &slopes.by_drive) {
+            (0..nf).for_each(|k| damping[(r + k, r + nf)] = -by_speed.0[k]);
+            let mut column = vec![0.0; n];
+            column[r..r + nf].copy_from_slice(&by_rate.0);
+            column[r + nf] = 1.0;
+            columns.push(column);
+            direct.push(by_rate.1);
+            accelerations.push(None);
+            let [input, coordinate] = driven.channels(scene);
+            inputs.push(input);
+            let mut row = vec![0.0; n];
+            row[r + nf] = 1.0;
+            outputs.push(Output::new(coordinate.clone(), Rate::Place, row));
+            coordinates.push(coordinate);
+        }
+        outputs.extend(held.reactions(scene, [r, d], &direct));
+        if let (Some(_), Some([by_speed, _])) = (&asked_drive, &slopes.by_drive) {
+            let first = outputs.len() - 6;
+            for (i, output) in outputs[first..].iter_mut().enumerate() {
+                output.rows[1][r + nf] = by_speed.1[i];
+            }
+        }
+        // Accelerations are absolute: base and drive add theirs.
+        for (point, arm) in arms.iter().enumerate() {
+            for axis in 0..3 {
+                let of_input = |motion: &Option<usize>| motion.map_or(0.0, |motion| held.at_point(arm, motion)[axis]);
+                let mut added: Vec<f64> = accelerations.iter().map(of_input).collect();
+                if let (Some(driven), Some(last)) = (&asked_drive, added.last_mut()) {
+                    *last = driven.at_point(arm)[axis];
+                }
+                if added.iter().any(|x| *x != 0.0) {
+                    outputs[motions / arms.len() * point + 6 + axis].direct = added;
+                }
+            }
+        }
+    }
+    if drive.is_some() && asked_drive.is_none() {
+        more_inputs.push(Driven::INPUT.to_owned());
+    }
+    let forces = Mat::from_fn(n, columns.len(), |i, j| columns[j].get(i).copied().unwrap_or(0.0));
+    let equations = SecondOrder { stiffness, damping, forces, inputs, outputs, coordinates };
+    let state = State { time, omega_global: omega_global.into(), rigid: r, warnings: Vec::new() };
+    Ok((Channels { equations, usual: [usual_inputs, usual_outputs], more_inputs }, state))
 }

@@ -1,16 +1,18 @@
 //! Small motions of free bodies, and of bodies in joints, about rest or a steady spin.
 
-use dynamics::{CommonSpin, Coordinate, SteadyState, SystemMotion};
+use dynamics::{CommonSpin, Coordinate, MotionState, Row, SteadyState, SystemMotion};
 use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
 use nalgebra::Vector3;
 use scene::System;
 
-use super::channels::{input_channels, point_outputs, unit_of_coordinate};
+use super::channels::{Channels, input_channels, point_outputs, stress_outputs, unit_of_coordinate, wrench_channels};
 use super::error::LinearizeError;
+use super::settings::LinearSettings;
 use super::state::State;
-use crate::motion::{self, Beginning, Motion};
+use crate::commands::linear::names::is_asked;
+use crate::motion::{self, Beginning, Motion, Moving};
 use crate::rows::units::UnitLabels;
 
 /// An acceleration beside ω² times the size of the bodies that is more than rounding.
@@ -21,7 +23,9 @@ pub(super) fn of_system(
     system: &System,
     models: &[Model],
     spin: Option<Vector3<f64>>,
-) -> Result<(SecondOrder, State), LinearizeError> {
+    states: Option<&[MotionState]>,
+    settings: &LinearSettings,
+) -> Result<(Channels, State), LinearizeError> {
     let scene = &system.bodies[0];
     let references: Vec<&Model> = models.iter().collect();
     let refuse =
@@ -29,20 +33,38 @@ pub(super) fn of_system(
     let no_body = || refuse("no body", "name a body in the scene");
     let beginning = Beginning::of(system, &references).ok_or_else(no_body)?;
     let beginning = Beginning { together: true, ..beginning };
-    let moving = motion::begin(system, &references, &beginning).map_err(Box::new)?;
-    let Some(Motion::Tied(simulation)) = moving.first().map(|moving| &moving.motion) else { return Err(no_body()) };
+    let mut moving = motion::begin(system, &references, &beginning).map_err(Box::new)?;
+    let Some(Moving { motion, joints, bodies }) = moving.first_mut() else { return Err(no_body()) };
+    if let Some(states) = states {
+        let states: Vec<MotionState> = bodies.iter().map(|body| states[*body].clone()).collect();
+        let scene = scene.path.clone();
+        motion.set_states(&states).map_err(|source| LinearizeError::State { scene, source: Box::new(source) })?;
+    }
+    let Motion::Tied(simulation) = &*motion else { return Err(no_body()) };
     let motion = simulation.motion();
     let omega_global = spin.unwrap_or_else(Vector3::zeros);
     let common = CommonSpin { omega_global, point_global: motion.center_of_mass() };
     let failed = |source| LinearizeError::Steady { scene: scene.path.clone(), source: Box::new(source) };
     let steady = motion.steady_state(&common).map_err(failed)?;
-    let linear = &steady.linear;
-    let n = linear.size();
+    let (linear, _) = steady.linear.with_loose_apart().map_err(failed)?;
+    let joint_drives: Vec<usize> = (0..joints.len())
+        .filter(|joint| {
+            let name = drive_input(&system.joints[joints[*joint]].name);
+            motion.system().joints()[*joint].drive.is_some()
+                && settings.inputs.iter().any(|asked| is_asked(&name, asked))
+        })
+        .collect();
+    // Changes of place by a unit of each drive, whose values are coordinates after the independent ones.
+    let driven: Vec<Vec<f64>> = joint_drives.iter().filter_map(|joint| motion.driven_motion(&steady, *joint)).collect();
+    let all = linear.basis.nrows();
+    let (free, n) = (linear.size(), linear.size() + driven.len());
+    let basis = Mat::from_fn(all, n, |i, j| if j < free { linear.basis[(i, j)] } else { driven[j - free][i] });
+    let over = |row: &[f64]| -> Vec<f64> { (0..n).map(|j| (0..all).map(|k| row[k] * basis[(k, j)]).sum()).collect() };
 
     let mut inputs = Vec::new();
     let mut columns: Vec<Vec<f64>> = Vec::new();
     let mut outputs = Vec::new();
-    let all = linear.basis.nrows();
+    let mut stresses = Vec::new();
     for (number, (model, state)) in models.iter().zip(steady.states()).enumerate() {
         let scene = &system.bodies[number];
         let own = linear.coordinates_of(number);
@@ -65,14 +87,22 @@ pub(super) fn of_system(
                 })
                 .collect();
             let of_coordinate = |j: usize| -> Vector3<f64> {
-                of_body.iter().enumerate().map(|(k, column)| column * linear.basis[(own.start + k, j)]).sum()
+                of_body.iter().enumerate().map(|(k, column)| column * basis[(own.start + k, j)]).sum()
             };
             let columns: Vec<Vector3<f64>> = (0..n).map(of_coordinate).collect();
             outputs.extend(point_outputs(scene, &format!("{prefix}{name}"), &columns));
         }
+        let of_stress = model.stress.as_ref().map_or(&[][..], |stress| stress.of_points());
+        for ((name, _), materials) in model.points.iter().zip(of_stress) {
+            let of_body = |row: &[f64]| {
+                let mut whole = vec![0.0; all];
+                (6..own.len()).for_each(|k| whole[own.start + k] = row[k - 6]);
+                over(&whole)
+            };
+            stresses.extend(stress_outputs(scene, &format!("{prefix}{name}"), materials, of_body));
+        }
     }
     let units: UnitLabels = (&scene.units).into();
-    let joints = &moving[0].joints;
     for (number, joint) in joints.iter().enumerate() {
         let of = &system.joints[*joint];
         for coordinate in of.kind.coordinates() {
@@ -81,29 +111,89 @@ pub(super) fn of_system(
                 scene::Coordinate::Slide => (Coordinate::Slide, "slide", [units.force(), units.length.to_owned()]),
             };
             let row = motion.coordinate_row(&steady, number, coordinate);
-            let over: Vec<f64> = (0..n).map(|j| (0..all).map(|k| row[k] * linear.basis[(k, j)]).sum()).collect();
+            let of_coordinates = over(&row);
             inputs.push(Channel::new(format!("{}.{quantity}", of.name), force));
             columns.push(row);
             for (rate, suffix, unit) in
                 [(Rate::Place, "", unit.clone()), (Rate::Velocity, ".rate", format!("{unit}/{}", scene.units.time))]
             {
                 let channel = Channel::new(format!("{}.{quantity}{suffix}", of.name), unit);
-                outputs.push(Output { channel, rate, row: over.clone() });
+                outputs.push(Output::new(channel, rate, of_coordinates.clone()));
             }
         }
     }
-    let forces = Mat::from_fn(n, columns.len(), |i, j| (0..all).map(|k| linear.basis[(k, i)] * columns[j][k]).sum());
-    let unit = unit_of_coordinate(scene);
-    let equations = SecondOrder {
-        stiffness: linear.stiffness.clone(),
-        damping: linear.damping.clone(),
-        forces,
-        inputs,
-        outputs,
-        coordinates: (1..=n).map(|k| Channel::new(format!("x{k}"), unit.clone())).collect(),
+    outputs.extend(stresses);
+    let usual = [inputs.len(), outputs.len()];
+    // Reactions: forces on the bodies count in them as such, drives by the motion that they give.
+    for (number, joint) in joints.iter().enumerate() {
+        let of = motion.reaction_rows(&steady, number);
+        let times = |matrix: &Mat<f64>, i: usize| over(&(0..all).map(|k| matrix[(i, k)]).collect::<Vec<f64>>());
+        for (i, channel) in wrench_channels(scene, &system.joints[*joint].name).into_iter().enumerate() {
+            let of_input = columns.iter().map(|force| (0..all).map(|k| of.by_force[(i, k)] * force[k]).sum());
+            let mut direct: Vec<f64> = of_input.collect();
+            let mut by_acceleration = times(&of.by_acceleration, i);
+            // Of independent coordinates it is rounding.
+            direct.extend(&by_acceleration[free..]);
+            by_acceleration.clear();
+            let rows = [times(&of.by_place, i), times(&of.by_rate, i), by_acceleration];
+            outputs.push(Output { channel, rows, direct });
+        }
+    }
+    let coupling = |matrix: &Mat<f64>, i: usize, column: &[f64]| -> f64 {
+        (0..all).map(|k| linear.basis[(k, i)] * (0..all).map(|l| matrix[(k, l)] * column[l]).sum::<f64>()).sum()
     };
+    let [whole_stiffness, whole_damping] = motion.whole_matrices(&steady);
+    let with_drives = |of_free: &Mat<f64>, whole: &Mat<f64>| {
+        Mat::from_fn(n, n, |i, j| match (i < free, j < free) {
+            (true, true) => of_free[(i, j)],
+            (true, false) => coupling(whole, i, &driven[j - free]),
+            _ => 0.0,
+        })
+    };
+    let (stiffness, damping) =
+        (with_drives(&linear.stiffness, &whole_stiffness), with_drives(&linear.damping, &whole_damping));
+    let on_free = |i: usize, column: &[f64]| (0..all).map(|k| linear.basis[(k, i)] * column[k]).sum::<f64>();
+    let forces = Mat::from_fn(n, columns.len() + driven.len(), |i, j| match j.checked_sub(columns.len()) {
+        None if i < free => on_free(i, &columns[j]),
+        Some(drive) if i == free + drive => 1.0,
+        _ => 0.0,
+    });
+    let unit = unit_of_coordinate(scene);
+    let mut coordinates: Vec<Channel> = (1..=free).map(|k| Channel::new(format!("x{k}"), unit.clone())).collect();
+    let mut more_inputs = Vec::new();
+    for (number, joint) in joints.iter().enumerate() {
+        let (name, of) = (&system.joints[*joint].name, &motion.system().joints()[number]);
+        let Some(quantity) = of.rows.iter().find_map(driven_unit) else { continue };
+        let unit = if quantity == "turn" { "rad" } else { units.length };
+        match joint_drives.iter().position(|driven| *driven == number) {
+            Some(drive) => {
+                inputs.push(Channel::new(drive_input(name), format!("{unit}/{}²", scene.units.time)));
+                coordinates.push(Channel::new(format!("{name}.drive"), unit));
+                let mut row = vec![0.0; n];
+                row[free + drive] = 1.0;
+                outputs.push(Output::new(Channel::new(format!("{name}.drive.value"), unit), Rate::Place, row));
+            }
+            None => more_inputs.push(drive_input(name)),
+        }
+    }
+    let equations = SecondOrder { stiffness, damping, forces, inputs, outputs, coordinates };
     let warnings = unsteady(motion, &steady, &omega_global);
-    Ok((equations, State { omega_global: omega_global.into(), rigid: linear.rigid, warnings }))
+    let state = State { time: motion.time(), omega_global: omega_global.into(), rigid: linear.rigid, warnings };
+    Ok((Channels { equations, usual, more_inputs }, state))
+}
+
+/// Name of the input of a joint's drive.
+fn drive_input(joint: &str) -> String {
+    format!("{joint}.drive.acceleration")
+}
+
+/// The coordinate that a row drives, if it does.
+fn driven_unit(row: &Row) -> Option<&'static str> {
+    match row {
+        Row::DrivenRotation => Some("turn"),
+        Row::DrivenPoint => Some("slide"),
+        _ => None,
+    }
 }
 
 /// Reservations about a state that does more than stand or spin.

@@ -5,10 +5,11 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use faer::c64;
-use linear::{Balanced, StateSpace};
+use linear::StateSpace;
 use scene::Scene;
 use serde::Serialize;
 
+use super::reduction::Reduced;
 use super::state::State;
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
@@ -26,6 +27,8 @@ pub struct LinearReport {
     /// The file.
     #[serde(serialize_with = "json::path")]
     pub file: PathBuf,
+    /// Time of the state.
+    pub time: f64,
     /// Angular velocity of the state, global.
     pub omega_global: [f64; 3],
     /// Number of states, inputs and outputs of what is written.
@@ -36,7 +39,7 @@ pub struct LinearReport {
     pub outputs: Vec<String>,
     /// States of the whole model.
     pub whole: usize,
-    /// Bound of the error of a reduced model, largest singular value at any frequency.
+    /// Bound of the error of a balanced truncation, largest singular value at any frequency.
     pub error_bound: Option<f64>,
     /// Hankel values of the whole model, where it is reduced.
     pub hankel_values: Vec<f64>,
@@ -62,7 +65,7 @@ impl LinearReport {
         scene: &Scene,
         state: &State,
         whole: &StateSpace,
-        reduced: Option<&Balanced>,
+        reduced: Option<&Reduced>,
         written: &StateSpace,
         poles: &[c64],
         file: &Path,
@@ -72,8 +75,10 @@ impl LinearReport {
             frequency: pole.im / TAU,
             damping_ratio: if pole.norm() > 0.0 { -pole.re / pole.norm() } else { 0.0 },
         };
+        let balanced = reduced.and_then(|reduced| reduced.balanced.as_ref());
         Self {
             title: scene.title.clone(),
+            time: state.time,
             frequency_unit: frequency_unit(&scene.units.time),
             file: file.to_owned(),
             omega_global: state.omega_global,
@@ -81,8 +86,8 @@ impl LinearReport {
             inputs: written.inputs.iter().map(|channel| channel.name.clone()).collect(),
             outputs: written.outputs.iter().map(|channel| channel.name.clone()).collect(),
             whole: whole.states.len(),
-            error_bound: reduced.map(|reduced| reduced.error_bound),
-            hankel_values: reduced.map_or_else(Vec::new, |reduced| reduced.hankel_values.clone()),
+            error_bound: balanced.map(|(bound, _)| *bound),
+            hankel_values: balanced.map_or_else(Vec::new, |(_, values)| values.clone()),
             poles: poles.iter().filter(|pole| pole.im >= 0.0).map(pole).collect(),
             warnings: state.warnings.clone(),
         }
@@ -94,12 +99,17 @@ impl fmt::Display for LinearReport {
         writeln!(f, "{}", self.title)?;
         let [x, y, z] = self.omega_global;
         match self.omega_global == [0.0; 3] {
-            true => writeln!(f, "  about    rest")?,
-            false => writeln!(f, "  about    a spin of ({x:.6}, {y:.6}, {z:.6}) rad per time, global")?,
+            true => write!(f, "  about    rest")?,
+            false => write!(f, "  about    a spin of ({x:.6}, {y:.6}, {z:.6}) rad per time, global")?,
         }
+        if self.time != 0.0 {
+            write!(f, ", at time {}", self.time)?;
+        }
+        writeln!(f)?;
         write!(f, "  model    {} states, {} inputs, {} outputs", self.states, self.inputs.len(), self.outputs.len())?;
         match self.error_bound {
             Some(bound) => writeln!(f, "; of {} states, no response wrong by more than {bound:.3e}", self.whole)?,
+            None if self.states < self.whole => writeln!(f, "; of {} states, exact at frequency 0", self.whole)?,
             None => writeln!(f)?,
         }
         writeln!(f, "  inputs   {}", self.inputs.join(", "))?;

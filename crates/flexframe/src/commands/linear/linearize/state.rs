@@ -3,6 +3,8 @@
 /// The state that equations are about.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
+    /// Time of the run.
+    pub time: f64,
     /// Angular velocity, global.
     pub omega_global: [f64; 3],
     /// Number of coordinates that deform nothing.

@@ -1,0 +1,54 @@
+//! The state of a run at a time.
+
+use dynamics::{MotionState, Reached};
+use model::Model;
+use scene::System;
+
+use super::error::LinearizeError;
+use crate::motion::{self, Beginning, Moving};
+
+/// Steps that are taken at once.
+const STEPS: u64 = 1000;
+/// A part of the speed of a body's vibration, by ω q, that is more than a rest.
+const MOVES: f64 = 1e-3;
+
+/// The state of each body at a time of the scene's run.
+pub(super) fn states_at(system: &System, models: &[Model], time: f64) -> Result<Vec<MotionState>, LinearizeError> {
+    let scene = &system.bodies[0];
+    let end = scene.time.end;
+    if !(time.is_finite() && (0.0..=end).contains(&time)) {
+        return Err(LinearizeError::Time { scene: scene.path.clone(), time, end });
+    }
+    let references: Vec<&Model> = models.iter().collect();
+    let Some(beginning) = Beginning::of(system, &references) else { return Ok(Vec::new()) };
+    let mut states: Vec<Option<MotionState>> = vec![None; models.len()];
+    let failed = |source| LinearizeError::Run { scene: scene.path.clone(), source: Box::new(source) };
+    for Moving { mut motion, bodies, .. } in motion::begin(system, &references, &beginning).map_err(Box::new)? {
+        motion.set_stop_time(Some(time));
+        while motion.time() < time {
+            if let Reached::Stop | Reached::End = motion.advance(STEPS, |_, _| ()).map_err(failed)? {
+                break;
+            }
+        }
+        for (body, state) in bodies.into_iter().zip(motion.states().map_err(failed)?) {
+            states[body] = Some(state);
+        }
+    }
+    Ok(states.into_iter().flatten().collect())
+}
+
+/// Reservations about a state whose modes are in motion: equations are about the rest that is near.
+pub(super) fn moving_modes(models: &[Model], states: &[MotionState]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (model, state) in models.iter().zip(states) {
+        let swings = state.modal_velocity.iter().zip(&model.body.circular_frequencies).map(|(v, omega)| v / omega);
+        let deflection = model.deflection(&swings.collect::<Vec<_>>());
+        if deflection > MOVES {
+            warnings.push(format!(
+                "at that time modes swing by {:.1e} of the length of a body; the equations are about the steady state near it",
+                deflection
+            ));
+        }
+    }
+    warnings
+}

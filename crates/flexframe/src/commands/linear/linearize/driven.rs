@@ -1,0 +1,44 @@
+//! The drive of a held body as an input.
+
+use dynamics::DrivenMotion;
+use linear::Channel;
+use model::Model;
+use nalgebra::Vector3;
+use scene::Scene;
+
+use crate::rows::units::UnitLabels;
+
+/// A drive at the time of the state.
+#[derive(Clone, Copy)]
+pub(super) struct Driven {
+    pub motion: DrivenMotion,
+    pub speed: f64,
+}
+
+impl Driven {
+    pub const INPUT: &str = "drive.acceleration";
+
+    pub fn new(model: &Model, time: f64) -> Option<Self> {
+        let drive = model.physics.drive.as_ref()?;
+        Some(Self { motion: drive.motion, speed: drive.speed.amplitude * drive.speed.history.at(time, time) })
+    }
+
+    /// The input, and the coordinate that it accelerates.
+    pub fn channels(&self, scene: &Scene) -> [Channel; 2] {
+        let UnitLabels { length, time, .. } = (&scene.units).into();
+        let (unit, name) = match self.motion {
+            DrivenMotion::Turn { .. } => ("rad", "drive.angle"),
+            DrivenMotion::Slide { .. } => (length, "drive.position"),
+        };
+        [Channel::new(Self::INPUT, format!("{unit}/{time}²")), Channel::new(name, unit)]
+    }
+
+    /// The acceleration that a unit of its own gives a point; none in a spin, whose outputs are as seen from the body.
+    pub fn at_point(&self, arm: &Vector3<f64>) -> Vector3<f64> {
+        match self.motion {
+            DrivenMotion::Slide { direction } => direction,
+            DrivenMotion::Turn { axis } if self.speed == 0.0 => axis.cross(arm),
+            DrivenMotion::Turn { .. } => Vector3::zeros(),
+        }
+    }
+}
