@@ -10,8 +10,8 @@ use crate::channel::Channel;
 use crate::error::LinearError;
 use crate::state_space::StateSpace;
 
-/// A decay below this part of the fastest pole is none.
-const NONE: f64 = 1e-9;
+/// A decay below this part of the fastest pole is none: the double pole of a rigid motion has the root of rounding.
+const NONE: f64 = 1e-7;
 /// Iterations for the sign of a matrix, and its change at which it is found.
 const MOST: usize = 120;
 const FOUND: f64 = 1e-12;
@@ -26,7 +26,9 @@ pub(crate) struct Parts {
 impl StateSpace {
     pub(crate) fn parts(&self) -> Result<Parts, LinearError> {
         let n = self.a.nrows();
-        let poles = self.poles()?;
+        let scales = self.scales();
+        let scaled = Mat::from_fn(n, n, |i, j| self.a[(i, j)] * scales[j] / scales[i]);
+        let poles = Self { a: scaled.clone(), ..self.clone() }.poles()?;
         let fastest = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
         let count = poles.iter().filter(|pole| pole.re >= -NONE * fastest).count();
         let d = |of: bool| if of { self.d.clone() } else { Mat::zeros(self.d.nrows(), self.d.ncols()) };
@@ -38,8 +40,6 @@ impl StateSpace {
                 _ => Parts { lasting: all, decaying: StateSpace { d: self.d.clone(), ..none } },
             });
         }
-        let scales = self.scales();
-        let scaled = Mat::from_fn(n, n, |i, j| self.a[(i, j)] * scales[j] / scales[i]);
         // Halfway, by ratio, between rounding and the slowest decay.
         let slowest =
             poles.iter().map(|pole| -pole.re).filter(|decay| *decay > NONE * fastest).fold(f64::INFINITY, f64::min);
