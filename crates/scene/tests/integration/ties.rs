@@ -237,7 +237,7 @@ fn refusals_name_the_place_and_the_way_out() {
         ),
         // Schemes.
         ("[time]", "[time]\nformulation = 'paper'", "time.formulation", "the paper's scheme has no joints"),
-        ("[time]", "[time]\nscheme = 'rkmk4'", "time.scheme", "`radau`"),
+        ("[time]", "[time]\nscheme = 'exponential'", "time.scheme", "`radau`"),
     ];
     for (from, to, key, words) in refused {
         let text = three();
