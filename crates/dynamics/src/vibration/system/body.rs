@@ -1,4 +1,4 @@
-//! One body in the linearised equations: Eqs. (L1), (L2) and (L9) of `docs/method/systems.md`.
+//! One body in the linearised equations: Eqs. (L1), (L2) and (L11) of `docs/method/systems.md`.
 
 use faer::Mat;
 use modal::ReducedBody;

@@ -1,6 +1,6 @@
 //! The steady state of a system, Eq. (L7) of `docs/method/systems.md`: its bodies deformed as their loads, joints and spin ask.
 //!
-//! Eq. (L9) has the same for bodies that move against each other, whose accelerations are those of rigid bodies.
+//! Eq. (L11) has the same for bodies that move against each other, whose accelerations are those of rigid bodies.
 //!
 //! Newton's method with the exact stiffness, over the motions that deform bodies: those that deform none stay where the system has
 //! been put.

@@ -38,7 +38,7 @@ pub struct StiffenedMode {
 }
 
 impl SystemMotion {
-    /// For each body, the forces on it in the present motion and the frequencies that they change: Eq. (L9) of
+    /// For each body, the forces on it in the present motion and the frequencies that they change: Eq. (L11) of
     /// `docs/method/systems.md`.
     ///
     /// # Errors
