@@ -176,7 +176,7 @@ enum Command {
         /// Compare the shapes with those of another body in the same place (MAC): a scene, a body file, or another mesh for this scene.
         #[arg(long, value_name = "OTHER")]
         mac: Option<PathBuf>,
-        /// Of bodies in joints: their vibrations where a run of the scene has them at this time, at rest there [default: the start].
+        /// Time of a run at which bodies in joints stand, at rest there [default: the start].
         #[arg(long, value_name = "TIME", value_parser = at_time, allow_hyphen_values = true)]
         time: Option<f64>,
         /// Folder for a picture of the mode shapes (SVG, PDF and PNG), and of bodies in joints a file for ParaView (VTKHDF)

@@ -147,6 +147,11 @@ impl fmt::Display for Times {
     }
 }
 
+/// A number to so many significant digits.
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
 /// A quantity for people to read: seven digits, with a power of ten where it is very large or small.
 pub fn quantity(value: f64) -> String {
     let magnitude = value.abs();

@@ -4,7 +4,7 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side, c64};
 
 use crate::error::LinearError;
-use crate::state_space::StateSpace;
+use crate::state_space::{StateSpace, complex};
 
 /// A model of lower order.
 #[derive(Debug, Clone)]
@@ -73,8 +73,6 @@ impl StateSpace {
         let failed = LinearError::Eigen { size: n };
         let eigen = self.a.eigen().map_err(|_| failed)?;
         let poles: Vec<c64> = eigen.S().column_vector().iter().copied().collect();
-        let complex =
-            |matrix: &Mat<f64>| Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0));
         let vectors = eigen.U().to_owned();
         let lu = vectors.partial_piv_lu();
         let forced = lu.solve(complex(&self.b));

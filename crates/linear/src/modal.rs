@@ -5,7 +5,7 @@ use faer::{Mat, c64};
 
 use crate::channel::Channel;
 use crate::error::LinearError;
-use crate::state_space::StateSpace;
+use crate::state_space::{StateSpace, complex};
 
 /// Poles whose imaginary part is below this part of their magnitude are real.
 const REAL: f64 = 1e-12;
@@ -38,8 +38,6 @@ impl StateSpace {
             a.norm().total_cmp(&b.norm()).then(b.im.total_cmp(&a.im))
         });
         let vectors = eigen.U().to_owned();
-        let complex =
-            |matrix: &Mat<f64>| Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0));
         let forced = vectors.partial_piv_lu().solve(complex(&whole.b));
         let seen = complex(&whole.c) * &vectors;
         let (m, p) = (whole.b.ncols(), whole.c.nrows());

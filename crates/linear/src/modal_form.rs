@@ -25,7 +25,7 @@ pub(crate) enum Coupled {
 /// Complex modes.
 pub(crate) struct Modes {
     poles: Vec<c64>,
-    /// What outputs see of a unit of each mode: real and imaginary parts, outputs of a mode one after another.
+    /// Outputs of a unit of each mode: real and imaginary parts, outputs of a mode one after another.
     seen: [Vec<f64>; 2],
     /// Force on each mode of a unit input, inputs of a mode one after another.
     forced: Vec<c64>,
@@ -83,14 +83,8 @@ impl Modes {
         }
         let scales: Vec<f64> = scales.into_iter().map(|s| if s > 0.0 { s } else { largest }).collect();
         let a = Mat::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
-            (true, true) => 0.0,
-            (true, false) => {
-                if i == j - n {
-                    scales[i]
-                } else {
-                    0.0
-                }
-            }
+            (true, false) if i == j - n => scales[i],
+            (true, _) => 0.0,
             (false, true) => -equations.stiffness[(together[i - n], together[j])] / scales[j],
             (false, false) => -equations.damping[(together[i - n], together[j - n])],
         });

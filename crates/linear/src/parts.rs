@@ -31,14 +31,13 @@ impl StateSpace {
         let poles = Self { a: scaled.clone(), ..self.clone() }.poles()?;
         let fastest = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
         let count = poles.iter().filter(|pole| pole.re >= -NONE * fastest).count();
-        let d = |of: bool| if of { self.d.clone() } else { Mat::zeros(self.d.nrows(), self.d.ncols()) };
-        if count == 0 || count == n {
-            let none = self.in_states(&Mat::zeros(n, 0), &Mat::zeros(0, n), d(count == n));
-            let all = StateSpace { d: d(count == 0), ..self.clone() };
-            return Ok(match count {
-                0 => Parts { lasting: none, decaying: all },
-                _ => Parts { lasting: all, decaying: StateSpace { d: self.d.clone(), ..none } },
-            });
+        let no_d = || Mat::zeros(self.d.nrows(), self.d.ncols());
+        let nothing = |d| self.in_states(&Mat::zeros(n, 0), &Mat::zeros(0, n), d);
+        if count == 0 {
+            return Ok(Parts { lasting: nothing(no_d()), decaying: self.clone() });
+        }
+        if count == n {
+            return Ok(Parts { lasting: Self { d: no_d(), ..self.clone() }, decaying: nothing(self.d.clone()) });
         }
         // Halfway, by ratio, between rounding and the slowest decay.
         let slowest =
@@ -57,10 +56,10 @@ impl StateSpace {
         let inverse = both.partial_piv_lu().inverse();
         let right = Mat::from_fn(n, n, |i, j| scales[i] * both[(i, j)]);
         let left = Mat::from_fn(n, n, |i, j| inverse[(i, j)] / scales[j]);
-        let of = |range: std::ops::Range<usize>, with_d: bool| {
-            self.in_states(&right.get(.., range.clone()).to_owned(), &left.get(range, ..).to_owned(), d(with_d))
+        let of = |range: std::ops::Range<usize>, d| {
+            self.in_states(&right.get(.., range.clone()).to_owned(), &left.get(range, ..).to_owned(), d)
         };
-        Ok(Parts { lasting: of(0..count, false), decaying: of(count..n, true) })
+        Ok(Parts { lasting: of(0..count, no_d()), decaying: of(count..n, self.d.clone()) })
     }
 
     /// With states x = right·z, z = left·x.

@@ -166,11 +166,8 @@ impl SecondOrder {
     pub fn without(&self, left_out: &[usize]) -> Self {
         let kept: Vec<usize> = (0..self.size()).filter(|k| !left_out.contains(k)).collect();
         let square = |matrix: &Mat<f64>| Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[i], kept[j])]);
-        let of_kept = |row: &Vec<f64>| match row.is_empty() {
-            true => Vec::new(),
-            false => kept.iter().map(|k| row[*k]).collect(),
-        };
-        let row = |output: &Output| Output { rows: output.rows.each_ref().map(of_kept), ..output.clone() };
+        let row =
+            |output: &Output| Output { rows: output.rows.each_ref().map(|row| picked(row, &kept)), ..output.clone() };
         Self {
             stiffness: square(&self.stiffness),
             damping: square(&self.damping),
@@ -184,13 +181,9 @@ impl SecondOrder {
     /// The same with some of the inputs and outputs, by their numbers.
     #[must_use]
     pub fn with_channels(&self, inputs: &[usize], outputs: &[usize]) -> Self {
-        let of_inputs = |row: &Vec<f64>| match row.is_empty() {
-            true => Vec::new(),
-            false => inputs.iter().map(|j| row[*j]).collect(),
-        };
         let output = |i: &usize| {
             let output = &self.outputs[*i];
-            Output { direct: of_inputs(&output.direct), ..output.clone() }
+            Output { direct: picked(&output.direct, inputs), ..output.clone() }
         };
         Self {
             forces: Mat::from_fn(self.size(), inputs.len(), |i, j| self.forces[(i, inputs[j])]),
@@ -209,4 +202,9 @@ impl SecondOrder {
             Damping::Structural(loss) => c64::new(stiffness - own, loss * stiffness),
         }
     }
+}
+
+/// Entries of a row by their numbers; an empty row, which is zero, stays empty.
+fn picked(row: &[f64], numbers: &[usize]) -> Vec<f64> {
+    if row.is_empty() { Vec::new() } else { numbers.iter().map(|k| row[*k]).collect() }
 }

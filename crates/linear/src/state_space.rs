@@ -79,8 +79,6 @@ impl StateSpace {
     /// # Errors
     /// [`LinearError::Resonance`] where it has none.
     pub fn response(&self, circular_frequency: f64) -> Result<Mat<c64>, LinearError> {
-        let complex =
-            |matrix: &Mat<f64>| Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0));
         let n = self.a.nrows();
         let shifted =
             Mat::from_fn(n, n, |i, j| c64::new(-self.a[(i, j)], if i == j { circular_frequency } else { 0.0 }));
@@ -92,4 +90,9 @@ impl StateSpace {
             Err(LinearError::Resonance { frequency: circular_frequency / std::f64::consts::TAU })
         }
     }
+}
+
+/// A real matrix as a complex one.
+pub(crate) fn complex(matrix: &Mat<f64>) -> Mat<c64> {
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
 }

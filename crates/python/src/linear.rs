@@ -1,7 +1,7 @@
 //! Matrices of linear models, for `linear.py`.
 
 use flexframe::linear::{Channel, StateSpace};
-use flexframe::linearize::{LinearModel, LinearSettings, LinearizeError, Reduced, Reduction, linear_model};
+use flexframe::linearize::{LinearSettings, Reduction, linear_space};
 use flexframe::model::BuildProgress;
 use numpy::{PyArray2, PyArrayMethods, ToPyArray};
 use pyo3::prelude::*;
@@ -32,19 +32,9 @@ pub(crate) fn linearized<'py>(
     })?;
     let settings = LinearSettings { spin, time, without_rigid, inputs, outputs };
     let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-    let work = move |told: &mut dyn FnMut(BuildProgress)| -> Result<_, LinearizeError> {
-        let LinearModel { equations, state } = linear_model(&system, &builder, &settings, told)?;
-        let failed = |source| LinearizeError::Linear { scene: system.bodies[0].path.clone(), source: Box::new(source) };
-        let space = equations.state_space().map_err(failed)?;
-        let reduced = reduction.map(|reduction| reduction.of(&space)).transpose().map_err(failed)?;
-        let (space, bound) = match reduced {
-            Some(Reduced { model, balanced }) => (model, balanced.map(|(bound, _)| bound)),
-            None => (space, None),
-        };
-        Ok((space, bound, state))
-    };
-    let (space, bound, state) = built(py, &scene, work)?;
-    let StateSpace { a, b, c, d, states, inputs, outputs } = &space;
+    let work = move |told: &mut dyn FnMut(BuildProgress)| linear_space(&system, &builder, &settings, reduction, told);
+    let space = built(py, &scene, work)?;
+    let StateSpace { a, b, c, d, states, inputs, outputs } = space.model();
     let found = PyDict::new(py);
     for (name, matrix) in [("A", a), ("B", b), ("C", c), ("D", d)] {
         let rows: Vec<f64> =
@@ -56,9 +46,10 @@ pub(crate) fn linearized<'py>(
         let pairs: Vec<(&str, &str)> = list.iter().map(|Channel { name, unit }| (&name[..], &unit[..])).collect();
         found.set_item(name, pairs)?;
     }
-    found.set_item("error_bound", bound)?;
+    found.set_item("error_bound", space.balanced().map(|(bound, _)| *bound))?;
+    let state = &space.state;
     found.set_item("time", state.time)?;
     found.set_item("omega_global", state.omega_global)?;
-    found.set_item("warnings", state.warnings)?;
+    found.set_item("warnings", &state.warnings)?;
     Ok(found)
 }

@@ -9,7 +9,7 @@ use crate::packed::packed;
 use crate::peak::{length, peak, von_mises};
 use crate::report::{
     Body, Compared, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface,
-    TrustLine,
+    Trust,
 };
 use crate::thin::{Thinning, spread};
 
@@ -41,25 +41,9 @@ pub(crate) struct Data<'a> {
     balances: Vec<BalanceData<'a>>,
     scene: [&'a str; 2],
     warnings: &'a [String],
-    trust: TrustData<'a>,
+    trust: &'a Trust,
     live: Option<LiveData<'a>>,
     compared: Option<ComparedData<'a>>,
-}
-
-#[derive(Debug, Serialize)]
-struct TrustData<'a> {
-    lines: Vec<TrustLineData<'a>>,
-    unseen: &'a str,
-}
-
-#[derive(Debug, Serialize)]
-struct TrustLineData<'a> {
-    place: &'a str,
-    body: &'a str,
-    error: Option<f64>,
-    meaning: &'a str,
-    known: &'a str,
-    next: &'a str,
 }
 
 #[derive(Debug, Serialize)]
@@ -222,18 +206,11 @@ impl<'a> Data<'a> {
                 .collect(),
             scene: [&report.scene.file, &report.scene.text],
             warnings: &report.warnings,
-            trust: TrustData {
-                lines: report.trust.lines.iter().map(trust_line).collect(),
-                unseen: &report.trust.unseen,
-            },
+            trust: &report.trust,
             live: report.live.as_ref().map(LiveData::new),
             compared: report.compared.as_ref().map(ComparedData::new),
         }
     }
-}
-
-fn trust_line(TrustLine { place, body, error, meaning, known, next }: &TrustLine) -> TrustLineData<'_> {
-    TrustLineData { place, body, error: *error, meaning, known, next }
 }
 
 impl<'a> ComparedData<'a> {

@@ -1,5 +1,7 @@
 //! Contents of a page.
 
+use serde::Serialize;
+
 /// Everything that a page shows, as plain data. The caller chooses the units and names them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
@@ -34,7 +36,7 @@ pub struct Report {
 }
 
 /// How far the answer of a run can be trusted.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Trust {
     /// A line for each place, the worst first; none is not shown.
     pub lines: Vec<TrustLine>,
@@ -43,7 +45,7 @@ pub struct Trust {
 }
 
 /// A place where the answer may be wrong.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrustLine {
     /// The place, such as "mesh".
     pub place: String,

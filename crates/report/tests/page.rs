@@ -1,10 +1,8 @@
 //! Pages from plain data: what is in them, how large they are, and what is refused.
 
-use std::io::Read;
+mod data;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use flate2::read::GzDecoder;
+use data::{bytes, data};
 use report::{
     Balance, Body, Component, History, Motion, Report, ReportError, RunState, SceneText, Shape, ShapeKind, StressField,
     Surface, Trust, Units, html, write,
@@ -75,31 +73,6 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
         live: None,
         compared: None,
     }
-}
-
-/// The data as a browser would read them.
-fn data(page: &str) -> Value {
-    let (_, rest) = page.split_once("<script type=\"application/json\" id=\"data\">").unwrap();
-    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
-}
-
-/// The bytes of a list of numbers: differences to the number a stride before, bytes of the same place beside each other.
-fn bytes(numbers: &Value) -> Vec<u8> {
-    let mut planes = Vec::new();
-    let packed = STANDARD.decode(numbers["packed"].as_str().unwrap()).unwrap();
-    GzDecoder::new(&packed[..]).read_to_end(&mut planes).unwrap();
-    let size = match numbers["type"].as_str().unwrap() {
-        "f64" => 8,
-        "f32" | "u32" => 4,
-        _ => 2,
-    };
-    let (count, stride) = (planes.len() / size, numbers["stride"].as_u64().unwrap() as usize);
-    let mut values: Vec<u64> = Vec::with_capacity(count);
-    for i in 0..count {
-        let difference: u64 = (0..size).map(|byte| u64::from(planes[byte * count + i]) << (8 * byte)).sum();
-        values.push(difference.wrapping_add(i.checked_sub(stride).map_or(0, |before| values[before])));
-    }
-    values.iter().flat_map(|value| value.to_le_bytes()[..size].to_vec()).collect()
 }
 
 /// Bytes of all lists of a page before they were packed: how well that goes depends on the numbers.

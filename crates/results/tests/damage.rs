@@ -66,8 +66,7 @@ fn refuse(path: &Path, what: std::fmt::Arguments) {
     );
     assert!(error.to_string().len() < 500, "{error}");
     let bytes = std::fs::metadata(path).unwrap().len() as usize;
-    // The description, with the lines of the trust card, takes up to 9000 bytes.
-    assert!(memory < 10_000 + bytes, "{what}: {memory} bytes of memory for {bytes}");
+    assert!(memory < 6000 + bytes, "{what}: {memory} bytes of memory for {bytes}");
     REFUSED.fetch_add(1, Relaxed);
 }
 

@@ -1,12 +1,11 @@
 //! `flexframe report`: the page shows the motion that is in the results file.
 
-use std::io::Read;
+#[path = "../../../crates/report/tests/data/mod.rs"]
+mod page_data;
+
 use std::path::Path;
 use std::process::{Command, Output};
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use flate2::read::GzDecoder;
 use flexframe::columns::COLUMNS;
 use flexframe::fem_tet10::von_mises;
 use flexframe::html_report;
@@ -14,6 +13,7 @@ use flexframe::model::{Builder, Model};
 use flexframe::scene::Scene;
 use live::{BODY_NUMBERS, LiveRun, Player};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use page_data::bytes;
 use results::Results;
 use serde_json::Value;
 
@@ -27,30 +27,9 @@ fn succeed(arguments: &[&str]) {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// The data of a page as a browser would read them.
+/// The data of a page in a file.
 fn data(page: &Path) -> Value {
-    let page = std::fs::read_to_string(page).unwrap();
-    let (_, rest) = page.split_once("<script type=\"application/json\" id=\"data\">").unwrap();
-    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
-}
-
-/// The bytes of a list of numbers: differences to the number a stride before, bytes of the same place beside each other.
-fn bytes(numbers: &Value) -> Vec<u8> {
-    let mut planes = Vec::new();
-    let packed = STANDARD.decode(numbers["packed"].as_str().unwrap()).unwrap();
-    GzDecoder::new(&packed[..]).read_to_end(&mut planes).unwrap();
-    let size = match numbers["type"].as_str().unwrap() {
-        "f64" => 8,
-        "f32" | "u32" => 4,
-        _ => 2,
-    };
-    let (count, stride) = (planes.len() / size, numbers["stride"].as_u64().unwrap() as usize);
-    let mut values: Vec<u64> = Vec::with_capacity(count);
-    for i in 0..count {
-        let difference: u64 = (0..size).map(|byte| u64::from(planes[byte * count + i]) << (8 * byte)).sum();
-        values.push(difference.wrapping_add(i.checked_sub(stride).map_or(0, |before| values[before])));
-    }
-    values.iter().flat_map(|value| value.to_le_bytes()[..size].to_vec()).collect()
+    page_data::data(&std::fs::read_to_string(page).unwrap())
 }
 
 fn numbers(list: &Value) -> Vec<f64> {

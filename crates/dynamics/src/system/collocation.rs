@@ -33,6 +33,11 @@ impl SystemScheme {
         }
     }
 
+    /// True if the frequencies of the modes limit its steps.
+    pub const fn is_limited_by_modes(self) -> bool {
+        matches!(self, Self::Rkmk4)
+    }
+
     /// Its order: of collocation 2s − 1 or 2s with the number of stages s.
     pub const fn order(self) -> u32 {
         match self {

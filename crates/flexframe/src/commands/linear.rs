@@ -1,5 +1,6 @@
 //! Linear answers: state spaces, frequency responses, random responses, shock response spectra.
 
+mod curves;
 pub mod frequencies;
 pub mod frf;
 pub mod linearize;
@@ -7,3 +8,4 @@ mod names;
 pub mod psd;
 pub mod spectra;
 pub mod srs;
+mod table;

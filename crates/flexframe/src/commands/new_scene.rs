@@ -12,6 +12,7 @@ use whole_file::write_whole;
 use crate::files::outputs::{OutputError, Written, outputs_of_mesh};
 use crate::files::scene_file::from_root;
 use crate::files::write_error::WriteError;
+use crate::report::rounded;
 use crate::rows::units::UnitLabels;
 
 /// A scene that could not be made of a mesh.
@@ -291,8 +292,7 @@ fn quoted(text: &str) -> String {
 
 /// A number with three digits, as TOML has it.
 fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    format!("{rounded:?}")
+    format!("{:?}", rounded(value, 3))
 }
 
 #[cfg(test)]

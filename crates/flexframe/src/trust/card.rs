@@ -6,12 +6,14 @@ use results::Metadata;
 pub use results::TrustLine;
 use serde::Serialize;
 
+use crate::report::rounded;
+
 /// An error below this calls for nothing.
 pub(super) const SMALL: f64 = 1e-3;
-/// What is not known stands above errors below this.
+/// Errors below this stand under what is not known.
 const NOTED: f64 = 1e-2;
-/// Digits of an error: it is known to no more.
-const DIGITS: i32 = 3;
+/// Digits of an error: all else is noise, which equal files must not have.
+const DIGITS: usize = 3;
 
 /// Limits of every card, in words.
 const UNSEEN: &str = "Not seen: the phase of many vibrations, the inertia of what the modes leave out, and whether materials, loads and \
@@ -46,7 +48,7 @@ impl Place {
 
     /// A line with an error. One that is not finite is not known.
     pub(super) fn known(self, error: f64, meaning: String, known: String, next: String) -> Line {
-        let error = error.is_finite().then(|| rounded(error));
+        let error = error.is_finite().then(|| rounded(error, DIGITS));
         Line(TrustLine { place: self.name().to_owned(), body: None, error, meaning, known, next })
     }
 
@@ -71,14 +73,9 @@ impl Line {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrustCard {
     /// A line for each place, the worst first.
-    #[serde(serialize_with = "lines")]
     pub lines: Vec<TrustLine>,
     /// Limits of the card.
     pub unseen: &'static str,
-}
-
-fn lines<S: serde::Serializer>(lines: &[TrustLine], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(lines)
 }
 
 impl TrustCard {
@@ -114,14 +111,6 @@ pub(super) fn worst(lines: Vec<TrustLine>) -> Vec<TrustLine> {
 
 fn rank(line: &TrustLine) -> f64 {
     line.error.unwrap_or(NOTED)
-}
-
-/// To as many digits as are told: all else is noise, which equal files must not have.
-fn rounded(error: f64) -> f64 {
-    if error == 0.0 {
-        return 0.0;
-    }
-    format!("{error:.*e}", (DIGITS - 1) as usize).parse().unwrap_or(error)
 }
 
 /// "0.21 %", "0.003 %"; with a power of ten where that has too many zeros.

@@ -47,7 +47,7 @@ impl Warp {
         mesh.directions(faces).into_iter().map(of_direction).min_by(|a, b| sum(a).total_cmp(&sum(b)))
     }
 
-    /// What patches that follow each other along a direction leave out.
+    /// Parts left out by 1, 2, 3, … patches that follow each other along a direction.
     fn left_out(
         mesh: &Mesh,
         faces: &[[u32; 6]],

@@ -33,7 +33,9 @@ pub(crate) fn write(path: &Path, file: &hdf5::File, metadata: &Metadata, is_comp
     write_texts(path, file, "input_files", inputs, "files that the run read, where they were")?;
     let warnings = metadata.warnings.iter().map(String::as_str);
     write_texts(path, file, "warnings", warnings, "what should be known of the run; empty in an unfinished file")?;
-    write_trust(path, file, &metadata.trust)?;
+    if !metadata.trust.is_empty() {
+        write_trust(path, file, &metadata.trust)?;
+    }
     for body in &metadata.bodies {
         write_body(path, file, body, &metadata.units)?;
     }

@@ -4,7 +4,7 @@
 //! Eqs. (L3) and (L4) of `docs/method/systems.md`. Changes of place are ρ and φ in body axes, and δq; those of velocities are of V
 //! and ω in body axes, and of q̇. The body is in steady motion, q̇ = 0.
 
-use faer::Mat;
+use faer::{Mat, MatMut};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::cross_matrix;
 
@@ -114,22 +114,22 @@ impl MarkerTangent {
                 self.turn_slopes.iter().enumerate().for_each(|(i, turn)| to[(6 + i, 6 + j)] += turn.dot(&change));
             }
         }
-        for (second_order, vector) in self.second_order.iter().zip([&f, &turning]) {
-            if let Some(second_order) = second_order {
-                second_order.add_stiffness(-1.0, vector, to.submatrix_mut(6, 6, to.nrows() - 6, to.ncols() - 6));
-            }
-        }
+        let modes = to.nrows() - 6;
+        self.add_stress(-1.0, [&f, &turning], to.submatrix_mut(6, 6, modes, modes));
     }
-}
 
-impl MarkerTangent {
     /// Adds the stiffness of the modes by a force and a moment (global, at the marker), that of their stress: f_i K_i + t_i K'_i
     /// (nf×nf).
     pub fn add_stiffening(&self, [force, moment]: [&Vector3<f64>; 2], to: &mut Mat<f64>) {
         let [f, t] = [force, moment].map(|vector| self.body_from_global * vector);
-        for (second_order, vector) in self.second_order.iter().zip([&f, &self.tangent.tr_mul(&t)]) {
+        self.add_stress(1.0, [&f, &self.tangent.tr_mul(&t)], to.as_mut());
+    }
+
+    /// Adds so much of f_i K_i + t_i K'_i, of a force and a turning moment in body axes (nf×nf).
+    fn add_stress(&self, factor: f64, wrench: [&Vector3<f64>; 2], mut to: MatMut<'_, f64>) {
+        for (second_order, vector) in self.second_order.iter().zip(wrench) {
             if let Some(second_order) = second_order {
-                second_order.add_stiffness(1.0, vector, to.as_mut());
+                second_order.add_stiffness(factor, vector, to.as_mut());
             }
         }
     }

@@ -96,15 +96,13 @@ impl SystemMotion {
         scaled(h, &stage.x_rates, &mut last[kept][0]);
         scaled(h, &rates.y, &mut last[kept][1]);
         if is_mean {
-            stage_rates[to].average(rates)
-        } else {
-            stage_rates[to].copy_from(rates)
-        }
-        if is_mean {
+            stage_rates[to].average(rates);
             let [_, middle, third] = last;
             for (middle, third) in middle.iter_mut().zip(&*third) {
                 middle.iter_mut().zip(third).for_each(|(mean, other)| *mean = 0.5 * (*mean + other));
             }
+        } else {
+            stage_rates[to].copy_from(rates);
         }
         Ok(())
     }

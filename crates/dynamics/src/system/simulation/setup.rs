@@ -71,7 +71,7 @@ impl SystemSetup {
 
     /// The limit that shapes set for the steps, if the scheme is one that they limit.
     pub(super) fn shape_limit(&self) -> Option<ShapeLimit> {
-        if self.scheme != SystemScheme::Rkmk4 {
+        if !self.scheme.is_limited_by_modes() {
             return None;
         }
         let of_body = |(body, of): (usize, &ConservativeBody)| {

@@ -1,4 +1,4 @@
-//! What the forces of joints and the motion of a system do to its frequencies.
+//! Frequencies of a system under the forces of its joints and of its motion.
 
 use faer::{Mat, c64};
 
@@ -13,7 +13,7 @@ const BENDS: f64 = 0.01;
 /// Modes that are told of a body.
 const TOLD: usize = 3;
 
-/// What the forces on a body in its present motion do to it.
+/// Forces on a body in its present motion, with the deflection and the frequencies that they give it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyStiffening {
     /// The largest force that a joint, spring or bushing puts on one marker of it.

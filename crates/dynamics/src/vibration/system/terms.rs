@@ -25,7 +25,7 @@ pub(crate) struct Terms {
     pub stiffness: Mat<f64>,
     /// K without Λ if no forces acted: springs, bushings and their like alone.
     pub unloaded: Mat<f64>,
-    /// What the forces of joints and elements do to each body; K has their stiffening.
+    /// Forces of joints and elements on each body; K has their stiffening.
     pub borne: Vec<Borne>,
     /// G, and g.
     pub rows: Mat<f64>,

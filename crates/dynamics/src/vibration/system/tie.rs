@@ -30,7 +30,7 @@ pub(crate) struct Tie {
     by_velocity: Mat<f64>,
 }
 
-/// What the forces of ties do to a body.
+/// Forces of ties on a body, with the stiffening by their stress.
 #[derive(Debug, Clone)]
 pub(crate) struct Borne {
     /// The largest force and moment on one marker.

@@ -14,6 +14,7 @@ use super::settings::CostSettings;
 use super::way::Way;
 use crate::commands::run::RunFailure;
 use crate::files::json;
+use crate::report::rounded;
 
 /// Errors below this multiple of the reference's own are not told apart.
 const RANKED_ABOVE: f64 = 3.0;
@@ -306,7 +307,7 @@ fn refinements(case: &PreparedScene<'_>, way: Way, controlled: bool) -> Vec<(Ste
 
 /// A number without the last digits that only rounding gave it.
 fn tidy(value: f64) -> f64 {
-    let tidy = format!("{value:.12e}").parse().unwrap_or(value);
+    let tidy = rounded(value, 13);
     if (tidy / value - 1.0).abs() < 1e-14 { tidy } else { value }
 }
 

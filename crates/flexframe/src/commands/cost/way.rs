@@ -50,7 +50,7 @@ impl Way {
     pub fn is_limited_by_modes(self) -> bool {
         match self {
             Self::Alone(method) => method.is_limited_by_modes(),
-            Self::Tied(scheme) => scheme == SystemScheme::Rkmk4,
+            Self::Tied(scheme) => scheme.is_limited_by_modes(),
         }
     }
 }

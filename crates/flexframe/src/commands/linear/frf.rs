@@ -4,23 +4,19 @@ use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
 use faer::c64;
-use figures::{LineChart, Scale, Series, Stroke};
+use figures::{LineChart, Scale};
 use linear::{Damping, FrequencyResponse, SecondOrder};
 use model::{BuildProgress, Builder};
 use scene::System;
 use serde::Serialize;
-use whole_file::write_whole;
 
+use crate::commands::linear::curves;
 use crate::commands::linear::frequencies::Frequencies;
 use crate::commands::linear::linearize::{LinearSettings, LinearizeError, linear_model};
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
-use crate::files::write_error::WriteError;
 
-const TABLE: &str = "frf.csv";
-const CHART: &str = "frf";
-/// Curves of a chart.
-const MAX_CURVES: usize = 12;
+const NAME: &str = "frf";
 /// The most frequencies.
 const MAX_FREQUENCIES: usize = 1_000_000;
 
@@ -70,7 +66,7 @@ pub struct Peak {
 
 /// The files that [`frf`] writes to a folder.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
-    std::iter::once(folder.join(TABLE)).chain(figures::files(&folder.join(CHART))).collect()
+    curves::files(folder, NAME)
 }
 
 /// Computes the responses of a scene, and writes `frf.csv`, and `frf` as SVG, PDF and PNG to a folder.
@@ -96,16 +92,12 @@ pub fn frf(
     let failed = |source| LinearizeError::Linear { scene: scene.path.clone(), source: Box::new(source) };
     let response = equations.frequency_response(&frequencies, damping_of(settings.loss_factor)).map_err(failed)?;
 
-    std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
-    let table = folder.join(TABLE);
-    write_whole(&table, csv(equations, &response)).map_err(WriteError::of(&table))?;
     let unit = frequency_unit(&scene.units.time);
-    let mut files = vec![table];
-    files.extend(chart(&scene.title, &unit, equations, &response, settings.logarithmic).save(folder.join(CHART))?);
+    let chart = chart(&scene.title, &unit, equations, &response, settings.logarithmic);
     Ok(FrfReport {
         title: scene.title.clone(),
         frequency_unit: unit,
-        files,
+        files: curves::write::<LinearizeError>(folder, NAME, csv(equations, &response), &chart)?,
         peaks: peaks(equations, &response),
         warnings: model.state.warnings,
     })
@@ -163,13 +155,8 @@ fn chart(
             let points: Vec<(f64, f64)> =
                 response.frequencies.iter().copied().zip(response.values.iter().map(|h| h[(i, j)].norm())).collect();
             // An output that sees nothing has no place on a logarithmic axis.
-            if series.len() < MAX_CURVES && points.iter().all(|(_, y)| *y > 0.0) {
-                let label = format!("{} / {}", output.channel.name, input.name);
-                series.push(Series {
-                    label,
-                    points,
-                    stroke: if series.len() < 7 { Stroke::Solid } else { Stroke::Dashed },
-                });
+            if points.iter().all(|(_, y)| *y > 0.0) {
+                curves::add_curve(&mut series, format!("{} / {}", output.channel.name, input.name), points);
             }
         }
     }

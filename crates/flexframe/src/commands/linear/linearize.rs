@@ -12,13 +12,14 @@ mod reduction;
 mod report;
 mod rigid;
 mod settings;
+mod space;
 mod state;
 
 use std::borrow::Cow;
 use std::path::Path;
 
 use dynamics::{Initial, MotionState};
-use linear::{SecondOrder, StateSpace};
+use linear::SecondOrder;
 use model::{BuildProgress, Builder, Model};
 use nalgebra::Vector3;
 use scene::{Scene, System};
@@ -28,6 +29,7 @@ pub use error::LinearizeError;
 pub use reduction::{Reduced, Reduction};
 pub use report::LinearReport;
 pub use settings::LinearSettings;
+pub use space::LinearSpace;
 pub use state::State;
 
 /// The linearised equations of a scene.
@@ -111,6 +113,24 @@ pub fn linear_model(
     Ok(LinearModel { equations, state })
 }
 
+/// Linearises a scene, and lowers the order of its state space where that is asked for.
+///
+/// # Errors
+/// [`LinearizeError`].
+pub fn linear_space(
+    system: &System,
+    builder: &Builder,
+    settings: &LinearSettings,
+    reduction: Option<Reduction>,
+    progress: impl FnMut(BuildProgress),
+) -> Result<LinearSpace, LinearizeError> {
+    let LinearModel { equations, state } = linear_model(system, builder, settings, progress)?;
+    let failed = |source| LinearizeError::Linear { scene: system.bodies[0].path.clone(), source: Box::new(source) };
+    let whole = equations.state_space().map_err(failed)?;
+    let reduced = reduction.map(|reduction| reduction.of(&whole)).transpose().map_err(failed)?;
+    Ok(LinearSpace { whole, reduced, state })
+}
+
 /// Writes the state space of a scene to a file, .mat or .json, or that of a model of lower order.
 ///
 /// # Errors
@@ -124,13 +144,10 @@ pub fn linearize(
     progress: impl FnMut(BuildProgress),
 ) -> Result<LinearReport, LinearizeError> {
     files::check_ending(output)?;
-    let model = linear_model(system, builder, settings, progress)?;
+    let space = linear_space(system, builder, settings, reduction, progress)?;
     let scene = &system.bodies[0];
     let failed = |source| LinearizeError::Linear { scene: scene.path.clone(), source: Box::new(source) };
-    let space = model.equations.state_space().map_err(failed)?;
-    let reduced = reduction.map(|reduction| reduction.of(&space)).transpose().map_err(failed)?;
-    let written: &StateSpace = reduced.as_ref().map_or(&space, |reduced| &reduced.model);
-    let poles = written.poles().map_err(failed)?;
-    files::write(written, output)?;
-    Ok(LinearReport::new(scene, &model.state, &space, reduced.as_ref(), written, &poles, output))
+    let poles = space.model().poles().map_err(failed)?;
+    files::write(space.model(), output)?;
+    Ok(LinearReport::new(scene, &space, &poles, output))
 }

@@ -3,14 +3,13 @@
 //! Densities are straight between rows on axes that are both logarithmic, as specifications of random vibration have them; where one is
 //! zero, and for coherences and phases, on linear axes.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use faer::{Mat, c64};
-use foreign_program::open_ordinary;
 use linear::RandomInput;
 
 use super::names::is_asked;
+use super::table;
 
 /// A table that has no spectra.
 #[derive(Debug, thiserror::Error)]
@@ -74,13 +73,10 @@ impl Spectra {
     /// # Errors
     /// [`SpectraError`].
     pub fn read(path: &Path) -> Result<Self, SpectraError> {
-        let mut text = String::new();
         let unreadable = |source| SpectraError::Unreadable { path: path.to_owned(), source };
-        open_ordinary(path).and_then(|mut file| file.read_to_string(&mut text)).map_err(unreadable)?;
-        let lines = (1..).zip(text.trim_start_matches('\u{feff}').lines().map(str::trim));
-        let mut lines = lines.filter(|(_, content)| !content.is_empty() && !content.starts_with('#'));
-        let header = lines.next().map_or("", |(_, content)| content);
-        let (inputs, pairs) = columns(path, header)?;
+        let mut lines = table::lines(path).map_err(unreadable)?.into_iter();
+        let header = lines.next().map_or_else(String::new, |(_, content)| content);
+        let (inputs, pairs) = columns(path, &header)?;
         let width = header.split(',').count();
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for (line, content) in lines {

@@ -6,7 +6,7 @@ use dynamics::{ShapeLimit, SystemSimulation};
 use serde::Serialize;
 
 use crate::files::json;
-use crate::report::quantity;
+use crate::report::{quantity, rounded};
 
 /// Changes of a body at the beginning below these parts of the size of the system and of its speeds are not told.
 const TOLD: f64 = 1e-9;
@@ -121,8 +121,8 @@ impl fmt::Display for TiedReport {
             )?;
         }
         for AssembledReport { body, moved, turned, velocity, angular_velocity } in assembled {
-            let [moved, turned, velocity, angular_velocity] = [*moved, *turned, *velocity, *angular_velocity]
-                .map(|x| quantity(format!("{x:.3e}").parse().unwrap_or(x)));
+            let [moved, turned, velocity, angular_velocity] =
+                [moved, turned, velocity, angular_velocity].map(|x| quantity(rounded(*x, 4)));
             writeln!(
                 f,
                 "  closed   {body} moved by {moved} and turned by {turned} rad, its velocity changed by {velocity} and \
@@ -130,7 +130,7 @@ impl fmt::Display for TiedReport {
             )?;
         }
         if let Some(StepLimitReport { body, frequency, limit }) = &self.step_limit {
-            let [frequency, limit] = [frequency, limit].map(|x| quantity(format!("{x:.3e}").parse().unwrap_or(*x)));
+            let [frequency, limit] = [frequency, limit].map(|x| quantity(rounded(*x, 4)));
             writeln!(
                 f,
                 "  steps    of `rkmk4` are at most {limit} long, which the fastest shape of {body} allows ({frequency} cycles per \

@@ -7,7 +7,7 @@ use super::balances::Balances;
 use super::body_report::BodyRunReport;
 use super::report::RunReport;
 use crate::commands::modes::frequency_unit;
-use crate::report::{quantity, size_and_mass};
+use crate::report::{quantity, rounded, size_and_mass};
 use crate::rows::effects;
 use crate::rows::units::UnitLabels;
 
@@ -75,8 +75,8 @@ impl BodyRunReport {
         if turned.abs() <= PI {
             return turned_by;
         }
-        let turns = quantity(format!("{:.3e}", turned / TAU).parse().unwrap_or(turned / TAU));
-        let from_start = quantity(format!("{from_start:.3e}").parse().unwrap_or(from_start));
+        let turns = quantity(rounded(turned / TAU, 4));
+        let from_start = quantity(rounded(from_start, 4));
         format!("{turned_by} ({turns} turns), to an attitude {from_start} rad from the first")
     }
 

@@ -1,4 +1,4 @@
-//! What the forces of joints do to the bodies of a system where its scene starts, in numbers and in sentences.
+//! Loads of joints on the bodies of a system where its scene starts and the frequencies that they change, in numbers and in sentences.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::assembled::TiedMotion;
 use super::report::body_names;
 use crate::files::json;
-use crate::report::quantity;
+use crate::report::{quantity, rounded};
 use crate::rows::units::UnitLabels;
 use crate::surface::Surface;
 
@@ -81,7 +81,7 @@ pub(super) fn stiffened(
 }
 
 impl StiffenedBody {
-    /// What is to be known of it; changes of frequencies below `tolerance` do not count.
+    /// A sentence about it; changes of frequencies below `tolerance` do not count.
     pub(super) fn sentence(&self, units: UnitLabels<'_>, frequency_unit: &str, tolerance: f64) -> String {
         let Self { body, force, moment, .. } = self;
         let (length, unit) = (units.length, frequency_unit);
@@ -127,9 +127,5 @@ impl StiffenedBody {
 
 /// A number to four digits.
 fn short(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return quantity(value);
-    }
-    let digits = 10_f64.powi(3 - value.abs().log10().floor() as i32);
-    quantity((value * digits).round() / digits)
+    quantity(rounded(value, 4))
 }

@@ -7,17 +7,14 @@ use model::{HeldSlopes, Model};
 use nalgebra::Vector3;
 use scene::Scene;
 
-use super::channels::wrench_channels;
+use super::channels::{along_axes, wrench_channels};
 use crate::rows::units::UnitLabels;
 
 /// The motions of a base: translations along the axes of the body, then turns about them through its origin.
 pub(super) fn base_channels(scene: &Scene) -> Vec<Channel> {
     let UnitLabels { length, time, .. } = (&scene.units).into();
-    let of = |quantity: &'static str, unit: String| {
-        ["x", "y", "z"].map(|axis| Channel::new(format!("base.{quantity}.{axis}"), unit.clone()))
-    };
-    let translations = of("acceleration", format!("{length}/{time}²"));
-    translations.into_iter().chain(of("angular_acceleration", format!("rad/{time}²"))).collect()
+    let translations = along_axes("base.acceleration", &format!("{length}/{time}²"));
+    translations.into_iter().chain(along_axes("base.angular_acceleration", &format!("rad/{time}²"))).collect()
 }
 
 /// A held body that nothing but its modes moves in its base.

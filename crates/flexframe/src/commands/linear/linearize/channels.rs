@@ -54,6 +54,11 @@ impl Channels {
     }
 }
 
+/// Channels of a vector along three axes: their name with the letter of each.
+pub(super) fn along_axes(name: &str, unit: &str) -> [Channel; 3] {
+    ["x", "y", "z"].map(|axis| Channel::new(format!("{name}.{axis}"), unit))
+}
+
 /// The unit of a coordinate of unit mass: √mass · length.
 pub(super) fn unit_of_coordinate(scene: &Scene) -> String {
     format!("√{} {}", scene.units.mass, scene.units.length)
@@ -80,10 +85,8 @@ pub(super) fn point_outputs(scene: &Scene, name: &str, columns: &[Vector3<f64>])
     ];
     let mut outputs = Vec::new();
     for (rate, quantity, unit) in rates {
-        for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
-            let row = columns.iter().map(|column| column[axis]).collect();
-            let channel = Channel::new(format!("{name}.{quantity}.{letter}"), unit.clone());
-            outputs.push(Output::new(channel, rate, row));
+        for (axis, channel) in along_axes(&format!("{name}.{quantity}"), &unit).into_iter().enumerate() {
+            outputs.push(Output::new(channel, rate, columns.iter().map(|column| column[axis]).collect()));
         }
     }
     outputs
@@ -113,8 +116,6 @@ pub(super) fn stress_outputs(
 /// Names and units of the six components of a force and a moment.
 pub(super) fn wrench_channels(scene: &Scene, name: &str) -> Vec<Channel> {
     let units = UnitLabels::from(&scene.units);
-    let of = |quantity: &'static str, unit: String| {
-        ["x", "y", "z"].map(|axis| Channel::new(format!("{name}.{quantity}.{axis}"), unit.clone()))
-    };
-    of("force", units.force()).into_iter().chain(of("moment", units.moment())).collect()
+    let force = along_axes(&format!("{name}.force"), &units.force());
+    force.into_iter().chain(along_axes(&format!("{name}.moment"), &units.moment())).collect()
 }

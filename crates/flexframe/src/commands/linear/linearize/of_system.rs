@@ -130,12 +130,10 @@ pub(super) fn of_system(
         let times = |matrix: &Mat<f64>, i: usize| over(&(0..all).map(|k| matrix[(i, k)]).collect::<Vec<f64>>());
         for (i, channel) in wrench_channels(scene, &system.joints[*joint].name).into_iter().enumerate() {
             let of_input = columns.iter().map(|force| (0..all).map(|k| of.by_force[(i, k)] * force[k]).sum());
-            let mut direct: Vec<f64> = of_input.collect();
-            let mut by_acceleration = times(&of.by_acceleration, i);
-            // Of independent coordinates it is rounding.
-            direct.extend(&by_acceleration[free..]);
-            by_acceleration.clear();
-            let rows = [times(&of.by_place, i), times(&of.by_rate, i), by_acceleration];
+            // The part of accelerations of independent coordinates is rounding.
+            let of_drives = times(&of.by_acceleration, i).split_off(free);
+            let direct = of_input.chain(of_drives).collect();
+            let rows = [times(&of.by_place, i), times(&of.by_rate, i), Vec::new()];
             outputs.push(Output { channel, rows, direct });
         }
     }

@@ -5,12 +5,10 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use faer::c64;
-use linear::StateSpace;
 use scene::Scene;
 use serde::Serialize;
 
-use super::reduction::Reduced;
-use super::state::State;
+use super::space::LinearSpace;
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 
@@ -61,21 +59,14 @@ pub struct Pole {
 }
 
 impl LinearReport {
-    pub(super) fn new(
-        scene: &Scene,
-        state: &State,
-        whole: &StateSpace,
-        reduced: Option<&Reduced>,
-        written: &StateSpace,
-        poles: &[c64],
-        file: &Path,
-    ) -> Self {
+    pub(super) fn new(scene: &Scene, space: &LinearSpace, poles: &[c64], file: &Path) -> Self {
         let pole = |pole: &c64| Pole {
             growth: pole.re,
             frequency: pole.im / TAU,
             damping_ratio: if pole.norm() > 0.0 { -pole.re / pole.norm() } else { 0.0 },
         };
-        let balanced = reduced.and_then(|reduced| reduced.balanced.as_ref());
+        let LinearSpace { whole, state, .. } = space;
+        let (written, balanced) = (space.model(), space.balanced());
         Self {
             title: scene.title.clone(),
             time: state.time,

@@ -3,22 +3,18 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use figures::{LineChart, Scale, Series, Stroke};
-use whole_file::write_whole;
+use figures::{LineChart, Scale};
 
 use super::error::PsdError;
 use super::responses::Responses;
+use crate::commands::linear::curves;
 use crate::commands::modes::frequency_unit;
-use crate::files::write_error::WriteError;
 
-const TABLE: &str = "psd.csv";
-const CHART: &str = "psd";
-/// Curves of a chart.
-const MAX_CURVES: usize = 12;
+const NAME: &str = "psd";
 
 /// The files that [`psd`](super::psd) writes to a folder.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
-    std::iter::once(folder.join(TABLE)).chain(figures::files(&folder.join(CHART))).collect()
+    curves::files(folder, NAME)
 }
 
 pub(super) fn write(
@@ -27,12 +23,7 @@ pub(super) fn write(
     responses: &Responses,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, PsdError> {
-    std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
-    let table = folder.join(TABLE);
-    write_whole(&table, csv(responses)).map_err(WriteError::of(&table))?;
-    let mut files = vec![table];
-    files.extend(chart(title, &frequency_unit(time_unit), responses).save(folder.join(CHART))?);
-    Ok(files)
+    curves::write(folder, NAME, csv(responses), &chart(title, &frequency_unit(time_unit), responses))
 }
 
 /// A row a frequency: the density of each output, unit² per cycle per time.
@@ -63,11 +54,7 @@ fn chart(title: &str, unit: &str, responses: &Responses) -> LineChart {
             .zip(response.density.iter().copied())
             .filter(|(_, y)| *y > 0.0)
             .collect();
-        // An output that sees nothing has no place on a logarithmic axis.
-        if series.len() < MAX_CURVES && !points.is_empty() {
-            let stroke = if series.len() < 7 { Stroke::Solid } else { Stroke::Dashed };
-            series.push(Series { label: channel.name.clone(), points, stroke });
-        }
+        curves::add_curve(&mut series, channel.name.clone(), points);
     }
     LineChart {
         title: format!("{title}: power spectral density"),

@@ -1,12 +1,12 @@
 //! The diagram: the largest acceleration of the mass against its frequency.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use figures::{FigureError, LineChart, Scale, Series, Stroke};
+use figures::{LineChart, Scale, Series, Stroke};
 use shock::Spectrum;
 
-/// Draws `<stem>.svg`, `<stem>.pdf` and `<stem>.png`.
-pub(super) fn draw(table: &Path, spectra: &[Spectrum], stem: &Path) -> Result<[PathBuf; 3], FigureError> {
+/// The diagram of some spectra of a table.
+pub(super) fn diagram(table: &Path, spectra: &[Spectrum]) -> LineChart {
     let line = |spectrum: &Spectrum| {
         let points = spectrum.frequencies.iter().copied();
         let points = points.zip(spectrum.peaks.iter().map(shock::Peaks::acceleration));
@@ -27,5 +27,4 @@ pub(super) fn draw(table: &Path, spectra: &[Spectrum], stem: &Path) -> Result<[P
         series: spectra.iter().map(line).collect(),
         reference: None,
     }
-    .save(stem)
 }

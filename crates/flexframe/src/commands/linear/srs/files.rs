@@ -5,27 +5,21 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use shock::Spectrum;
-use whole_file::write_whole;
 
-use super::diagram::draw;
+use super::diagram::diagram;
 use super::error::SrsError;
-use crate::files::write_error::WriteError;
+use crate::commands::linear::curves;
 
-const TABLE: &str = "srs.csv";
-const DIAGRAM: &str = "srs";
+const NAME: &str = "srs";
 
 /// The files that [`srs`](super::srs) writes to a folder.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
-    std::iter::once(folder.join(TABLE)).chain(figures::files(&folder.join(DIAGRAM))).collect()
+    curves::files(folder, NAME)
 }
 
 /// Writes `srs.csv`, and `srs` as SVG, PDF and PNG.
 pub(super) fn write(table: &Path, spectra: &[Spectrum], folder: &Path) -> Result<Vec<PathBuf>, SrsError> {
-    std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
-    let path = folder.join(TABLE);
-    write_whole(&path, rows(spectra)).map_err(WriteError::of(&path))?;
-    let figures = draw(table, spectra, &folder.join(DIAGRAM))?;
-    Ok(std::iter::once(path).chain(figures).collect())
+    curves::write(folder, NAME, rows(spectra), &diagram(table, spectra))
 }
 
 /// A row a frequency: for each damping ratio the quantities of a spectrum.

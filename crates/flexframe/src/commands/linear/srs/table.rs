@@ -1,25 +1,18 @@
 //! The base motion in a CSV file: two columns, time and acceleration.
 
-use std::io::Read;
 use std::path::Path;
 
-use foreign_program::open_ordinary;
 use shock::BaseMotion;
 
 use super::error::SrsError;
+use crate::commands::linear::table;
 
 /// Reads a base motion. The first line may name the columns; empty lines and those that begin with `#` are left out.
 pub(super) fn read(path: &Path) -> Result<BaseMotion, SrsError> {
-    let mut text = String::new();
     let unreadable = |source| SrsError::Unreadable { path: path.to_owned(), source };
-    open_ordinary(path).and_then(|mut file| file.read_to_string(&mut text)).map_err(unreadable)?;
     let (mut times, mut accelerations): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut is_first = true;
-    for (line, content) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
-        let content = content.trim();
-        if content.is_empty() || content.starts_with('#') {
-            continue;
-        }
+    for (line, content) in table::lines(path).map_err(unreadable)? {
         let fields: Vec<Option<f64>> = content.split(',').map(|field| field.trim().parse().ok()).collect();
         let names_columns = is_first && fields.iter().all(Option::is_none);
         is_first = false;
