@@ -13,9 +13,9 @@ plate: build
     {{flexframe}} paper examples/plate.toml -o out/plate --overwrite
     {{flexframe}} report out/plate/plate.h5 --overwrite
 
-# Every test.
+# Every test, two programs of them at a time.
 test:
-    cargo test --workspace --quiet
+    .ci/tests
 
 # A crate of somebody else, which sees only what is public: an own load, observer, scheme, force between bodies and joint.
 outside:
@@ -95,10 +95,11 @@ accuracy:
     cargo run --release --quiet --package verification --bin accuracy -- docs/evidence/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml --overwrite
 
 # Hard cases with every scheme: docs/evidence/stability.md; then kills of many runs (some minutes). Fails where a
-# bound is broken or a row is lost.
+# bound is broken, a row is lost, or a damaged file is taken for a sound one.
 stability:
     cargo run --release --quiet --package verification --bin stability -- docs/evidence/stability.md --overwrite
     FLEXFRAME_KILLS=200 cargo test --release --quiet --package results --test killed
+    FLEXFRAME_FORGERIES=20000 cargo test --release --quiet --package results --test forged --test damage
     FLEXFRAME_KILLS=40 cargo test --release --quiet --package flexframe-cli --test faults
 
 # docs/evidence/mesh-error.md: estimated errors of frequencies against those of fine meshes (gmsh; a few minutes).

@@ -10,6 +10,8 @@ use std::fs;
 use pages::{Page, pages};
 use session::Session;
 
+use crate::program::root;
+
 /// Blocks of commands that are not run, by how they begin, with the reason.
 const NOT_RUN: [(&str, &str, &str); 10] = [
     ("README.md", "./dev plate", "builds the program and runs all tests"),
@@ -131,7 +133,7 @@ fn scenes_of_the_first_hour_are_those_of_the_examples() {
     for page in of("docs/first-hour") {
         for block in page.blocks.iter().filter(|block| block.language == "toml" && block.text.starts_with("title")) {
             shown += 1;
-            let is_there = fs::read_dir(pages::root().join("examples/first-hour"))
+            let is_there = fs::read_dir(root().join("examples/first-hour"))
                 .unwrap()
                 .any(|entry| fs::read_to_string(entry.unwrap().path()).unwrap() == block.text);
             assert!(is_there, "{}:{}: examples/first-hour has no such scene", page.name, block.line);

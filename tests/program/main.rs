@@ -6,5 +6,6 @@ mod documentation;
 mod examples;
 mod inputs;
 mod library;
+mod program;
 mod runs;
 mod slepc;

@@ -14,9 +14,7 @@ use serde_json::Value;
 use slepc::{Slepc, Stop};
 use tempfile::TempDir;
 
-fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
+use crate::program::root;
 
 /// A scene of `examples`, as SLEPc is to solve it, and as this program does.
 fn both(name: &str, change: impl Fn(&mut Scene)) -> [Model; 2] {

@@ -172,7 +172,7 @@ enum Command {
         /// The point that a base turns about, in the frame of the mesh, for effective moments of inertia [default: the support of a
         /// held body, the center of mass of a free one].
         #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
-        about: Option<Place>,
+        about: Option<[f64; 3]>,
         /// Compare the shapes with those of another body in the same place (MAC): a scene, a body file, or another mesh for this scene.
         #[arg(long, value_name = "OTHER")]
         mac: Option<PathBuf>,
@@ -212,7 +212,7 @@ enum Command {
         /// Spin axis in the axes of the mesh: x, y, z, or three numbers such as 0,0.6,0.8. Of bodies in joints it is global and goes
         /// through their center of mass.
         #[arg(long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
-        axis: Option<Direction>,
+        axis: Option<[f64; 3]>,
         /// A joint about whose axis the bodies of a system spin [default: the one that a drive turns].
         #[arg(long, value_name = "NAME", conflicts_with = "axis")]
         joint: Option<String>,
@@ -528,7 +528,7 @@ struct AboutArgs {
     /// Angular velocity of the steady spin about the center of mass, radians per time, global; 0,0,0 is rest [default: that of the scene's
     /// free body or drive].
     #[arg(long, value_name = "X,Y,Z", value_parser = angular_velocity, allow_hyphen_values = true)]
-    spin: Option<Spin>,
+    spin: Option<[f64; 3]>,
     /// Time of the run at which bodies are where they then are, under the loads of that time [default: the beginning].
     #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
     time: Option<f64>,
@@ -539,8 +539,7 @@ struct AboutArgs {
 
 impl AboutArgs {
     fn settings(&self, inputs: Vec<String>, outputs: Vec<String>) -> LinearSettings {
-        let spin = self.spin.map(|Spin(omega)| omega);
-        LinearSettings { spin, time: self.time, without_rigid: self.without_rigid, inputs, outputs }
+        LinearSettings { spin: self.spin, time: self.time, without_rigid: self.without_rigid, inputs, outputs }
     }
 }
 
@@ -714,7 +713,6 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             output::print(&report, json)
         }
         Command::Modes { scene: SceneArgs { scene, json }, flexible, about, mac, time, output, files, solver } => {
-            let about = about.map(|Place(about)| about);
             output::require_file("--output", output.as_deref())?;
             let mut system = read_system(scene)?;
             if mac.is_some() && system.bodies.len() > 1 {
@@ -833,7 +831,6 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             if let Some(count) = flexible {
                 system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
             }
-            let axis = axis.map(|Direction(axis)| axis);
             let Some(scene) = system.bodies.first() else { return Err(run::RunError::NoBody.into()) };
             let folder = folder(scene, output)?;
             outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(&campbell::files(&folder))?;
@@ -1150,23 +1147,13 @@ fn patience(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "expected a number of seconds from 0.001 to 1000000".to_owned())
 }
 
-/// A direction in the axes of the mesh.
-#[derive(Debug, Clone, Copy)]
-struct Direction([f64; 3]);
-
-/// An angular velocity.
-#[derive(Debug, Clone, Copy)]
-struct Spin([f64; 3]);
-
-fn angular_velocity(text: &str) -> Result<Spin, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let numbers = numbers.ok().and_then(|numbers| <[f64; 3]>::try_from(numbers).ok());
-    let finite = numbers.filter(|omega| omega.iter().all(|x| x.is_finite()));
-    finite.map(Spin).ok_or_else(|| "expected three finite numbers, such as 0,0,6.3".to_owned())
+/// An angular velocity by its components.
+fn angular_velocity(text: &str) -> Result<[f64; 3], String> {
+    three_numbers(text).ok_or_else(|| "expected three finite numbers, such as 0,0,6.3".to_owned())
 }
 
 /// An axis by its name, or by three numbers.
-fn axis(text: &str) -> Result<Direction, String> {
+fn axis(text: &str) -> Result<[f64; 3], String> {
     let named = match text {
         "x" => Some([1.0, 0.0, 0.0]),
         "y" => Some([0.0, 1.0, 0.0]),
@@ -1175,7 +1162,6 @@ fn axis(text: &str) -> Result<Direction, String> {
     };
     named
         .or_else(|| three_numbers(text).filter(|v| *v != [0.0; 3]))
-        .map(Direction)
         .ok_or_else(|| "expected x, y, z, or three numbers that are not all zero, such as 0,0.6,0.8".to_owned())
 }
 
@@ -1186,13 +1172,9 @@ fn three_numbers(text: &str) -> Option<[f64; 3]> {
     <[f64; 3]>::try_from(numbers).ok().filter(|v| v.iter().all(|x| x.is_finite()))
 }
 
-/// A point in the frame of the mesh.
-#[derive(Debug, Clone, Copy)]
-struct Place([f64; 3]);
-
 /// A point by its coordinates.
-fn point(text: &str) -> Result<Place, String> {
-    three_numbers(text).map(Place).ok_or_else(|| "expected three numbers, such as 0,0,1.5".to_owned())
+fn point(text: &str) -> Result<[f64; 3], String> {
+    three_numbers(text).ok_or_else(|| "expected three numbers, such as 0,0,1.5".to_owned())
 }
 
 /// Where a viewer is: on an axis, or at two angles.

@@ -1,8 +1,8 @@
 //! Layouts of small matrices and lists for the time loop.
 
 pub(crate) mod blocked_matrix;
-pub(crate) mod column_major;
 pub(crate) mod four;
+pub(crate) mod lists;
 pub(crate) mod side_by_side;
 pub(crate) mod stack;
 pub(crate) mod symmetric;

@@ -11,6 +11,7 @@ pub(crate) mod longest_step;
 pub(crate) mod plan;
 pub(crate) mod run_description;
 pub(crate) mod setup;
+pub(crate) mod stats;
 
 use std::sync::{Arc, Mutex};
 
@@ -35,22 +36,7 @@ use crate::simulation::last_step::LastStep;
 use crate::simulation::longest_step::LongestStep;
 use crate::simulation::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, Segment, StepControl};
 use crate::simulation::setup::{Beginning, Setup};
-
-/// Cost of a run.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Stats {
-    /// Steps taken.
-    pub accepted: u64,
-    /// Steps tried in vain: two for each try, under step control.
-    pub rejected: u64,
-    /// Evaluations of the rates.
-    pub evaluations: u64,
-    /// Length of the shortest step taken; infinite before the first.
-    pub shortest: f64,
-    /// Length of the longest step taken.
-    pub longest: f64,
-}
+use crate::simulation::stats::Stats;
 
 /// Where [`Simulation::advance`] has come to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -164,12 +150,7 @@ struct Saved {
     steps_since_row: u64,
     phase: Phase,
     account: EnergyAccount,
-    #[serde(with = "postcard::fixint::le")]
-    accepted: u64,
-    #[serde(with = "postcard::fixint::le")]
-    rejected: u64,
-    shortest: f64,
-    longest: f64,
+    stats: Stats,
 }
 
 impl Simulation {
@@ -212,7 +193,7 @@ impl Simulation {
             steps_since_row: 0,
             phase: Phase::Start,
             points: setup.points.to_vec(),
-            stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
+            stats: Stats::NONE,
         })
     }
 
@@ -405,7 +386,6 @@ impl Simulation {
     /// # Errors
     /// [`CheckpointError::Encoding`], from a scheme of one's own.
     pub fn checkpoint(&self) -> Result<Vec<u64>, CheckpointError> {
-        let Stats { accepted, rejected, shortest, longest, .. } = self.stats;
         let saved = Saved {
             motion: self.motion.save()?,
             plan: self.plan.progress(),
@@ -413,10 +393,7 @@ impl Simulation {
             steps_since_row: self.steps_since_row,
             phase: self.phase,
             account: self.observers.energy,
-            accepted,
-            rejected,
-            shortest,
-            longest,
+            stats: self.stats,
         };
         Ok(to_words(&encode(&(&self.fingerprint, encode(&saved)?))?))
     }
@@ -431,16 +408,14 @@ impl Simulation {
         let (fingerprint, saved): (Fingerprint, Vec<u8>) = from_words(checkpoint)?;
         self.fingerprint.check(&fingerprint)?;
         let saved: Saved = decode(&saved)?;
-        let Saved { accepted, rejected, shortest, longest, steps_since_row, .. } = saved;
-        counts(&[accepted, rejected, steps_since_row])?;
-        expect("the length of a step", shortest > 0.0 && longest >= 0.0)?;
+        counts(&[saved.steps_since_row])?;
+        saved.stats.check()?;
         saved.account.check_saved()?;
         self.walk.check_saved(&saved.walk)?;
         self.motion.restore(&saved.motion)?;
         self.plan.set_progress(&saved.plan)?;
-        self.stats = Stats { accepted, rejected, shortest, longest, ..self.stats };
-        (self.walk, self.observers.energy) = (saved.walk, saved.account);
-        (self.phase, self.steps_since_row) = (saved.phase, steps_since_row);
+        (self.walk, self.observers.energy, self.stats) = (saved.walk, saved.account, saved.stats);
+        (self.phase, self.steps_since_row) = (saved.phase, saved.steps_since_row);
         Ok(self)
     }
 
@@ -485,9 +460,7 @@ impl Simulation {
                     }
                     // Under step control, steps are tried in pairs.
                     let (count, length) = if self.is_controlled() { (2, 0.5 * h) } else { (1, h) };
-                    self.stats.accepted += count;
-                    self.stats.shortest = self.stats.shortest.min(length);
-                    self.stats.longest = self.stats.longest.max(length);
+                    self.stats.take(count, length);
                     self.steps_since_row += count;
                     let ends_at_row = self.walk.is_at_end(|segment| segment.row);
                     let event = self.look_at_step();
@@ -499,10 +472,7 @@ impl Simulation {
                     if is_row {
                         (self.phase, self.steps_since_row) = (Phase::Row, 0);
                     }
-                    let stopped = self.plan.is_at_stop(self.time());
-                    if stopped {
-                        self.plan.set_stop(None);
-                    }
+                    let stopped = self.plan.take_stop(self.time());
                     if let Some(number) = event? {
                         return Ok(Reached::Event(number));
                     }

@@ -39,6 +39,8 @@ mod _flexframe {
     #[pymodule_export]
     use super::motion::load::{Force, ModalForce};
     #[pymodule_export]
+    use super::motion::marker_force::{MarkerForce, RelativeMotion};
+    #[pymodule_export]
     use super::motion::seen::Motion;
     #[pymodule_export]
     use super::motion::simulation::{Reached, Simulation};

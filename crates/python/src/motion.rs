@@ -3,6 +3,7 @@
 pub(crate) mod faults;
 pub(crate) mod joint_force;
 pub(crate) mod load;
+pub(crate) mod marker_force;
 pub(crate) mod seen;
 pub(crate) mod simulation;
 pub(crate) mod state;

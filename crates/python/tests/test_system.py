@@ -124,6 +124,79 @@ def test_a_load_on_a_body_of_a_system_is_a_law():
     assert seen and pushed["joints/shoulder/angle"][-1] == pytest.approx(0.5 * first * 0.1**2, rel=1e-2)
 
 
+def drifting(elements, end=1.0):
+    """Two links that drift apart and tumble, with a spring or a bushing of the scene."""
+    scene = arm(end=end, loads=()) | {"joints": []} | elements
+    scene["time"] = {"end": end, "tolerance": 1e-8}
+    scene["bodies"]["fore"]["initial"] |= {"velocity": [0.3, 0.4, 0], "angular_velocity": [0, 1.0, 2.0]}
+    return flexframe.System(flexframe.Scene(scene))
+
+
+SPRING = {"stiffness": 300.0, "damping": 4.0, "free_length": 0.1}
+BUSHING = {"stiffness": {"translation": [200, 300, 400], "rotation": [10, 20, 30]}, "damping": {"translation": [1, 2, 3]}}
+MARKERS = ["upper.tip", "fore.root"]
+
+
+def along_the_line(time, motion):
+    length = np.linalg.norm(motion.position)
+    if length == 0:
+        return np.zeros(3)
+    along = motion.position / length
+    rate = along @ motion.velocity
+    return -along * (SPRING["stiffness"] * (length - SPRING["free_length"]) + SPRING["damping"] * rate)
+
+
+def in_axes(time, motion):
+    force = -np.array([200, 300, 400]) * motion.position - np.array([1, 2, 3]) * motion.velocity
+    # The rotation vector of the turn of the second marker.
+    axis = np.array([motion.rotation[2, 1], motion.rotation[0, 2], motion.rotation[1, 0]])
+    axis = 0.5 * (axis - [motion.rotation[1, 2], motion.rotation[2, 0], motion.rotation[0, 1]])
+    sine = np.linalg.norm(axis)
+    angle = math.atan2(sine, 0.5 * (np.trace(motion.rotation) - 1))
+    turn = axis * (angle / sine if sine > 0 else 1.0)
+    return force, -np.array([10, 20, 30]) * turn
+
+
+# Independent reference: a spring and a bushing of the scene between the same markers.
+@pytest.mark.parametrize(
+    "law, elements",
+    [
+        (along_the_line, {"springs": [{"name": "tie", "between": MARKERS, **SPRING}]}),
+        (in_axes, {"bushings": [{"name": "tie", "between": MARKERS, **BUSHING}]}),
+    ],
+)
+def test_a_law_between_markers_does_what_an_element_of_the_scene_does(law, elements):
+    own = flexframe.Simulation(drifting({}), marker_forces=[flexframe.MarkerForce(MARKERS, law)])
+    found, expected = own.run(), flexframe.Simulation(drifting(elements)).run()
+    for body in ["upper", "fore"]:
+        for column, scale in [("position", 1.0), ("angular_velocity", 10.0)]:
+            path = f"bodies/{body}/{column}"
+            assert found[path] == pytest.approx(expected[path], abs=1e-5 * scale)
+    # It moved, and momenta stayed.
+    assert np.ptp(found["bodies/upper/position"], axis=0).max() > 0.05
+    momentum = found["system/momentum/linear"]
+    assert momentum == pytest.approx(np.tile(momentum[0], (len(momentum), 1)), abs=1e-10)
+
+
+def test_a_law_between_markers_that_fails_ends_the_step():
+    def broken(time, motion):
+        if time > 0.3:
+            raise ValueError("no rope")
+        assert motion.rotation.shape == (3, 3) and motion.angular_velocity.shape == (3,)
+        return [0.0, 0.0, 0.0]
+
+    simulation = flexframe.Simulation(drifting({}), marker_forces=[flexframe.MarkerForce(MARKERS, broken)])
+    with pytest.raises(ValueError, match="no rope"):
+        simulation.run()
+    for between, words in [(["upper.tip", "fore.hand"], "fore.root"), (["ground", "ground"], "two bodies")]:
+        with pytest.raises(flexframe.InputError, match=words):
+            flexframe.Simulation(drifting({}), marker_forces=[flexframe.MarkerForce(between, along_the_line)])
+    for returned in [None, [1.0, 2.0], [[0, 0, 0], [0, 0, math.nan]]]:
+        law = flexframe.MarkerForce(MARKERS, lambda time, motion, returned=returned: returned)
+        with pytest.raises(flexframe.InputError, match="law"):
+            flexframe.Simulation(drifting({}), marker_forces=[law]).run()
+
+
 def test_what_does_not_fit_is_refused():
     system = flexframe.System(flexframe.Scene(arm()))
     for force, words in [

@@ -1,7 +1,8 @@
 //! Files with a right seal that no writer wrote: HDF5 is not asked what is in them, and nothing outside of them is
 //! touched.
 //!
-//! `FLEXFRAME_FORGERIES` sets the number of random ones.
+//! Every third byte of a file is changed, and a thousand files in several places at once. `FLEXFRAME_FORGERIES` sets the number of the
+//! latter, and lets each byte be changed (`./dev stability`).
 
 mod rows;
 mod sealed;
@@ -317,8 +318,9 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
             }
         }
     };
-    // Every byte of the head, of the description and of HDF5's own.
-    for at in 0..part.len() {
+    // Bytes of the head, of the description and of HDF5's own.
+    let forgeries: Option<usize> = std::env::var("FLEXFRAME_FORGERIES").ok().map(|count| count.parse().unwrap());
+    for at in (0..part.len()).step_by(if forgeries.is_some() { 1 } else { 3 }) {
         if sound.iter().any(|place| place.bytes.contains(&at)) || (24..32).contains(&at) || (40..72).contains(&at) {
             continue;
         }
@@ -327,9 +329,8 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
         attempt(bytes, at % 512 == 0);
     }
     // Several at once, among them numbers and checkpoints.
-    let forgeries: usize = std::env::var("FLEXFRAME_FORGERIES").map_or(1000, |count| count.parse().unwrap());
     let mut state = 1;
-    for i in 0..forgeries {
+    for i in 0..forgeries.unwrap_or(1000) {
         let mut bytes = part.clone();
         for _ in 0..1 + next(&mut state) % 8 {
             let at = next(&mut state) % if next(&mut state).is_multiple_of(4) { bytes.len() } else { 4096 };
@@ -338,5 +339,5 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
         attempt(bytes, i % 20 == 0);
     }
     println!("{read} read, {refused} refused, {finished} brought to their end");
-    assert!(read > 10_000 && refused > 500 && finished > 50, "{read} {refused} {finished}");
+    assert!(read > 3_000 && refused > 500 && finished > 30, "{read} {refused} {finished}");
 }

@@ -103,6 +103,15 @@ impl System {
         name.unwrap_or_else(|| GROUND.to_owned())
     }
 
+    /// All ends that `between` can name.
+    pub fn ends(&self) -> Vec<End> {
+        let of_bodies = self.bodies.iter().enumerate();
+        let of_bodies =
+            of_bodies.flat_map(|(body, scene)| (0..scene.markers.len()).map(move |marker| End::Body { body, marker }));
+        let of_ground = (0..self.ground.len()).map(Some).chain([None]);
+        of_bodies.chain(of_ground.map(|marker| End::Ground { marker })).collect()
+    }
+
     /// The place in the scene file of the value with a key path such as `joints[2].between`, or of what is around it.
     pub fn place(&self, key: &str) -> Place {
         let (path, text) = self.bodies.first().map_or((Path::new(""), ""), |scene| (&scene.path, scene.file_text()));

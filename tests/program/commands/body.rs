@@ -1,22 +1,19 @@
 //! The body file and the cache, as users of the program meet them.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
 use flexframe::nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use crate::program::{command, root};
 
 /// A node of the ring.
 const NODE: usize = 100;
 
-fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
-
 /// The program with this folder for its cache; an empty name is none.
 fn flexframe(cache: &str, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(arguments).current_dir(root()).env("FLEXFRAME_CACHE", cache).output().unwrap()
+    command(arguments).env("FLEXFRAME_CACHE", cache).output().unwrap()
 }
 
 fn succeeds(cache: &str, arguments: &[&str]) -> (String, String) {

@@ -1,11 +1,11 @@
 //! `flexframe campbell` against rotating beams.
 
 use std::f64::consts::TAU;
-use std::path::PathBuf;
-use std::process::{Command, Output};
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
+
+use crate::program::{flexframe, json, root};
 
 const YOUNG: f64 = 70_000.0;
 const DENSITY: f64 = 2.7e-9;
@@ -26,14 +26,6 @@ const THIN_BEAM: [(f64, [f64; 3], f64, Option<f64>); 8] = [
     (12.0, [13.1702, 37.6031, 79.6145], 5.4270, None),
 ];
 
-fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
-
-fn flexframe(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(root()).output().unwrap()
-}
-
 /// √(EI/(ρAL⁴)), rad/s.
 fn unit() -> f64 {
     (YOUNG * SIDE.powi(2) / 12.0 / (DENSITY * LENGTH.powi(4))).sqrt()
@@ -51,10 +43,7 @@ fn spinning_bar(modes: usize, effects: &str) -> Value {
     std::fs::write(&scene, text.replace("flexible = 12", &kept)).unwrap();
     let speeds = format!("0:{}:13", 12.0 * unit());
     let out = folder.path().to_str().unwrap();
-    let output =
-        flexframe(&["campbell", scene.to_str().unwrap(), "--axis", "z", "--speeds", &speeds, "-o", out, "--json"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    json(&["campbell", scene.to_str().unwrap(), "--axis", "z", "--speeds", &speeds, "-o", out])
 }
 
 /// Frequency of a branch at an η, unit √(EI/(ρAL⁴)).

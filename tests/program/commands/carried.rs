@@ -1,28 +1,12 @@
 //! `flexframe modes`: what each mode carries, where its strain energy is, the error of the mesh, and MAC.
 
-use std::path::PathBuf;
-use std::process::{Command, Output};
-
 use serde_json::Value;
 
-fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
+use crate::program::{done, flexframe, json, numbers};
 
-fn modes(arguments: &[&str]) -> Output {
-    let program =
-        Command::new(env!("CARGO_BIN_EXE_flexframe")).arg("modes").args(arguments).current_dir(root()).output();
-    program.unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = modes(&[arguments, &["--json"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap_or_else(|| panic!("{value}")).iter().map(|x| x.as_f64().unwrap()).collect()
+#[track_caller]
+fn modes(arguments: &[&str]) -> Value {
+    json(&[&["modes"], arguments].concat())
 }
 
 /// Independent reference: CalculiX 2.20, the mesh of `meshes/rotating_bar.msh` as C3D10 with its root held, `*FREQUENCY`: its table
@@ -30,7 +14,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 /// couples the base with the nodes beside it.
 #[test]
 fn effective_masses_are_those_of_calculix() {
-    let report = json(&["examples/rotating_bar.toml"]);
+    let report = modes(&["examples/rotating_bar.toml"]);
     let carried = &report["carried"];
     assert_eq!(carried["point"], "the support");
     let masses: Vec<Vec<f64>> = carried["effective_masses"].as_array().unwrap().iter().map(numbers).collect();
@@ -48,15 +32,15 @@ fn effective_masses_are_those_of_calculix() {
     // What is missed and what is carried make the whole.
     let (missed, cumulated) = (numbers(&carried["missed"]), numbers(&carried["cumulated"][11]));
     assert!(missed.iter().zip(&cumulated).all(|(missed, carried)| (missed + carried - 1.0).abs() < 1e-12));
-    let text = String::from_utf8(modes(&["examples/rotating_bar.toml"]).stdout).unwrap();
+    let text = done(&["modes", "examples/rotating_bar.toml"]);
     assert!(text.contains("modes that are kept miss of the mass 18.9 % x, 7.9 % y, 7.9 % z"), "{text}");
 }
 
 /// Closed form: Steiner's theorem for the whole about the tip; the factor of a rotation is moved by L times that of the translation.
 #[test]
 fn the_base_turns_about_the_point_that_is_asked_for() {
-    let about_tip = json(&["examples/rotating_bar.toml", "--about=202.07,0,0"]);
-    let about_root = json(&["examples/rotating_bar.toml"]);
+    let about_tip = modes(&["examples/rotating_bar.toml", "--about=202.07,0,0"]);
+    let about_root = modes(&["examples/rotating_bar.toml"]);
     assert_eq!(about_tip["carried"]["point"], "the point asked for");
     let whole = |report: &Value| numbers(&report["carried"]["whole"])[5];
     assert!((whole(&about_tip) / whole(&about_root) - 1.0).abs() < 1e-9);
@@ -80,7 +64,7 @@ fn strain_energy_is_shared_among_groups() {
                 materials = { soft = { young_modulus = 7e4, poisson_ratio = 0.3, density = 2.7e-9 }, stiff = { young_modulus = 7e7, \
                 poisson_ratio = 0.3, density = 2.7e-9 } }\n[modes]\nflexible = 3\n[time]\nend = 1e-3\ntolerance = 1e-6\n";
     std::fs::write(&scene, text).unwrap();
-    let report = json(&[scene.to_str().unwrap()]);
+    let report = modes(&[scene.to_str().unwrap()]);
     let energy = &report["strain_energy"];
     for table in ["by_material", "by_group"] {
         let parts: Vec<Vec<f64>> = energy[table].as_array().unwrap().iter().map(|row| numbers(&row["parts"])).collect();
@@ -89,7 +73,7 @@ fn strain_energy_is_shared_among_groups() {
             assert!(parts[1][k] < 0.05 && parts[1][k] > 0.0, "{table} {parts:?}");
         }
     }
-    let text = String::from_utf8(modes(&[scene.to_str().unwrap()]).stdout).unwrap();
+    let text = done(&["modes", scene.to_str().unwrap()]);
     assert!(text.contains("strain energy by material, %") && text.contains("the body is free"), "{text}");
 }
 
@@ -97,7 +81,7 @@ fn strain_energy_is_shared_among_groups() {
 #[test]
 fn shapes_of_two_meshes_are_the_same() {
     for (other, limit) in [("meshes/plate.msh", 1e-10), ("meshes/plate_lc12.msh", 0.02)] {
-        let mac = &json(&["examples/plate.toml", "-n", "5", "--mac", other])["mac"];
+        let mac = &modes(&["examples/plate.toml", "-n", "5", "--mac", other])["mac"];
         assert_eq!(numbers(&mac["nearest"]), [1.0, 2.0, 3.0, 4.0, 5.0]);
         let rows: Vec<Vec<f64>> = mac["mac"].as_array().unwrap().iter().map(numbers).collect();
         for (k, row) in rows.iter().enumerate() {
@@ -109,7 +93,7 @@ fn shapes_of_two_meshes_are_the_same() {
 #[test]
 fn bodies_that_cannot_be_compared_are_refused() {
     let refused = |arguments: &[&str], words: &str| {
-        let output = modes(arguments);
+        let output = flexframe(&[&["modes"], arguments].concat());
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(!output.status.success() && message.contains(words), "{message}");
     };

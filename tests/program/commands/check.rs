@@ -2,17 +2,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use flexframe::check::{CheckError, CheckRows, check};
 use flexframe::model::Builder;
 use flexframe::run::{RunSettings, run};
 use flexframe::scene::{Scene, System};
-use serde_json::Value;
 
-fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
+use crate::program::{done, flexframe, json, root};
 
 /// A rod that is held at one end and pushed across the other, far: by linear modes.
 fn scene(folder: &Path) -> PathBuf {
@@ -28,28 +24,20 @@ fn scene(folder: &Path) -> PathBuf {
     path
 }
 
-fn flexframe(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(arguments).env("FLEXFRAME_CACHE", "").output().unwrap()
-}
-
 #[test]
 fn a_run_says_how_wrong_it_is_and_the_command_says_more() {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene(folder.path());
     let (scene, out) = (scene.to_str().unwrap(), folder.path().to_str().unwrap());
-    let said = flexframe(&["run", scene, "-o", out]);
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-    let said = String::from_utf8(said.stdout).unwrap();
+    let said = done(&["run", scene, "-o", out]);
     let line = said.lines().find(|line| line.starts_with("  check ")).unwrap();
     assert!(line.contains("full nonlinear body") && line.contains("large modes"), "{line}");
     assert!(line.contains("largest strain energy"), "{line}");
-    let without = flexframe(&["run", scene, "-o", out, "--overwrite", "--no-check"]);
-    assert!(!String::from_utf8(without.stdout).unwrap().contains("  check "));
+    assert!(!done(&["run", scene, "-o", out, "--overwrite", "--no-check"]).contains("  check "));
 
     let file = folder.path().join("column.h5");
     let file = file.to_str().unwrap();
-    let report: Value = serde_json::from_slice(&flexframe(&["check", file, "--json"]).stdout).unwrap();
+    let report = json(&["check", file]);
     let rows = report["bodies"][0]["rows"].as_array().unwrap();
     // The strain energy grows to the end.
     assert_eq!(rows.len(), 1);
@@ -58,8 +46,7 @@ fn a_run_says_how_wrong_it_is_and_the_command_says_more() {
     assert!((0.02..0.5).contains(&error), "{error}");
     assert_eq!(rows[0]["negative_directions"], 0);
     // By the same check of a row that is named: of the undeformed body there is nothing wrong.
-    let report: Value =
-        serde_json::from_slice(&flexframe(&["check", file, "--json", "--rows", "0,1,5"]).stdout).unwrap();
+    let report = json(&["check", file, "--rows", "0,1,5"]);
     let of_rows = report["bodies"][0]["rows"].as_array().unwrap();
     assert_eq!(of_rows[0]["error"], 0.0);
     // A row of smaller displacements is stated against the largest of the run, too: by the ratio of their sizes.
@@ -85,12 +72,10 @@ fn the_force_of_damping_is_no_error() {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene(folder.path());
     let (scene, out) = (scene.to_str().unwrap(), folder.path().to_str().unwrap());
-    let ran = flexframe(&["run", scene, "-o", out, "--no-check", "--set", "loads[0].amplitude=1e-4"]);
-    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    done(&["run", scene, "-o", out, "--no-check", "--set", "loads[0].amplitude=1e-4"]);
     let file = folder.path().join("column.h5");
     // At 1 s the load, and with it the rod, moves on.
-    let said = flexframe(&["check", file.to_str().unwrap(), "--json", "--rows", "1"]);
-    let report: Value = serde_json::from_slice(&said.stdout).unwrap();
+    let report = json(&["check", file.to_str().unwrap(), "--rows", "1"]);
     let error = report["bodies"][0]["rows"][0]["error"].as_f64().unwrap();
     // 3.7e-6; with the damping in the accelerations it was 0.21.
     assert!(error < 1e-5, "{error:e}");

@@ -1,7 +1,6 @@
 //! `flexframe export`: tables, and fields that agree with the modes. VTK itself reads them in `just paraview`.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use faer::{Mat, Scale};
 use flexframe::columns::COLUMNS;
@@ -12,6 +11,8 @@ use flexframe::row::{BodyRow, Row};
 use flexframe::scene::{Body, Scene};
 use nalgebra::Vector3;
 use results::{Results, unfinished};
+
+use crate::program::{done, flexframe};
 
 const SCENE: &str = r#"
 title = "A pendulum that bends"
@@ -47,16 +48,6 @@ rigid = { mass = 3.0, center_of_mass = [0.0, 0.0, 0.0], inertia = [[0.02, 0.0, 0
 end = 0.1
 step = 1e-2
 "#;
-
-fn flexframe(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).output().unwrap()
-}
-
-fn done(arguments: &[&str]) -> String {
-    let output = flexframe(arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
 
 fn refused(arguments: &[&str], code: i32) -> String {
     let output = flexframe(arguments);

@@ -1,20 +1,17 @@
 //! `flexframe fmu`: what is packed, and what is refused. The crate `fmi` tests FMUs in motion.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
 use flexframe::fmu::marker;
 use serde_json::Value;
 
-fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
+use crate::program::command;
 
 /// The program without a library of the environment, unless there is one here.
 fn flexframe(library: &str, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(arguments).current_dir(root()).env("FLEXFRAME_FMU_LIBRARY", library).output().unwrap()
+    command(arguments).env("FLEXFRAME_FMU_LIBRARY", library).output().unwrap()
 }
 
 /// Bytes that pass for the library: its version, and a name that it exports.

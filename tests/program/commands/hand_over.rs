@@ -2,21 +2,15 @@
 //! `FLEXFRAME_READERS` names (`./dev test` sees to it).
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use serde_json::Value;
 
+use crate::program::{done, json, numbers, root};
+
 const READERS: &str = "FLEXFRAME_READERS";
 const MODES: usize = 6;
-
-fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
-
-fn flexframe(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(root()).output().unwrap()
-}
 
 /// The clamped bar with two points of the output, as a scene.
 fn scene(folder: &Path) -> PathBuf {
@@ -35,16 +29,11 @@ fn scene(folder: &Path) -> PathBuf {
 /// What the reader finds in the file of this ending.
 fn handed_over(folder: &Path, ending: &str) -> Value {
     let file = folder.join(format!("bar.{ending}"));
-    let written = flexframe(&["reduce", scene(folder).to_str().unwrap(), "-o", file.to_str().unwrap()]);
-    assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+    done(&["reduce", scene(folder).to_str().unwrap(), "-o", file.to_str().unwrap()]);
     let python = std::env::var_os(READERS).expect("FLEXFRAME_READERS names no Python with pyYeti; use ./dev test");
     let read = Command::new(python).arg(root().join("tests/read_hand_over.py")).arg(&file).output().unwrap();
     assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
     serde_json::from_slice(&read.stdout).unwrap()
-}
-
-fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap_or_else(|| panic!("{value}")).iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
 fn matrix(value: &Value) -> DMatrix<f64> {
@@ -54,8 +43,7 @@ fn matrix(value: &Value) -> DMatrix<f64> {
 
 /// What `flexframe modes` says of the scene.
 fn modes(folder: &Path) -> Value {
-    let output = flexframe(&["modes", scene(folder).to_str().unwrap(), "--json"]);
-    serde_json::from_slice(&output.stdout).unwrap()
+    json(&["modes", scene(folder).to_str().unwrap()])
 }
 
 /// Conserved: the matrices that pyYeti and pyNastran read have the frequencies and effective masses of `flexframe modes`. Closed form: a bar

@@ -4,7 +4,6 @@
 mod page_data;
 
 use std::path::Path;
-use std::process::{Command, Output};
 
 use flexframe::columns::COLUMNS;
 use flexframe::fem_tet10::von_mises;
@@ -17,15 +16,7 @@ use page_data::bytes;
 use results::Results;
 use serde_json::Value;
 
-fn flexframe(arguments: &[&str]) -> Output {
-    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
-    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(root).output().unwrap()
-}
-
-fn succeed(arguments: &[&str]) {
-    let output = flexframe(arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-}
+use crate::program::{done, flexframe};
 
 /// The data of a page in a file.
 fn data(page: &Path) -> Value {
@@ -52,9 +43,9 @@ fn vectors<const N: usize>(list: &Value) -> Vec<[f64; N]> {
 fn follows_the_point(scene: &str, point: &str, place: [f64; 3]) {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    succeed(&["run", &format!("examples/{scene}.toml"), "-o", out]);
+    done(&["run", &format!("examples/{scene}.toml"), "-o", out]);
     let file = folder.path().join(format!("{scene}.h5"));
-    succeed(&["report", file.to_str().unwrap()]);
+    done(&["report", file.to_str().unwrap()]);
     let results = Results::open(&file, &COLUMNS).unwrap();
     let page = data(&file.with_extension("html"));
 
@@ -136,9 +127,9 @@ fn the_page_opens_on_the_motion_of_a_point_in_units_of_si() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     let short = ["--set", "time.end=0.004", "--set", "output.stress=true", "-o", out];
-    succeed(&[&["run", "examples/ring.toml"], &short[..]].concat());
+    done(&[&["run", "examples/ring.toml"], &short[..]].concat());
     let file = folder.path().join("ring.h5");
-    succeed(&["report", file.to_str().unwrap()]);
+    done(&["report", file.to_str().unwrap()]);
     let page = data(&file.with_extension("html"));
 
     let histories = page["histories"].as_array().unwrap();
@@ -173,9 +164,9 @@ fn the_page_opens_on_the_motion_of_a_point_in_units_of_si() {
 fn a_body_of_matrices_is_drawn_by_its_nodes_which_move_as_the_run_did() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    succeed(&["run", "examples/boom.toml", "--set", "time.end=1.0", "-o", out]);
+    done(&["run", "examples/boom.toml", "--set", "time.end=1.0", "-o", out]);
     let file = folder.path().join("boom.h5");
-    succeed(&["report", file.to_str().unwrap()]);
+    done(&["report", file.to_str().unwrap()]);
     let page = data(&file.with_extension("html"));
 
     let body = &page["bodies"][0];
@@ -200,7 +191,7 @@ fn a_body_of_matrices_is_drawn_by_its_nodes_which_move_as_the_run_did() {
 /// The run of a live page, led natively to each row of a results file: all that the two have in common, to the last bit where `exact`.
 fn is_led_to_the_rows(scene: &str, exact: bool) {
     let folder = tempfile::tempdir().unwrap();
-    succeed(&["run", scene, "--no-check", "-o", folder.path().to_str().unwrap()]);
+    done(&["run", scene, "--no-check", "-o", folder.path().to_str().unwrap()]);
     let file = folder.path().join(Path::new(scene).with_extension("h5").file_name().unwrap());
     let page = html_report::live_contents(&file, &Builder::default(), |_| ()).unwrap();
     let live = page.live.unwrap();
@@ -241,7 +232,7 @@ fn a_live_page_of_what_a_page_cannot_step_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let scene = ["--set", "time.scheme=paper", "--set", "time.end=1e-3"];
     let out = folder.path().to_str().unwrap();
-    succeed(&[&["run", "examples/tumbling_plate.toml", "--no-check", "-o", out][..], &scene].concat());
+    done(&[&["run", "examples/tumbling_plate.toml", "--no-check", "-o", out][..], &scene].concat());
     let file = folder.path().join("tumbling_plate.h5");
     let refused = flexframe(&["report", file.to_str().unwrap(), "--live"]);
     let words = String::from_utf8_lossy(&refused.stderr);
@@ -259,13 +250,13 @@ fn another_run_is_compared_where_both_have_the_time() {
     let run = |to: &str, end: &str, more: &[&str]| {
         let set = format!("time.end={end}");
         let arguments = ["run", "examples/ring.toml", "--no-check", "-o", to, "--set", &set];
-        succeed(&[&arguments[..], more].concat());
+        done(&[&arguments[..], more].concat());
     };
     run(&place("a"), "0.02", &[]);
     run(&place("b"), "0.01", &["--set", "modes.damping_ratio=0.2"]);
     let [a, b] = ["a/ring.h5", "b/ring.h5"].map(place);
     let page = place("page.html");
-    succeed(&["report", &a, "--compare", &b, "-o", &page]);
+    done(&["report", &a, "--compare", &b, "-o", &page]);
     let page = data(Path::new(&page));
 
     let times = numbers(&page["history_times"]);

@@ -1,25 +1,12 @@
 //! `flexframe linearize`, `flexframe frf` and `flexframe psd`. Needs a Python with SciPy, which `FLEXFRAME_READERS` names (`./dev test` sees to it).
 
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Command;
 
 use serde_json::Value;
 
-fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
-
-fn flexframe(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(root()).output().unwrap()
-}
-
-#[track_caller]
-fn json(arguments: &[&str]) -> Value {
-    let output = flexframe(&[arguments, &["--json"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
+use crate::program::{flexframe, json, root};
 
 /// The bar on a support, pushed at its tip.
 fn bar(folder: &Path, support: &str, history: &str, time: &str) -> String {

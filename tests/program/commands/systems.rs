@@ -1,29 +1,16 @@
 //! `flexframe modes` and `flexframe campbell` of bodies in joints.
 
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
 use serde_json::Value;
+
+use crate::program::{flexframe, json, root};
 
 const YOUNG: f64 = 70_000.0;
 const DENSITY: f64 = 2.7e-9;
 const LENGTH: f64 = 202.07;
 const SIDE: f64 = 10.0;
-
-fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
-
-fn flexframe(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(root()).output().unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = flexframe(arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
@@ -83,7 +70,7 @@ fn a_bar_welded_to_a_driven_hub_stiffens_as_it_spins() {
     let scene = welded_bar(folder.path());
     let out = folder.path().join("diagram");
     let speeds = format!("0:{}:6", 10.0 * unit());
-    let report = json(&["campbell", &scene, "--speeds", &speeds, "--json", "-o", out.to_str().unwrap()]);
+    let report = json(&["campbell", &scene, "--speeds", &speeds, "-o", out.to_str().unwrap()]);
     let frequency = |branch: usize, i: usize| number(&report["branches"][branch]["frequency"][i]) * TAU / unit();
     // Flap and chord are equal at rest; flap is the stiffer one.
     let flap = usize::from(frequency(0, 5) < frequency(1, 5));
@@ -107,7 +94,7 @@ fn modes_of_a_system_say_who_moves() {
     let folder = tempfile::tempdir().unwrap();
     let scene = welded_bar(folder.path());
     let out = folder.path().join("pictures");
-    let report = json(&["modes", &scene, "--json", "-o", out.to_str().unwrap()]);
+    let report = json(&["modes", &scene, "-o", out.to_str().unwrap()]);
     let system = &report["systems"][0];
     assert_eq!(system["joints"], serde_json::json!(["shaft", "weld"]));
     assert_eq!(number(&system["rigid_modes"]), 0.0);
@@ -117,7 +104,7 @@ fn modes_of_a_system_say_who_moves() {
     assert_eq!((&first["moves"][0]["name"], &first["strained"][0]["name"]), (&"bar".into(), &"bar".into()));
     assert!(number(&first["moves"][0]["part"]) > 0.999);
     assert!(out.join("modes.svg").exists());
-    let alone = json(&["modes", &scene, "--json", "--body", "bar"]);
+    let alone = json(&["modes", &scene, "--body", "bar"]);
     let free = number(&alone["body"]["natural_frequencies"][0]) * TAU / unit();
     // Closed form: a free beam has 22.373.
     assert!((free / 22.373 - 1.0).abs() < 0.01, "{free}");
@@ -136,7 +123,7 @@ fn a_blade_flaps_in_its_closed_form() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     let scene = "examples/mechanisms/rotor_blade.toml";
-    let report = json(&["campbell", scene, "--joint", "shaft", "--speeds", "25:50:2", "--json", "-o", out]);
+    let report = json(&["campbell", scene, "--joint", "shaft", "--speeds", "25:50:2", "-o", out]);
     let (offset, link, rod) = (0.03, 0.01, 0.3 * 0.008 * 0.008 * 7870.0);
     // The link's center is 0.01 from the hinge, the rod from 0.02 to 0.32.
     let first = link * 0.01 + rod * 0.17;

@@ -8,7 +8,8 @@ use std::process::Command;
 use flexframe::fmu::marker;
 use tempfile::TempDir;
 
-use super::pages::{Block, Page, root};
+use super::pages::{Block, Page};
+use crate::program::root;
 
 pub struct Session {
     folder: TempDir,

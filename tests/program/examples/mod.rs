@@ -10,19 +10,15 @@ mod spin;
 mod stress;
 mod top;
 
-use std::path::PathBuf;
-
 use flexframe::dynamics::Observation;
 use flexframe::model::Model;
 use flexframe::scene::Scene;
 
-fn repository() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
+use crate::program::root;
 
 /// The scene `examples/<name>.toml`.
 fn scene(name: &str) -> Scene {
-    Scene::read(repository().join("examples").join(name).with_extension("toml")).unwrap()
+    Scene::read(root().join("examples").join(name).with_extension("toml")).unwrap()
 }
 
 fn build(scene: &Scene) -> Model {

@@ -6,7 +6,8 @@ use faer::{Mat, Side};
 use flexframe::fem_tet10::{Material, Materials, assemble, read_msh};
 use nalgebra::DMatrix;
 
-use crate::examples::{build, repository, scene};
+use crate::examples::{build, scene};
+use crate::program::root;
 
 /// Independent reference: NAFEMS FV12, the lowest and the highest of the frequencies quoted, Hz.
 #[test]
@@ -39,7 +40,7 @@ fn fv52_simply_supported_thick_plate() {
         assert!((found / quoted - 1.0).abs() < 0.013, "{found} {quoted}");
     }
 
-    let mesh = read_msh(repository().join("meshes/nafems_fv52.msh")).unwrap();
+    let mesh = read_msh(root().join("meshes/nafems_fv52.msh")).unwrap();
     let steel = Material { young_modulus: 200e9, poisson_ratio: 0.3, density: 8000.0 };
     let matrices = assemble(&mesh, &Materials::Uniform(steel), &[]).unwrap();
     let on_edge = |x: f64| x.abs() < 1e-9 || (x - 10.0).abs() < 1e-9;

@@ -6,7 +6,8 @@ use flexframe::results::Results;
 use flexframe::run::{RunSettings, run};
 use flexframe::scene::{Effect, Scene};
 
-use crate::examples::{build, repository, scene};
+use crate::examples::{build, scene};
+use crate::program::root;
 
 /// The results file of a scene and the peak of its summary.
 fn outcome(scene: &Scene) -> (Results, Option<PeakStress>) {
@@ -26,7 +27,7 @@ mesh = "../meshes/rotating_bar.msh"
 material = {{ young_modulus = 70000.0, poisson_ratio = 0.0, density = 2.7e-9 }}
 {rest}"#
     );
-    Scene::parse(&text, repository().join("examples/bar.toml")).unwrap()
+    Scene::parse(&text, root().join("examples/bar.toml")).unwrap()
 }
 
 const SPIN: f64 = 1000.0;

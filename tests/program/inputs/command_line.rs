@@ -1,43 +1,25 @@
 //! The program as its users meet it.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
 use flexframe::columns::COLUMNS;
 use hdf5::types::VarLenUnicode;
 use results::{Column, Components, Metadata, Results, Scope, Units, histories};
-use serde_json::Value;
 
-fn root() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-}
-
-fn flexframe(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(root()).output().unwrap()
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let output = flexframe(arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
-}
+use crate::program::{flexframe, json, numbers, root};
 
 #[test]
 fn the_modes_of_the_plate_are_those_of_the_reference() {
     // Independent reference: the lc 10 column of plate_modes.csv by another FE code and ARPACK, given with the project.
     let expected = [24.5284, 86.1726, 93.2686, 117.3730, 206.1779, 359.9787, 387.9791, 536.7789, 545.4214, 582.0931];
-    let report = json(&["modes", "examples/plate.toml", "--json"]);
+    let report = json(&["modes", "examples/plate.toml"]);
     let found = numbers(&report["body"]["natural_frequencies"]);
     assert_eq!(found.len(), 10);
     for (found, expected) in found.iter().zip(expected) {
         // Half a unit of the last digit printed there, which is 2e-6 of the first frequency.
         assert!((found - expected).abs() < 5.1e-5, "{found} {expected}");
     }
-    let twelve = json(&["modes", "examples/plate.toml", "-n", "12", "--json", "--threads", "1"]);
+    let twelve = json(&["modes", "examples/plate.toml", "-n", "12", "--threads", "1"]);
     let more = numbers(&twelve["body"]["natural_frequencies"]);
     assert_eq!(more.len(), 12);
     assert!(found.iter().zip(&more).all(|(a, b)| (a / b - 1.0).abs() < 1e-9));
@@ -48,7 +30,7 @@ fn the_modes_of_the_plate_are_those_of_the_reference() {
 fn the_paper_is_reproduced_with_every_figure() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let report = json(&["paper", "examples/plate.toml", "-o", out, "--json"]);
+    let report = json(&["paper", "examples/plate.toml", "-o", out]);
     let files: Vec<String> =
         std::fs::read_dir(out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     for figure in 3..=13 {
@@ -181,7 +163,7 @@ fn the_page_on_results_has_the_table_of_columns() {
 fn another_mesh_runs_and_its_file_holds_all_that_is_promised() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let report = json(&["run", "examples/ring.toml", "-o", out, "--json"]);
+    let report = json(&["run", "examples/ring.toml", "-o", out]);
     let path = folder.path().join("ring.h5");
     let results = Results::open(&path, &COLUMNS).unwrap();
     assert_describes_its_columns(&path, 2001, &results.metadata);
@@ -212,7 +194,7 @@ fn a_results_file_is_the_same_byte_for_byte_on_each_run_and_for_any_number_of_th
     let run = |threads: &str| {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().to_str().unwrap();
-        json(&["run", "examples/ring.toml", "-o", out, "--json", "--threads", threads]);
+        json(&["run", "examples/ring.toml", "-o", out, "--threads", threads]);
         std::fs::read(folder.path().join("ring.h5")).unwrap()
     };
     let first = run("1");
@@ -256,7 +238,7 @@ fn a_scene_flies_as_a_moving_picture() {
 fn the_tumbling_plate_turns_and_swings() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let report = json(&["run", "examples/tumbling_plate.toml", "-o", out, "--json"]);
+    let report = json(&["run", "examples/tumbling_plate.toml", "-o", out]);
     let results = Results::open(folder.path().join("tumbling_plate.h5"), &COLUMNS).unwrap();
     assert_eq!(report["steps"], 20000);
     // Without loads the linear momentum stays m V to rounding.
@@ -307,7 +289,7 @@ fn a_dot_in_the_name_of_a_scene_stays_in_those_of_its_results() {
     let first = place("coin.h5");
     for (scene, file) in [("coin.toml", "coin.h5"), ("coin.v2.toml", "coin.v2.h5")] {
         std::fs::write(place(scene), COIN).unwrap();
-        let report = json(&["run", &place(scene), "-o", folder.path().to_str().unwrap(), "--json"]);
+        let report = json(&["run", &place(scene), "-o", folder.path().to_str().unwrap()]);
         assert_eq!(report["results"], place(file));
         assert!(Results::open(place(file), &COLUMNS).unwrap().complete);
     }
@@ -421,6 +403,6 @@ fn what_is_wrong_is_said_with_file_line_key_and_help() {
 
 #[test]
 fn it_says_its_name_and_version() {
-    let output = Command::new(env!("CARGO_BIN_EXE_flexframe")).arg("--version").output().unwrap();
+    let output = flexframe(&["--version"]);
     assert_eq!(String::from_utf8(output.stdout).unwrap(), concat!("flexframe ", env!("CARGO_PKG_VERSION"), "\n"));
 }

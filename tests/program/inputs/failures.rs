@@ -1,6 +1,5 @@
 //! How a command that fails says so: exit codes, JSON, and streams that cannot be written.
 
-use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
@@ -9,16 +8,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::inputs::command_line::COIN;
-
-fn root() -> PathBuf {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).canonicalize().unwrap()
-}
-
-fn flexframe(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(arguments).current_dir(root());
-    command
-}
+use crate::program::{self, flexframe, root};
 
 /// The program under a shell, for its redirections and limits; `flexframe` stands for the program.
 fn shell(script: &str) -> Output {
@@ -33,7 +23,7 @@ fn errors(output: &Output) -> String {
 /// The object on standard error of a command that fails, after the agreement of code and kind has been checked.
 #[track_caller]
 fn failure(kind: Kind, arguments: &[&str]) -> Value {
-    let output = flexframe(arguments).output().unwrap();
+    let output = flexframe(arguments);
     let text = errors(&output);
     assert_eq!(output.status.code(), Some(kind.exit_code().into()), "{text}");
     assert!(output.stdout.is_empty());
@@ -153,7 +143,7 @@ fn a_refused_model_a_failed_run_and_a_file_in_the_way_differ() {
     let object = failure(Kind::Run, &["run", &wild, "-o", &ring.out(), "--json"]);
     assert_says(&object["message"], &["at time", "the states before it are in"]);
     let gif = format!("{}.gif", ring.out());
-    let output = flexframe(&["animate", &wild, "-o", &gif]).output().unwrap();
+    let output = flexframe(&["animate", &wild, "-o", &gif]);
     assert_eq!(output.status.code(), Some(5));
     let text = errors(&output);
     assert!(text.contains("scene.toml: at time") && !text.contains("no file"), "{text}");
@@ -188,7 +178,7 @@ fn what_is_infinite_is_said_in_json() {
     let (before, loads) = text.split_once("[[loads]]").unwrap();
     let (_, after) = loads.split_once("[time]").unwrap();
     let scene = ring.file("still.toml", &format!("{before}[time]{after}"));
-    let output = flexframe(&["advise", &scene, "--json"]).output().unwrap();
+    let output = flexframe(&["advise", &scene, "--json"]);
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     let row = report["rows"].as_array().unwrap().iter().find(|row| row["effect"] == "flexibility").unwrap();
     assert_eq!(row["value"], "infinite");
@@ -231,7 +221,7 @@ fn a_full_standard_output_is_named() {
 #[test]
 fn threads_that_cannot_be_are_refused_in_words() {
     for count in ["100000", "0", "many"] {
-        let mut command = flexframe(&["modes", "examples/ring.toml"]);
+        let mut command = program::command(&["modes", "examples/ring.toml"]);
         let output = command.env("RAYON_NUM_THREADS", count).output().unwrap();
         assert_eq!(output.status.code(), Some(2));
         let text = errors(&output);
@@ -249,7 +239,7 @@ fn threads_that_cannot_be_are_refused_in_words() {
 
 #[test]
 fn the_exit_codes_are_documented() {
-    let help = String::from_utf8(flexframe(&["--help"]).output().unwrap().stdout).unwrap();
+    let help = String::from_utf8(flexframe(&["--help"]).stdout).unwrap();
     let page = std::fs::read_to_string(root().join("docs/reference/cli.md")).unwrap();
     for kind in Kind::ALL {
         let (code, meaning) = (kind.exit_code(), kind.meaning());
@@ -266,7 +256,7 @@ fn the_exit_codes_are_documented() {
 fn a_signal_before_the_motion_ends_the_program_with_words() {
     let ring = Ring::new();
     for (signal, json) in [("-INT", true), ("-TERM", false)] {
-        let mut command = flexframe(&["cost", "examples/ring.toml", "--patience", "1000", "-o", &ring.out()]);
+        let mut command = program::command(&["cost", "examples/ring.toml", "--patience", "1000", "-o", &ring.out()]);
         if json {
             command.arg("--json");
         }

@@ -5,6 +5,8 @@ use std::process::Command;
 
 use serde_json::Value;
 
+use crate::program::numbers;
+
 fn mesh() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/rotating_bar.msh"))
 }
@@ -36,10 +38,6 @@ fn report(folder: &Path, measured: &str) -> Result<Value, String> {
     } else {
         Err(String::from_utf8_lossy(&output.stderr).into_owned())
     }
-}
-
-fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
 fn close(found: f64, expected: f64) -> bool {

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::physics::check_unit;
 use crate::error::SetupError;
 use crate::matrix::blocked_matrix::BlockedMatrix;
-use crate::matrix::column_major::dot;
+use crate::matrix::lists::dot;
 
 /// How a point moves, or a place turns, to second order in the modes.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -10,6 +10,7 @@ use crate::conservative::manifold::Manifold;
 use crate::conservative::reference::Reference;
 use crate::conservative::state::BodyList;
 use crate::load::SharedLoad;
+use crate::matrix::blocked_matrix::BlockedMatrix;
 use crate::matrix::four::{Group, Padded};
 use crate::matrix::side_by_side::Lists;
 use crate::matrix::stack::Stack;
@@ -82,7 +83,7 @@ pub struct ConservativeBody {
     /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
     pub(crate) own_coupling: Vec<[f64; 2]>,
     /// K of a unit acceleration of what is driven in the modes, column by column, or empty.
-    pub(super) drive_stiffness: Vec<f64>,
+    pub(super) drive_stiffness: Option<BlockedMatrix>,
     pub(super) loads: Vec<SharedLoad>,
     /// Manifold of a body with large modes.
     pub(crate) manifold: Option<Manifold>,
@@ -164,7 +165,7 @@ impl ConservativeBody {
     /// Numbers in the matrices that an evaluation reads: what an effect that is off does not cost.
     pub fn matrix_entries(&self) -> usize {
         let of_loads: usize = self.loads.iter().map(|load| load.matrix_entries()).sum();
-        self.matrices.len() + self.drive_stiffness.len() + of_loads
+        self.matrices.len() + self.drive_stiffness.as_ref().map_or(0, BlockedMatrix::len) + of_loads
     }
 
     /// Number of the lists of products.

@@ -16,7 +16,7 @@ use crate::conservative::reference::Reference;
 use crate::conservative::state;
 use crate::error::SetupError;
 use crate::load::SharedLoad;
-use crate::matrix::column_major::columns;
+use crate::matrix::blocked_matrix::BlockedMatrix;
 use crate::matrix::four::Padded;
 use crate::matrix::side_by_side::side_by_side;
 use crate::matrix::stack::Stack;
@@ -120,8 +120,7 @@ impl ConservativeBody {
             own_coupling: coupling,
             matrices: Stack::new(&gyroscopic.iter().chain(&second).cloned().collect::<Vec<_>>()),
             gyroscopic: Stack::new(&gyroscopic),
-            drive_stiffness: drive_stiffness
-                .map_or_else(Vec::new, |k| columns(k.get(..modes.flexible(), ..modes.flexible()))),
+            drive_stiffness: drive_stiffness.map(|k| BlockedMatrix::new(k.get(..modes.flexible(), ..modes.flexible()))),
             loads,
             manifold: large_deflection.clone(),
             reference: reference.as_ref().map(Reference::new),

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::rates::evaluation::Evaluation;
 use crate::conservative::state::{get, part};
-use crate::matrix::column_major::{dot, weighted_squares};
+use crate::matrix::lists::{dot, weighted_squares};
 use crate::observation::energies::Energies;
 use crate::state::State;
 

@@ -31,7 +31,7 @@ use modal::{LargeShapes, Products, ReducedBody};
 use crate::conservative::manifold::monomials::{Energy, Monomials, Polynomials};
 use crate::error::SetupError;
 use crate::matrix::blocked_matrix::BlockedMatrix;
-use crate::matrix::column_major::{columns, dot};
+use crate::matrix::lists::dot;
 
 /// Most modes that may be large.
 pub const MAX_LARGE: usize = 4;
@@ -209,7 +209,7 @@ impl Manifold {
             large: large.clone(),
             following: following.clone(),
             factors: factors.collect(),
-            shapes: columns(coefficients.as_ref()),
+            shapes: coefficients.col_iter().flat_map(|column| column.iter().copied()).collect(),
             to_shapes: BlockedMatrix::new(coefficients.as_ref()),
             from_shapes: BlockedMatrix::new(coefficients.transpose()),
             negative_mass: BlockedMatrix::new((-mass.transpose()).as_ref()),

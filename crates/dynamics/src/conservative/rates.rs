@@ -15,7 +15,7 @@ use crate::conservative::rates::evaluation::Evaluation;
 use crate::conservative::state::{Slow, get, part, set};
 use crate::error::RateError;
 use crate::load::{Applied, Coordinates, Kinematics};
-use crate::matrix::column_major::dot;
+use crate::matrix::lists::dot;
 use crate::state::State;
 
 /// The rates of a state, in the widest vectors that the processor has.

@@ -1,31 +1,32 @@
 //! The forces of a bent reference that modes are about: `V += g·q + ½ qᵀBq`.
 
 use crate::body::physics::ReferenceForces;
-use crate::matrix::column_major::{columns, dot};
+use crate::matrix::blocked_matrix::BlockedMatrix;
+use crate::matrix::lists::dot;
 
-/// g, and B column by column.
+/// g and B.
 #[derive(Debug, Clone)]
 pub(crate) struct Reference {
     force: Vec<f64>,
-    stiffness: Vec<f64>,
+    stiffness: BlockedMatrix,
 }
 
 impl Reference {
     pub fn new(ReferenceForces { force, stiffness }: &ReferenceForces) -> Self {
-        Self { force: force.clone(), stiffness: columns(stiffness.as_ref()) }
+        Self { force: force.clone(), stiffness: BlockedMatrix::new(stiffness.as_ref()) }
     }
 
     /// Subtracts g + B q from the modal forces.
     pub fn subtract_force(&self, q: &[f64], out: &mut [f64]) {
-        // B is symmetric.
-        for ((out, g), column) in out.iter_mut().zip(&self.force).zip(self.stiffness.chunks_exact(q.len().max(1))) {
-            *out -= g + dot(column, q);
-        }
+        self.stiffness.each_block(q, |first, rows| {
+            for ((out, g), b_q) in out[first..].iter_mut().zip(&self.force[first..]).zip(rows) {
+                *out -= g + b_q;
+            }
+        });
     }
 
     /// g·q + ½ qᵀBq
     pub fn energy(&self, q: &[f64]) -> f64 {
-        let columns = self.stiffness.chunks_exact(q.len().max(1));
-        q.iter().zip(&self.force).zip(columns).map(|((q_k, g), column)| q_k * (g + 0.5 * dot(column, q))).sum()
+        dot(&self.force, q) + 0.5 * self.stiffness.quadratic(q)
     }
 }

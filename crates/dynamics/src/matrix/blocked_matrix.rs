@@ -3,6 +3,8 @@
 use faer::{Mat, MatRef};
 use pulp::{Arch, Simd, WithSimd, bytemuck};
 
+use crate::matrix::lists::dot;
+
 /// Rows of a block: its sums stay in registers over all columns.
 const HEIGHT: usize = 48;
 /// Rows come in groups of so many, which fill whole vectors of any processor.
@@ -30,6 +32,18 @@ impl BlockedMatrix {
             }
         }
         Self { rows: rows.len(), columns, entries: Mat::from_fn(entries.len(), 1, |k, _| entries[k]) }
+    }
+
+    /// Number of its entries.
+    pub(crate) fn len(&self) -> usize {
+        self.rows * self.columns
+    }
+
+    /// xᵀM x of as many rows as columns.
+    pub(crate) fn quadratic(&self, x: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        self.each_block(x, |first, rows| sum += dot(rows, &x[first..]));
+        sum
     }
 
     /// Blocks one after another.

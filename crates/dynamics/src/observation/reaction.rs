@@ -16,7 +16,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::body::effect::{Effect, EffectMap};
 use crate::body::spin_stiffness::SpinStiffness;
-use crate::matrix::column_major::{columns, dot, multiply};
+use crate::matrix::blocked_matrix::BlockedMatrix;
+use crate::matrix::lists::dot;
 use crate::matrix::symmetric;
 
 /// Reaction of the constraints on a body, and place in the motion that they leave. Zero of a free body, and of one that moves
@@ -67,14 +68,14 @@ pub(crate) struct Held {
     inertia: Matrix3<f64>,
     /// c_ij (6, or none without terms that follow the deformation).
     first: Vec<Vec<f64>>,
-    /// N_ij of the same, column by column (nf × nf each).
-    second: Vec<Vec<f64>>,
-    /// K_ij of the modes, column by column (each of as many rows as there are modes); none without the stress of the spin.
-    stress: Vec<Vec<f64>>,
+    /// N_ij of the same (nf × nf each).
+    second: Vec<BlockedMatrix>,
+    /// K_ij of the modes; none without the stress of the spin.
+    stress: Vec<BlockedMatrix>,
     /// b_i (nf each).
     coupling: [Vec<f64>; 3],
-    /// G_i, column by column (nf × nf each, or none without Coriolis terms).
-    gyroscopic: Vec<Vec<f64>>,
+    /// G_i (nf × nf each, or none without Coriolis terms).
+    gyroscopic: Vec<BlockedMatrix>,
 }
 
 /// A motion, body components; ξ, ν and ν' of the shapes of the constants.
@@ -106,7 +107,7 @@ impl Held {
             return None;
         }
         let follows = effects[Effect::DeformedInertia] && body.flexible() > 0;
-        let matrices = |list: &[Mat<f64>]| list.iter().map(|matrix| columns(matrix.as_ref())).collect();
+        let matrices = |list: &[Mat<f64>]| list.iter().map(|matrix| BlockedMatrix::new(matrix.as_ref())).collect();
         Some(Self {
             mass: body.mass,
             inertia: body.inertia,
@@ -129,13 +130,13 @@ impl Held {
         let mut product = vec![0.0; xi.len()];
         let (mut inertia, mut inertia_rate) = (self.inertia, Matrix3::zeros());
         for (pair, (first, second)) in ReducedBody::PAIRS.into_iter().zip(self.first.iter().zip(&self.second)) {
-            multiply(second, xi.len(), xi, &mut product);
+            second.multiply(xi, &mut product);
             symmetric::add(&mut inertia, pair, 2.0 * dot(first, xi) + dot(&product, xi));
             symmetric::add(&mut inertia_rate, pair, 2.0 * (dot(first, nu) + dot(&product, nu)));
         }
         for (pair, stress) in ReducedBody::PAIRS.into_iter().zip(&self.stress) {
             let k_q = &mut product[..q.len()];
-            multiply(stress, q.len(), q, k_q);
+            stress.multiply(q, k_q);
             symmetric::add(&mut inertia, pair, -dot(k_q, q));
             symmetric::add(&mut inertia_rate, pair, -2.0 * dot(k_q, q_rate));
         }
@@ -143,8 +144,7 @@ impl Held {
         for (axis, b) in self.coupling.iter().enumerate() {
             product.copy_from_slice(b);
             if let Some(gyroscopic) = self.gyroscopic.get(axis) {
-                let columns = gyroscopic.chunks_exact(xi.len().max(1));
-                columns.zip(xi).for_each(|(g, x)| product.iter_mut().zip(g).for_each(|(s, g)| *s += g * x));
+                gyroscopic.add_product(xi, &mut product);
             }
             of_shapes[axis] = dot(&product, nu);
             // G ν does no work on ν.

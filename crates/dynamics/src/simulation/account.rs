@@ -22,12 +22,37 @@ pub(crate) struct EnergyAccount {
     largest_exchange: f64,
     #[serde(with = "equal_room")]
     last: Option<Energies>,
-    /// Sum of |work| + |dissipation| of all steps, and what work and dissipation were after the last.
-    exchanged: f64,
-    done: [f64; 2],
+    exchanged: Exchanged,
     /// Energy scale of the loads: that of modes that follow them within a step, where no stage sees it, and of a load that
     /// sets in.
     of_loads: f64,
+}
+
+/// Energy that has come and gone.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub(crate) struct Exchanged {
+    /// Sum of |work| + |dissipation| of all steps.
+    sum: f64,
+    /// Work and dissipation after the last step.
+    done: [f64; 2],
+}
+
+impl Exchanged {
+    /// Adds a step, after which work and dissipation since the beginning are these.
+    pub(crate) fn add(&mut self, done: [f64; 2]) {
+        self.sum += (done[0] - self.done[0]).abs() + (done[1] - self.done[1]).abs();
+        self.done = done;
+    }
+
+    /// Sum of |work| + |dissipation| of all steps.
+    pub(crate) fn sum(&self) -> f64 {
+        self.sum
+    }
+
+    /// Refuses numbers that are not finite.
+    pub(crate) fn check(&self) -> Result<(), CheckpointError> {
+        finite("the energy exchanged", [&self.sum, &self.done[0], &self.done[1]])
+    }
 }
 
 /// A step of this many radians of every mode, and with this much damping, lets the stages see the work and the
@@ -71,20 +96,20 @@ impl EnergyAccount {
 
     /// Refuses numbers that are not finite.
     pub(crate) fn check_saved(&self) -> Result<(), CheckpointError> {
-        let Self { start, scale, largest_exchange, last, exchanged, done, of_loads } = self;
+        let Self { start, scale, largest_exchange, last, exchanged, of_loads } = self;
         start.iter().chain(last).try_for_each(Energies::check)?;
-        finite("the account of the energy", [scale, largest_exchange, exchanged, of_loads].into_iter().chain(done))
+        exchanged.check()?;
+        finite("the account of the energy", [scale, largest_exchange, of_loads])
     }
 
     /// Takes a step into account, after which work and dissipation since the beginning are these.
     pub(crate) fn exchange(&mut self, done: [f64; 2]) {
-        self.exchanged += (done[0] - self.done[0]).abs() + (done[1] - self.done[1]).abs();
-        self.done = done;
+        self.exchanged.add(done);
     }
 
     /// Sum of |work| + |dissipation| of all steps.
     pub(crate) fn exchanged(&self) -> f64 {
-        self.exchanged
+        self.exchanged.sum()
     }
 
     /// Checks the energy at a time; the `rate` is the largest of ω_k and 2 ζ_k ω_k.
@@ -103,7 +128,7 @@ impl EnergyAccount {
         let last = self.last.replace(*now).unwrap_or(start);
         let exchange = (now.work - last.work).abs() + (now.dissipation - last.dissipation).abs();
         self.largest_exchange = self.largest_exchange.max(exchange);
-        let unknown = self.largest_exchange + SUMMED * self.exchanged + rounding + SETTING_IN * self.of_loads;
+        let unknown = self.largest_exchange + SUMMED * self.exchanged.sum() + rounding + SETTING_IN * self.of_loads;
         let is_off = if is_resolved(rate, step) {
             excess.abs() > OFF * self.scale + unknown
         } else {

@@ -110,9 +110,10 @@ impl Plan {
         self.stop
     }
 
-    /// True if a time is the stop time, or beyond it.
-    pub(crate) fn is_at_stop(&self, time: f64) -> bool {
-        self.stop.is_some_and(|stop| stop <= time + self.same())
+    /// True, once, if a time is the stop time, or beyond it.
+    pub(crate) fn take_stop(&mut self, time: f64) -> bool {
+        let same = self.same();
+        self.stop.take_if(|stop| *stop <= time + same).is_some()
     }
 
     /// True if two times are one but for rounding.

@@ -14,12 +14,13 @@ use crate::load::SharedLoad;
 use crate::observation::Observation;
 use crate::observation::energies::Energies;
 use crate::observation::moment::Moment;
-use crate::simulation::account::EnergyAccount;
+use crate::simulation::Reached;
+use crate::simulation::account::{EnergyAccount, Exchanged};
 use crate::simulation::checkpoint::{equal_room, fixed_room};
 use crate::simulation::events::{Event, Events};
 use crate::simulation::longest_step::LongestStep;
 use crate::simulation::plan::{EqualSteps, Plan, Rows, Segment, StepControl};
-use crate::simulation::{Reached, Stats};
+use crate::simulation::stats::Stats;
 use crate::system::joint::observation::JointObservation;
 use crate::system::radau::{EXACTNESS, SystemMotion};
 use crate::system::simulation::last_step::{EXACT, LastStep, of_step};
@@ -88,13 +89,6 @@ struct Due {
     row: bool,
 }
 
-/// Energy that has come and gone in a body.
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
-struct Exchanged {
-    sum: f64,
-    done: [f64; 2],
-}
-
 impl SystemSimulation {
     /// Puts the bodies together, and begins a run.
     ///
@@ -142,7 +136,7 @@ impl SystemSimulation {
             size,
             assembled,
             redundant,
-            stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
+            stats: Stats::NONE,
             account: EnergyAccount::default(),
             events: Events::default(),
             due: Due::NOTHING,
@@ -200,7 +194,7 @@ impl SystemSimulation {
 
     /// Sum of |work of loads, joints and elements| + |dissipation| of all steps, of a body.
     pub fn exchanged(&self, body: usize) -> f64 {
-        self.exchanged[body].sum
+        self.exchanged[body].sum()
     }
 
     /// The limit that shapes set for the steps, if the scheme is one that they limit and steps have come near to it.
@@ -475,10 +469,7 @@ impl SystemSimulation {
 
     /// Notes that the stop has been reached, if it has.
     fn tell_stop(&mut self) {
-        if self.plan.is_at_stop(self.motion.time()) {
-            self.plan.set_stop(None);
-            self.due.stop = true;
-        }
+        self.due.stop |= self.plan.take_stop(self.motion.time());
     }
 
     /// Finds the first event in the step that has been done, and goes back there.
@@ -546,15 +537,12 @@ impl SystemSimulation {
 
     /// Counts a step that was taken.
     fn count(&mut self, length: f64) {
-        self.stats.accepted += 1;
-        self.stats.shortest = self.stats.shortest.min(length);
-        self.stats.longest = self.stats.longest.max(length);
+        self.stats.take(1, length);
         self.steps_since_row += 1;
         let mut total = [0.0; 2];
-        for (body, Exchanged { sum, done }) in self.exchanged.iter_mut().enumerate() {
+        for (body, exchanged) in self.exchanged.iter_mut().enumerate() {
             let now = self.motion.work_and_dissipation(body);
-            *sum += (now[0] - done[0]).abs() + (now[1] - done[1]).abs();
-            *done = now;
+            exchanged.add(now);
             total = [total[0] + now[0], total[1] + now[1]];
         }
         self.account.exchange(total);

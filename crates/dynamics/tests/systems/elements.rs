@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use dynamics::{
-    Bushing, ConservativeBody, ForceElement, Joint, Marker, MotionState, Physics, PointSpring, System, SystemMotion,
+    Bushing, ConservativeBody, ForceElement, Joint, Marker, MarkerForce, MarkerLaw, MotionState, Physics, PointSpring,
+    RelativeMotion, System, SystemMotion,
 };
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
-use rigid_kin::Attitude;
+use rigid_kin::{Attitude, rotation_vector, transformation_matrix};
 
 fn bodies(count: usize) -> Vec<ConservativeBody> {
     let inertia = Matrix3::from_diagonal(&Vector3::new(0.2, 0.3, 0.4));
@@ -110,4 +111,73 @@ fn a_bushing_between_free_bodies_keeps_their_momenta() {
     assert!(drift.iter().all(|drift| *drift < 1e-13), "{drift:?}");
     assert!(motion.element_work().abs() > 0.1);
     assert!(imbalance(&motion, energy) < 1e-6, "{}", imbalance(&motion, energy));
+}
+
+/// The laws of a bushing and of a spring.
+#[derive(Debug)]
+pub enum Like {
+    Bushing(Bushing),
+    Spring(PointSpring),
+}
+
+impl MarkerLaw for Like {
+    fn force_and_moment(&self, _: [f64; 2], motion: &RelativeMotion) -> [Vector3<f64>; 2] {
+        match self {
+            Self::Bushing(Bushing { stiffness, damping, .. }) => {
+                let turned = rotation_vector(&motion.axes.transpose()).unwrap();
+                let law = |which: usize, by: Vector3<f64>, rate: Vector3<f64>| {
+                    -stiffness[which].component_mul(&by) - damping[which].component_mul(&rate)
+                };
+                [law(0, motion.position, motion.velocity), law(1, turned, motion.omega)]
+            }
+            Self::Spring(PointSpring { stiffness, damping, free_length, .. }) => {
+                let along = motion.position.normalize();
+                let stretch = motion.position.norm() - free_length;
+                let force = stiffness * stretch + damping * along.dot(&motion.velocity);
+                [-along * force, Vector3::zeros()]
+            }
+        }
+    }
+}
+
+/// Independent reference: a bushing and a spring between the same markers. Conserved: momenta, and energy by the work of the law.
+#[test]
+fn a_law_between_markers_does_what_an_element_does() {
+    let askew = |body: usize, x: f64| {
+        Marker::on_rigid(body, Vector3::new(x, 0.0, 0.0), transformation_matrix(&Vector3::new(0.3, -0.5, 0.7)))
+    };
+    let markers = [askew(0, 0.5), askew(1, -0.5)];
+    let bushing = Bushing {
+        markers: markers.clone(),
+        stiffness: [Vector3::new(80.0, 90.0, 100.0), Vector3::new(5.0, 6.0, 7.0)],
+        damping: [Vector3::repeat(0.5), Vector3::repeat(0.1)],
+    };
+    let spring = PointSpring { markers: markers.clone(), stiffness: 50.0, damping: 1.5, free_length: 0.1 };
+    let tumbling = MotionState {
+        omega_body: Vector3::new(0.5, -0.4, 1.0),
+        velocity_global: Vector3::new(0.1, 0.2, 0.3),
+        ..at(1.3, 0.0)
+    };
+    let states = [at(0.0, 0.7), tumbling];
+    let element = |law: Like| MarkerForce { markers: markers.clone(), law: Arc::new(law) };
+    let cases = [
+        [
+            system(2, Vec::new(), bushing.clone(), &states),
+            system(2, Vec::new(), element(Like::Bushing(bushing)), &states),
+        ],
+        [system(2, Vec::new(), spring.clone(), &states), system(2, Vec::new(), element(Like::Spring(spring)), &states)],
+    ];
+    for [mut expected, mut found] in cases {
+        let (momenta, energy) = (found.momenta(), found.energy().unwrap());
+        let steps = [&mut expected, &mut found].map(|motion| motion.advance(2.0, 1e-8, &mut 1e-3).unwrap());
+        for body in 0..2 {
+            let [found, expected] = [&found, &expected].map(|motion| motion.state(body).unwrap());
+            let off = (found.origin_global - expected.origin_global).norm();
+            assert!(off < 1e-6 && (found.omega_body - expected.omega_body).norm() < 1e-5, "{off:e}");
+        }
+        assert!(found.momenta().iter().zip(momenta).all(|(now, start)| (now - start).norm() < 1e-13));
+        let (work, missing) = (found.element_work(), imbalance(&found, energy));
+        println!("{steps:?} steps, work {work}, {missing:e} missing");
+        assert!(work != 0.0 && missing < 1e-6, "{work} {missing:e}");
+    }
 }

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use dynamics::{
-    Coordinate, DescribedBody, JointLaw, Method, Physics, PointShapes, Rows, RunOfBody, RunOfSystem, Setup, SetupError,
-    SharedLoad, Simulation, StepControl, SystemScheme, SystemSimulation,
+    Coordinate, DescribedBody, ForceElement, JointLaw, MarkerForce, MarkerLaw, Method, Physics, PointShapes, Rows,
+    RunOfBody, RunOfSystem, Setup, SharedLoad, Simulation, StepControl, SystemScheme, SystemSimulation,
 };
 use model::{BuildError, Model, StartError, Tied, tie_models};
-use scene::{Scene, System};
+use scene::{End, Scene, System};
 
 use super::Motion;
 use super::row_times::RowTimes;
@@ -34,6 +34,17 @@ pub struct JointForces {
     pub law: Arc<dyn JointLaw>,
 }
 
+/// A law for the force and the moment between two markers, by their ends in the scene.
+#[derive(Debug, Clone)]
+pub struct MarkerForces {
+    /// Its name.
+    pub name: String,
+    /// The ends.
+    pub between: [End; 2],
+    /// The law.
+    pub law: Arc<dyn MarkerLaw>,
+}
+
 /// How the motions of a scene begin: at first as the scene says.
 #[derive(Debug, Clone)]
 pub struct Beginning {
@@ -53,7 +64,9 @@ pub struct Beginning {
     pub bodies: Vec<BodyForces>,
     /// Laws from outside at joints.
     pub laws: Vec<JointForces>,
-    /// True if all bodies are stepped as one system, also those that nothing ties.
+    /// Laws from outside between markers.
+    pub marker_laws: Vec<MarkerForces>,
+    /// True if all bodies are stepped as one system, also those that nothing ties; laws between markers want that, too.
     pub together: bool,
 }
 
@@ -86,6 +99,7 @@ impl Beginning {
             tied_rows: Rows::Interval(RowTimes::new(&system.bodies[0]).of(1)),
             bodies: models.iter().map(forces).collect(),
             laws: Vec::new(),
+            marker_laws: Vec::new(),
             together: false,
         })
     }
@@ -103,7 +117,7 @@ impl Beginning {
 /// [`BuildError`], or the scene of a body whose motion cannot start, and why.
 pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Vec<Moving>, BeginError> {
     let mut all = Vec::new();
-    let tied = tie_models(system, models, beginning.together)?;
+    let tied = tied(system, models, beginning)?;
     for (number, (scene, model)) in system.bodies.iter().zip(models).enumerate() {
         if tied.iter().all(|tied| !tied.bodies.contains(&number)) {
             let alone = alone(scene, model, &beginning.bodies[number], beginning);
@@ -120,6 +134,30 @@ pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Resul
         all.push(Moving { motion: Motion::Tied(Box::new(simulation)), bodies, joints });
     }
     Ok(all)
+}
+
+/// The systems of a scene, with the laws from outside.
+///
+/// # Errors
+/// [`BuildError`], also for laws at joints and markers that are not there.
+pub(super) fn tied(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Vec<Tied>, BuildError> {
+    let Beginning { laws, marker_laws, together, .. } = beginning;
+    let all = tie_models(system, models, *together || !marker_laws.is_empty())?;
+    let with_laws = |mut tied: Tied| -> Result<Tied, BuildError> {
+        for JointForces { joint, along, law } in laws {
+            if let Some(here) = tied.joints.iter().position(|number| number == joint) {
+                tied.system = tied.system.with_law(here, *along, Arc::clone(law))?;
+            }
+        }
+        let mut elements = tied.system.elements().to_vec();
+        for MarkerForces { name, between, law } in marker_laws {
+            let markers = tied.markers(system, models, *between)?;
+            elements.push(Arc::new(MarkerForce { markers, law: Arc::clone(law) }) as Arc<dyn ForceElement>);
+            tied.elements.push(name.clone());
+        }
+        Ok(Tied { system: tied.system.with_elements(elements)?, ..tied })
+    };
+    all.into_iter().map(with_laws).collect()
 }
 
 /// Motions that cannot begin.
@@ -181,7 +219,7 @@ fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> R
 }
 
 fn start_tied(system: &System, models: &[&Model], tied: Tied, of: &Beginning) -> Result<SystemSimulation, StartError> {
-    Ok(run_of_system(system, models, tied, of)?.begin()?)
+    Ok(run_of_system(system, models, tied, of).begin()?)
 }
 
 /// A body with what acts on it.
@@ -208,31 +246,17 @@ pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of:
 }
 
 /// The run of tied bodies.
-///
-/// # Errors
-/// [`SetupError`] for laws at joints that are not there.
-pub(super) fn run_of_system(
-    system: &System,
-    models: &[&Model],
-    tied: Tied,
-    of: &Beginning,
-) -> Result<RunOfSystem, SetupError> {
-    let mut described = tied.system;
-    for JointForces { joint, along, law } in &of.laws {
-        if let Some(here) = tied.joints.iter().position(|number| number == joint) {
-            described = described.with_law(here, *along, Arc::clone(law))?;
-        }
-    }
-    Ok(RunOfSystem {
+pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: &Beginning) -> RunOfSystem {
+    RunOfSystem {
         bodies: tied.bodies.iter().map(|number| described_body(models[*number], &of.bodies[*number])).collect(),
-        joints: described.joints().to_vec(),
-        couplings: described.couplings().to_vec(),
-        elements: described.elements().to_vec(),
+        joints: tied.system.joints().to_vec(),
+        couplings: tied.system.couplings().to_vec(),
+        elements: tied.system.elements().to_vec(),
         states: tied.states,
         relaxed: system.relaxed,
         scheme: of.system_scheme,
         control: of.control,
         end: of.end,
         rows: of.tied_rows,
-    })
+    }
 }

@@ -1,11 +1,11 @@
 //! The motions of a scene as data, from which a page makes them again.
 
-use dynamics::{RunDescription, SetupError};
+use dynamics::RunDescription;
 use live::{LiveMotion, LiveRun};
-use model::{BuildError, Model, tie_models};
+use model::{BuildError, Model};
 use scene::System;
 
-use super::beginning::{Beginning, run_of_body, run_of_system};
+use super::beginning::{Beginning, run_of_body, run_of_system, tied};
 
 /// The motions of a scene, and what data do not hold of them.
 pub(crate) struct Described {
@@ -14,18 +14,9 @@ pub(crate) struct Described {
     pub elements: Vec<Vec<String>>,
 }
 
-/// Motions that cannot be put together.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum DescribeError {
-    #[error("{0}")]
-    Build(#[from] BuildError),
-    #[error("{0}")]
-    Setup(#[from] SetupError),
-}
-
 /// All that the motions of [`begin`](super::begin) begin with: there is a model of each body.
-pub(crate) fn describe(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Described, DescribeError> {
-    let tied = tie_models(system, models, beginning.together)?;
+pub(crate) fn describe(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Described, BuildError> {
+    let tied = tied(system, models, beginning)?;
     let is_alone = |number: &usize| tied.iter().all(|tied| !tied.bodies.contains(number));
     let alone = (0..models.len()).filter(is_alone).map(|number| {
         let run = run_of_body(&system.bodies[number], models[number], &beginning.bodies[number], beginning);
@@ -36,7 +27,7 @@ pub(crate) fn describe(system: &System, models: &[&Model], beginning: &Beginning
     for tied in tied {
         elements.push(tied.elements.clone());
         let bodies = tied.bodies.clone();
-        let run = RunDescription::Tied(Box::new(run_of_system(system, models, tied, beginning)?));
+        let run = RunDescription::Tied(Box::new(run_of_system(system, models, tied, beginning)));
         motions.push(LiveMotion { run, bodies });
     }
     Ok(Described { run: LiveRun { motions }, elements })

@@ -55,6 +55,21 @@ pub fn tie_models(system: &System, models: &[&Model], together: bool) -> Result<
     systems.into_iter().map(|bodies| Island::new(system, models, bodies)?.tied()).collect()
 }
 
+impl Tied {
+    /// The markers at two ends, with the axes that a bushing between them has, for a force between them from outside.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a marker whose nodes do not tell all turns.
+    pub fn markers(&self, system: &System, models: &[&Model], between: [End; 2]) -> Result<[Marker; 2], BuildError> {
+        let island = Island { scene: system, models, bodies: self.bodies.clone(), states: self.states.clone() };
+        if let Some(i) = island.unknown_turns(between) {
+            let key = format!("{}.markers", system.name_of(between[i]).split('.').next().unwrap_or_default());
+            return Err(island.refuse(&key, "nodes that do not tell all turns", "a force between markers"));
+        }
+        Ok(island.markers(between, None))
+    }
+}
+
 /// Numbers of the bodies of each system.
 fn islands_of(system: &System, bodies: usize) -> Vec<Vec<usize>> {
     let System { joints, springs, bushings, .. } = system;
@@ -263,14 +278,20 @@ impl<'a> Island<'a> {
                 UnknownTurns::All => ("a node that has no turn", turns.contains(&true)),
             };
             if held {
-                return Err(self.refuse(&format!("{key}.between[{i}]"), found, joint.kind.name()));
+                let by = format!("a {} joint", joint.kind.name());
+                return Err(self.refuse(&format!("{key}.between[{i}]"), found, &by));
             }
         }
         Ok(())
     }
 
-    fn refuse(&self, key: &str, found: &str, kind: &str) -> BuildError {
-        let found = format!("a marker of {found}, in a {kind} joint, which holds that turn");
+    /// The first of two ends whose nodes do not tell all turns.
+    fn unknown_turns(&self, between: [End; 2]) -> Option<usize> {
+        self.ends(between).iter().position(|end| end.unknown_turns() != UnknownTurns::None)
+    }
+
+    fn refuse(&self, key: &str, found: &str, by: &str) -> BuildError {
+        let found = format!("a marker of {found}, in {by}, which holds that turn");
         let help = "let the marker take faces (`group`, `box`, `at` with `radius`), or use a joint that leaves the turn free: \
                     a line of nodes is hinged by `tie = \"nodes\"` and a revolute joint along it";
         self.scene.place(key).refuse(found, "a marker whose turns are known", help).into()
@@ -294,13 +315,8 @@ impl<'a> Island<'a> {
 
     fn bushing(&self, key: &str, bushing: &Bushing) -> Result<dynamics::Bushing, BuildError> {
         let turns = [bushing.stiffness, bushing.damping].iter().any(|of| of.rotation != [0.0; 3]);
-        let unknown = self.ends(bushing.between).iter().position(|end| end.unknown_turns() != UnknownTurns::None);
-        if let (true, Some(i)) = (turns, unknown) {
-            return Err(self.refuse(
-                &format!("{key}.between[{i}]"),
-                "nodes that do not tell all turns",
-                "bushing as a",
-            ));
+        if let (true, Some(i)) = (turns, self.unknown_turns(bushing.between)) {
+            return Err(self.refuse(&format!("{key}.between[{i}]"), "nodes that do not tell all turns", "a bushing"));
         }
         let lists = |of: AlongAndAbout| [of.translation, of.rotation].map(Vector3::from);
         Ok(dynamics::Bushing {

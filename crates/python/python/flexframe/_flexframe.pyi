@@ -14,9 +14,11 @@ __all__ = [
     "Body",
     "Force",
     "JointForce",
+    "MarkerForce",
     "ModalForce",
     "Motion",
     "Reached",
+    "RelativeMotion",
     "Row",
     "Scene",
     "Simulation",
@@ -272,11 +274,47 @@ class JointForce:
     ) -> JointForce: ...
 
 @final
+class RelativeMotion:
+    """The motion of the second of two markers as the first sees it, in the axes of the first. Arrays are copies."""
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Position of the second marker from the first (3)."""
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Rate of the position (3)."""
+    @property
+    def rotation(self) -> NDArray[np.float64]:
+        """Matrix that takes components along the axes of the second marker to those along the axes of the first (3x3)."""
+    @property
+    def angular_velocity(self) -> NDArray[np.float64]:
+        """Angular velocity of the second marker less that of the first (3)."""
+
+@final
+class MarkerForce:
+    """A force and a moment on the second of two markers, and the same the other way round on the first, by a law: a function of the
+    time and the RelativeMotion of the second marker that returns the force, or the force and the moment, in the axes of the first.
+
+    `between` names the markers as `between` of a scene does: "BODY.MARKER", "ground.MARKER" or "ground", which is where the other
+    marker is at the start. Their axes are those of a bushing there. The law is evaluated many times a step, and must depend on
+    nothing but these. `discontinuities` are times at which it or its rate jumps, so that steps end there.
+    """
+
+    def __new__(
+        cls,
+        between: Sequence[str],
+        law: Callable[[float, RelativeMotion], Any],
+        *,
+        name: str | None = None,
+        discontinuities: Sequence[float] = ...,
+    ) -> MarkerForce: ...
+
+@final
 class Simulation:
     """A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
 
-    For a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, and states are dicts from
-    names of bodies; all bodies are stepped together, also those that nothing ties.
+    For a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, `marker_forces` one of
+    MarkerForce, and states are dicts from names of bodies; all bodies are stepped together, also those that nothing ties.
 
     An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event ends the
     run at the end of the step. Ctrl-C raises KeyboardInterrupt within some thousand steps, and the simulation may go on.
@@ -296,6 +334,7 @@ class Simulation:
         loads: Sequence[Force | ModalForce] | dict[str, Sequence[Force | ModalForce]] | None = None,
         *,
         joint_forces: Sequence[JointForce] | None = None,
+        marker_forces: Sequence[MarkerForce] | None = None,
         scene: Scene | None = None,
     ) -> Simulation: ...
     @property

@@ -21,6 +21,7 @@ use crate::errors::{add_note, exception, exception_of, wrong_input};
 use crate::motion::faults::Faults;
 use crate::motion::joint_force::JointForce;
 use crate::motion::load::{listed, load_of};
+use crate::motion::marker_force::MarkerForce;
 use crate::motion::seen::Points;
 use crate::motion::state::{changed, to_dict};
 use crate::rows::results::{Occurred, Rows};
@@ -63,8 +64,8 @@ impl Reached {
 
 /// A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
 ///
-/// For a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, and states are dicts from names
-/// of bodies; all bodies are stepped together, also those that nothing ties.
+/// For a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, `marker_forces` one of
+/// MarkerForce, and states are dicts from names of bodies; all bodies are stepped together, also those that nothing ties.
 ///
 /// An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event
 /// ends the run at the end of the step. Ctrl-C raises KeyboardInterrupt within some thousand steps, and the simulation
@@ -299,12 +300,13 @@ fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
 #[pymethods]
 impl Simulation {
     #[new]
-    #[pyo3(signature = (body, loads=None, *, joint_forces=None, scene=None))]
+    #[pyo3(signature = (body, loads=None, *, joint_forces=None, marker_forces=None, scene=None))]
     fn new(
         py: Python<'_>,
         body: Bound<'_, PyAny>,
         loads: Option<Bound<'_, PyAny>>,
         joint_forces: Option<Vec<Py<JointForce>>>,
+        marker_forces: Option<Vec<Py<MarkerForce>>>,
         scene: Option<Py<Scene>>,
     ) -> PyResult<Self> {
         let body = match (scene, body.cast::<Body>()) {
@@ -355,6 +357,9 @@ impl Simulation {
                 }
             }
             beginning.laws.push(of);
+        }
+        for force in marker_forces.unwrap_or_default() {
+            beginning.marker_laws.push(force.get().of(py, &system, &faults)?);
         }
         let metadata = Arc::new(metadata);
         let begun = detached(py, || begin(&system, &of_models, &beginning))?;

@@ -22,7 +22,7 @@ use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::rates::evaluation::Evaluation;
 use crate::conservative::state::{get, part};
 use crate::error::RateError;
-use crate::matrix::column_major::dot;
+use crate::matrix::lists::dot;
 use crate::matrix::side_by_side::{Lists, add_combined, combine};
 
 impl ConservativeBody {
@@ -152,7 +152,8 @@ impl ConservativeBody {
         self.extend_acceleration(e);
         // (K q)·q̇ and its rate.
         let stressed = dot(&e.drive_stress, &e.modal_velocity);
-        let mut changing = -dot(&e.drive_stress, &e.acceleration) - self.drive_stress_power(&e.modal_velocity);
+        let of_rates = self.drive_stiffness.as_ref().map_or(0.0, |stiffness| stiffness.quadratic(&e.modal_velocity));
+        let mut changing = -dot(&e.drive_stress, &e.acceleration) - of_rates;
         if let Translation::Driven(direction) = self.translation {
             e.driven_momentum = self.mass * speed + dot(&self.sliding, self.velocity_of_coordinates(e)) - stressed;
             changing += dot(&self.sliding, &e.change);
@@ -165,11 +166,5 @@ impl ConservativeBody {
         let velocity = self.velocity_of_coordinates(e).groups();
         e.driven_momentum = inertia * speed + self.s_products(simd, &e.products, velocity)[0] - stressed;
         e.drive_effort = inertia_rate * speed + inertia * acceleration + changing - moment;
-    }
-
-    /// q̇ᵀK q̇
-    fn drive_stress_power(&self, velocity: &[f64]) -> f64 {
-        let columns = self.drive_stiffness.chunks_exact(velocity.len().max(1));
-        columns.zip(velocity).map(|(column, v)| v * dot(column, velocity)).sum()
     }
 }

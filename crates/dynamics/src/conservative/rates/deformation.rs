@@ -6,8 +6,8 @@ use pulp::Simd;
 use crate::conservative::body::ConservativeBody;
 use crate::conservative::rates::evaluation::Evaluation;
 use crate::error::RateError;
-use crate::matrix::column_major::{dot, multiply};
 use crate::matrix::four::Group;
+use crate::matrix::lists::dot;
 use crate::matrix::side_by_side::{Lists, dots, locked_dots, own_products};
 use crate::matrix::stack::Places;
 use crate::matrix::symmetric;
@@ -19,8 +19,8 @@ impl ConservativeBody {
         if let Some(manifold) = &self.manifold {
             manifold.go(e.at.q(), &mut e.place, &mut e.coordinates);
         }
-        if !self.drive_stiffness.is_empty() {
-            multiply(&self.drive_stiffness, self.flexible(), e.at.q(), &mut e.drive_stress);
+        if let Some(stiffness) = &self.drive_stiffness {
+            stiffness.multiply(e.at.q(), &mut e.drive_stress);
         }
         let Evaluation { products, coordinates, at, .. } = e;
         if products.is_empty() {

@@ -93,7 +93,7 @@ impl ConservativeBody {
             s: vec![lists(modes); on_manifold(self.s_count)],
             forward_s: vec![lists(modes); on_manifold(self.s_count)],
             modal_sliding: vec![0.0; if self.sliding.is_empty() { 0 } else { on_manifold(modes) }],
-            drive_stress: vec![0.0; if self.drive_stiffness.is_empty() { 0 } else { modes }],
+            drive_stress: vec![0.0; if self.drive_stiffness.is_some() { modes } else { 0 }],
             spin: Vector3::zeros(),
             omega_body: Vector3::zeros(),
             driven_speed: 0.0,

@@ -2,15 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::simulation::Stats;
-use crate::simulation::account::EnergyAccount;
+use crate::simulation::account::{EnergyAccount, Exchanged};
 use crate::simulation::checkpoint::{CheckpointError, counts, decode, encode, expect, finite};
 use crate::simulation::checkpoint::{fixed_room, from_words, to_words};
 use crate::simulation::plan::Progress;
+use crate::simulation::stats::Stats;
 use crate::system::collocation::STAGES;
 use crate::system::radau::stage_rates::StageRates;
 use crate::system::saved::SavedMotion;
-use crate::system::simulation::{Due, Exchanged, SystemSimulation, Walk};
+use crate::system::simulation::{Due, SystemSimulation, Walk};
 
 #[derive(Serialize, Deserialize)]
 struct Saved {
@@ -22,11 +22,7 @@ struct Saved {
     due: Due,
     account: EnergyAccount,
     exchanged: Vec<Exchanged>,
-    #[serde(with = "fixed_room")]
-    accepted: u64,
-    #[serde(with = "fixed_room")]
-    rejected: u64,
-    lengths: [f64; 2],
+    stats: Stats,
     last_step: Option<SavedStep>,
 }
 
@@ -45,7 +41,6 @@ impl SystemSimulation {
     /// # Errors
     /// [`CheckpointError::Encoding`].
     pub fn checkpoint(&self) -> Result<Vec<u64>, CheckpointError> {
-        let Stats { accepted, rejected, shortest, longest, .. } = self.stats;
         let last_step = self.last_step.as_ref().map(|step| SavedStep {
             before: step.before.saved(),
             end: step.end,
@@ -60,9 +55,7 @@ impl SystemSimulation {
             due: self.due,
             account: self.account,
             exchanged: self.exchanged.clone(),
-            accepted,
-            rejected,
-            lengths: [shortest, longest],
+            stats: self.stats,
             last_step,
         })?)?))
     }
@@ -75,24 +68,22 @@ impl SystemSimulation {
     pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, CheckpointError> {
         let saved: Vec<u8> = from_words(checkpoint)?;
         let saved: Saved = decode(&saved)?;
-        let Saved { motion, plan, walk, steps_since_row, due, account, exchanged, accepted, rejected, lengths, .. } =
-            saved;
-        counts(&[accepted, rejected, steps_since_row, due.rows])?;
-        expect("the length of a step", lengths[0] > 0.0 && lengths[1] >= 0.0)?;
+        let Saved { motion, plan, walk, steps_since_row, due, account, exchanged, stats, last_step } = saved;
+        counts(&[steps_since_row, due.rows])?;
+        stats.check()?;
         expect("the number of bodies", exchanged.len() == self.exchanged.len())?;
-        finite("the energy exchanged", exchanged.iter().flat_map(|of| [&of.sum, &of.done[0], &of.done[1]]))?;
+        exchanged.iter().try_for_each(Exchanged::check)?;
         walk.equal.check()?;
         expect("the next step", walk.next > 0.0 && walk.longest > 0.0)?;
         account.check_saved()?;
         self.motion.take_up(motion)?;
         self.plan.set_progress(&plan)?;
-        self.stats = Stats { accepted, rejected, shortest: lengths[0], longest: lengths[1], ..self.stats };
-        (self.walk, self.account, self.exchanged, self.due) = (walk, account, exchanged, due);
-        self.steps_since_row = steps_since_row;
+        (self.walk, self.account, self.exchanged, self.stats) = (walk, account, exchanged, stats);
+        (self.due, self.steps_since_row) = (due, steps_since_row);
         self.events.forget();
         self.pending_event = None;
-        expect("the last step", saved.last_step.is_some() == self.last_step.is_some())?;
-        if let (Some(step), Some(SavedStep { before, end, bend, rates })) = (&mut self.last_step, saved.last_step) {
+        expect("the last step", last_step.is_some() == self.last_step.is_some())?;
+        if let (Some(step), Some(SavedStep { before, end, bend, rates })) = (&mut self.last_step, last_step) {
             rates.iter().zip(&self.motion.stage_rates).try_for_each(|(saved, own)| saved.check(own))?;
             expect("the bend of the last step", bend.iter().all(|list| list.len() == self.motion.bend[0].len()))?;
             finite("the bend of the last step", bend.iter().flatten())?;

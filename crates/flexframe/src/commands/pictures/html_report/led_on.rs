@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use dynamics::{DescribedBody, DrivenMotion, JointForce, RunDescription};
-use live::{Change, LiveError, LiveMotion};
+use live::{Change, LiveMotion};
 use model::{BuildProgress, Builder, Model};
 use report::{Control, Live, LiveBody};
 use results::Results;
@@ -13,7 +13,7 @@ use scene::Load;
 use super::error::HtmlReportError;
 use crate::commands::run::{bodies, metadata, system_of};
 use crate::motion::Beginning;
-use crate::motion::described::{DescribeError, Described, describe};
+use crate::motion::described::{Described, describe};
 use crate::rows::units::UnitLabels;
 
 /// Greatest factor that is offered.
@@ -44,11 +44,7 @@ pub(super) fn led_on(
     }
     let of_models: Vec<&Model> = models.iter().collect();
     let beginning = Beginning::of(&system, &of_models).ok_or_else(|| changed("the list of bodies"))?;
-    let no_live = |source| HtmlReportError::Live { results: file.to_owned(), source };
-    let Described { run, elements } = describe(&system, &of_models, &beginning).map_err(|error| match error {
-        DescribeError::Build(error) => error.into(),
-        DescribeError::Setup(error) => no_live(LiveError::Setup(error)),
-    })?;
+    let Described { run, elements } = describe(&system, &of_models, &beginning)?;
     let names: Vec<&str> = results.metadata.bodies.iter().map(|body| &*body.name).collect();
     let mut controls = Vec::new();
     for (number, motion) in run.motions.iter().enumerate() {
@@ -70,7 +66,7 @@ pub(super) fn led_on(
     let results::Units { length, mass, time } = &results.metadata.units;
     let units = UnitLabels { length, mass, time };
     Ok(Live {
-        run: run.to_bytes().map_err(no_live)?,
+        run: run.to_bytes().map_err(|source| HtmlReportError::Live { results: file.to_owned(), source })?,
         bodies: models.iter().map(|model| LiveBody { mass: model.body.mass }).collect(),
         controls,
         units: [units.force(), units.energy(), units.momentum(), units.angular_momentum()],
