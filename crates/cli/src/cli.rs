@@ -909,7 +909,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         Command::Paper { scene: SceneArgs { scene, json }, output, files } => {
             output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
-            let settings = settings(&signals, files.overwrite, &builder);
+            let settings = RunSettings { check: true, ..settings(&signals, files.overwrite, &builder) };
             let folder = folder(&scene, output)?;
             outputs_of_scene(&scene, &builder, files.overwrite).claim(&paper::files(&folder))?;
             let report = paper::reproduce(&scene, &folder, &settings, |p| {

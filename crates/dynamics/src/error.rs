@@ -152,9 +152,14 @@ pub enum StepError {
     Tolerance { time: f64, step: f64, tolerance: f64 },
     /// Newton's method does not converge in a fixed step.
     #[error(
-        "at time {time}: the equations of a step of {step:.3e} could not be solved; take a smaller step, or `tolerance` instead of `step`; where the joints lock or a mechanism passes a singular position, no step may do"
+        "at time {time}: the equations of a step of {step:.3e} could not be solved; take a smaller step, or `tolerance` instead of `step`; where a mechanism passes a singular position, no step may do"
     )]
     Newton { time: f64, step: f64 },
+    /// Joints that lock, and no step goes on.
+    #[error(
+        "at time {time}: the joints lock: {joints} hold each other, and no motion of the bodies satisfies them all; let the motion stop before it stretches its links there, put a spring or a bushing in place of one of these joints, or let a body bend"
+    )]
+    Locked { time: f64, joints: Box<str> },
     /// Step control of a scheme that does not estimate its error.
     #[error("at time {time}: this scheme does not estimate its error; give it a step instead of a tolerance")]
     NoErrorEstimate { time: f64 },

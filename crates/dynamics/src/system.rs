@@ -11,6 +11,7 @@ pub(crate) mod element;
 pub(crate) mod elimination;
 mod invariants;
 pub(crate) mod joint;
+mod locked;
 pub(crate) mod marker;
 pub(crate) mod radau;
 mod reactions;

@@ -49,6 +49,8 @@ pub struct SystemSimulation {
     size: f64,
     assembled: Vec<Assembled>,
     redundant: Vec<(String, usize)>,
+    /// For each row, true if others imply it at the beginning.
+    is_implied: Vec<bool>,
     stats: Stats,
     account: EnergyAccount,
     exchanged: Vec<Exchanged>,
@@ -102,9 +104,8 @@ impl SystemSimulation {
         let size = size(motion.system(), &states);
         let assembled = assemble(&mut motion, &states, relaxed, [size, end])?;
         let mut redundant: Vec<(String, usize)> = Vec::new();
-        for (name, _) in
-            motion.system().connections.names().zip(motion.implied_rows()).filter(|(_, is_implied)| *is_implied)
-        {
+        let is_implied = motion.implied_rows();
+        for (name, _) in motion.system().connections.names().zip(&is_implied).filter(|(_, is_implied)| **is_implied) {
             match redundant.last_mut() {
                 Some((last, rows)) if last == name => *rows += 1,
                 _ => redundant.push((name.to_owned(), 1)),
@@ -136,6 +137,7 @@ impl SystemSimulation {
             size,
             assembled,
             redundant,
+            is_implied,
             stats: Stats::NONE,
             account: EnergyAccount::default(),
             events: Events::default(),
@@ -516,11 +518,12 @@ impl SystemSimulation {
                 let Some((h, end)) = self.walk.equal.next_step() else { return Ok(None) };
                 let time = self.motion.time();
                 let tried = self.motion.try_step(h, end, EXACT, f64::INFINITY);
-                tried.map_err(|failed| of_step(failed, time, h)).map(|_| Some(h))
+                tried.map(|_| Some(h)).map_err(|failed| self.locked_or(of_step(failed, time, h)))
             }
             StepControl::Tolerance(tolerance) => {
                 let mut h = self.walk.next.min(self.walk.longest);
-                let taken = self.motion.try_towards(segment.end, tolerance, &mut h)?;
+                let taken = self.motion.try_towards(segment.end, tolerance, &mut h);
+                let taken = taken.map_err(|error| self.locked_or(error))?;
                 // What only the segment made short says nothing about the next one.
                 if taken.is_none() || h < self.walk.next {
                     self.walk.next = h;
@@ -533,6 +536,16 @@ impl SystemSimulation {
                 Ok(taken)
             }
         }
+    }
+
+    /// The joints that lock where the motion is, as the reason of a step that could not be done; without them the error as it is.
+    fn locked_or(&mut self, error: StepError) -> StepError {
+        let joints = self.motion.locked_joints(&self.is_implied);
+        if joints.is_empty() {
+            return error;
+        }
+        let joints: Vec<String> = joints.iter().map(|joint| format!("\"{joint}\"")).collect();
+        StepError::Locked { time: self.motion.time(), joints: joints.join(", ").into() }
     }
 
     /// Counts a step that was taken.

@@ -94,6 +94,10 @@ fn conclude(
             let (path, builder, rows) = (&report.results, &settings.builder, CheckRows::Cheap);
             check_run(path, &results, system, models, builder, &rows, |p| progress(RunProgress::Check(p)))
         });
+        if settings.check {
+            report.times.add("check", started.elapsed());
+        }
+        let started = Instant::now();
         // The run is done whatever comes of it.
         let not_checked = match checked {
             None => "the run was made without the check",
@@ -110,7 +114,7 @@ fn conclude(
         let card = trust::of_run((system, models), &results, &report.bodies, check, &file);
         writer.trust(card.lines.clone());
         report.trust = Some(card);
-        report.times.add("check", started.elapsed());
+        report.times.add("trust", started.elapsed());
     }
     let started = Instant::now();
     writer.warn(report.warnings.clone());

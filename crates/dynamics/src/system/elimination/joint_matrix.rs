@@ -247,6 +247,17 @@ impl<T: Number> JointMatrix<T> {
         }
     }
 
+    /// The pivot of a row as a part of its diagonal entry, of which the smallest part by one body counts as in [`Self::factor`];
+    /// infinite for a row that is left out.
+    pub fn pivot_part(&self, row: usize) -> f64 {
+        1.0 / (self.inverse_pivots[row].modulus() * self.least[row].min(self.diagonal[row]))
+    }
+
+    /// The diagonal entry of a row before it was factored.
+    pub fn diagonal(&self, row: usize) -> f64 {
+        self.diagonal[row]
+    }
+
     /// Divides the blocks below a joint by its factor, and takes their products from those that they meet.
     fn eliminate(&mut self, pattern: &Pattern, joint: usize) {
         let (n, first, diagonal) = (pattern.rows(joint), pattern.first[joint], pattern.blocks[joint]);
