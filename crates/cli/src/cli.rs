@@ -24,6 +24,7 @@ use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_results, outp
 use flexframe::psd::{self, PsdSettings};
 use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
+use flexframe::shock::{self, ShockSettings};
 use flexframe::srs::{self, SrsSettings};
 use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::system_modes::{self, AdviceOnSystems, ModesOfSystems};
@@ -335,6 +336,25 @@ enum Command {
         output: Option<PathBuf>,
         #[command(flatten)]
         files: FileArgs,
+    },
+    /// Sum the peaks of the modes under a shock of the base or of a load: absolute, SRSS and CQC.
+    ///
+    /// The input follows the table. Modes and damping are those of the scene; outputs are those of `flexframe linearize` but for velocities. A run
+    /// with the table as history of the load has the peaks themselves.
+    Shock {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// CSV file of times and values of the input, such as accelerations of the base.
+        #[arg(long, value_name = "TABLE")]
+        table: PathBuf,
+        /// The input, such as base.acceleration.z or loads[0].
+        #[arg(long, value_name = "NAME")]
+        input: String,
+        #[command(flatten)]
+        about: AboutArgs,
+        /// Outputs, such as tip.acceleration or tip [default: points, stresses and coordinates of joints].
+        #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+        outputs: Vec<String>,
     },
     /// Run the paper's plate and compare it with the paper: every figure, and a report.
     Paper {
@@ -903,6 +923,14 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             Outputs::new(read.collect(), files.overwrite).claim(&psd::files(&folder))?;
             let settings = PsdSettings { linear: about.settings(Vec::new(), outputs), band, loss_factor: structural };
             let report = psd::psd(&system, &builder, &spectra, &folder, &settings, |p| bar.build(p))?;
+            drop(bar);
+            output::print(&report, json)
+        }
+        Command::Shock { scene: SceneArgs { scene, json }, table, input, about, outputs } => {
+            GivenFile::expect(&table, &[GivenFile::Table], "a CSV file of times and values (docs/reference/cli.md)")?;
+            let system = read_system(scene)?;
+            let settings = ShockSettings { linear: about.settings(vec![input], outputs) };
+            let report = shock::shock(&system, &builder, &table, &settings, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)
         }

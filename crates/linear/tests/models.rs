@@ -331,3 +331,35 @@ fn eight_masses_respond_as_in_another_program() {
     }
     assert!((mean_square / expected - 1.0).abs() < 1e-9, "{mean_square:e} {expected:e}");
 }
+
+/// Closed form: two masses on springs: ω = √k (√5 ∓ 1)/2; a damper on the upper one couples the modes.
+#[test]
+fn real_modes_of_two_masses_and_what_has_none() {
+    let stiffness = Mat::from_fn(2, 2, |i, j| [[200.0, -100.0], [-100.0, 100.0]][i][j]);
+    let channel = |name: &str| Channel::new(name, "");
+    let equations = |damping: [[f64; 2]; 2], stiffness: &Mat<f64>| SecondOrder {
+        stiffness: stiffness.clone(),
+        damping: Mat::from_fn(2, 2, |i, j| damping[i][j]),
+        forces: Mat::from_fn(2, 1, |_, _| -1.0),
+        inputs: vec![channel("base")],
+        outputs: Vec::new(),
+        coordinates: vec![channel("a"), channel("b")],
+    };
+    let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
+    let modes = equations([[0.4, -0.2], [-0.2, 0.2]], &stiffness).real_modes().unwrap();
+    for (k, root) in [golden - 1.0, golden].into_iter().enumerate() {
+        assert!((modes.circular_frequencies[k] / (10.0 * root) - 1.0).abs() < 1e-14);
+        // C = K/500.
+        assert!((modes.damping_ratios[k] / (0.5 * 10.0 * root / 500.0) - 1.0).abs() < 1e-13);
+    }
+    assert!(modes.coupling < 1e-12, "{}", modes.coupling);
+    // v = (1, 2 − root²) of unit length; c_ij of the damper alone is c v_i v_j, so that the modes share all of it.
+    let coupled = equations([[0.0, 0.0], [0.0, 0.2]], &stiffness).real_modes().unwrap();
+    assert!((coupled.coupling - 1.0).abs() < 1e-12, "{}", coupled.coupling);
+
+    let gyroscopic = equations([[0.0, 0.5], [-0.5, 0.0]], &stiffness).real_modes().unwrap_err();
+    assert!(gyroscopic.to_string().contains("without a spin"), "{gyroscopic}");
+    let free = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { -1.0 });
+    let rigid = equations([[0.0; 2]; 2], &free).real_modes().unwrap_err();
+    assert!(rigid.to_string().contains("a body that is held"), "{rigid}");
+}

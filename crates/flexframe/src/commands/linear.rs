@@ -6,6 +6,7 @@ pub mod frf;
 pub mod linearize;
 mod names;
 pub mod psd;
+pub mod shock;
 pub mod spectra;
 pub mod srs;
 mod table;

@@ -29,6 +29,7 @@ use crate::commands::export::ExportError;
 use crate::commands::fmu::FmuError;
 use crate::commands::linear::linearize::LinearizeError;
 use crate::commands::linear::psd::PsdError;
+use crate::commands::linear::shock::ShockResponseError;
 use crate::commands::linear::spectra::SpectraError;
 use crate::commands::linear::srs::SrsError;
 use crate::commands::paper::PaperError;
@@ -92,7 +93,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 37] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 38] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
@@ -124,6 +125,7 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 37] = [
     known_by::<CampbellError>,
     known_by::<LinearizeError>,
     known_by::<PsdError>,
+    known_by::<ShockResponseError>,
     known_by::<SpectraError>,
     known_by::<SystemModesError>,
     known_by::<CostError>,
@@ -528,6 +530,17 @@ impl Fault for PsdError {
         match self {
             Self::Linearize(_) | Self::Spectra(_) | Self::Write(_) | Self::Figure(_) => Known::default(),
             Self::Linear { scene, .. } => Kind::Refused.of(scene),
+        }
+    }
+}
+
+impl Fault for ShockResponseError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Linearize(_) | Self::Table(_) => Known::default(),
+            Self::Linear { scene, .. } => Kind::Refused.of(scene),
+            Self::Inputs { scene, .. } => Kind::Usage.of(scene),
+            Self::Shock { table, .. } => Kind::Input.of(table),
         }
     }
 }

@@ -4,7 +4,7 @@ mod diagram;
 mod error;
 mod files;
 mod report;
-mod table;
+pub(super) mod table;
 
 use std::path::Path;
 

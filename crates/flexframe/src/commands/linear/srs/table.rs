@@ -8,7 +8,7 @@ use super::error::SrsError;
 use crate::commands::linear::table;
 
 /// Reads a base motion. The first line may name the columns; empty lines and those that begin with `#` are left out.
-pub(super) fn read(path: &Path) -> Result<BaseMotion, SrsError> {
+pub(in crate::commands::linear) fn read(path: &Path) -> Result<BaseMotion, SrsError> {
     let unreadable = |source| SrsError::Unreadable { path: path.to_owned(), source };
     let (mut times, mut accelerations): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut is_first = true;

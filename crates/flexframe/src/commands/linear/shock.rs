@@ -1,0 +1,63 @@
+//! `flexframe shock`: the largest answers of a scene to a shock of its base or of a load, summed over its modes, Eqs. (R4) to (R7) of
+//! `docs/method/shock.md`.
+
+mod error;
+mod peaks;
+mod report;
+
+use std::path::Path;
+
+use model::{BuildProgress, Builder};
+use scene::System;
+
+pub use error::ShockResponseError;
+pub use report::{ShockMode, ShockOutput, ShockReport};
+
+use crate::commands::linear::linearize::{LinearSettings, linear_model};
+use crate::commands::linear::srs::table;
+use peaks::ModePeaks;
+
+/// Damping between modes above this part of their own is told.
+const COUPLED: f64 = 0.02;
+
+/// Settings of an answer to a shock.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShockSettings {
+    /// The state that the equations are about, the one input that follows the table, and the outputs.
+    pub linear: LinearSettings,
+}
+
+/// Sums the peaks of the modes of a scene where one of its inputs follows the CSV file.
+///
+/// # Errors
+/// [`ShockResponseError`].
+pub fn shock(
+    system: &System,
+    builder: &Builder,
+    table: &Path,
+    settings: &ShockSettings,
+    progress: impl FnMut(BuildProgress),
+) -> Result<ShockReport, ShockResponseError> {
+    let motion = table::read(table)?;
+    let scene = &system.bodies[0];
+    let model = linear_model(system, builder, &settings.linear, progress)?;
+    let inputs: Vec<String> = model.equations.inputs.iter().map(|input| input.name.clone()).collect();
+    let [input] = &inputs[..] else {
+        return Err(ShockResponseError::Inputs { scene: scene.path.clone(), found: inputs.join(", ") });
+    };
+    let modes = model
+        .equations
+        .real_modes()
+        .map_err(|source| ShockResponseError::Linear { scene: scene.path.clone(), source: Box::new(source) })?;
+    let failed = |source| ShockResponseError::Shock { table: table.to_owned(), source };
+    let peaks = ModePeaks::new(&model.equations, &modes, &motion).map_err(failed)?;
+    let mut warnings = model.state.warnings.clone();
+    if modes.coupling > COUPLED {
+        let part = 100.0 * modes.coupling;
+        warnings.push(format!(
+            "the damping couples modes by up to {part:.1} % of their own; each mode is taken with its own damping alone: compare with a run"
+        ));
+    }
+    let outputs = peaks.outputs(&model.equations, motion.peak()).map_err(failed)?;
+    Ok(ShockReport::new(scene, input, &motion, &peaks, outputs, warnings))
+}

@@ -1,0 +1,74 @@
+//! The peaks of modes, and their sums for each output.
+
+use std::f64::consts::TAU;
+
+use linear::{Output, RealModes, SecondOrder};
+use rayon::prelude::*;
+use shock::{BaseMotion, ModalPeak, Peaks, ShockError, Sum};
+
+use super::report::ShockOutput;
+
+/// The peaks of each mode.
+pub(super) struct ModePeaks {
+    /// Frequencies, cycles per time.
+    pub frequencies: Vec<f64>,
+    /// Damping ratios.
+    pub damping_ratios: Vec<f64>,
+    /// Factors b of the input, −Γ of a base.
+    pub factors: Vec<f64>,
+    /// Peaks of an oscillator of that frequency and damping on a base that follows the table.
+    pub peaks: Vec<Peaks>,
+    /// Shapes over the coordinates, a list a mode.
+    shapes: Vec<Vec<f64>>,
+}
+
+impl ModePeaks {
+    pub fn new(equations: &SecondOrder, modes: &RealModes, motion: &BaseMotion) -> Result<Self, ShockError> {
+        let shapes: Vec<Vec<f64>> = modes.shapes.col_iter().map(|shape| shape.iter().copied().collect()).collect();
+        let factor = |shape: &Vec<f64>| (0..shape.len()).map(|i| shape[i] * equations.forces[(i, 0)]).sum();
+        let frequencies: Vec<f64> = modes.circular_frequencies.iter().map(|omega| omega / TAU).collect();
+        let damping_ratios = modes.damping_ratios.clone();
+        let each = frequencies.par_iter().zip(&damping_ratios);
+        let peaks = each.map(|(frequency, ratio)| motion.peaks(*frequency, *ratio)).collect::<Result<_, _>>()?;
+        Ok(Self { frequencies, damping_ratios, factors: shapes.iter().map(factor).collect(), peaks, shapes })
+    }
+
+    /// The sums of each output that sees places or accelerations, Eqs. (R6) and (R7); velocities have no spectrum. `largest`: the
+    /// largest magnitude of the table.
+    pub fn outputs(&self, equations: &SecondOrder, largest: f64) -> Result<Vec<ShockOutput>, ShockError> {
+        let is_seen = |output: &&Output| {
+            let [_, of_velocity, _] = &output.rows;
+            of_velocity.iter().all(|entry| *entry == 0.0)
+        };
+        equations.outputs.iter().filter(is_seen).map(|output| self.output(output, largest)).collect()
+    }
+
+    fn output(&self, output: &Output, largest: f64) -> Result<ShockOutput, ShockError> {
+        let [of_place, _, of_acceleration] = &output.rows;
+        let along = |row: &[f64], shape: &[f64]| -> f64 { row.iter().zip(shape).map(|(r, v)| r * v).sum() };
+        let direct = output.direct.first().copied().unwrap_or(0.0);
+        // η = −b z and η̈ = −b (w − a): with the modes goes what they have of the input itself, and the rest is rigid.
+        let mut rigid = direct;
+        let mut peaks = Vec::with_capacity(self.peaks.len());
+        for (k, shape) in self.shapes.iter().enumerate() {
+            let [r, s] = [of_place, of_acceleration].map(|row| along(row, shape));
+            rigid += s * self.factors[k];
+            // z and w have opposite signs.
+            let value = -self.factors[k] * (r * self.peaks[k].displacement - s * self.peaks[k].acceleration());
+            peaks.push(ModalPeak { frequency: self.frequencies[k], damping_ratio: self.damping_ratios[k], value });
+        }
+        let rigid = (rigid * largest).abs();
+        let most = peaks.iter().enumerate().max_by(|a, b| a.1.value.abs().total_cmp(&b.1.value.abs()));
+        let largest_mode = most.filter(|(_, peak)| peak.value.abs() > rigid).map(|(k, _)| k + 1);
+        let of_modes = |sum: Sum| sum.of(&peaks);
+        Ok(ShockOutput {
+            output: output.channel.name.clone(),
+            unit: output.channel.unit.clone(),
+            absolute: of_modes(Sum::Absolute)? + rigid,
+            srss: of_modes(Sum::Srss)?.hypot(rigid),
+            cqc: of_modes(Sum::Cqc)?.hypot(rigid),
+            rigid,
+            largest_mode,
+        })
+    }
+}

@@ -1,0 +1,130 @@
+//! Report of an answer to a shock.
+
+use std::fmt;
+
+use scene::Scene;
+use serde::Serialize;
+use shock::BaseMotion;
+
+use super::peaks::ModePeaks;
+use crate::commands::modes::frequency_unit;
+
+/// Most modes in the summary.
+const SHOWN: usize = 12;
+
+/// Report of `flexframe shock`.
+#[derive(Debug, Clone, Serialize)]
+pub struct ShockReport {
+    /// Title of the scene.
+    pub title: String,
+    /// Unit of frequencies.
+    pub frequency_unit: String,
+    /// The input that follows the table.
+    pub input: String,
+    /// Duration of the table.
+    pub duration: f64,
+    /// Largest magnitude in the table.
+    pub peak: f64,
+    /// Modes, rising.
+    pub modes: Vec<ShockMode>,
+    /// Outputs.
+    pub outputs: Vec<ShockOutput>,
+    /// Reservations about the state and the modes.
+    pub warnings: Vec<String>,
+}
+
+/// The peak of a mode.
+#[derive(Debug, Clone, Serialize)]
+pub struct ShockMode {
+    /// Frequency, cycles per time.
+    pub frequency: f64,
+    /// Damping ratio.
+    pub damping_ratio: f64,
+    /// Force of a unit input on the mode of unit mass; of a base the participation factor, with its sign turned.
+    pub factor: f64,
+    /// Largest displacement of its oscillator relative to the base.
+    pub displacement: f64,
+    /// Largest acceleration of its mass.
+    pub acceleration: f64,
+}
+
+/// The largest value of an output, in three sums.
+#[derive(Debug, Clone, Serialize)]
+pub struct ShockOutput {
+    /// Its name.
+    pub output: String,
+    /// Its unit.
+    pub unit: String,
+    /// Σ of magnitudes: an upper bound.
+    pub absolute: f64,
+    /// Root of the sum of squares.
+    pub srss: f64,
+    /// Complete quadratic combination.
+    pub cqc: f64,
+    /// The part that no mode of the model has, at the largest magnitude of the table: it is in all three sums.
+    pub rigid: f64,
+    /// Number of the mode with the largest peak, from 1; none where the rigid part is larger.
+    pub largest_mode: Option<usize>,
+}
+
+impl ShockReport {
+    pub(super) fn new(
+        scene: &Scene,
+        input: &str,
+        motion: &BaseMotion,
+        peaks: &ModePeaks,
+        outputs: Vec<ShockOutput>,
+        warnings: Vec<String>,
+    ) -> Self {
+        let mode = |k: usize| ShockMode {
+            frequency: peaks.frequencies[k],
+            damping_ratio: peaks.damping_ratios[k],
+            factor: peaks.factors[k],
+            displacement: peaks.peaks[k].displacement,
+            acceleration: peaks.peaks[k].acceleration(),
+        };
+        Self {
+            title: scene.title.clone(),
+            frequency_unit: frequency_unit(&scene.units.time),
+            input: input.to_owned(),
+            duration: motion.duration(),
+            peak: motion.peak(),
+            modes: (0..peaks.peaks.len()).map(mode).collect(),
+            outputs,
+            warnings,
+        }
+    }
+}
+
+impl fmt::Display for ShockReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { title, frequency_unit: unit, input, duration, peak, modes, outputs, warnings } = self;
+        writeln!(f, "{title}")?;
+        writeln!(f, "  shock    {input} for {duration:.6}, at most {peak:.6e}")?;
+        write!(
+            f,
+            "  {:>4}  {:>16}  {:>8}  {:>12}  {:>12}  {:>12}",
+            "mode", unit, "damping", "factor", "displacement", "acceleration"
+        )?;
+        for (k, mode) in modes.iter().take(SHOWN).enumerate() {
+            let ShockMode { frequency, damping_ratio, factor, displacement, acceleration } = mode;
+            let number = k + 1;
+            write!(
+                f,
+                "\n  {number:>4}  {frequency:>16.6}  {damping_ratio:>8.4}  {factor:>12.4e}  {displacement:>12.4e}  {acceleration:>12.4e}"
+            )?;
+        }
+        if modes.len() > SHOWN {
+            write!(f, "\n  and {} more modes (--json has them)", modes.len() - SHOWN)?;
+        }
+        write!(f, "\n  {:<32}  {:>12}  {:>12}  {:>12}", "largest values", "absolute", "SRSS", "CQC")?;
+        for ShockOutput { output, unit, absolute, srss, cqc, largest_mode, .. } in outputs {
+            let by = largest_mode.map_or_else(|| "rigid".to_owned(), |mode| format!("mode {mode}"));
+            write!(f, "\n  {output:<32}  {absolute:>12.4e}  {srss:>12.4e}  {cqc:>12.4e}  {unit}, most by {by}")?;
+        }
+        for warning in warnings {
+            write!(f, "\n  warning  {warning}")?;
+        }
+        Ok(())
+    }
+}
