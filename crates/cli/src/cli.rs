@@ -14,10 +14,12 @@ use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, FailureReport, Kind};
 use flexframe::figures::{self, View};
+use flexframe::fit::{self, FitError, FitSettings};
 use flexframe::fmu::{self, FmuSettings};
 use flexframe::frequencies::Frequencies;
 use flexframe::frf::{self, FrfSettings};
 use flexframe::given_file::GivenFile;
+use flexframe::gradient::{self, GradientError};
 use flexframe::hand_over::{self, Form};
 use flexframe::linearize::{self, LinearSettings, Reduction};
 use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_results, outputs_of_scene, outputs_of_scenes};
@@ -29,7 +31,7 @@ use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::system_modes::{self, AdviceOnSystems, ModesOfSystems};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
 use model::{BuildError, Builder, Cache};
-use scene::{Flexible, Scene, SceneError, System};
+use scene::{Flexible, Measured, Scene, SceneError, System};
 use slepc::files_of_folder;
 
 use crate::cli_error::{self, CliError};
@@ -332,6 +334,52 @@ enum Command {
         structural: Option<f64>,
         /// Folder for psd.csv and the chart [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
+    },
+    /// Find the rates of frequencies, effective masses and static displacements with the numbers that a body is made with.
+    ///
+    /// They are exact, not differences (docs/method/gradients.md). Static displacements are those of the points of [output] under each load
+    /// of a body that is held.
+    Gradient {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Parameters: paths of keys, such as body.material.young_modulus or body.point_masses[0].mass, and thickness.AXIS or
+        /// thickness.GROUP.AXIS for a factor that stretches the mesh or a physical volume along x, y or z [default: all keys of
+        /// materials and point masses].
+        #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+        parameters: Vec<String>,
+        /// Number of flexible modes, instead of the scene's.
+        #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
+        flexible: Option<usize>,
+        /// Folder for gradient.csv [default: out/<name of the scene file>].
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
+    },
+    /// Fit parameters of a body to measured frequencies, with intervals of confidence.
+    ///
+    /// Modes are matched by their shapes at points of [output] where the table has them, and else by their order. The intervals have the
+    /// true value in them with 95 % confidence: by the stated deviations of the frequencies, or by what is left of them.
+    Fit {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// CSV file with a column `frequency`, and if wanted `deviation` and POINT.x, POINT.y, POINT.z [default: `measured` in [modes]].
+        #[arg(long, value_name = "TABLE")]
+        measured: Option<PathBuf>,
+        /// Parameters: paths of keys of materials and point masses, such as body.material.young_modulus.
+        #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+        parameters: Vec<String>,
+        /// Standard deviation of the measured frequencies, relative to each, such as 0.01, of those that have none in the table.
+        #[arg(long, value_name = "PART", value_parser = positive)]
+        deviation: Option<f64>,
+        /// Number of flexible modes, instead of the scene's.
+        #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
+        flexible: Option<usize>,
+        /// The scene with the fitted parameters, in the folder of the scene file [default: what to set is printed].
+        #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
         #[command(flatten)]
         files: FileArgs,
@@ -909,6 +957,45 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             drop(bar);
             output::print(&report, json)
         }
+        Command::Gradient { scene: SceneArgs { scene, json }, parameters, flexible, output, files } => {
+            output::require_file("--output", output.as_deref())?;
+            let mut scene = read(scene)?;
+            scene.modes.flexible = flexible.map_or(scene.modes.flexible, Flexible::Count);
+            let folder = folder(&scene, output)?;
+            outputs_of_scene(&scene, &builder, files.overwrite).claim(&gradient::files(&folder))?;
+            let report = gradient::gradient(&scene, &builder, &parameters, Some(&folder), |p| bar.build(p)).map_err(
+                |error| match error {
+                    GradientError::Build(error) => of_option(error.into(), flexible),
+                    error => error.into(),
+                },
+            )?;
+            drop(bar);
+            output::print(&report, json)
+        }
+        Command::Fit { scene: SceneArgs { scene, json }, measured, parameters, deviation, flexible, output, files } => {
+            output::require_file("--output", output.as_deref())?;
+            let mut scene = read(scene)?;
+            scene.modes.flexible = flexible.map_or(scene.modes.flexible, Flexible::Count);
+            if let Some(output) = &output {
+                let mut outputs = outputs_of_scene(&scene, &builder, files.overwrite);
+                if let Some(measured) = &measured {
+                    outputs = outputs.and_input(measured);
+                }
+                outputs.claim_as(&Written::SCENE, output)?;
+                check_beside(&scene, output)?;
+            }
+            let measured = measured.as_deref().map(Measured::read).transpose()?;
+            let settings = FitSettings { parameters, measured, deviation };
+            let mut report = fit::fit(&scene, &builder, &settings, |p| bar.build(p)).map_err(|error| match error {
+                FitError::Build(error) => of_option(error.into(), flexible),
+                error => error.into(),
+            })?;
+            if let Some(output) = &output {
+                report.write_scene(output)?;
+            }
+            drop(bar);
+            output::print(&report, json)
+        }
         Command::Paper { scene: SceneArgs { scene, json }, output, files } => {
             output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
@@ -1257,6 +1344,23 @@ fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Error> {
         }
         (error, _) => error.into(),
     }
+}
+
+/// Refuses a scene in another folder than that of the scene which it is made of: its paths are relative to it.
+fn check_beside(scene: &Scene, output: &Path) -> Result<(), CliError> {
+    let folder = |path: &Path| {
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        parent.canonicalize().ok()
+    };
+    if folder(&scene.path).is_some_and(|own| folder(output) == Some(own)) {
+        return Ok(());
+    }
+    Err(CliError::Option {
+        option: "--output",
+        found: format!("{}, in another folder than the scene", output.display()),
+        expected: "a file beside the scene, since the paths in it are relative to its folder".to_owned(),
+        help: "leave --output out, and set the values with --set, or name a file beside the scene".to_owned(),
+    })
 }
 
 /// The folder asked for, or one named after the scene.

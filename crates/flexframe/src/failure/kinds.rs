@@ -27,6 +27,7 @@ use crate::commands::check::CheckError;
 use crate::commands::cost::CostError;
 use crate::commands::export::ExportError;
 use crate::commands::fmu::FmuError;
+use crate::commands::linear::fit::FitError;
 use crate::commands::linear::linearize::LinearizeError;
 use crate::commands::linear::psd::PsdError;
 use crate::commands::linear::spectra::SpectraError;
@@ -92,7 +93,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 37] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 38] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
@@ -130,6 +131,7 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 37] = [
     known_by::<PaperError>,
     known_by::<SweepError>,
     known_by::<SrsError>,
+    known_by::<FitError>,
 ];
 
 /// What an error of this type knows, in a box or not.
@@ -488,6 +490,21 @@ impl Fault for CampbellError {
             Self::Full { scene, .. } | Self::Bent { scene, .. } => Kind::Run.of(scene),
             Self::NoAxis { scene, .. } | Self::NoFullBody { scene } => Kind::Usage.of(scene),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
+        }
+    }
+}
+
+impl Fault for FitError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Build(_) | Self::Scene(_) | Self::Write(_) => Known::default(),
+            Self::NoTable | Self::NoParameters { .. } | Self::NoKey { .. } => Kind::Usage.alone(),
+            Self::TooFew { file, .. } => Kind::Input.of(file),
+            Self::SomeDeviations { file, line } => {
+                Kind::Input.with(Details { line: Some(*line), ..Details::of_file(file) })
+            }
+            Self::NoInfluence { .. } | Self::Apart { .. } => Kind::Refused.alone(),
+            Self::NotFound { .. } => Kind::Run.alone(),
         }
     }
 }
