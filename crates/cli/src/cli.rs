@@ -19,7 +19,7 @@ use flexframe::fmu::{self, FmuSettings};
 use flexframe::frequencies::Frequencies;
 use flexframe::frf::{self, FrfSettings};
 use flexframe::given_file::GivenFile;
-use flexframe::gradient::{self, GradientError};
+use flexframe::gradient::{self, GradientError, GradientSettings};
 use flexframe::hand_over::{self, Form};
 use flexframe::linearize::{self, LinearSettings, Reduction};
 use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_results, outputs_of_scene, outputs_of_scenes};
@@ -350,10 +350,14 @@ enum Command {
         /// materials and point masses].
         #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
         parameters: Vec<String>,
+        /// Frequencies, cycles per time, at which the responses of points to the loads have rates, too: from start to end, both included,
+        /// count in all. They are sums over the modes that are kept, with the damping of the scene.
+        #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies)]
+        frequencies: Option<Frequencies>,
         /// Number of flexible modes, instead of the scene's.
         #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
         flexible: Option<usize>,
-        /// Folder for gradient.csv [default: out/<name of the scene file>].
+        /// Folder for gradient.csv and, of responses, gradient_frf.csv [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
         #[command(flatten)]
@@ -957,18 +961,18 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             drop(bar);
             output::print(&report, json)
         }
-        Command::Gradient { scene: SceneArgs { scene, json }, parameters, flexible, output, files } => {
+        Command::Gradient { scene: SceneArgs { scene, json }, parameters, frequencies, flexible, output, files } => {
             output::require_file("--output", output.as_deref())?;
             let mut scene = read(scene)?;
             scene.modes.flexible = flexible.map_or(scene.modes.flexible, Flexible::Count);
             let folder = folder(&scene, output)?;
-            outputs_of_scene(&scene, &builder, files.overwrite).claim(&gradient::files(&folder))?;
-            let report = gradient::gradient(&scene, &builder, &parameters, Some(&folder), |p| bar.build(p)).map_err(
-                |error| match error {
-                    GradientError::Build(error) => of_option(error.into(), flexible),
-                    error => error.into(),
-                },
-            )?;
+            let settings = GradientSettings { parameters, frequencies };
+            outputs_of_scene(&scene, &builder, files.overwrite).claim(&gradient::files(&folder, &settings))?;
+            let report = gradient::gradient(&scene, &builder, &folder, &settings, |p| bar.build(p));
+            let report = report.map_err(|error| match error {
+                GradientError::Build(error) => of_option(error.into(), flexible),
+                error => error.into(),
+            })?;
             drop(bar);
             output::print(&report, json)
         }

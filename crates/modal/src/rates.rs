@@ -1,4 +1,4 @@
-//! Rates of natural modes with a number that K and M follow: Eqs. (G5) to (G9) of `docs/method/gradients.md`.
+//! Rates of natural modes with a number that K and M follow: Eqs. (D5)–(D8) of `docs/method/gradients.md`.
 //!
 //! ```text
 //! λ' = φᵀ(K' − λM')φ        (K − λM) φ' = −(K' − λM')φ + λ'Mφ        φᵀMφ' = −½ φᵀM'φ

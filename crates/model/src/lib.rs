@@ -49,7 +49,7 @@ pub use full::check::{Checker, FrequencyCheck, PointCheck, StateCheck};
 pub use full::mends::{ErrorDirection, ErrorPart, Mend};
 pub use full::{FullError, FullModel};
 pub use gradient::parameter::Parameter;
-pub use gradient::rates::{BodyRates, ParameterRates, RatesOf};
+pub use gradient::rates::{BodyRates, ParameterRates, RatesOf, Residues};
 pub use gradient::varied::VariedBody;
 pub use mesh::doubt::{Doubt, doubts};
 pub use mesh::given::MatrixChecks;

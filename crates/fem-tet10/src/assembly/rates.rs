@@ -1,4 +1,4 @@
-//! Rates of K and M with a number that the body is made with, applied to fields: Eqs. (G1) to (G4) of `docs/method/gradients.md`.
+//! Rates of K and M with a number that the body is made with, applied to fields: Eqs. (D1)–(D4) of `docs/method/gradients.md`.
 //!
 //! ```text
 //! material:  K'u = Σ ∫ (λ' tr ε + 2μ' ε) ∇N dV              M'u = Σ ∫ ρ' u N dV

@@ -28,6 +28,7 @@ use crate::commands::cost::CostError;
 use crate::commands::export::ExportError;
 use crate::commands::fmu::FmuError;
 use crate::commands::linear::fit::FitError;
+use crate::commands::linear::gradient::GradientError;
 use crate::commands::linear::linearize::LinearizeError;
 use crate::commands::linear::psd::PsdError;
 use crate::commands::linear::spectra::SpectraError;
@@ -93,7 +94,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 38] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 39] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
@@ -132,6 +133,7 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 38] = [
     known_by::<SweepError>,
     known_by::<SrsError>,
     known_by::<FitError>,
+    known_by::<GradientError>,
 ];
 
 /// What an error of this type knows, in a box or not.
@@ -490,6 +492,15 @@ impl Fault for CampbellError {
             Self::Full { scene, .. } | Self::Bent { scene, .. } => Kind::Run.of(scene),
             Self::NoAxis { scene, .. } | Self::NoFullBody { scene } => Kind::Usage.of(scene),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
+        }
+    }
+}
+
+impl Fault for GradientError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Build(_) | Self::Write(_) => Known::default(),
+            Self::Frequencies { .. } => Kind::Usage.alone(),
         }
     }
 }

@@ -28,12 +28,12 @@ impl Parameter {
         let in_file = |key: String, number: BodyNumber| Self { name: scene.place(&key).key, number };
         let mut all = Vec::new();
         let mut of_material = |key: &str, group: Option<String>| {
-            let numbers: [(&str, fn(Option<String>) -> BodyNumber); 3] = [
-                ("young_modulus", BodyNumber::YoungModulus),
-                ("poisson_ratio", BodyNumber::PoissonRatio),
-                ("density", BodyNumber::Density),
+            let numbers = [
+                ("young_modulus", BodyNumber::YoungModulus(group.clone())),
+                ("poisson_ratio", BodyNumber::PoissonRatio(group.clone())),
+                ("density", BodyNumber::Density(group)),
             ];
-            all.extend(numbers.map(|(name, number)| in_file(key_path(key, name), number(group.clone()))));
+            all.extend(numbers.map(|(name, number)| in_file(key_path(key, name), number)));
         };
         match &body.materials {
             Materials::Uniform(_) => of_material("body.material", None),

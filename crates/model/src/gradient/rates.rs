@@ -23,8 +23,20 @@ pub struct BodyRates {
     pub effective_masses: Option<Vec<[f64; TRANSLATIONS]>>,
     /// Static displacements of the points of the output, by load, then point; none of a body that a rigid motion is left to.
     pub statics: Option<Vec<Vec<Vector3<f64>>>>,
+    /// Forces φᵀf of each load where its history is 1, by load, then mode; where all was asked for and the scene has points of the output.
+    pub modal_forces: Vec<Vec<f64>>,
     /// The rates, by parameter.
     pub rates: Vec<ParameterRates>,
+}
+
+/// Displacements of the points in each mode times its modal force of one load, by mode, then point, and their rates. Modes of one frequency
+/// are those that the parameter parts; sums over them do not depend on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Residues {
+    /// φ (φᵀf).
+    pub values: Vec<Vec<Vector3<f64>>>,
+    /// Their rates.
+    pub rates: Vec<Vec<Vector3<f64>>>,
 }
 
 /// Rates with one parameter: the derivatives of the numbers of [`BodyRates`].
@@ -32,12 +44,14 @@ pub struct BodyRates {
 pub struct ParameterRates {
     /// Of the frequencies. Modes of one frequency that the parameter parts are in rising order of their rates.
     pub frequencies: Vec<f64>,
-    /// Of the displacements of the points in each mode; where shapes were asked for.
-    pub shapes: Option<Vec<Vec<Vector3<f64>>>>,
+    /// Of the eigenvalues ω².
+    pub eigenvalues: Vec<f64>,
     /// Of the effective masses.
     pub effective_masses: Option<Vec<[f64; TRANSLATIONS]>>,
     /// Of the static displacements; none of a load whose forces on the nodes the parameter changes otherwise than by their mass.
     pub statics: Option<Vec<Option<Vec<Vector3<f64>>>>>,
+    /// Residues of each load, none as of the static displacements; empty where they were not asked for.
+    pub residues: Vec<Option<Residues>>,
 }
 
 /// Extent of the rates that are asked for.
@@ -45,6 +59,6 @@ pub struct ParameterRates {
 pub enum RatesOf {
     /// Frequencies.
     Frequencies,
-    /// Frequencies, effective masses and static answers.
+    /// Frequencies, effective masses, static answers and residues.
     All,
 }

@@ -62,7 +62,7 @@ fn rates_are_central_differences_of_the_body_solved_anew() {
             let size = if i < 5 {
                 scale[i]
             } else if i < 20 {
-                1e-4
+                MASS
             } else {
                 scale[20..].iter().map(|u| u.abs()).fold(0.0, f64::max)
             };

@@ -15,9 +15,8 @@ pub use report::{FitReport, FittedMode, FittedParameter};
 use crate::commands::modes::unloaded_body;
 use faer::Mat;
 use least_squares::{Residuals, Solution, solve};
+use report::{CONFIDENCE, Quality};
 
-/// Parts of the intervals.
-const CONFIDENCE: f64 = 0.95;
 /// The quantile of the normal distribution for it, on both sides.
 const NORMAL: f64 = 1.959_963_984_540_054;
 /// The limits within which Poisson's ratio is searched.
@@ -74,15 +73,21 @@ impl Fit {
         Ok(Self { body, parameters, measured, deviations, is_stated })
     }
 
-    /// The same body with other measured frequencies, one for each line of the table.
-    #[must_use]
-    pub fn with_frequencies(mut self, frequencies: &[f64]) -> Self {
-        for ((mode, deviation), frequency) in self.measured.modes.iter_mut().zip(&mut self.deviations).zip(frequencies)
-        {
+    /// Frequencies of the modes that were measured, in the scene as it is.
+    ///
+    /// # Errors
+    /// [`FitError`].
+    pub fn frequencies(&self) -> Result<Vec<f64>, FitError> {
+        Ok(self.residuals(&vec![0.0; self.parameters.len()])?.frequencies)
+    }
+
+    /// Gives the lines of the table other measured frequencies, with the same relative deviations.
+    pub fn set_frequencies(&mut self, frequencies: &[f64]) {
+        let lines = self.measured.modes.iter_mut().zip(&mut self.deviations);
+        for ((mode, deviation), frequency) in lines.zip(frequencies) {
             *deviation *= frequency / mode.frequency;
             mode.frequency = *frequency;
         }
-        self
     }
 
     /// Finds the parameters.
@@ -133,7 +138,7 @@ impl Fit {
             self.parameters.iter().enumerate().map(fitted).collect(),
             modes.collect(),
             (0..unknowns).map(|i| (0..unknowns).map(|j| correlation(i, j)).collect()).collect(),
-            report::Quality { freedom, is_stated: self.is_stated, scatter, iterations, singular },
+            Quality { freedom, is_stated: self.is_stated, scatter, iterations, singular },
         ))
     }
 

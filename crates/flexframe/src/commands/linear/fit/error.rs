@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use model::{BuildError, Parameter};
 use scene::SceneError;
 
-use super::least_squares::Fault;
+use super::least_squares::{Fault, Unseen};
 use crate::files::write_error::WriteError;
 
 /// Parameters that could not be fitted.
@@ -43,7 +43,7 @@ pub enum FitError {
     )]
     NoInfluence { name: String },
     /// Parameters that frequencies do not tell apart.
-    #[error("the measured frequencies do not tell {} apart: none of them changes where {}\n = fit one of them less, or measure a mass or a static displacement", names.join(", "), parts.join(" and "))]
+    #[error("the measured frequencies do not tell {} apart: none of them changes where {}, for any s\n = leave one of them out, or measure a mass or a static displacement", names.join(" and "), parts.join(", "))]
     Apart { names: Vec<String>, parts: Vec<String> },
     /// No end of the search.
     #[error(
@@ -56,16 +56,16 @@ pub enum FitError {
 }
 
 impl FitError {
-    pub(super) fn of_fault(fault: Fault, parameters: &[Parameter]) -> Self {
+    pub(super) fn of_fault(fault: Fault<Self>, parameters: &[Parameter]) -> Self {
         let name = |j: usize| parameters[j].name.clone();
         match fault {
             Fault::Residuals(error) => error,
-            Fault::NoInfluence(j) => Self::NoInfluence { name: name(j) },
-            Fault::Apart(parts) => Self::Apart {
+            Fault::Coordinates(Unseen::NoInfluence(j)) => Self::NoInfluence { name: name(j) },
+            Fault::Coordinates(Unseen::Apart(parts)) => Self::Apart {
                 names: parts.iter().map(|(j, _)| name(*j)).collect(),
-                parts: parts.iter().map(|(j, part)| format!("{} goes with s^{part:.2}", name(*j))).collect(),
+                parts: parts.iter().map(|(j, part)| format!("{} grows by s^{part:.2}", name(*j))).collect(),
             },
-            Fault::Steps(steps) => Self::NotFound { steps },
+            Fault::Coordinates(Unseen::Steps(steps)) => Self::NotFound { steps },
         }
     }
 }

@@ -1,9 +1,7 @@
-//! Least squares by steps of Gauss and Newton, damped as Levenberg and Marquardt do where a step fails: Eqs. (G12) to (G14) of
+//! Least squares by steps of Gauss and Newton, damped as Levenberg and Marquardt do where a step fails: Eqs. (D12)–(D14) of
 //! `docs/method/gradients.md`. The steps come from the singular values of the Jacobian (faer).
 
 use faer::Mat;
-
-use super::error::FitError;
 
 /// Most steps.
 const MAX_STEPS: usize = 100;
@@ -46,37 +44,44 @@ pub(super) struct Solution {
     pub right: Mat<f64>,
 }
 
-/// No solution.
-pub(super) enum Fault {
+/// No solution; E is the error of residuals that cannot be found.
+pub(super) enum Fault<E> {
     /// The residuals cannot be found.
-    Residuals(FitError),
-    /// A coordinate without influence.
+    Residuals(E),
+    /// The coordinates cannot be found.
+    Coordinates(Unseen),
+}
+
+/// Coordinates that cannot be found.
+pub(super) enum Unseen {
+    /// One without influence.
     NoInfluence(usize),
     /// Coordinates that go together without a change of the residuals, with their parts.
     Apart(Vec<(usize, f64)>),
-    /// No end.
+    /// No end of the search.
     Steps(usize),
 }
 
-impl From<FitError> for Fault {
-    fn from(error: FitError) -> Self {
-        Self::Residuals(error)
+impl<E> From<Unseen> for Fault<E> {
+    fn from(unseen: Unseen) -> Self {
+        Self::Coordinates(unseen)
     }
 }
 
 /// Finds the least sum of squares from a start; coordinates stay within limits.
-pub(super) fn solve(
+pub(super) fn solve<E>(
     start: &[f64],
-    mut residuals: impl FnMut(&[f64]) -> Result<Residuals, FitError>,
+    mut residuals: impl FnMut(&[f64]) -> Result<Residuals, E>,
     is_within: impl Fn(&[f64]) -> bool,
-) -> Result<Solution, Fault> {
+) -> Result<Solution, Fault<E>> {
+    let mut residuals = |x: &[f64]| residuals(x).map_err(Fault::Residuals);
     let mut x = start.to_vec();
     let first = residuals(&x)?;
     let mut here = None;
     let mut damping = 0.0;
     for iterations in 0..MAX_STEPS {
         let now = here.as_ref().unwrap_or(&first);
-        let (singular, right, along) = directions(now)?;
+        let Directions { singular, right, along } = directions(now)?;
         let mut step = vec![0.0; x.len()];
         for (k, s) in singular.iter().enumerate() {
             let part = -along[k] * s / (s * s + damping * singular[0] * singular[0]);
@@ -107,7 +112,7 @@ pub(super) fn solve(
             damping = (10.0 * damping).max(1e-4);
         }
     }
-    Err(Fault::Steps(MAX_STEPS))
+    Err(Unseen::Steps(MAX_STEPS).into())
 }
 
 fn square(residuals: &Residuals) -> f64 {
@@ -115,21 +120,27 @@ fn square(residuals: &Residuals) -> f64 {
 }
 
 /// Singular values of the Jacobian with their right vectors, and the parts of the residuals along the left ones.
-fn directions(here: &Residuals) -> Result<(Vec<f64>, Mat<f64>, Vec<f64>), Fault> {
+struct Directions {
+    singular: Vec<f64>,
+    right: Mat<f64>,
+    along: Vec<f64>,
+}
+
+fn directions(here: &Residuals) -> Result<Directions, Unseen> {
     let (rows, columns) = (here.jacobian.nrows(), here.jacobian.ncols());
     let influence = |j: usize| (0..rows).map(|i| (here.jacobian[(i, j)] * here.relative[i]).abs()).fold(0.0, f64::max);
     if let Some(j) = (0..columns).find(|j| influence(*j) <= INFLUENCE) {
-        return Err(Fault::NoInfluence(j));
+        return Err(Unseen::NoInfluence(j));
     }
-    let svd = here.jacobian.thin_svd().map_err(|_| Fault::Steps(0))?;
+    let svd = here.jacobian.thin_svd().map_err(|_| Unseen::Steps(0))?;
     let singular: Vec<f64> = svd.S().column_vector().iter().copied().collect();
     let right = svd.V().to_owned();
     if let Some(k) = singular.iter().position(|s| *s <= SINGULAR * singular[0]) {
         let of = |j: usize| right[(j, k)];
         let most = (0..columns).map(of).fold(0.0, |most: f64, part| if part.abs() > most.abs() { part } else { most });
         let parts = (0..columns).map(|j| (j, of(j) / most)).filter(|(_, part)| part.abs() > BELONGS);
-        return Err(Fault::Apart(parts.collect()));
+        return Err(Unseen::Apart(parts.collect()));
     }
     let along = (0..columns).map(|k| (0..rows).map(|i| svd.U()[(i, k)] * here.values[i]).sum()).collect();
-    Ok((singular, right, along))
+    Ok(Directions { singular, right, along })
 }

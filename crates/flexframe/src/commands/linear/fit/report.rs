@@ -8,13 +8,14 @@ use serde::Serialize;
 use toml::Value;
 use whole_file::write_whole;
 
-use super::CONFIDENCE;
 use super::error::FitError;
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 use crate::files::write_error::WriteError;
 use crate::report::quantity;
 
+/// Probability that an interval has the true value in it.
+pub(super) const CONFIDENCE: f64 = 0.95;
 /// A correlation from which two parameters are hard to tell apart.
 const ALIKE: f64 = 0.95;
 /// A scatter in stated deviations from which something else is wrong.

@@ -3,10 +3,11 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use model::{BodyRates, Parameter, VariedBody};
+use model::{BodyRates, Parameter, ParameterRates, VariedBody};
 use nalgebra::Vector3;
 use serde::Serialize;
 
+use super::responses::{self, ResponseReport};
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 use crate::report::quantity;
@@ -29,6 +30,10 @@ pub struct GradientReport {
     pub effective_masses: Vec<[f64; 3]>,
     /// Static displacements; empty of a body that is not held, and without loads or points of the output.
     pub statics: Vec<StaticReport>,
+    /// Frequencies of the responses, cycles per time; empty where none were asked for.
+    pub response_frequencies: Vec<f64>,
+    /// Responses of the points to the loads.
+    pub responses: Vec<ResponseReport>,
     /// The rates with each parameter.
     pub parameters: Vec<ParameterReport>,
     /// Files.
@@ -62,45 +67,63 @@ pub struct ParameterReport {
     pub effective_masses: Vec<[f64; 3]>,
     /// Of the static displacements, in their order; `null` of a load whose forces change with the shape.
     pub statics: Vec<Option<[f64; 3]>>,
+    /// Of the responses, in their order: real and imaginary part at each frequency; `null` as of static displacements.
+    pub responses: Vec<Option<Vec<[f64; 2]>>>,
 }
 
 impl GradientReport {
-    pub(super) fn new(body: &VariedBody, parameters: &[Parameter], found: BodyRates) -> Self {
+    pub(super) fn new(
+        body: &VariedBody,
+        parameters: &[Parameter],
+        found: &BodyRates,
+        response_frequencies: Vec<f64>,
+    ) -> Self {
         let scene = body.scene();
-        let points = || scene.output.points.keys();
-        let BodyRates { frequencies, repeated, effective_masses, statics, rates, .. } = found;
-        let of_parameter = |(parameter, rates): (&Parameter, model::ParameterRates)| {
+        let (loads, damping) = (body.load_names(), &scene.modes.damping);
+        let points: Vec<String> = scene.output.points.keys().cloned().collect();
+        let of_parameter = |(parameter, rates): (&Parameter, &ParameterRates)| {
             let value = parameter.value(body.body());
-            let of_statics = rates.statics.unwrap_or_default().into_iter().flat_map(|of_load| match of_load {
-                Some(of_points) => of_points.into_iter().map(|rate| Some(rate.into())).collect(),
-                None => vec![None; points().len()],
+            let of_statics = rates.statics.iter().flatten().flat_map(|of_load| match of_load {
+                Some(of_points) => of_points.iter().map(|rate| Some((*rate).into())).collect(),
+                None => vec![None; points.len()],
             });
+            let of_frequencies = rates.frequencies.iter().zip(&found.frequencies);
             ParameterReport {
                 name: parameter.name.clone(),
                 value,
-                relative: rates.frequencies.iter().zip(&frequencies).map(|(rate, f)| value * rate / f).collect(),
-                effective_masses: rates.effective_masses.unwrap_or_default(),
+                frequencies: rates.frequencies.clone(),
+                relative: of_frequencies.map(|(rate, f)| value * rate / f).collect(),
+                effective_masses: rates.effective_masses.clone().unwrap_or_default(),
                 statics: of_statics.collect(),
-                frequencies: rates.frequencies,
+                responses: if response_frequencies.is_empty() {
+                    Vec::new()
+                } else {
+                    responses::rates(found, rates, points.len(), damping, &response_frequencies)
+                },
             }
         };
-        let parameters = parameters.iter().zip(rates).map(of_parameter).collect();
-        let of_load = |(load, of_points): (String, Vec<_>)| {
-            let of_point = |(point, u): (&String, Vector3<f64>)| StaticReport {
+        let of_load = |(load, of_points): (&String, &Vec<Vector3<f64>>)| {
+            let of_point = |(point, u): (&String, &Vector3<f64>)| StaticReport {
                 load: load.clone(),
                 point: point.clone(),
-                displacement: u.into(),
+                displacement: (*u).into(),
             };
-            points().zip(of_points).map(of_point).collect::<Vec<_>>()
+            points.iter().zip(of_points).map(of_point).collect::<Vec<_>>()
         };
         Self {
             title: scene.title.clone(),
             frequency_unit: frequency_unit(&scene.units.time),
-            repeated: repeated.into_iter().map(|group| [group.start + 1, group.end]).collect(),
-            effective_masses: effective_masses.unwrap_or_default(),
-            statics: body.load_names().into_iter().zip(statics.unwrap_or_default()).flat_map(of_load).collect(),
-            frequencies,
-            parameters,
+            frequencies: found.frequencies.clone(),
+            repeated: found.repeated.iter().map(|group| [group.start + 1, group.end]).collect(),
+            effective_masses: found.effective_masses.clone().unwrap_or_default(),
+            statics: loads.iter().zip(found.statics.iter().flatten()).flat_map(of_load).collect(),
+            responses: if response_frequencies.is_empty() {
+                Vec::new()
+            } else {
+                responses::responses(found, [&loads, &points], damping, &response_frequencies)
+            },
+            parameters: parameters.iter().zip(&found.rates).map(of_parameter).collect(),
+            response_frequencies,
             files: Vec::new(),
         }
     }

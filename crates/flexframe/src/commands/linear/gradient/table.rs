@@ -41,6 +41,33 @@ pub(super) fn rows(report: &GradientReport) -> String {
     csv
 }
 
+/// A row for each frequency: real and imaginary parts of the responses, then of their rates with each parameter.
+pub(super) fn responses(report: &GradientReport) -> String {
+    let mut heads = vec!["frequency".to_owned()];
+    let mut columns: Vec<&[[f64; 2]]> = Vec::new();
+    for (i, response) in report.responses.iter().enumerate() {
+        let name = format!("{}/{}", response.output, response.input);
+        let rates = report.parameters.iter().filter_map(|parameter| {
+            let rates = parameter.responses.get(i)?.as_deref()?;
+            Some((format!("d {name} / d {}", parameter.name), rates))
+        });
+        for (name, values) in std::iter::once((name.clone(), &response.values[..])).chain(rates) {
+            heads.extend([field(&format!("re {name}")), field(&format!("im {name}"))]);
+            columns.push(values);
+        }
+    }
+    let mut csv = heads.join(",");
+    csv.push('\n');
+    for (row, frequency) in report.response_frequencies.iter().enumerate() {
+        let _ = write!(csv, "{frequency:e}");
+        for [re, im] in columns.iter().map(|values| values[row]) {
+            let _ = write!(csv, ",{re:e},{im:e}");
+        }
+        csv.push('\n');
+    }
+    csv
+}
+
 /// A field of a CSV file, in quotes where it needs them.
 fn field(text: &str) -> String {
     if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
