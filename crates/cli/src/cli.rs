@@ -341,13 +341,13 @@ enum Command {
     /// Find the rates of frequencies, effective masses and static displacements with the numbers that a body is made with.
     ///
     /// They are exact, not differences (docs/method/gradients.md). Static displacements are those of the points of [output] under each load
-    /// of a body that is held.
+    /// of a body that is held. Of bodies in joints, the parameters are the stiffnesses of springs, bushings and joints.
     Gradient {
         #[command(flatten)]
         scene: SceneArgs,
         /// Parameters: paths of keys, such as body.material.young_modulus or body.point_masses[0].mass, and thickness.AXIS or
-        /// thickness.GROUP.AXIS for a factor that stretches the mesh or a physical volume along x, y or z [default: all keys of
-        /// materials and point masses].
+        /// thickness.GROUP.AXIS for a factor that stretches the mesh or a physical volume along x, y or z; of bodies in joints such as
+        /// springs[0].stiffness [default: all keys of materials and point masses, or all stiffnesses].
         #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
         parameters: Vec<String>,
         /// Frequencies, cycles per time, at which the responses of points to the loads have rates, too: from start to end, both included,
@@ -373,7 +373,8 @@ enum Command {
         /// CSV file with a column `frequency`, and if wanted `deviation` and POINT.x, POINT.y, POINT.z [default: `measured` in [modes]].
         #[arg(long, value_name = "TABLE")]
         measured: Option<PathBuf>,
-        /// Parameters: paths of keys of materials and point masses, such as body.material.young_modulus.
+        /// Parameters: paths of keys of materials and point masses, such as body.material.young_modulus, or of bodies in joints of
+        /// stiffnesses, such as bushings[0].stiffness.rotation[2].
         #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
         parameters: Vec<String>,
         /// Standard deviation of the measured frequencies, relative to each, such as 0.01, of those that have none in the table.
@@ -680,6 +681,18 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         system.bodies.iter().for_each(tell_doubts);
         Ok(system)
     };
+    // A scene of one body, or of bodies in joints; of several that nothing ties one has to be named.
+    let read_one = |input: SceneInput, flexible: Option<usize>| -> Result<System, Box<dyn Error>> {
+        let mut system = input.clone().read_system()?;
+        if !system.has_connections() && system.bodies.len() > 1 {
+            system = input.read()?.into();
+        }
+        for scene in &mut system.bodies {
+            tell_doubts(scene);
+            scene.modes.flexible = flexible.map_or(scene.modes.flexible, Flexible::Count);
+        }
+        Ok(system)
+    };
     let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
     threads::start(cli.threads)?;
     let mut bar = Bar::new(json_errors);
@@ -963,12 +976,11 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Gradient { scene: SceneArgs { scene, json }, parameters, frequencies, flexible, output, files } => {
             output::require_file("--output", output.as_deref())?;
-            let mut scene = read(scene)?;
-            scene.modes.flexible = flexible.map_or(scene.modes.flexible, Flexible::Count);
-            let folder = folder(&scene, output)?;
+            let system = read_one(scene, flexible)?;
+            let folder = folder(&system.bodies[0], output)?;
             let settings = GradientSettings { parameters, frequencies };
-            outputs_of_scene(&scene, &builder, files.overwrite).claim(&gradient::files(&folder, &settings))?;
-            let report = gradient::gradient(&scene, &builder, &folder, &settings, |p| bar.build(p));
+            outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(&gradient::files(&folder, &settings))?;
+            let report = gradient::gradient(&system, &builder, &folder, &settings, |p| bar.build(p));
             let report = report.map_err(|error| match error {
                 GradientError::Build(error) => of_option(error.into(), flexible),
                 error => error.into(),
@@ -978,19 +990,18 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Fit { scene: SceneArgs { scene, json }, measured, parameters, deviation, flexible, output, files } => {
             output::require_file("--output", output.as_deref())?;
-            let mut scene = read(scene)?;
-            scene.modes.flexible = flexible.map_or(scene.modes.flexible, Flexible::Count);
+            let system = read_one(scene, flexible)?;
             if let Some(output) = &output {
-                let mut outputs = outputs_of_scene(&scene, &builder, files.overwrite);
+                let mut outputs = outputs_of_scenes(&system.bodies, &builder, files.overwrite);
                 if let Some(measured) = &measured {
                     outputs = outputs.and_input(measured);
                 }
                 outputs.claim_as(&Written::SCENE, output)?;
-                check_beside(&scene, output)?;
+                check_beside(&system.bodies[0], output)?;
             }
             let measured = measured.as_deref().map(Measured::read).transpose()?;
             let settings = FitSettings { parameters, measured, deviation };
-            let mut report = fit::fit(&scene, &builder, &settings, |p| bar.build(p)).map_err(|error| match error {
+            let mut report = fit::fit(&system, &builder, &settings, |p| bar.build(p)).map_err(|error| match error {
                 FitError::Build(error) => of_option(error.into(), flexible),
                 error => error.into(),
             })?;

@@ -120,8 +120,8 @@ fn trials(case: &Case, stated: bool) -> Result<Vec<Counted>, Box<dyn Error>> {
         measured: Some(table(case.modes)),
         deviation: stated.then_some(NOISE),
     };
-    let truth = Fit::new(&scene(case, 1.0)?, &Builder::default(), &settings, |_| ())?.frequencies()?;
-    let mut fit = Fit::new(&scene(case, START)?, &Builder::default(), &settings, |_| ())?;
+    let truth = Fit::new(&scene(case, 1.0)?.into(), &Builder::default(), &settings, |_| ())?.frequencies()?;
+    let mut fit = Fit::new(&scene(case, START)?.into(), &Builder::default(), &settings, |_| ())?;
     let mut lot = Lot(0x9e37_79b9_7f4a_7c15);
     let mut counted = vec![Counted::default(); case.parameters.len()];
     for _ in 0..TRIALS {

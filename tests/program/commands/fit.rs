@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::commands::gradient::{report, run, write_scene};
+use crate::commands::gradient::{report, run, write_scene, write_system};
 
 const E: &str = "body.material.young_modulus";
 const RHO: &str = "body.material.density";
@@ -111,4 +111,27 @@ fn what_the_frequencies_do_not_tell_is_refused_by_name() {
     std::fs::write(folder.path().join("test.csv"), "frequency,deviation\n100,-1\n").unwrap();
     refused(&[&table[..], &["--parameters", E]].concat(), 3, &["test.csv:2", "deviation"]);
     refused(&["--measured", "nowhere.csv", "--parameters", E], 3, &["nowhere.csv", "cannot be read"]);
+}
+
+/// Conserved: exact frequencies of bodies in joints give back the stiffnesses that they were computed with.
+#[test]
+fn exact_frequencies_give_back_the_stiffnesses_of_a_bushing() {
+    let folder = tempfile::tempdir().unwrap();
+    write_system(folder.path(), "");
+    let (turn, slide) = ("bushings[0].stiffness.rotation[2]", "bushings[0].stiffness.translation[1]");
+    let set = [format!("{turn}=1.5e5"), format!("{slide}=700.0")];
+    let found = report(folder.path(), &["modes", "system.toml", "--json", "--set", &set[0], "--set", &set[1]]);
+    let modes = found["systems"][0]["modes"].as_array().unwrap();
+    let frequencies = modes.iter().map(|mode| mode["frequency"].as_f64().unwrap()).filter(|f| *f > 0.0).take(8);
+    let lines: String = frequencies.map(|frequency| format!("{frequency:e}\n")).collect();
+    std::fs::write(folder.path().join("test.csv"), format!("frequency\n{lines}")).unwrap();
+    let parameters = format!("{turn},{slide}");
+    let asked = ["fit", "system.toml", "--measured", "test.csv", "--parameters", &parameters, "--json"];
+    let found = report(folder.path(), &asked);
+    for (i, expected) in [1.5e5, 700.0].into_iter().enumerate() {
+        assert!((value(&found, i) / expected - 1.0).abs() < 1e-7, "{}", value(&found, i));
+    }
+    std::fs::write(folder.path().join("test.csv"), "frequency,tip.x\n100,1\n200,1\n").unwrap();
+    let refused = run(folder.path(), &asked);
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("matched by their order"));
 }

@@ -499,8 +499,10 @@ impl Fault for CampbellError {
 impl Fault for GradientError {
     fn known(&self) -> Known {
         match self {
-            Self::Build(_) | Self::Write(_) => Known::default(),
-            Self::Frequencies { .. } => Kind::Usage.alone(),
+            Self::Build(_) | Self::System(_) | Self::Write(_) => Known::default(),
+            Self::Frequencies { .. } | Self::Stiffness { .. } | Self::Responses { .. } => Kind::Usage.alone(),
+            Self::Loaded { scene } => Kind::Refused.of(scene),
+            Self::Systems { scene, .. } => Kind::Input.of(scene),
         }
     }
 }
@@ -508,7 +510,8 @@ impl Fault for GradientError {
 impl Fault for FitError {
     fn known(&self) -> Known {
         match self {
-            Self::Build(_) | Self::Scene(_) | Self::Write(_) => Known::default(),
+            Self::Build(_) | Self::Scene(_) | Self::Gradient(_) | Self::Write(_) => Known::default(),
+            Self::Shapes { file } | Self::FewModes { file, .. } => Kind::Input.of(file),
             Self::NoTable | Self::NoParameters { .. } | Self::NoKey { .. } => Kind::Usage.alone(),
             Self::TooFew { file, .. } => Kind::Input.of(file),
             Self::SomeDeviations { file, line } => {

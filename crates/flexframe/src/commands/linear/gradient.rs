@@ -1,26 +1,29 @@
 //! `flexframe gradient`: rates of frequencies, effective masses and static answers with the numbers that a body is made with.
 
+mod error;
 mod report;
 mod responses;
+pub(crate) mod stiffness;
 mod table;
 
 use std::path::{Path, PathBuf};
 
 use model::{BuildError, BuildProgress, Builder, Parameter, RatesOf};
-use scene::Scene;
+use scene::System;
 use whole_file::write_whole;
 
+pub use error::GradientError;
 pub use report::{GradientReport, ParameterReport, StaticReport};
 pub use responses::ResponseReport;
 
 use crate::commands::linear::frequencies::Frequencies;
 use crate::commands::modes::unloaded_body;
 use crate::files::write_error::WriteError;
+use error::MAX_FREQUENCIES;
+use stiffness::{Stiffness, VariedSystem};
 
 const NAME: &str = "gradient.csv";
 const RESPONSES: &str = "gradient_frf.csv";
-/// The most frequencies.
-const MAX_FREQUENCIES: usize = 100_000;
 
 /// Settings of rates.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -31,41 +34,24 @@ pub struct GradientSettings {
     pub frequencies: Option<Frequencies>,
 }
 
-/// Rates that could not be found.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // the message of a variant says what its fields are
-pub enum GradientError {
-    /// The scene has none.
-    #[error("{0}")]
-    Build(#[from] BuildError),
-    /// The frequencies are no range.
-    #[error(
-        "frequencies {start}:{end}:{count}: expected start:end:count, cycles per time, with 0 ≤ start < end and a count of 2 to {MAX_FREQUENCIES}, e.g. 1:2000:200"
-    )]
-    Frequencies { start: f64, end: f64, count: usize },
-    /// The table cannot be written.
-    #[error("{0}")]
-    Write(#[from] WriteError),
-}
-
 /// The files that [`gradient`] writes to a folder.
 pub fn files(folder: &Path, settings: &GradientSettings) -> Vec<PathBuf> {
     let responses = settings.frequencies.map(|_| folder.join(RESPONSES));
     std::iter::once(folder.join(NAME)).chain(responses).collect()
 }
 
-/// Finds the rates of a scene, and writes `gradient.csv` to a folder, and `gradient_frf.csv` where responses are asked for.
+/// Finds the rates of a scene of one body, or of bodies in joints, and writes `gradient.csv` to a folder, and `gradient_frf.csv` where responses are asked for.
 ///
 /// # Errors
 /// [`GradientError`].
 pub fn gradient(
-    scene: &Scene,
+    system: &System,
     builder: &Builder,
     folder: &Path,
     settings: &GradientSettings,
     progress: impl FnMut(BuildProgress),
 ) -> Result<GradientReport, GradientError> {
-    let mut report = rates(scene, builder, settings, progress)?;
+    let mut report = rates(system, builder, settings, progress)?;
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let tables = [table::rows(&report), table::responses(&report)];
     for (path, text) in files(folder, settings).into_iter().zip(tables) {
@@ -80,7 +66,7 @@ pub fn gradient(
 /// # Errors
 /// [`GradientError`].
 pub fn rates(
-    scene: &Scene,
+    system: &System,
     builder: &Builder,
     settings: &GradientSettings,
     progress: impl FnMut(BuildProgress),
@@ -91,6 +77,16 @@ pub fn rates(
         }
         None => Vec::new(),
     };
+    let scene = &system.bodies[0];
+    if system.has_connections() {
+        if settings.frequencies.is_some() {
+            return Err(GradientError::Responses { scene: scene.path.clone() });
+        }
+        let parameters = Stiffness::named(system, &settings.parameters)?;
+        let varied = VariedSystem::new(system, builder, progress)?;
+        let found = varied.rates(system, &parameters)?;
+        return Ok(GradientReport::of_system(system, &parameters, found));
+    }
     let scene = &unloaded_body(scene).map_err(BuildError::from)?;
     let parameters = Parameter::named(scene, &settings.parameters).map_err(BuildError::from)?;
     let body = builder.varied(scene, progress)?;

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use model::{BuildError, Parameter};
+use model::BuildError;
 use scene::SceneError;
 
 use super::least_squares::{Fault, Unseen};
+use crate::commands::linear::gradient::GradientError;
 use crate::files::write_error::WriteError;
 
 /// Parameters that could not be fitted.
@@ -18,6 +19,19 @@ pub enum FitError {
     /// The table.
     #[error("{0}")]
     Scene(#[from] SceneError),
+    /// The system, or its rates.
+    #[error("{0}")]
+    Gradient(#[from] GradientError),
+    /// Shapes of a system.
+    #[error(
+        "{}: found shapes, expected frequencies alone: modes of bodies in joints are matched by their order\n = leave the shapes out, and put \
+         the lines in order",
+        file.display()
+    )]
+    Shapes { file: PathBuf },
+    /// More measured modes than vibrations.
+    #[error("{}: found {count} measured modes, expected at most {there}, the vibrations of the bodies\n = leave lines out, or keep more modes", file.display())]
+    FewModes { file: PathBuf, count: usize, there: usize },
     /// Nothing is measured.
     #[error(
         "no measured frequencies: found neither --measured nor `measured` in [modes] of the scene\n = name a CSV file with a column `frequency`: --measured test.csv"
@@ -56,8 +70,8 @@ pub enum FitError {
 }
 
 impl FitError {
-    pub(super) fn of_fault(fault: Fault<Self>, parameters: &[Parameter]) -> Self {
-        let name = |j: usize| parameters[j].name.clone();
+    pub(super) fn of_fault(fault: Fault<Self>, names: &[String]) -> Self {
+        let name = |j: usize| names[j].clone();
         match fault {
             Fault::Residuals(error) => error,
             Fault::Coordinates(Unseen::NoInfluence(j)) => Self::NoInfluence { name: name(j) },

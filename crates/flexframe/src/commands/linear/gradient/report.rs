@@ -7,13 +7,18 @@ use model::{BodyRates, Parameter, ParameterRates, VariedBody};
 use nalgebra::Vector3;
 use serde::Serialize;
 
+use scene::System;
+
 use super::responses::{self, ResponseReport};
+use super::stiffness::{Stiffness, SystemRates};
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 use crate::report::quantity;
 
+/// More modes than this do not fit a page; --json and the table have all.
+const SHOWN: usize = 30;
 /// A relative rate below which it is rounding.
-const NOTHING: f64 = 5e-8;
+const NOTHING: f64 = 5e-7;
 
 /// Report of `flexframe gradient`.
 #[derive(Debug, Clone, Serialize)]
@@ -127,6 +132,36 @@ impl GradientReport {
             files: Vec::new(),
         }
     }
+
+    /// Rates of the frequencies of bodies in joints.
+    pub(super) fn of_system(system: &System, parameters: &[Stiffness], found: SystemRates) -> Self {
+        let scene = &system.bodies[0];
+        let SystemRates { frequencies, repeated, rates } = found;
+        let of_parameter = |(parameter, rates): (&Stiffness, Vec<f64>)| {
+            let value = parameter.value(system);
+            ParameterReport {
+                name: parameter.name.clone(),
+                value,
+                relative: rates.iter().zip(&frequencies).map(|(rate, f)| value * rate / f).collect(),
+                frequencies: rates,
+                effective_masses: Vec::new(),
+                statics: Vec::new(),
+                responses: Vec::new(),
+            }
+        };
+        Self {
+            title: scene.title.clone(),
+            frequency_unit: frequency_unit(&scene.units.time),
+            repeated: repeated.into_iter().map(|group| [group.start + 1, group.end]).collect(),
+            effective_masses: Vec::new(),
+            statics: Vec::new(),
+            responses: Vec::new(),
+            response_frequencies: Vec::new(),
+            parameters: parameters.iter().zip(rates).map(of_parameter).collect(),
+            frequencies,
+            files: Vec::new(),
+        }
+    }
 }
 
 impl fmt::Display for GradientReport {
@@ -144,7 +179,7 @@ impl fmt::Display for GradientReport {
         writeln!(f, "\n  relative rates d ln f / d ln p: percent of a frequency for one percent of a parameter")?;
         write!(f, "  mode  frequency, {:<6}", self.frequency_unit)?;
         heads(f)?;
-        for (k, frequency) in self.frequencies.iter().enumerate() {
+        for (k, frequency) in self.frequencies.iter().enumerate().take(SHOWN) {
             write!(f, "\n  {:>4}  {frequency:>17.6}", k + 1)?;
             self.parameters.iter().try_for_each(|parameter| relative(f, parameter.relative[k]))?;
         }
