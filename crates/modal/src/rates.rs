@@ -19,7 +19,7 @@ use crate::statics::response::StaticAccuracy;
 
 /// Eigenvalues that are apart by less than this part are one.
 const REPEATED: f64 = 1e-8;
-/// Norm of the residual, relative to that at the beginning, at which a rate of a shape is found.
+/// Norm of the residual, relative to that of the forces, at which a rate of a shape is found.
 const TOLERANCE: f64 = 1e-10;
 /// Most iterations.
 const MAX_ITERATIONS: usize = 200;
@@ -141,8 +141,15 @@ impl Solver<'_> {
             Mat::from_fn(rigid.ncols(), count, |j, k| -of_rigid[(j, k)] / modes.mean_eigenvalue(&group_of[k]));
         let mut answer = tall::product(shapes.as_ref(), parts.as_ref());
         tall::multiply(answer.as_mut(), Accum::Add, rigid, rigid_parts.as_ref(), 1.0);
-        let lambda: Vec<f64> = group_of.iter().map(|group| modes.mean_eigenvalue(group)).collect();
-        answer += Beyond { solver: self, modes, shapes, m_shapes }.solve(&lambda, forces)?;
+        // The energy of the forces along known shapes, before they cancel: where all shapes are known, what is left is rounding.
+        let k_own = tall::inner(shapes.as_ref(), k_rate.as_ref());
+        let own: Vec<f64> = group_of.iter().map(|group| modes.mean_eigenvalue(group)).collect();
+        let energy = |k: usize| -> f64 {
+            let squared = |j: usize| k_own[(j, k)].powi(2) + (own[k] * m_own[(j, k)]).powi(2);
+            (0..natural).map(|j| squared(j) / lambda[j]).sum()
+        };
+        let energies: Vec<f64> = (0..count).map(energy).collect();
+        answer += Beyond { solver: self, modes, shapes, m_shapes }.solve(&own, &energies, forces)?;
         Ok(answer)
     }
 }
@@ -156,16 +163,17 @@ struct Beyond<'a> {
 }
 
 impl Beyond<'_> {
-    /// (K − λM)⁻¹ of what is left of forces (N×n), each with its λ.
-    fn solve(&self, lambda: &[f64], mut residual: Mat<f64>) -> Result<Mat<f64>, ModalError> {
+    /// (K − λM)⁻¹ of what is left of forces (N×n), each with its λ and with the energy of what it had along known shapes.
+    fn solve(&self, lambda: &[f64], energies: &[f64], mut residual: Mat<f64>) -> Result<Mat<f64>, ModalError> {
         self.balance(&mut residual);
         let (rows, columns) = (residual.nrows(), residual.ncols());
         let [mut answer, mut search] = [(); 2].map(|()| Mat::<f64>::zeros(rows, columns));
         let mut conditioned = self.conditioned(&residual)?;
         let mut squared = dots(&residual, &conditioned);
-        let (first, mut before) = (squared.clone(), vec![f64::INFINITY; columns]);
+        let whole: Vec<f64> = squared.iter().zip(energies).map(|(squared, energy)| squared + energy).collect();
+        let mut before = vec![f64::INFINITY; columns];
         for iteration in 0.. {
-            let left = |k: usize| if first[k] > 0.0 { (squared[k] / first[k]).max(0.0).sqrt() } else { 0.0 };
+            let left = |k: usize| if whole[k] > 0.0 { (squared[k] / whole[k]).max(0.0).sqrt() } else { 0.0 };
             let open: Vec<usize> = (0..columns).filter(|k| left(*k) > TOLERANCE).collect();
             let Some(column) = open.first().copied() else { break };
             if iteration == MAX_ITERATIONS || open.iter().any(|k| !squared[*k].is_finite()) {

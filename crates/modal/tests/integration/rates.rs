@@ -120,3 +120,24 @@ fn frequencies_go_with_the_root_of_stiffness_over_density() {
         }
     }
 }
+
+/// Conserved: φᵀMφ = 1 as the number grows, so 2 φᵀMφ' = −φᵀM'φ, also where all modes are known and nothing is left beside them.
+#[test]
+fn modal_masses_stay_where_all_modes_are_known() {
+    let mesh = block_mesh([10.0, 8.0, 7.0], [1; 3]);
+    let support = clamp(&mesh);
+    let body = Body::new(&mesh, STEEL);
+    let solver = body.held(&support);
+    let modes = solver.modes(solver.available(), |_| ()).unwrap();
+    let number = BodyNumber::Stretch(None, 1);
+    let matrices = MatrixRates::new(&mesh, &Materials::Uniform(STEEL), &[], &number).unwrap();
+    let [k, m] = matrices.products(&mesh, modes.shapes.as_ref()).unwrap();
+    let rates = modes.rates([k.subcols(0, 5), m.subcols(0, 5)]).unwrap();
+    let shapes = solver.shape_rates(&modes, &rates, [k.as_ref(), m.as_ref()]).unwrap();
+    let momenta = solver.mass().product(modes.shapes.subcols(0, 5));
+    for i in 0..5 {
+        let (of_shape, of_mass) =
+            (momenta.col(i).transpose() * shapes.col(i), modes.shapes.col(i).transpose() * m.col(i));
+        assert!((2.0 * of_shape + of_mass).abs() < 1e-9 * of_mass.abs(), "{i}: {of_shape} {of_mass}");
+    }
+}
