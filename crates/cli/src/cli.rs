@@ -14,10 +14,12 @@ use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, FailureReport, Kind};
 use flexframe::figures::{self, View};
+use flexframe::fit::{self, FitError, FitSettings};
 use flexframe::fmu::{self, FmuSettings};
 use flexframe::frequencies::Frequencies;
 use flexframe::frf::{self, FrfSettings};
 use flexframe::given_file::GivenFile;
+use flexframe::gradient::{self, GradientError, GradientSettings};
 use flexframe::hand_over::{self, Form};
 use flexframe::linearize::{self, LinearSettings, Reduction};
 use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_results, outputs_of_scene, outputs_of_scenes};
@@ -30,7 +32,7 @@ use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::system_modes::{self, AdviceOnSystems, ModesOfSystems};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
 use model::{BuildError, Builder, Cache};
-use scene::{Flexible, Scene, SceneError, System};
+use scene::{Flexible, Measured, Scene, SceneError, System};
 use slepc::files_of_folder;
 
 use crate::cli_error::{self, CliError};
@@ -356,6 +358,57 @@ enum Command {
         #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
         outputs: Vec<String>,
     },
+    /// Find the rates of frequencies, effective masses and static displacements with the numbers that a body is made with.
+    ///
+    /// They are exact, not differences (docs/method/gradients.md). Static displacements are those of the points of [output] under each load
+    /// of a body that is held. Of bodies in joints, the parameters are the stiffnesses of springs, bushings and joints.
+    Gradient {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Parameters: paths of keys, such as body.material.young_modulus or body.point_masses[0].mass, and thickness.AXIS or
+        /// thickness.GROUP.AXIS for a factor that stretches the mesh or a physical volume along x, y or z; of bodies in joints such as
+        /// springs[0].stiffness [default: all keys of materials and point masses, or all stiffnesses].
+        #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+        parameters: Vec<String>,
+        /// Frequencies, cycles per time, at which the responses of points to the loads have rates, too: from start to end, both included,
+        /// count in all. They are sums over the modes that are kept, with the damping of the scene.
+        #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies)]
+        frequencies: Option<Frequencies>,
+        /// Number of flexible modes, instead of the scene's.
+        #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
+        flexible: Option<usize>,
+        /// Folder for gradient.csv and, of responses, gradient_frf.csv [default: out/<name of the scene file>].
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
+    },
+    /// Fit parameters of a body to measured frequencies, with intervals of confidence.
+    ///
+    /// Modes are matched by their shapes at points of [output] where the table has them, and else by their order. The intervals have the
+    /// true value in them with 95 % confidence: by the stated deviations of the frequencies, or by what is left of them.
+    Fit {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// CSV file with a column `frequency`, and if wanted `deviation` and POINT.x, POINT.y, POINT.z [default: `measured` in [modes]].
+        #[arg(long, value_name = "TABLE")]
+        measured: Option<PathBuf>,
+        /// Parameters: paths of keys of materials and point masses, such as body.material.young_modulus, or of bodies in joints of
+        /// stiffnesses, such as bushings[0].stiffness.rotation[2].
+        #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+        parameters: Vec<String>,
+        /// Standard deviation of the measured frequencies, relative to each, such as 0.01, of those that have none in the table.
+        #[arg(long, value_name = "PART", value_parser = positive)]
+        deviation: Option<f64>,
+        /// Number of flexible modes, instead of the scene's.
+        #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
+        flexible: Option<usize>,
+        /// The scene with the fitted parameters, in the folder of the scene file [default: what to set is printed].
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
+    },
     /// Run the paper's plate and compare it with the paper: every figure, and a report.
     Paper {
         #[command(flatten)]
@@ -647,6 +700,18 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         system.bodies.iter().for_each(tell_doubts);
         Ok(system)
     };
+    // A scene of one body, or of bodies in joints; of several that nothing ties one has to be named.
+    let read_one = |input: SceneInput, flexible: Option<usize>| -> Result<System, Box<dyn Error>> {
+        let mut system = input.clone().read_system()?;
+        if !system.has_connections() && system.bodies.len() > 1 {
+            system = input.read()?.into();
+        }
+        for scene in &mut system.bodies {
+            tell_doubts(scene);
+            scene.modes.flexible = flexible.map_or(scene.modes.flexible, Flexible::Count);
+        }
+        Ok(system)
+    };
     let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
     threads::start(cli.threads)?;
     let mut bar = Bar::new(json_errors);
@@ -931,6 +996,43 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             let system = read_system(scene)?;
             let settings = ShockSettings { linear: about.settings(vec![input], outputs) };
             let report = shock::shock(&system, &builder, &table, &settings, |p| bar.build(p))?;
+            drop(bar);
+            output::print(&report, json)
+        }
+        Command::Gradient { scene: SceneArgs { scene, json }, parameters, frequencies, flexible, output, files } => {
+            output::require_file("--output", output.as_deref())?;
+            let system = read_one(scene, flexible)?;
+            let folder = folder(&system.bodies[0], output)?;
+            let settings = GradientSettings { parameters, frequencies };
+            outputs_of_scenes(&system.bodies, &builder, files.overwrite).claim(&gradient::files(&folder, &settings))?;
+            let report = gradient::gradient(&system, &builder, &folder, &settings, |p| bar.build(p));
+            let report = report.map_err(|error| match error {
+                GradientError::Build(error) => of_option(error.into(), flexible),
+                error => error.into(),
+            })?;
+            drop(bar);
+            output::print(&report, json)
+        }
+        Command::Fit { scene: SceneArgs { scene, json }, measured, parameters, deviation, flexible, output, files } => {
+            output::require_file("--output", output.as_deref())?;
+            let system = read_one(scene, flexible)?;
+            if let Some(output) = &output {
+                let mut outputs = outputs_of_scenes(&system.bodies, &builder, files.overwrite);
+                if let Some(measured) = &measured {
+                    outputs = outputs.and_input(measured);
+                }
+                outputs.claim_as(&Written::SCENE, output)?;
+                check_beside(&system.bodies[0], output)?;
+            }
+            let measured = measured.as_deref().map(Measured::read).transpose()?;
+            let settings = FitSettings { parameters, measured, deviation };
+            let mut report = fit::fit(&system, &builder, &settings, |p| bar.build(p)).map_err(|error| match error {
+                FitError::Build(error) => of_option(error.into(), flexible),
+                error => error.into(),
+            })?;
+            if let Some(output) = &output {
+                report.write_scene(output)?;
+            }
             drop(bar);
             output::print(&report, json)
         }
@@ -1267,6 +1369,23 @@ fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Error> {
         }
         (error, _) => error.into(),
     }
+}
+
+/// Refuses a scene in another folder than that of the scene which it is made of: its paths are relative to it.
+fn check_beside(scene: &Scene, output: &Path) -> Result<(), CliError> {
+    let folder = |path: &Path| {
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        parent.canonicalize().ok()
+    };
+    if folder(&scene.path).is_some_and(|own| folder(output) == Some(own)) {
+        return Ok(());
+    }
+    Err(CliError::Option {
+        option: "--output",
+        found: format!("{}, in another folder than the scene", output.display()),
+        expected: "a file beside the scene, since the paths in it are relative to its folder".to_owned(),
+        help: "leave --output out, and set the values with --set, or name a file beside the scene".to_owned(),
+    })
 }
 
 /// The folder asked for, or one named after the scene.

@@ -33,7 +33,7 @@ pub mod report;
 mod rows;
 pub mod surface;
 pub mod trust;
-pub use commands::linear::{frequencies, frf, linearize, psd, shock, spectra, srs};
+pub use commands::linear::{fit, frequencies, frf, gradient, linearize, psd, shock, spectra, srs};
 pub use commands::pictures::{animation, html_report, mode_shapes};
 pub use commands::{
     advise, campbell, check, cost, export, fmu, hand_over, modes, new_scene, paper, run, sweep, system_modes,

@@ -15,6 +15,7 @@
 //! | `model` | the reduced body with its points, markers and loads |
 //! | `reference` | the bent body that modes are about |
 //! | `full` | the full nonlinear body of the scene, and the check of a model's state by it |
+//! | `gradient` | rates of frequencies and answers with the numbers of a body |
 //! | `tie` | markers, and the systems of the bodies that joints connect |
 
 #![forbid(unsafe_code)]
@@ -25,6 +26,7 @@ mod building;
 mod cache;
 mod error;
 mod full;
+mod gradient;
 mod load;
 mod mesh;
 mod model;
@@ -46,6 +48,9 @@ pub use full::acting::MarkerForce;
 pub use full::check::{Checker, FrequencyCheck, PointCheck, StateCheck};
 pub use full::mends::{ErrorDirection, ErrorPart, Mend};
 pub use full::{FullError, FullModel};
+pub use gradient::parameter::Parameter;
+pub use gradient::rates::{BodyRates, ParameterRates, RatesOf, Residues};
+pub use gradient::varied::VariedBody;
 pub use mesh::doubt::{Doubt, doubts};
 pub use mesh::given::MatrixChecks;
 pub use model::rest::{Answer, AtRest, HeldSlopes};

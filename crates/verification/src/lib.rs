@@ -6,3 +6,4 @@ pub mod check;
 pub mod nonlinear;
 pub mod stability;
 pub mod systems;
+pub mod trials;

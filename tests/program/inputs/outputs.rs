@@ -55,7 +55,7 @@ const fn case(
     Case { arguments, writes, reads, to_the_end: true }
 }
 
-const CASES: [Case; 22] = [
+const CASES: [Case; 24] = [
     case(&["new", "bar.msh", "-o", "new.toml"], &["new.toml"], &["bar.msh"]),
     case(&["run", "bar.toml", "-o", "o"], &["o/bar.h5"], &OF_SCENE),
     case(&["reduce", "bar.toml", "-o", "o/b.h5"], &["o/b.h5"], &OF_SCENE),
@@ -105,6 +105,25 @@ const CASES: [Case; 22] = [
         &["bar.toml", "bar.msh", "pulse.csv", "spectra.csv"],
     ),
     case(
+        &["gradient", "bar.toml", "--frequencies", "1:2:2", "-o", "o"],
+        &["o/gradient.csv", "o/gradient_frf.csv"],
+        &OF_SCENE,
+    ),
+    case(
+        &[
+            "fit",
+            "bar.toml",
+            "--measured",
+            "test.csv",
+            "--parameters",
+            "body.material.young_modulus",
+            "-o",
+            "fitted.toml",
+        ],
+        &["fitted.toml"],
+        &["bar.toml", "bar.msh", "pulse.csv", "test.csv"],
+    ),
+    case(
         &["srs", "pulse.csv", "--frequencies", "1e3:1e5:5", "-o", "o"],
         &["o/srs.csv", "o/srs.svg", "o/srs.pdf", "o/srs.png"],
         &["pulse.csv"],
@@ -150,6 +169,7 @@ impl Desk {
             ),
             ("pulse.csv", "0, 0\n1e-4, 1\n2e-4, 0\n"),
             ("spectra.csv", "frequency,loads[0]\n10,1\n100,1\n"),
+            ("test.csv", "frequency\n1000\n"),
             ("sweep.toml", SWEEP),
             ("lib.so", &format!("{} fmi2DoStep", marker())),
         ] {

@@ -6,6 +6,7 @@ pub(crate) mod geometric_stiffness;
 pub(crate) mod mass;
 pub(crate) mod mean_rotation;
 pub(crate) mod point_masses;
+pub(crate) mod rates;
 pub(crate) mod second_order;
 pub(crate) mod stiffness;
 pub(crate) mod stress;

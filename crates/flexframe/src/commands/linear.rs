@@ -1,8 +1,10 @@
-//! Linear answers: state spaces, frequency responses, random responses, shock response spectra.
+//! Linear answers: state spaces, frequency responses, random responses, shock response spectra; rates and fits.
 
 mod curves;
+pub mod fit;
 pub mod frequencies;
 pub mod frf;
+pub mod gradient;
 pub mod linearize;
 mod names;
 pub mod psd;

@@ -16,7 +16,7 @@ use crate::plausible;
 pub use carried::CarriedReport;
 pub use mac::{MacReport, mac};
 pub use scenes::require_surface;
-pub(crate) use scenes::{require_flexible, unloaded};
+pub(crate) use scenes::{require_flexible, unloaded, unloaded_body};
 pub use strain_energy::{EnergyPart, StrainEnergyReport};
 
 use crate::report::{BodyReport, MeshReport, Times, size_and_mass};

@@ -27,6 +27,8 @@ use crate::commands::check::CheckError;
 use crate::commands::cost::CostError;
 use crate::commands::export::ExportError;
 use crate::commands::fmu::FmuError;
+use crate::commands::linear::fit::FitError;
+use crate::commands::linear::gradient::GradientError;
 use crate::commands::linear::linearize::LinearizeError;
 use crate::commands::linear::psd::PsdError;
 use crate::commands::linear::shock::ShockResponseError;
@@ -93,7 +95,7 @@ trait Fault: Error {
 }
 
 /// All of them.
-const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 38] = [
+const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 40] = [
     known_by::<io::Error>,
     known_by::<OutOfMemory>,
     known_by::<SceneError>,
@@ -132,6 +134,8 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 38] = [
     known_by::<PaperError>,
     known_by::<SweepError>,
     known_by::<SrsError>,
+    known_by::<FitError>,
+    known_by::<GradientError>,
 ];
 
 /// What an error of this type knows, in a box or not.
@@ -490,6 +494,33 @@ impl Fault for CampbellError {
             Self::Full { scene, .. } | Self::Bent { scene, .. } => Kind::Run.of(scene),
             Self::NoAxis { scene, .. } | Self::NoFullBody { scene } => Kind::Usage.of(scene),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
+        }
+    }
+}
+
+impl Fault for GradientError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Build(_) | Self::System(_) | Self::Write(_) => Known::default(),
+            Self::Frequencies { .. } | Self::Stiffness { .. } | Self::Responses { .. } => Kind::Usage.alone(),
+            Self::Loaded { scene } => Kind::Refused.of(scene),
+            Self::Systems { scene, .. } => Kind::Input.of(scene),
+        }
+    }
+}
+
+impl Fault for FitError {
+    fn known(&self) -> Known {
+        match self {
+            Self::Build(_) | Self::Scene(_) | Self::Gradient(_) | Self::Write(_) => Known::default(),
+            Self::Shapes { file } | Self::FewModes { file, .. } => Kind::Input.of(file),
+            Self::NoTable | Self::NoParameters { .. } | Self::NoKey { .. } => Kind::Usage.alone(),
+            Self::TooFew { file, .. } => Kind::Input.of(file),
+            Self::SomeDeviations { file, line } => {
+                Kind::Input.with(Details { line: Some(*line), ..Details::of_file(file) })
+            }
+            Self::NoInfluence { .. } | Self::Apart { .. } => Kind::Refused.alone(),
+            Self::NotFound { .. } => Kind::Run.alone(),
         }
     }
 }

@@ -5,6 +5,7 @@ mod bodies;
 mod held;
 mod modes;
 mod participation;
+mod rates;
 mod reduced_body;
 mod refusals;
 mod rigid_body;

@@ -222,7 +222,7 @@ pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, B
 }
 
 /// The loads that may act, with their numbers in the scene.
-fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
+pub(crate) fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
     let with_gravity = scene.effects.choices[Effect::Gravity] != Choice::Off;
     scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !is_gravity(load))
 }

@@ -14,14 +14,21 @@ const SEEN: f64 = 0.01;
 /// Rigid shapes at a point, before the flexible ones.
 const RIGID: usize = 6;
 
+/// Shapes of natural modes, by which measured ones are matched.
+pub(crate) struct Seen<'a> {
+    /// Number of natural modes.
+    pub natural: usize,
+    /// Names of the points of the output.
+    pub points: Vec<&'a str>,
+    /// Displacement of a point, by its number, along an axis in a mode.
+    pub displacement: &'a dyn Fn(usize, usize, usize) -> f64,
+    /// The largest displacement in each mode.
+    pub peaks: &'a [f64],
+}
+
 /// The modes that take the numbers of the measured ones, by number from 0.
-fn matched(
-    scene: &Scene,
-    measured: &Measured,
-    natural: usize,
-    points: &[(String, PointShapes)],
-    peaks: &[f64],
-) -> Result<Vec<usize>, BuildError> {
+pub(crate) fn matched(scene: &Scene, measured: &Measured, seen: &Seen<'_>) -> Result<Vec<usize>, BuildError> {
+    let natural = seen.natural;
     if measured.places.is_empty() {
         if measured.modes.len() <= natural {
             return Ok((0..measured.modes.len()).collect());
@@ -33,20 +40,19 @@ fn matched(
     // Rows of the shapes at the places: a list of the modes for each.
     let mut rows = Vec::new();
     for (name, axis) in &measured.places {
-        let Some((_, shapes)) = points.iter().find(|(point, _)| point == name) else {
-            let expected =
-                format!("one of {}", points.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", "));
+        let Some(point) = seen.points.iter().position(|point| point == name) else {
+            let expected = format!("one of {}", seen.points.join(", "));
             let help = "give the point in [output] `points`";
             return Err(scene.refuse(KEY, format!("a shape at the point `{name}`"), expected, help).into());
         };
-        rows.push(shapes.columns()[RIGID..RIGID + natural].iter().map(|shape| shape[*axis]).collect::<Vec<f64>>());
+        rows.push((0..natural).map(|k| (seen.displacement)(point, *axis, k)).collect::<Vec<f64>>());
     }
     let norm = |k: usize| rows.iter().map(|row| row[k].powi(2)).sum::<f64>();
     let mac = |mode: &MeasuredMode, k: usize| {
         let product: f64 = rows.iter().zip(&mode.shape).map(|(row, value)| row[k] * value).sum();
         let norms = norm(k) * mode.shape.iter().map(|value| value * value).sum::<f64>();
         // A mode that hardly moves there is not seen: its shape at the places is little more than rounding.
-        let is_seen = norm(k).sqrt() > SEEN * peaks[k];
+        let is_seen = norm(k).sqrt() > SEEN * seen.peaks[k];
         if is_seen && norms > 0.0 { product.powi(2) / norms } else { 0.0 }
     };
     let mut taken: Vec<usize> = Vec::new();
@@ -86,7 +92,13 @@ pub(crate) fn as_measured(
             .refuse(KEY, found, "modes that are small", "set `large_deflection = false` in [effects]")
             .into());
     }
-    let modes = matched(scene, measured, body.natural_modes, points, peaks)?;
+    let displacement = |point: usize, axis: usize, mode: usize| {
+        let (_, shapes) = &points[point];
+        shapes.columns()[RIGID + mode][axis]
+    };
+    let names = points.iter().map(|(name, _)| name.as_str()).collect();
+    let seen = Seen { natural: body.natural_modes, points: names, displacement: &displacement, peaks };
+    let modes = matched(scene, measured, &seen)?;
     let mut circular_frequencies = body.circular_frequencies.clone();
     for (k, mode) in modes.into_iter().zip(&measured.modes) {
         circular_frequencies[k] = std::f64::consts::TAU * mode.frequency;

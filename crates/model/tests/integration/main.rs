@@ -2,6 +2,7 @@
 
 mod auto;
 mod damping;
+mod gradient;
 mod histories;
 mod hostile_ties;
 mod kept;

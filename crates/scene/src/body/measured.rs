@@ -20,6 +20,8 @@ pub struct MeasuredMode {
     pub line: usize,
     /// Frequency > 0, cycles per time.
     pub frequency: f64,
+    /// Standard deviation of the frequency, > 0, where the table states it.
+    pub deviation: Option<f64>,
     /// Damping ratio ≥ 0; `None` leaves that of the scene.
     pub damping_ratio: Option<f64>,
     /// The shape at the places, in any scale.

@@ -1,20 +1,25 @@
 //! The rules on tables of measured modes.
 
+use std::io::Read;
 use std::path::Path;
 
 use crate::body::measured::{Measured, MeasuredMode};
 use crate::body::modes::Flexible;
 use crate::check::Check;
 use crate::error::SceneError;
+use crate::text::ordinary_file::open_ordinary;
 use crate::text::place::Place;
+use crate::text::shorten::shorten;
 
 const KEY: &str = "modes.measured";
-const HEAD: &str =
-    "columns `frequency`, `damping` and, for shapes, `POINT.x`, `POINT.y`, `POINT.z` of points of the output";
+const HEAD: &str = "columns `frequency`, `deviation`, `damping` and, for shapes, `POINT.x`, `POINT.y`, `POINT.z` of points of the output";
+/// Bytes of a table at the most.
+const LONGEST: u64 = 1 << 24;
 
 /// A column of the table.
 enum Column {
     Frequency,
+    Deviation,
     Damping,
     Shape(usize),
 }
@@ -29,6 +34,26 @@ impl Check<'_> {
             self.not_more_than_modes(KEY, measured.modes.len(), flexible)?;
         }
         Ok(measured)
+    }
+}
+
+impl Measured {
+    /// The measured modes of a file that no scene names.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the line of the file.
+    pub fn read(file: &Path) -> Result<Self, SceneError> {
+        let mut text = String::new();
+        let read = open_ordinary(file).and_then(|opened| opened.take(LONGEST + 1).read_to_string(&mut text));
+        let refuse = |found: String| {
+            let help = "name a CSV file in UTF-8: a line of names, then a line for each measured mode";
+            Err(Place::unseen(file, 1, KEY.to_owned()).refuse(found, HEAD, help))
+        };
+        match read {
+            Err(cause) => refuse(format!("a table that cannot be read: {}: {cause}", shorten(&file.to_string_lossy()))),
+            Ok(length) if length as u64 > LONGEST => refuse(format!("a table of more than {LONGEST} bytes")),
+            Ok(_) => parse(&text, file),
+        }
     }
 }
 
@@ -48,6 +73,7 @@ fn parse(text: &str, file: &Path) -> Result<Measured, SceneError> {
             let place = name.rsplit_once('.').and_then(|(point, of)| Some((point.to_owned(), axis(of)?)));
             columns.push(match (name, place) {
                 ("frequency", _) => Column::Frequency,
+                ("deviation", _) => Column::Deviation,
                 ("damping", _) => Column::Damping,
                 (_, Some(place)) => {
                     places.push(place);
@@ -59,6 +85,7 @@ fn parse(text: &str, file: &Path) -> Result<Measured, SceneError> {
         let count = |is: fn(&Column) -> bool| columns.iter().filter(|column| is(column)).count();
         let twice = (1..places.len()).find(|i| places[..*i].contains(&places[*i]));
         if count(|column| matches!(column, Column::Frequency)) != 1
+            || count(|column| matches!(column, Column::Deviation)) > 1
             || count(|column| matches!(column, Column::Damping)) > 1
             || twice.is_some()
         {
@@ -77,7 +104,8 @@ fn parse(text: &str, file: &Path) -> Result<Measured, SceneError> {
             let found = format!("{} field(s) in the line", fields.len());
             return refuse(line, found, &format!("{}, one for each column", columns.len()), "correct the line");
         }
-        let mut mode = MeasuredMode { line, frequency: 0.0, damping_ratio: None, shape: vec![0.0; places.len()] };
+        let shape = vec![0.0; places.len()];
+        let mut mode = MeasuredMode { line, frequency: 0.0, deviation: None, damping_ratio: None, shape };
         for (column, field) in columns.iter().zip(&fields) {
             let number = field.parse().ok().filter(|number: &f64| number.is_finite());
             match (column, number) {
@@ -89,6 +117,12 @@ fn parse(text: &str, file: &Path) -> Result<Measured, SceneError> {
                         "a number above 0, cycles per time",
                         "correct it",
                     );
+                }
+                (Column::Deviation, None) if field.is_empty() => {}
+                (Column::Deviation, Some(deviation)) if deviation > 0.0 => mode.deviation = Some(deviation),
+                (Column::Deviation, _) => {
+                    let expected = "a standard deviation of the frequency above 0, cycles per time, or nothing";
+                    return refuse(line, format!("the deviation `{field}`"), expected, "correct it");
                 }
                 (Column::Damping, None) if field.is_empty() => {}
                 (Column::Damping, Some(ratio)) if ratio >= 0.0 => mode.damping_ratio = Some(ratio),

@@ -15,6 +15,19 @@ pub(crate) fn unloaded(scene: &Scene) -> Scene {
     scene
 }
 
+/// A scene of which the rates of a body alone are asked.
+///
+/// # Errors
+/// The refusal of a body that others hold.
+pub(crate) fn unloaded_body(scene: &Scene) -> Result<Scene, SceneError> {
+    if scene.tied {
+        let found = "a body that joints, springs or bushings hold, whose frequencies are those of the whole";
+        let help = "take what ties the body out of the scene, and hold it by [[constraints]]";
+        return Err(scene.refuse("body", found, "a body that moves alone", help));
+    }
+    Ok(unloaded(scene))
+}
+
 /// The mesh and the modes of a body that has flexible ones.
 ///
 /// # Errors

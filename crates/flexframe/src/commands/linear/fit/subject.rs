@@ -1,0 +1,133 @@
+//! What is fitted: numbers of a body, or stiffnesses of a system.
+
+use fem_tet10::BodyNumber;
+use model::{BuildError, BuildProgress, Builder, Parameter, RatesOf, VariedBody};
+use scene::{Measured, Scene, System};
+
+use super::error::FitError;
+use crate::commands::linear::gradient::stiffness::{Stiffness, VariedSystem};
+use crate::commands::modes::unloaded_body;
+
+/// The limits within which Poisson's ratio is searched.
+const POISSON: [f64; 2] = [-0.95, 0.499];
+/// Largest logarithm of a ratio to the first value.
+const FAR: f64 = 20.0;
+
+/// A body or a system with its parameters.
+pub(super) enum Subject {
+    Body(Box<VariedBody>, Vec<Parameter>),
+    System(Box<VariedSystem>, Vec<Stiffness>),
+}
+
+/// Frequencies of the modes that were measured, their rates with the coordinates by parameter, and their numbers from 0.
+pub(super) struct Found {
+    pub frequencies: Vec<f64>,
+    pub rates: Vec<Vec<f64>>,
+    pub modes: Vec<usize>,
+}
+
+impl Subject {
+    pub fn new(
+        system: &System,
+        builder: &Builder,
+        names: &[String],
+        measured: &Measured,
+        progress: impl FnMut(BuildProgress),
+    ) -> Result<Self, FitError> {
+        if system.has_connections() {
+            let all = || Stiffness::all(system).into_iter().map(|stiffness| stiffness.name).collect();
+            check(names, all, measured)?;
+            if !measured.places.is_empty() {
+                return Err(FitError::Shapes { file: measured.file.clone() });
+            }
+            let parameters = Stiffness::named(system, names)?;
+            return Ok(Self::System(Box::new(VariedSystem::new(system, builder, progress)?), parameters));
+        }
+        let scene = &unloaded_body(&system.bodies[0]).map_err(BuildError::from)?;
+        let known = Parameter::all(scene).map_err(BuildError::from)?;
+        check(names, || known.iter().map(|parameter| parameter.name.clone()).collect(), measured)?;
+        let parameters = Parameter::named(scene, names).map_err(BuildError::from)?;
+        if let Some(parameter) = parameters.iter().find(|parameter| !parameter.is_key()) {
+            return Err(FitError::NoKey { name: parameter.name.clone() });
+        }
+        Ok(Self::Body(Box::new(builder.varied(scene, progress)?), parameters))
+    }
+
+    pub fn names(&self) -> Vec<String> {
+        match self {
+            Self::Body(_, parameters) => parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+            Self::System(_, parameters) => parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+        }
+    }
+
+    pub fn scene(&self) -> &Scene {
+        match self {
+            Self::Body(body, _) => body.scene(),
+            Self::System(varied, _) => &varied.system.bodies[0],
+        }
+    }
+
+    /// The value of a parameter at a coordinate: the logarithm of its ratio to the first value, or of a Poisson's ratio the difference.
+    pub fn value(&self, i: usize, x: f64) -> f64 {
+        match self {
+            Self::Body(body, parameters) => {
+                let first = parameters[i].value(body.body());
+                if self.is_plain(i) { first + x } else { first * x.exp() }
+            }
+            Self::System(varied, parameters) => parameters[i].value(&varied.system) * x.exp(),
+        }
+    }
+
+    /// True within the limits of the search.
+    pub fn is_within(&self, i: usize, x: f64) -> bool {
+        if self.is_plain(i) { (POISSON[0]..=POISSON[1]).contains(&self.value(i, x)) } else { x.abs() < FAR }
+    }
+
+    fn is_plain(&self, i: usize) -> bool {
+        matches!(self, Self::Body(_, parameters) if matches!(parameters[i].number, BodyNumber::PoissonRatio(_)))
+    }
+
+    /// The frequencies at coordinates.
+    pub fn found(&self, x: &[f64], measured: &Measured) -> Result<Found, FitError> {
+        let values: Vec<f64> = x.iter().enumerate().map(|(i, x)| self.value(i, *x)).collect();
+        let (frequencies, rates, modes) = match self {
+            Self::Body(varied, parameters) => {
+                let mut body = varied.body().clone();
+                parameters.iter().zip(&values).for_each(|(parameter, value)| parameter.set(&mut body, *value));
+                let found = varied.rates(&body, parameters, RatesOf::Frequencies)?;
+                let modes = varied.matched(measured, &found)?;
+                let rates: Vec<Vec<f64>> = found.rates.into_iter().map(|rates| rates.frequencies).collect();
+                (found.frequencies, rates, modes)
+            }
+            Self::System(varied, parameters) => {
+                let mut system = varied.system.clone();
+                parameters.iter().zip(&values).for_each(|(parameter, value)| parameter.set(&mut system, *value));
+                let found = varied.rates(&system, parameters)?;
+                let (count, there) = (measured.modes.len(), found.frequencies.len());
+                if count > there {
+                    return Err(FitError::FewModes { file: measured.file.clone(), count, there });
+                }
+                (found.frequencies, found.rates, (0..count).collect())
+            }
+        };
+        let slope = |i: usize| if self.is_plain(i) { 1.0 } else { values[i] };
+        let of_modes = |(i, rates): (usize, Vec<f64>)| modes.iter().map(|k| slope(i) * rates[*k]).collect();
+        Ok(Found {
+            frequencies: modes.iter().map(|k| frequencies[*k]).collect(),
+            rates: rates.into_iter().enumerate().map(of_modes).collect(),
+            modes,
+        })
+    }
+}
+
+/// Refuses a fit without parameters, and one of more than there are frequencies.
+fn check(names: &[String], all: impl Fn() -> Vec<String>, measured: &Measured) -> Result<(), FitError> {
+    if names.is_empty() {
+        return Err(FitError::NoParameters { names: all() });
+    }
+    let (count, unknowns) = (measured.modes.len(), names.len());
+    if unknowns > count {
+        return Err(FitError::TooFew { file: measured.file.clone(), count, unknowns, names: names.to_vec() });
+    }
+    Ok(())
+}

@@ -1,0 +1,95 @@
+//! `flexframe gradient`: rates of frequencies, effective masses and static answers with the numbers that a body is made with.
+
+mod error;
+mod report;
+mod responses;
+pub(crate) mod stiffness;
+mod table;
+
+use std::path::{Path, PathBuf};
+
+use model::{BuildError, BuildProgress, Builder, Parameter, RatesOf};
+use scene::System;
+use whole_file::write_whole;
+
+pub use error::GradientError;
+pub use report::{GradientReport, ParameterReport, StaticReport};
+pub use responses::ResponseReport;
+
+use crate::commands::linear::frequencies::Frequencies;
+use crate::commands::modes::unloaded_body;
+use crate::files::write_error::WriteError;
+use error::MAX_FREQUENCIES;
+use stiffness::{Stiffness, VariedSystem};
+
+const NAME: &str = "gradient.csv";
+const RESPONSES: &str = "gradient_frf.csv";
+
+/// Settings of rates.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct GradientSettings {
+    /// Names of the parameters; without any, all keys of materials and point masses.
+    pub parameters: Vec<String>,
+    /// Frequencies of the responses whose rates are wanted, too.
+    pub frequencies: Option<Frequencies>,
+}
+
+/// The files that [`gradient`] writes to a folder.
+pub fn files(folder: &Path, settings: &GradientSettings) -> Vec<PathBuf> {
+    let responses = settings.frequencies.map(|_| folder.join(RESPONSES));
+    std::iter::once(folder.join(NAME)).chain(responses).collect()
+}
+
+/// Finds the rates of a scene of one body, or of bodies in joints, and writes `gradient.csv` to a folder, and `gradient_frf.csv` where responses are asked for.
+///
+/// # Errors
+/// [`GradientError`].
+pub fn gradient(
+    system: &System,
+    builder: &Builder,
+    folder: &Path,
+    settings: &GradientSettings,
+    progress: impl FnMut(BuildProgress),
+) -> Result<GradientReport, GradientError> {
+    let mut report = rates(system, builder, settings, progress)?;
+    std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
+    let tables = [table::rows(&report), table::responses(&report)];
+    for (path, text) in files(folder, settings).into_iter().zip(tables) {
+        write_whole(&path, text).map_err(WriteError::of(&path))?;
+        report.files.push(path);
+    }
+    Ok(report)
+}
+
+/// The same without files.
+///
+/// # Errors
+/// [`GradientError`].
+pub fn rates(
+    system: &System,
+    builder: &Builder,
+    settings: &GradientSettings,
+    progress: impl FnMut(BuildProgress),
+) -> Result<GradientReport, GradientError> {
+    let frequencies = match settings.frequencies {
+        Some(asked @ Frequencies { start, end, count }) => {
+            asked.evenly(MAX_FREQUENCIES).ok_or(GradientError::Frequencies { start, end, count })?
+        }
+        None => Vec::new(),
+    };
+    let scene = &system.bodies[0];
+    if system.has_connections() {
+        if settings.frequencies.is_some() {
+            return Err(GradientError::Responses { scene: scene.path.clone() });
+        }
+        let parameters = Stiffness::named(system, &settings.parameters)?;
+        let varied = VariedSystem::new(system, builder, progress)?;
+        let found = varied.rates(system, &parameters)?;
+        return Ok(GradientReport::of_system(system, &parameters, found));
+    }
+    let scene = &unloaded_body(scene).map_err(BuildError::from)?;
+    let parameters = Parameter::named(scene, &settings.parameters).map_err(BuildError::from)?;
+    let body = builder.varied(scene, progress)?;
+    let found = body.rates(body.body(), &parameters, RatesOf::All)?;
+    Ok(GradientReport::new(&body, &parameters, &found, frequencies))
+}

@@ -1,0 +1,51 @@
+//! Errors of rates.
+
+use std::path::PathBuf;
+
+use model::BuildError;
+
+use crate::commands::system_modes::SystemModesError;
+use crate::files::write_error::WriteError;
+
+/// The most frequencies of responses.
+pub(super) const MAX_FREQUENCIES: usize = 100_000;
+
+/// Rates that could not be found.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the message of a variant says what its fields are
+pub enum GradientError {
+    /// The scene has none.
+    #[error("{0}")]
+    Build(#[from] BuildError),
+    /// The system of its bodies cannot be put together.
+    #[error("{0}")]
+    System(#[from] SystemModesError),
+    /// A name that is none of a stiffness, or is named twice.
+    #[error(
+        "found {name}, expected {expected}\n = name each once; of bodies in joints the stiffnesses are the parameters that frequencies have \
+         rates with"
+    )]
+    Stiffness { name: String, expected: String },
+    /// A system whose place depends on its stiffnesses.
+    #[error(
+        "{}: found bodies that forces deform at the start, whose vibrations follow the stiffness in two ways\n = take the loads and \
+         preloads out, and place the bodies so that springs have no force",
+        scene.display()
+    )]
+    Loaded { scene: PathBuf },
+    /// Several systems.
+    #[error("{}: found {count} systems that nothing ties together, expected one\n = make a scene of each", scene.display())]
+    Systems { scene: PathBuf, count: usize },
+    /// Responses of a system.
+    #[error("{}: found bodies in joints, whose responses have no rates\n = leave --frequencies out", scene.display())]
+    Responses { scene: PathBuf },
+    /// The frequencies are no range.
+    #[error(
+        "frequencies {start}:{end}:{count}: expected start:end:count, cycles per time, with 0 ≤ start < end and a count of 2 to \
+         {MAX_FREQUENCIES}, e.g. 1:2000:200"
+    )]
+    Frequencies { start: f64, end: f64, count: usize },
+    /// The table cannot be written.
+    #[error("{0}")]
+    Write(#[from] WriteError),
+}

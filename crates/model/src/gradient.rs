@@ -1,0 +1,6 @@
+//! Rates of what a body does with the numbers that it is made with: Eqs. (D1)–(D11) of `docs/method/gradients.md`.
+
+mod at;
+pub(crate) mod parameter;
+pub(crate) mod rates;
+pub(crate) mod varied;
