@@ -45,6 +45,7 @@ pub use error::{BuildError, StartError};
 pub use full::acting::MarkerForce;
 pub use full::check::{Checker, FrequencyCheck, PointCheck, StateCheck};
 pub use full::mends::{ErrorDirection, ErrorPart, Mend};
+pub use full::stress::{BodyStressCheck, PointStress, StressCheck};
 pub use full::{FullError, FullModel};
 pub use mesh::doubt::{Doubt, doubts};
 pub use mesh::given::MatrixChecks;

@@ -3,3 +3,4 @@
 mod bodies;
 mod manifold;
 mod reference;
+mod stress;
