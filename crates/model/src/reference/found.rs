@@ -165,9 +165,9 @@ pub(crate) fn fits(scene: &Scene, support: &Support) -> Result<(), SceneError> {
         let help = "clamp it; a body that slides freely has its modes about the undeformed one";
         return refuse("a body that can move along a line", "one that is clamped, or that spins", help);
     }
-    if !scene.markers.is_empty() && support.motion.count() > 0 {
-        let help = "remove `about`: what joints do to a body that they alone hold is not known before";
-        return refuse("a body with markers that nothing else holds", "one that is clamped or driven", help);
+    if !scene.markers.is_empty() {
+        let help = "remove `about`: what joints do to the body is not known before";
+        return refuse("a body with markers", "one without joints", help);
     }
     if !scene.time.method.abilities.geometric_stiffening {
         return refuse(
