@@ -216,7 +216,6 @@ fn static_answers_of_a_run_come_back_from_the_folder_too() {
     let case = Case::new();
     let force = "{kind=\"force\",at=[400.0,0.0,0.0],direction=[0.0,0.0,1.0],amplitude=1.0,history={kind=\"constant\"}}";
     let loads = format!("loads=[{force}]");
-    // The buckling load would be searched in jobs of its own.
     const STIFFENING: &str = "effects.geometric_stiffening=false";
     let run = |more: &[&str]| {
         let arguments =

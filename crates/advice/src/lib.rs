@@ -6,8 +6,8 @@
 //!
 //! The order of calls:
 //!
-//! 1. [`limits()`] refuses what is known to be wrong (again when the stiffness is known), and [`buckling`] and
-//!    [`unsteady`] what steady loads bend without limit.
+//! 1. [`limits()`] refuses models that are known to have no rest or no meaning (again when the stiffness is known), and [`unsteady`]
+//!    those that have no stable rest under their steady loads. Of the body itself only its elements can tell ([`RestOfBody`]).
 //! 2. [`screen`] tells, from the modes alone, whether [`modal::Constants::stress_stiffness`] may matter. If its row is
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Subject`], and what each mode is worth. Nothing stiffens where
@@ -72,13 +72,12 @@ mod step;
 mod strain;
 mod table;
 
-pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits, unsteady};
+pub use limits::{Refusal, RestOfBody, limits, unsteady};
 pub use motion::case::{AdviceError, Case, StaticCompliance};
 pub use review::{Broken, Detuning, Review};
 pub use step::{ModeError, StepEstimate, step_estimate};
 pub use strain::backbone::{Backbone, DETUNED};
 pub use strain::error::StrainError;
-pub use strain::fourth_order::FourthOrder;
 pub use strain::stress::{StressField, StressInfluence, StressSource, stress, stress_row};
 pub use table::completed::Findings;
 pub use table::row::{Row, Subject, Worth};

@@ -2,77 +2,60 @@
 
 use std::fmt;
 
-use dynamics::{DrivenMotion, Effect, EffectMap, LoadedMode, SteadySpin};
+use dynamics::{DrivenMotion, Effect, EffectMap, LoadedMode, Manifold, SteadySpin};
 use nalgebra::Vector3;
 
 use crate::motion::case::{AdviceError, Case};
 use crate::motion::course::Course;
 use crate::strain::backbone::DETUNED;
-use crate::strain::fourth_order::{FourthOrder, HOLDS};
 use crate::table::number::Number;
 
 /// Deflection over length at which linear strain ends.
 pub(crate) const LINEAR: f64 = 0.1;
 
-/// Part of the speed at which softening alone would take all stiffness, from which on a model without stiffening is
-/// refused: there, a third of the lowest stiffness across the spin is gone.
-pub const SOFTENED: f64 = 0.577;
-
-/// Reason to refuse a model.
+/// Reason to refuse a model. All of them are about the model: about the body, only its elements can tell.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// K + Ω²(K_σ − N) is not definite.
+    /// K + Ω²(K_σ − N) of the modes is not definite.
     #[error(
-        "the body spins at {} rad per time, beyond the {} at which K + Ω²(K_σ − N) loses definiteness: \
-         linear modes have no rest there, though the body may have one; name the modes that bend it in `large` in [modes]{}, or \
-         spin it slower (`refuse = false` in [effects] runs it all the same)",
-        Number(*.spin), Number(*.critical), if *.stiffening { "" } else { ", turn geometric_stiffening on" }
+        "the model has no rest in its spin of {} rad per time: K + Ω²(K_σ − N) of its modes is not positive definite from {} on; {of_body}; {} \
+         (`refuse = false` in [effects] runs it all the same)",
+        Number(*.spin), Number(*.critical),
+        if *.stiffening {
+            "take large modes (`large` in [modes]), or modes about the rest in the spin (`about` in [modes])"
+        } else {
+            "turn geometric_stiffening on, which this model is without"
+        }
     )]
-    Unstable {
+    Indefinite {
         /// |ω|.
         spin: f64,
         /// The speed that it must stay below.
         critical: f64,
         /// True if the stiffening was taken into account.
         stiffening: bool,
+        /// The rest of the full body in this spin.
+        of_body: RestOfBody,
     },
-    /// The centrifugal force softens the body, and nothing stiffens it.
+    /// The stiffness of the modes under the steady loads is not positive definite.
     #[error(
-        "the body spins at {} rad per time, {:.0} % of the {} at which centrifugal softening takes all \
-         stiffness, and geometric_stiffening is off: turn it on, or deformed_inertia off (`refuse = false` in [effects] runs it all the same)",
-        Number(*.spin), 100.0 * .spin / .critical, Number(*.critical)
-    )]
-    Softened {
-        /// |ω|.
-        spin: f64,
-        /// The speed at which no stiffness is left.
-        critical: f64,
-    },
-    /// K + K_σ of the steady loads is not definite, or nearly so.
-    #[error(
-        "the steady loads are {factor:.4} times those at which the body buckles, where K + K_σ loses definiteness (from \
-         {BUCKLED} on a run is refused): linear modes have no rest there; make them smaller, hold the body at more places, or \
-         name the modes that bend it in `large` in [modes] (`refuse = false` in [effects] runs it all the same)"
-    )]
-    Buckled {
-        /// The loads over those at which it buckles.
-        factor: f64,
-    },
-    /// The steady loads, some of which follow the body, leave no stiffness against one of its vibrations.
-    #[error(
-        "the steady loads take all stiffness from one of the modes, which would grow by exp({} t) (divergence): make the \
-         loads smaller, or hold the body at more places (`refuse = false` in [effects] runs it all the same)",
+        "the model has no stable rest under its steady loads: one of its modes would grow by exp({} t) (divergence); {of_body}; \
+         make the loads smaller, hold the body at more places, or take large modes (`large` in [modes]) \
+         (`refuse = false` in [effects] runs it all the same)",
         Number(*.growth)
     )]
     Diverges {
         /// Rate at which it grows, per time.
         growth: f64,
+        /// The rest of the full body under these loads.
+        of_body: RestOfBody,
     },
     /// Two frequencies have met under steady loads that follow the body.
     #[error(
-        "under the steady loads two vibrations meet at {} rad per time and grow by exp({} t) (flutter): make the loads \
-         smaller, or damp the modes by more (`refuse = false` in [effects] runs it all the same)",
+        "under the steady loads two vibrations of the model meet at {} rad per time and grow by exp({} t) (flutter): make the loads \
+         smaller, or damp the modes by more (`refuse = false` in [effects] runs it all the same, and `flexframe check` tells by the \
+         full body whether a vibration grows)",
         Number(*.circular_frequency), Number(*.growth)
     )]
     Flutters {
@@ -91,17 +74,16 @@ pub enum Refusal {
         /// The deflection over the length.
         deflection: f64,
     },
-    /// The large modes bend the body further than the manifold holds.
+    /// The strain energy of the model is negative, which no body has.
     #[error(
-        "the large modes bend the body by {:.1} % of its length, where {}: the answer means nothing; make the loads smaller \
-         or the body stiffer (`refuse = false` in [effects] runs it all the same)",
-        100.0 * .deflection, LeftOut(*.error)
+        "the large modes bend the body by {:.1} % of its length, where the strain energy of the model is negative, which no body has: \
+         the answer means nothing; make the loads smaller or the body stiffer, or take modes about a bent rest (`about` in [modes]) \
+         (`refuse = false` in [effects] runs it all the same)",
+        100.0 * .deflection
     )]
-    BeyondFourthOrder {
-        /// Their deflection over the length.
+    NegativeEnergy {
+        /// Deflection of the large modes over the length.
         deflection: f64,
-        /// Relative error of the forces on them by the orders left out, about; infinite where the strain energy is negative.
-        error: f64,
     },
     /// A mode swings so far that its frequency is not that of linear strain.
     #[error(
@@ -118,30 +100,58 @@ pub enum Refusal {
     },
 }
 
-/// The part that a motion of fourth order leaves out, in words.
-pub(crate) struct LeftOut(pub f64);
+/// The full body where its model has no rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RestOfBody {
+    /// It was not asked.
+    NotAsked,
+    /// It has a stable one.
+    Stable {
+        /// Largest displacement of a node.
+        displacement: f64,
+    },
+    /// It has one that it would leave: its stiffness there is negative in some directions.
+    Unstable {
+        /// How many.
+        directions: usize,
+    },
+    /// None was found.
+    NotFound,
+}
 
-impl fmt::Display for LeftOut {
+impl fmt::Display for RestOfBody {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.0.is_finite() {
-            write!(
+        match self {
+            Self::NotAsked => write!(
                 f,
-                "the orders beyond the fourth, which are left out, come to about {:.1} % of the forces",
-                100.0 * self.0
-            )
-        } else {
-            write!(f, "the strain energy to fourth order is negative, which no body has")
+                "the body itself may have one: `flexframe check` tells by all of its elements at the rows of a run"
+            ),
+            Self::Stable { displacement } => write!(
+                f,
+                "the full body of the mesh has a stable one, where a node is displaced by up to {}",
+                Number(*displacement)
+            ),
+            Self::Unstable { directions } => write!(
+                f,
+                "nor does the full body of the mesh stand: at its rest its stiffness is negative in {directions} direction(s)"
+            ),
+            Self::NotFound => write!(f, "of the full body of the mesh none was found either"),
         }
     }
 }
 
-/// Part of the loads at which a body buckles that is refused: nothing is left there of the stiffness against the way it
-/// buckles, and what is left is off by more than itself.
-pub const BUCKLED: f64 = 0.99;
-
-/// The refusal of a body under `factor` times the steady loads at which it buckles, if any.
-pub fn buckling(factor: f64) -> Option<Refusal> {
-    (factor >= BUCKLED).then_some(Refusal::Buckled { factor })
+impl Refusal {
+    /// The same with what the full body does there.
+    #[must_use]
+    pub fn with_rest_of_body(self, found: RestOfBody) -> Self {
+        match self {
+            Self::Indefinite { spin, critical, stiffening, .. } => {
+                Self::Indefinite { spin, critical, stiffening, of_body: found }
+            }
+            Self::Diverges { growth, .. } => Self::Diverges { growth, of_body: found },
+            other => other,
+        }
+    }
 }
 
 /// A part of its frequency that a vibration must grow by to be refused: what is slower may be rounding.
@@ -151,7 +161,7 @@ const GROWS: f64 = 1e-3;
 pub fn unsteady(modes: &[LoadedMode], damping_ratio: f64) -> Option<Refusal> {
     let refusal = |&LoadedMode { circular_frequency, growth }: &LoadedMode| {
         if circular_frequency == 0.0 {
-            return (growth > 0.0).then_some(Refusal::Diverges { growth });
+            return (growth > 0.0).then_some(Refusal::Diverges { growth, of_body: RestOfBody::NotAsked });
         }
         let growth = growth - damping_ratio * circular_frequency;
         (growth > GROWS * circular_frequency).then_some(Refusal::Flutters { circular_frequency, growth })
@@ -171,9 +181,16 @@ pub(crate) fn detuned(case: &Case, k: usize, amplitude: f64) -> Option<Refusal> 
     (amplitude > backbone.largest_amplitude()).then_some(Refusal::Detuned { mode: k + 1, deflection })
 }
 
-/// The refusal of an `error` at a deflection over the length of the body, if any.
-pub(crate) fn beyond(error: f64, deflection: f64) -> Option<Refusal> {
-    (error > HOLDS).then_some(Refusal::BeyondFourthOrder { deflection, error })
+/// The refusal of modal displacements with a negative strain energy, which bend large modes by this part of the length, if they have
+/// one. `circular_frequencies` are those of the modes.
+pub(crate) fn impossible(
+    manifold: &Manifold,
+    circular_frequencies: &[f64],
+    q: &[f64],
+    deflection: f64,
+) -> Option<Refusal> {
+    let quadratic: f64 = manifold.bent().iter().map(|k| 0.5 * (circular_frequencies[*k] * q[*k]).powi(2)).sum();
+    (quadratic + manifold.energy(q) < 0.0).then_some(Refusal::NegativeEnergy { deflection })
 }
 
 /// The refusal of the amplitudes that the modes have at the beginning, if any: of their displacement, and of their
@@ -190,10 +207,9 @@ fn bent_at_start(case: &Case) -> Option<Refusal> {
     let modes = 0..case.body.flexible();
     let largest = modes.clone().map(|k| amplitude(k) * case.peaks[k] / case.length).fold(0.0, f64::max);
     let of_large = || {
-        let mut order = FourthOrder::new(case.manifold?, &case.body.circular_frequencies);
-        let q = &case.initial.modal_displacement;
-        let deflection: f64 = order.large().iter().map(|k| q[*k].abs() * case.peaks[*k] / case.length).sum();
-        beyond(order.error(q), deflection)
+        let (manifold, q) = (case.manifold?, &case.initial.modal_displacement);
+        let deflection: f64 = manifold.large().iter().map(|k| q[*k].abs() * case.peaks[*k] / case.length).sum();
+        impossible(manifold, &case.body.circular_frequencies, q, deflection)
     };
     deflected(largest).or_else(|| modes.into_iter().find_map(|k| detuned(case, k, amplitude(k)))).or_else(of_large)
 }
@@ -226,13 +242,8 @@ pub(crate) fn refusal(
     }
     let critical = SteadySpin::new(case.body, axis, effects).critical_speed()?;
     let stiffening = effects[Effect::GeometricStiffening] && case.body.stress_stiffness.is_some();
-    Ok(if speed >= critical {
-        Some(Refusal::Unstable { spin: speed, critical, stiffening })
-    } else if !stiffening && speed >= SOFTENED * critical {
-        Some(Refusal::Softened { spin: speed, critical })
-    } else {
-        None
-    })
+    let of_body = RestOfBody::NotAsked;
+    Ok((speed >= critical).then_some(Refusal::Indefinite { spin: speed, critical, stiffening, of_body }))
 }
 
 /// The reason why a model is known to be wrong, if it is: by the spin at the beginning, or the one that is driven, and by

@@ -6,10 +6,9 @@ use dynamics::{DrivenMotion, Effect, EffectMap, Moment, Observation};
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::limits::{LINEAR, LeftOut, Refusal, SOFTENED, beyond, deflected, detuned, refusal};
+use crate::limits::{LINEAR, Refusal, deflected, detuned, impossible, refusal};
 use crate::motion::case::{AdviceError, Case};
 use crate::strain::error_bound::OF_BAR;
-use crate::strain::fourth_order::{FourthOrder, STATED};
 use crate::table::number::Number;
 use crate::table::relative::relative;
 use crate::table::rows::{Advice, held, held_of_drive, left_out};
@@ -57,20 +56,6 @@ pub enum Broken {
         /// The modes whose frequencies that changes noticeably.
         modes: Vec<Detuning>,
     },
-    /// The large modes bend the body so far that the orders which are left out matter.
-    #[error(
-        "at time {time:.6} the large modes bent the body by {:.1} % of its length, where {}, more than the {:.0} % that are \
-         taken as right: smaller motions are right, the error goes with the fourth power of their size",
-        100.0 * .deflection, LeftOut(*.error), 100.0 * STATED
-    )]
-    FourthOrder {
-        /// When it was largest.
-        time: f64,
-        /// The deflection of the large modes over the length, then.
-        deflection: f64,
-        /// Relative error of the forces on them by the orders left out, about.
-        error: f64,
-    },
     /// The modes do not carry what the spin, or the acceleration of the drive, does to the body.
     #[error(
         "at time {time:.6} the modes left out {:.1} % of the static response to {}, and the answer lacks it, \
@@ -87,7 +72,7 @@ pub enum Broken {
         /// True if it was the response to the acceleration of the drive, not to the spin.
         of_drive: bool,
     },
-    /// A spin or a deflection was reached at which the model is known to be wrong.
+    /// A spin was reached in which the model has no rest, or a deflection at which it is known to be wrong.
     #[error("at time {time:.6}: {refusal}")]
     Limit {
         /// When it was so for the first time.
@@ -291,8 +276,6 @@ pub struct Review<'a> {
     lowest: f64,
     /// Largest √(qᵀq).
     deformation: f64,
-    /// Order of large modes, with the largest error, its time, and their deflection over the length then.
-    order: Option<(FourthOrder<'a>, [f64; 3])>,
     /// Largest deflection over the length by modes that are not large, and when it was that, but for a hundredth.
     bent: f64,
     bent_at: Passed,
@@ -347,9 +330,6 @@ impl<'a> Review<'a> {
             held_of_drive: case.drive.zip(held_of_drive(&case)).map(|(drive, (held, left))| (drive.motion, held, left)),
             lowest: case.body.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min),
             deformation: 0.0,
-            order: case
-                .manifold
-                .map(|manifold| (FourthOrder::new(manifold, &case.body.circular_frequencies), [0.0; 3])),
             bent: 0.0,
             bent_at: Passed { time: 0.0, found: 0.0 },
             spun_above: None,
@@ -384,12 +364,8 @@ impl<'a> Review<'a> {
             stopped = far.find_map(|(k, (reach, _))| detuned(&self.case, k, reach));
         }
         let [deflection, of_large, deformation] = sums.map(|sums| (sums[0] + sums[2]) + (sums[1] + sums[3]));
-        if let Some((order, worst)) = &mut self.order {
-            let error = order.error(q);
-            stopped = stopped.or_else(|| beyond(error, of_large));
-            if error > worst[0] {
-                *worst = [error, time, of_large];
-            }
+        if let Some(manifold) = self.case.manifold {
+            stopped = stopped.or_else(|| impossible(manifold, &self.case.body.circular_frequencies, q, of_large));
         }
         if self.stop.is_none() {
             self.stop = stopped.or_else(|| deflected(deflection)).map(|refusal| (time, refusal));
@@ -451,7 +427,7 @@ impl<'a> Review<'a> {
                     self.left_out[0] = (left, observation.time, (1.0 - held * held).max(0.0).sqrt());
                 }
             }
-            if speed >= SOFTENED * self.lowest && !self.is_known(&omega_body, speed) {
+            if speed >= self.lowest && !self.is_known(&omega_body, speed) {
                 let axis = omega_body / speed;
                 self.looked_up = (speed, axis);
                 if let Some(refusal) = refusal(&self.case, &axis, speed, &self.effects)? {
@@ -462,14 +438,9 @@ impl<'a> Review<'a> {
         Ok(())
     }
 
-    /// Reason to end the run, and its time: the body bends further than linear strain can have any meaning.
+    /// Reason to end the run, and its time: the body bends further than its model can have any meaning.
     pub fn stop(&self) -> Option<(f64, Refusal)> {
         self.stop
-    }
-
-    /// The most that was left out of the forces on the large modes so far, relative, about; none without large modes.
-    pub fn left_out(&self) -> Option<f64> {
-        self.order.as_ref().map(|(_, [error, ..])| *error)
     }
 
     /// Assumptions that have broken so far: each once, with the first time and the worst value.
@@ -497,13 +468,7 @@ impl<'a> Review<'a> {
             (influence >= self.tolerance).then_some(Broken::Stretch { time, left_out, influence, of_drive })
         };
         let stretch = [false, true].into_iter().zip(self.left_out).map(stretch);
-        let order = self.order.as_ref().filter(|(_, [error, ..])| *error > STATED);
-        let order = order.map(|(_, [error, time, deflection])| Broken::FourthOrder {
-            time: *time,
-            deflection: *deflection,
-            error: *error,
-        });
-        [spin, bent, linear, order].into_iter().chain(limits).chain(stretch).flatten().collect()
+        [spin, bent, linear].into_iter().chain(limits).chain(stretch).flatten().collect()
     }
 
     /// The modes whose frequency, or phase in the time that was watched, linear strain puts out noticeably.

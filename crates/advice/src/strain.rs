@@ -3,5 +3,4 @@
 pub(crate) mod backbone;
 pub(crate) mod error;
 pub(crate) mod error_bound;
-pub(crate) mod fourth_order;
 pub(crate) mod stress;

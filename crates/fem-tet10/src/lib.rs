@@ -50,5 +50,5 @@ pub use mesh::parts::{MeshParts, NodeGroup, SurfaceGroup};
 pub use nonlinear::expansion::Expansion;
 pub use nonlinear::finite_strain::{FiniteStrain, Stresses};
 pub use nonlinear::geometric_stiffness::{extended_geometric_stiffness, reduced_geometric_stiffness};
-pub use nonlinear::second_order::{geometric_stiffness_product, second_order_energies, second_order_forces};
+pub use nonlinear::second_order::{second_order_energies, second_order_forces};
 pub use stress::{COMPONENTS, StressError, StressRecovery, StressSites, principal_stresses, von_mises};

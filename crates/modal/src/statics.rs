@@ -1,6 +1,5 @@
-//! Static responses, buckling, and shapes of large modes.
+//! Static responses, and shapes of large modes.
 
-pub(crate) mod buckling;
 pub(crate) mod inertia_relief;
 pub(crate) mod large_shapes;
 pub(crate) mod mass_left_out;

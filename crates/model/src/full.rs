@@ -7,6 +7,7 @@ pub(crate) mod acting;
 pub(crate) mod check;
 pub(crate) mod mends;
 pub(crate) mod motion;
+pub(crate) mod stress;
 pub(crate) mod ties;
 
 use std::borrow::Cow;
@@ -44,6 +45,9 @@ pub enum FullError {
     /// The motion of the model at a state.
     #[error("{0}")]
     Motion(#[from] dynamics::LoadedError),
+    /// Elements whose stress cannot be found.
+    #[error("{0}")]
+    Assembly(#[from] fem_tet10::AssemblyError),
     /// A point of the output that is not on the mesh.
     #[error("{0}")]
     Setup(#[from] dynamics::SetupError),

@@ -47,6 +47,7 @@ pub use error::{BuildError, StartError};
 pub use full::acting::MarkerForce;
 pub use full::check::{Checker, FrequencyCheck, PointCheck, StateCheck};
 pub use full::mends::{ErrorDirection, ErrorPart, Mend};
+pub use full::stress::{BodyStressCheck, PointStress, StressCheck};
 pub use full::{FullError, FullModel};
 pub use gradient::parameter::Parameter;
 pub use gradient::rates::{BodyRates, ParameterRates, RatesOf, Residues};

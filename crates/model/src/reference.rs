@@ -37,10 +37,12 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// By u₀ and f_int(u₀), one after the other.
-    fn new(steady: Steady, positions: &[[f64; 3]], found: &[f64]) -> Self {
+    /// By u₀, f_int(u₀) and the spin, one after the other.
+    fn new(loads: bool, positions: &[[f64; 3]], found: &[f64]) -> Self {
         let rows = 3 * positions.len();
-        let (displacement, forces) = found.split_at(rows);
+        let (displacement, rest) = found.split_at(rows);
+        let (forces, omega) = rest.split_at(rows);
+        let steady = Steady { omega_body: Vector3::from_column_slice(omega), loads };
         let moved = |(x, u): (&[f64; 3], &[f64])| [x[0] + u[0], x[1] + u[1], x[2] + u[2]];
         Self {
             steady,

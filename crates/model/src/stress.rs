@@ -9,7 +9,7 @@ pub(crate) mod site;
 use advice::{Row, StressField, StressSource, stress, stress_row};
 use dynamics::Effect;
 use faer::{Mat, MatRef, Scale};
-use modal::{BucklingAccuracy, Modes};
+use modal::Modes;
 use scene::Choice;
 
 use crate::error::BuildError;
@@ -18,9 +18,6 @@ use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
 use crate::reduction::physics;
 use crate::structure::statics::Statics;
-
-/// Loads of which less than this part is at which the body buckles are far from it: an estimate will do.
-const FAR: f64 = 0.1;
 
 /// Stiffness in the modes (nf × nf) by the stress of what acts on a body, where it matters.
 #[derive(Default)]
@@ -31,16 +28,13 @@ pub(crate) struct Stress {
     pub of_drive: Option<Mat<f64>>,
     /// The advice on the one that matters most.
     pub row: Option<Row>,
-    /// The steady dead loads over those at which the body buckles; 0 where they do not make it buckle.
-    pub buckling_ratio: f64,
 }
 
 impl Stress {
-    /// By the static responses to the loads and to the drive, of which those of `stressing` do not move with the modes `bent`:
+    /// By the static responses `stressing` to the loads and to the drive, which do not move with the modes `bent`:
     /// between two of these there is no stiffness, since the manifold has it.
     pub fn new(
         model: &MeshModel<'_, '_>,
-        statics: &Statics,
         stressing: &Statics,
         modes: &Modes,
         body: &ModalModel,
@@ -49,9 +43,7 @@ impl Stress {
         if !physics::may_stress(model.scene) || modes.shapes.ncols() == 0 {
             return Ok(Self::default());
         }
-        // About a bent body loads are what it stands under.
-        let buckling_ratio = if model.reference.is_some() { 0.0 } else { buckling_ratio(model, statics, modes)? };
-        let mut found = Self { buckling_ratio, ..Self::default() };
+        let mut found = Self::default();
         let (mut names, mut shown) = (Vec::new(), Vec::new());
         let stiffness = |responses: MatRef<'_, f64>| -> Result<Vec<Mat<f64>>, BuildError> {
             let found = model.structure.stress_stiffness(responses, modes, &[])?;
@@ -136,18 +128,4 @@ pub(crate) fn beside(mut stiffness: Mat<f64>, bent: &[usize]) -> Mat<f64> {
 pub(crate) fn in_shapes(stiffness: &Mat<f64>, shapes: usize) -> Mat<f64> {
     let count = stiffness.ncols();
     Mat::from_fn(shapes, shapes, |a, b| if a < count && b < count { stiffness[(a, b)] } else { 0.0 })
-}
-
-/// The steady dead loads over those at which the body buckles, on the whole mesh: the modes that are kept do not hold the
-/// shape in which it does.
-fn buckling_ratio(model: &MeshModel<'_, '_>, statics: &Statics, modes: &Modes) -> Result<f64, BuildError> {
-    let Some((response, size)) = statics.to_steady_loads(model).filter(|(response, _)| response.norm_max() > 0.0)
-    else {
-        return Ok(0.0);
-    };
-    let ratio = |accuracy| -> Result<f64, BuildError> {
-        Ok(-size * model.structure.lowest_buckling_ratio(response.as_ref(), modes, accuracy)?)
-    };
-    let estimate = ratio(BucklingAccuracy::Estimate)?;
-    if estimate < FAR { Ok(estimate) } else { ratio(BucklingAccuracy::Full) }
 }

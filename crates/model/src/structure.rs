@@ -13,12 +13,11 @@ use std::path::{Path, PathBuf};
 use dynamics::DrivenMotion;
 use faer::{ColRef, Mat, MatRef, Scale};
 use fem_tet10::{
-    AssemblyError, Expansion, StressRecovery, StressSites, extended_geometric_stiffness, geometric_stiffness_product,
-    second_order_energies, second_order_forces,
+    Expansion, StressRecovery, StressSites, extended_geometric_stiffness, second_order_energies, second_order_forces,
 };
 use keys::{Key, Keyed};
 use modal::{
-    BucklingAccuracy, ModalError, Modes, NoCycles, Products, ReducedBody, Solver, StaticAccuracy, acceleration_fields,
+    ModalError, Modes, NoCycles, Products, ReducedBody, Solver, StaticAccuracy, acceleration_fields,
     centrifugal_fields, mass_left_out, turning_field,
 };
 use nalgebra::Vector3;
@@ -570,6 +569,12 @@ impl Structure<'_> {
         Ok(Some(found?))
     }
 
+    /// The stiffness in the modes (nf×nf) by the stress of a reference that K is without; none where it has it.
+    pub fn reference_stiffness(&self, modes: &Modes) -> Result<Option<Mat<f64>>, BuildError> {
+        let Some(tangent) = self.assembled.stress_tangent()? else { return Ok(None) };
+        Ok(Some(modes.shapes.transpose() * (tangent.stiffness() * &modes.shapes)))
+    }
+
     /// The stress (6m×k) of static responses (3n×k) that modes and static shapes leave out.
     pub fn stress_beside(&self, modes: &Modes, responses: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
         let recovery = self.recovery()?;
@@ -583,41 +588,6 @@ impl Structure<'_> {
             Ok(recovery.nodal_stress(rest.as_ref())?)
         })
     }
-
-    /// The lowest buckling ratio by the stress of a static response (3n×1), from the modes on.
-    pub fn lowest_buckling_ratio(
-        &self,
-        response: MatRef<'_, f64>,
-        modes: &Modes,
-        accuracy: BucklingAccuracy,
-    ) -> Result<f64, BuildError> {
-        let shapes = modes.shapes.as_ref();
-        let accuracy_name = match accuracy {
-            BucklingAccuracy::Estimate => "estimate",
-            BucklingAccuracy::Full => "full",
-        };
-        let asked = self.of_held_body("buckling").with("accuracy", accuracy_name);
-        self.ask_number(asked.with("response", &response).with("shapes", &shapes), || {
-            let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
-            let product = |fields: MatRef<'_, f64>| -> Result<Mat<f64>, BucklingError> {
-                self.pass_elements();
-                Ok(geometric_stiffness_product(mesh, materials, response, fields)?)
-            };
-            self.solver()?.lowest_buckling_ratio(shapes, accuracy, product).map_err(|error| match error {
-                BucklingError::Modal(error) => self.modal(error),
-                BucklingError::Assembly(error) => error.into(),
-            })
-        })
-    }
-}
-
-/// Errors in the search for the buckling load.
-#[derive(Debug, thiserror::Error)]
-enum BucklingError {
-    #[error(transparent)]
-    Modal(#[from] ModalError),
-    #[error(transparent)]
-    Assembly(#[from] AssemblyError),
 }
 
 /// The shapes (3n×k) of some modes, numbered from 0.

@@ -81,6 +81,31 @@ fn the_force_of_damping_is_no_error() {
     assert!(error < 1e-5, "{error:e}");
 }
 
+/// Closed form: the Euler load of a clamped column, π² E I / (4 L²). A model without stiffening knows nothing of it, and its run goes on as
+/// if all were well. The check says that the body buckles.
+#[test]
+fn a_run_says_after_its_check_that_a_body_buckles() {
+    let euler = std::f64::consts::PI.powi(2) * 7e7 * 0.025_f64.powi(4) / 12.0 / 4.0;
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path());
+    let (scene, out) = (scene.to_str().unwrap(), folder.path().to_str().unwrap());
+    for (times, directions) in [(0.9, 0), (1.2, 2)] {
+        let force = format!("loads[0].amplitude={}", times * euler);
+        let set = ["loads[0].direction=[-1.0,0.0,0.0]", &*force, "effects.geometric_stiffening=false"];
+        let set = set.iter().flat_map(|set| ["--set", set]);
+        let arguments: Vec<&str> = ["run", scene, "-o", out, "--overwrite"].into_iter().chain(set).collect();
+        let said = flexframe(&arguments);
+        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+        let said = [said.stdout, said.stderr].map(|text| String::from_utf8(text).unwrap()).concat();
+        let words = "the true body has lost its stiffness in 2 direction(s): it buckles";
+        assert_eq!(said.contains(words), directions > 0, "{said}");
+        let file = folder.path().join("column.h5");
+        let report = flexframe(&["check", file.to_str().unwrap(), "--json"]).stdout;
+        let report: Value = serde_json::from_slice(&report).unwrap();
+        assert_eq!(report["bodies"][0]["rows"][0]["negative_directions"], directions, "{report}");
+    }
+}
+
 #[test]
 fn a_check_needs_the_mesh_of_the_run() {
     let folder = tempfile::tempdir().unwrap();

@@ -150,8 +150,9 @@ fn rows_that_fail_are_marked_with_their_words_and_rows_that_are_done_are_kept() 
 
 #[test]
 fn warnings_of_rows_are_kept_and_failures_name_no_file_that_is_gone() {
-    let parameters = "combine = \"zip\"\n[parameters]\n\"loads[0].amplitude\" = [1.0, 4e5, 4e5]\n\
-                      \"effects.refuse\" = [false, false, true]";
+    let parameters = "combine = \"zip\"\n[parameters]\n\"loads[0].amplitude\" = [1.0, 8e5, 8e5]\n\
+                      \"effects.refuse\" = [false, false, true]\n\
+                      \"effects.large_deflection\" = [false, false, false]\n\"time.step\" = [1e-6, 1e-6, 1e-6]";
     let case = Case::new(parameters);
     let report = case.run(false).unwrap();
     assert_eq!((report.done, report.failures.len()), (2, 1), "{:?}", report.failures);

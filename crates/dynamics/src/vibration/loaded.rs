@@ -56,7 +56,7 @@ pub enum LoadedError {
     Setup(#[from] crate::error::SetupError),
     /// A body with large modes does not come to rest under its loads.
     #[error(
-        "the large modes find no rest under the steady loads, which bend the body further than a motion of fourth order holds; make the loads smaller or the body stiffer"
+        "the model finds no rest under its steady loads: they bend it further than its large modes hold; make the loads smaller or the body stiffer, or take modes about the bent rest (`about` in [modes])"
     )]
     NoRest,
 }

@@ -44,26 +44,6 @@ pub fn second_order_forces(
     })
 }
 
-/// `K(u) V` (N×k, force) for the columns V of `fields` (N×k, length), where K(u) is the initial stress of `displacement`
-/// (N×1, length), as in [`reduced_geometric_stiffness`](crate::reduced_geometric_stiffness).
-///
-/// # Errors
-/// As [`second_order_forces`].
-pub fn geometric_stiffness_product(
-    mesh: &Mesh,
-    materials: &Materials,
-    displacement: MatRef<'_, f64>,
-    fields: MatRef<'_, f64>,
-) -> Result<Mat<f64>, AssemblyError> {
-    check_field(mesh, "displacements", displacement)?;
-    check_field(mesh, "fields", fields)?;
-    let columns = fields.ncols();
-    let column = |i: usize, j: usize| if j < columns { fields[(i, j)] } else { displacement[(i, 0)] };
-    let all = Mat::from_fn(fields.nrows(), columns + 1, column);
-    let pairs: Vec<[usize; 2]> = (0..columns).map(|field| [field, columns]).collect();
-    element_forces(mesh, materials, all.as_ref(), &pairs, |[a, _], [_, of_u], _| a.times(of_u))
-}
-
 /// `∫ ε₂(a,b) : C : ε₂(c,d) dV` (energy, one for each of `quadruples`) of columns a, b, c, d of `fields` (N×k, length).
 ///
 /// An eighth of it, with all four alike, is the strain energy of fourth order of `u`, before the body has found the

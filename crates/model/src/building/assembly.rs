@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use advice::RestOfBody;
 use dynamics::{Drive, Effect};
 use fem_tet10::{Materials, Matrices, Mesh};
 use matrix_import::MatrixFiles;
@@ -202,6 +203,14 @@ impl AssembledMesh {
         Ok(self.reference.get_or_init(|| found).as_ref())
     }
 
+    /// The rest of the full body in the spin and under the steady loads of the scene; not asked where none is made of such a body.
+    pub fn rest_of_body(&self) -> Result<RestOfBody, BuildError> {
+        match self.body {
+            MadeOf::Elements(_) => self.asked()?.rest_of_body(|| self.assembled_matrices()),
+            MadeOf::Files(_) => Ok(RestOfBody::NotAsked),
+        }
+    }
+
     /// Mass and stiffness about the reference: of the undeformed body without one.
     pub fn tangent(&self) -> Result<&FeMatrices, BuildError> {
         let Some(reference) = self.reference()? else { return self.matrices() };
@@ -210,6 +219,13 @@ impl AssembledMesh {
         }
         let found = FeMatrices::Assembled(self.asked()?.tangent(reference, self.assembled_matrices()?)?);
         Ok(self.tangent.get_or_init(|| found))
+    }
+
+    /// The part of the tangent stiffness by the stress of the reference that [`Self::tangent`] is without; none of a body that cannot turn,
+    /// and without a reference.
+    pub fn stress_tangent(&self) -> Result<Option<Matrices>, BuildError> {
+        let Some(reference) = self.reference()? else { return Ok(None) };
+        self.asked()?.stress_tangent(reference, self.assembled_matrices()?)
     }
 
     /// The body as a bent rest of it is asked for.

@@ -2,7 +2,7 @@
 
 use dynamics::{ConservativeBody, History, LoadFrame, MotionState, Observation, PointForce, PointMoment, SharedLoad};
 use faer::Mat;
-use fem_tet10::Location;
+use fem_tet10::{Location, StressRecovery};
 use nalgebra::Vector3;
 use nonlinear::{FullBody, FullState, StateErrorSettings, Tangent, state_error, true_frequencies};
 use scene::Scene;
@@ -11,6 +11,7 @@ use serde::Serialize;
 use crate::error::refuse;
 use crate::full::acting::MarkerForce;
 use crate::full::mends::{ErrorPart, Mend, mends, parts};
+use crate::full::stress::{StressCheck, stress_check};
 use crate::full::{FullError, FullModel};
 use crate::model::Model;
 
@@ -44,6 +45,8 @@ pub struct StateCheck {
     pub largest_displacement: f64,
     /// The points of the output.
     pub points: Vec<PointCheck>,
+    /// The stress; `None` where the scene does not ask for it.
+    pub stress: Option<StressCheck>,
     /// The lowest frequencies of the model and of the full body about the state; empty where they are not compared.
     pub frequencies: Vec<FrequencyCheck>,
     /// Number of directions in which the stiffness at the state is negative; `None` under forces that follow the body, where it
@@ -164,6 +167,7 @@ impl<'a> Checker<'a> {
             largest_error: peak(&found.error),
             largest_displacement: peak(&truth),
             points: self.points.iter().map(|point| checked(point, &truth, &found.error)).collect(),
+            stress: self.stress(&observed, &truth)?,
             frequencies,
             negative_directions: (!follows).then_some(found.negative_pivots),
             growth,
@@ -206,6 +210,14 @@ impl<'a> Checker<'a> {
         let undamped = vec![0.0; self.model.damping_ratios.len()];
         let initial = self.model.initial(self.scene);
         Ok(ConservativeBody::new(body, &undamped, loads, physics)?.beginning_at(&initial))
+    }
+
+    /// The stress of the model's state beside that of the true displacements.
+    fn stress(&self, observed: &Observation, truth: &[f64]) -> Result<Option<StressCheck>, FullError> {
+        let Some(stress) = &self.model.stress else { return Ok(None) };
+        let recovery = StressRecovery::new(&self.full.assembled.mesh, self.full.assembled.materials()?)?;
+        let of_model = (&observed.modal_displacement[..], stress.peak(observed));
+        stress_check(&recovery, stress, &self.points, of_model, truth).map(Some)
     }
 
     /// True if the spin is given, or next to none.

@@ -62,7 +62,7 @@ pub(crate) fn proposed(model: &MeshModel<'_, '_>, modes: &Modes, on: &ModalModel
     {
         return None;
     }
-    let steady = steady(model.scene, model.drive.as_ref(), About::Auto).ok()??;
+    let steady = steady(model.scene, model.support, model.drive.as_ref(), About::Auto).ok()??;
     let (omega, count) = (&steady.omega_body, modes.natural());
     let mut forces = vec![0.0; modes.shapes.nrows()];
     for load in &model.loads {

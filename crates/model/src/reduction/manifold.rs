@@ -16,21 +16,32 @@ const DRAWN_IN: f64 = 0.02;
 /// A mode that is drawn in has a frequency of more than this times theirs. What is as slow as they are moves by itself: the
 /// bending of the plate in its plane relieves 9 % of its twist with its bending out of it.
 const STIFFER: f64 = 4.0;
+/// So many of the slowest modes are asked whether they draw in what the program would take as large.
+const SLOWEST: usize = 4;
 
 impl Bent {
     /// Without large modes that others draw in, which follow by themselves: as large modes of their own they would not relieve
-    /// the others as they should, and the motion would blow up.
+    /// the others as they should, and the motion would blow up. Those that the program takes by itself are held against the slowest
+    /// modes, too, even if these are not large: a mode that stretches the body holds nothing of the stiffness of a bent one.
     ///
     /// The static derivative of a pair has the part `φ·g/ω²` along a mode φ, which relieves the strain energy of the pair by
     /// `(φ·g)²/ω²`.
     pub fn settled(self, model: &MeshModel<'_, '_>, modes: &Modes) -> Result<Self, BuildError> {
         let Self { large, following } = &self;
-        if large.len() < 2 {
+        let stiffest = large.iter().map(|a| modes.eigenvalues[*a]).fold(0.0, f64::max);
+        let is_asked = |k: &usize| {
+            model.scene.modes.large.is_none()
+                && !large.contains(k)
+                && stiffest > STIFFER * STIFFER * modes.eigenvalues[*k]
+        };
+        let slowest = (0..modes.natural().min(SLOWEST)).filter(is_asked);
+        let asked: Vec<usize> = large.iter().copied().chain(slowest).collect();
+        if asked.len() < 2 {
             return Ok(self);
         }
-        let relieved = model.structure.relieved(modes, large)?;
-        let pairs: Vec<[usize; 2]> = (0..large.len()).flat_map(|j| (j..large.len()).map(move |k| [j, k])).collect();
-        let square = |a: usize| modes.eigenvalues[large[a]];
+        let relieved = model.structure.relieved(modes, &asked)?;
+        let pairs: Vec<[usize; 2]> = (0..asked.len()).flat_map(|j| (j..asked.len()).map(move |k| [j, k])).collect();
+        let square = |a: usize| modes.eigenvalues[asked[a]];
         let draws_in = |a: usize, index: usize| {
             let [j, k] = pairs[index];
             let is_stiffer = square(a) > STIFFER * STIFFER * square(j).max(square(k));
@@ -42,7 +53,7 @@ impl Bent {
         if model.scene.modes.large.is_none() {
             return Self { large: others, following: following.clone() }.settled(model, modes);
         }
-        Err(refuse_drawn_in(model, large[follower], pairs[index].map(|j| large[j]), &others))
+        Err(refuse_drawn_in(model, large[follower], pairs[index].map(|j| asked[j]), &others))
     }
 }
 

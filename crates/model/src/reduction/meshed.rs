@@ -4,7 +4,7 @@ use frames_rk4::Paper;
 use std::sync::Arc;
 use std::time::Instant;
 
-use advice::{buckling, limits, unsteady};
+use advice::{Refusal, limits, unsteady};
 use dynamics::{Effect, LoadedError, Physics, PointShapes};
 use faer::Mat;
 use fem_tet10::{Location, Mesh};
@@ -135,13 +135,12 @@ pub(crate) fn reduce(
             reference: reference.map(|reference| reference.displacement.clone()),
         }),
     };
-    // About a bent body the estimates would count what it has carried already; the check by the full body knows.
+    // About a bent body these would count what it has carried already.
     if reference.is_some() {
         return Ok(model);
     }
     let initial = model.initial(scene);
-    model.refusal = buckling(stress.buckling_ratio);
-    if model.refusal.is_none() && model.is_stressed() {
+    if model.is_stressed() {
         let least = model.damping_ratios.iter().copied().fold(f64::INFINITY, f64::min);
         model.refusal = match model.loaded_modes(scene) {
             Ok(modes) => unsteady(&modes, least),
@@ -156,6 +155,13 @@ pub(crate) fn reduce(
     // What stresses the body may stiffen it beyond what the estimate knows.
     if model.refusal.is_none() && !model.is_stressed() {
         model.refusal = model.advice.refusal();
+    }
+    // A factor like that of its modes is at hand for the full body, too.
+    let is_cheap = model.meshed.as_ref().is_some_and(|meshed| meshed.modes.stats.cycles == 0);
+    if let Some(refusal @ (Refusal::Indefinite { .. } | Refusal::Diverges { .. })) = model.refusal
+        && is_cheap
+    {
+        model.refusal = Some(refusal.with_rest_of_body(assembled.rest_of_body()?));
     }
     Ok(model)
 }

@@ -69,7 +69,7 @@ impl Reduction {
         let (modal, stress, large, of_spin) = if !bent.large.is_empty() {
             let all = bent.all();
             let stressing = statics.without_parts(model, &modes, &all)?;
-            let stress = Stress::new(model, &statics, &stressing, &modes, &modal, &all)?;
+            let stress = Stress::new(model, &stressing, &modes, &modal, &all)?;
             let of_spin = if stiffens { stressing.stress_stiffness(model, &modes, &[])? } else { None };
             let of_spin = of_spin.map(|of_spin| of_spin.map(|k| beside(k, &all)));
             let large = LargeDeflection::new(model, &modes, &bent, of_spin.as_ref())?;
@@ -83,19 +83,25 @@ impl Reduction {
             let modal = modal.with_stress(model, Some(large.manifold.body()), large.modes(), &stress.of_loads)?;
             (modal, stress, Some(large), of_spin)
         } else {
-            let stress = Stress::new(model, &statics, &statics, &modes, &modal, &[])?;
+            let stress = Stress::new(model, &statics, &modes, &modal, &[])?;
             let modal = if stress.any() { modal.with_stress(model, None, &modes, &stress.of_loads)? } else { modal };
             (modal, stress, None, spin)
         };
-        let forces = model.reference.map(|reference| {
-            let nf = modes.shapes.ncols();
-            let stressed = reference.stress_stiffness(model, of_spin.as_ref(), &stress.of_loads, nf);
-            let stiffness = match large.as_ref().and_then(|large| large.reference_work.as_ref()) {
-                Some(work) => work - stressed,
-                None => stressed * Scale(-1.0),
-            };
-            ReferenceForces { force: reference.modal_forces(&modes), stiffness }
-        });
+        let forces = match model.reference {
+            Some(reference) => {
+                let nf = modes.shapes.ncols();
+                let mut stiffness =
+                    reference.stress_stiffness(model, of_spin.as_ref(), &stress.of_loads, nf) * Scale(-1.0);
+                if let Some(work) = large.as_ref().and_then(|large| large.reference_work.as_ref()) {
+                    stiffness += work;
+                }
+                if let Some(by_stress) = model.structure.reference_stiffness(&modes)? {
+                    stiffness += by_stress;
+                }
+                Some(ReferenceForces { force: reference.modal_forces(&modes), stiffness })
+            }
+            None => None,
+        };
         let of_markers = match &of_markers {
             Some(responses) if physics::may_stress(model.scene) => {
                 model.structure.stress_stiffness(responses.as_ref(), &modes, &[])?

@@ -115,6 +115,13 @@ impl BodyStress {
         Some(StressPeak { von_mises: peak, node, left_out: left_out.stress.at(site, &missing), max_left_out })
     }
 
+    /// The stress at all sites at some modal displacements; none where that of the whole body was not asked for.
+    pub(crate) fn at_sites(&self, modal_displacement: &[f64]) -> Option<Vec<[f64; 6]>> {
+        let Field { sites, shapes } = self.field.as_ref()?;
+        let coordinates = self.coordinates(modal_displacement);
+        Some((0..sites.len()).map(|site| combined(shapes.of_site(site), &coordinates)).collect())
+    }
+
     /// The nodes that stress is known at (m), once for each material there, and the stress of a unit of each coordinate, one
     /// after the other (each m × 6); none without [`Output::stress_field`].
     pub(crate) fn field(&self) -> Option<(&[u32], Vec<Vec<f64>>)> {
@@ -155,7 +162,7 @@ impl BodyStress {
 }
 
 /// The one with the larger von Mises stress.
-fn larger(stresses: impl Iterator<Item = [f64; 6]>) -> [f64; 6] {
+pub(crate) fn larger(stresses: impl Iterator<Item = [f64; 6]>) -> [f64; 6] {
     stresses.max_by(|a, b| von_mises(a).total_cmp(&von_mises(b))).unwrap_or_default()
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use advice::StaticCompliance;
-use faer::{Col, Mat, MatRef, Scale};
+use faer::{Col, Mat, MatRef};
 use modal::Modes;
 use nalgebra::Vector3;
 
@@ -11,7 +11,6 @@ use crate::error::{BuildError, modal};
 use crate::load::mesh_load::MeshLoad;
 use crate::load::turning;
 use crate::reduction::mesh_model::MeshModel;
-use crate::reduction::physics;
 use crate::structure::StaticForces;
 use crate::structure::kept::StaticResponses;
 use crate::structure::remainders::Remainders;
@@ -140,26 +139,6 @@ impl Statics {
             of_drive: self.of_drive.as_ref().map(freed).transpose()?,
             remainders: self.remainders.clone(),
         })
-    }
-
-    /// The response to all dead loads together that stay as they are, seen from the body (3n × 1), over the amplitude's size of
-    /// the first, and this size.
-    pub fn to_steady_loads(&self, model: &MeshModel<'_, '_>) -> Option<(Mat<f64>, f64)> {
-        let of_loads = self.of_loads.as_ref()?;
-        let is_steady = |load: &MeshLoad| {
-            !load.follows && physics::is_steady(model.scene, model.support.motion, model.drive.as_ref(), load)
-        };
-        let mut found: Option<(Mat<f64>, f64)> = None;
-        let acts = |load: &MeshLoad| is_steady(load) && load.size() > 0.0;
-        for (i, load) in model.loads.iter().enumerate().filter(|(_, load)| acts(load)) {
-            // A dead load on a body that does not turn has one response.
-            let response = of_loads.of_unit(i).subcols(0, 1);
-            found = Some(match found {
-                Some((sum, size)) => (sum + response * Scale(load.size() / size), size),
-                None => (response.to_owned(), load.size()),
-            });
-        }
-        found
     }
 
     /// The work of each load on its static responses; none where it is not known.

@@ -235,7 +235,7 @@ fn a_body_without_a_reference_is_refused_in_words() {
     };
     let (push, twist) = (force("force"), force("moment"));
     for (about, rest, expected) in [
-        ("\"loads\"", String::new(), "expected one that is clamped, or whose spin is given"),
+        ("\"loads\"", String::new(), "expected its spin alone"),
         ("\"spin\"", CLAMP.to_owned(), "expected a driven hinge"),
         ("\"loads\"", format!("{CLAMP}{twist}"), "expected forces and gravity"),
         ("\"loads\"", format!("{CLAMP}{push}"), "expected an equilibrium of the bent body"),

@@ -15,6 +15,10 @@ pub fn rest(scene: &Scene, model: &Model) -> Option<(ConservativeBody, MotionSta
     let initial = model.initial(scene);
     let body = ConservativeBody::new(&model.body, model.damping_ratios(), model.loads().to_vec(), &model.physics);
     let body = body.ok()?.beginning_at(&initial);
+    // Of a body that is held, or whose drive holds its spin, the program knows it.
+    if model.body.motion.count() == 0 {
+        return Some((body, model.rest(scene).ok()?));
+    }
     let nf = model.body.flexible();
     let at = |q: &[f64]| MotionState {
         time: 0.0,

@@ -24,7 +24,7 @@ pub enum SteadyError {
     },
     /// Newton's method does not converge.
     #[error(
-        "the bodies find no shape in which they are at rest in this state after {passes} passes; forces or spin may buckle them: try less"
+        "the bodies find no shape in which they are at rest in this state after {passes} passes; forces or spin may bend them further than their modes hold: try less, and see what the bodies do by `flexframe check`"
     )]
     NoRest {
         /// Passes that were made.

@@ -2,8 +2,8 @@
 
 use faer::Mat;
 use fem_tet10::{
-    Material, Materials, Mesh, assemble, geometric_stiffness_product, quadrature, reduced_geometric_stiffness,
-    second_order_energies, second_order_forces, shape_gradients,
+    Material, Materials, Mesh, assemble, quadrature, reduced_geometric_stiffness, second_order_energies,
+    second_order_forces, shape_gradients,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -84,24 +84,6 @@ fn of_homogeneous_fields_they_are_what_the_formulas_say() {
     let energies = energies.unwrap();
     assert_close("ε₂:C:ε₂", energies[0], volume * product_of(second(0, 1), second(2, 2)), 1e-11);
     assert_close("ε₂:C:ε₂", energies[1], volume * product_of(second(0, 0), second(0, 0)), 1e-11);
-}
-
-/// Conserved: the product and the reduced matrix are the same.
-#[test]
-fn the_product_with_the_geometric_stiffness_is_the_reduced_one() {
-    for mesh in [data_mesh("cube.msh"), workspace_mesh("ring.msh")] {
-        let u = columns(&[smooth(&mesh)]);
-        let shapes =
-            columns(&[field(&mesh, |[x, y, z]| [y * z, x * x, x * y]), field(&mesh, |[x, y, z]| [z, x * y, y * y])]);
-        let reduced = &reduced_geometric_stiffness(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap()[0];
-        let product = geometric_stiffness_product(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap();
-        let found = shapes.transpose() * &product;
-        for i in 0..2 {
-            for j in 0..2 {
-                assert!((found[(i, j)] - reduced[(i, j)]).abs() < 1e-12 * reduced.norm_max());
-            }
-        }
-    }
 }
 
 /// `∫ ε₂(a,b) : C : ε₂(c,d) dV` in plain loops, element by element, by the rule of degree 5.

@@ -38,10 +38,13 @@ impl fmt::Display for CampbellReport {
             )?;
         }
         match self.stable_below {
+            Some(speed) if self.of_undeformed() => writeln!(
+                f,
+                "  stable   below {} rad/{time}, about the undeformed body (`--about-rest always` asks the full body)",
+                quantity(speed)
+            )?,
             Some(speed) => writeln!(f, "  stable   below {} rad/{time}", quantity(speed))?,
-            None if !self.bodies.is_empty() || !self.deflection.is_empty() => {
-                writeln!(f, "  stable   at all speeds of this range")?
-            }
+            None if !self.of_undeformed() => writeln!(f, "  stable   at all speeds of this range")?,
             None => writeln!(f, "  stable   no frequency falls to zero at any speed")?,
         }
         self.write_branches(f)?;
@@ -55,6 +58,11 @@ impl CampbellReport {
     /// Turns a minute, where time is in seconds.
     fn rpm(&self, speed: f64) -> Option<f64> {
         (self.time_unit == "s").then_some(60.0 * speed / TAU)
+    }
+
+    /// True if the vibrations are those of modes of one undeformed body.
+    fn of_undeformed(&self) -> bool {
+        self.bodies.is_empty() && self.deflection.is_empty()
     }
 
     fn write_branches(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -108,7 +116,11 @@ impl CampbellReport {
             if let Some(rpm) = self.rpm(speed) {
                 write!(f, "{rpm:>10.1}")?;
             }
-            let zero = if order == 0.0 { "   the frequency is zero: a limit of stability" } else { "" };
+            let zero = match (order == 0.0, self.of_undeformed()) {
+                (false, _) => "",
+                (true, false) => "   the frequency is zero: a limit of stability",
+                (true, true) => "   the frequency is zero: no rest of the model from here on",
+            };
             writeln!(f, "  {frequency:>9.3}{zero}")?;
         }
         Ok(())

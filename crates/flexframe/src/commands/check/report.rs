@@ -3,12 +3,13 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use model::{Mend, StateCheck};
+use model::{BodyStressCheck, Mend, PointStress, StateCheck};
 use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
+use crate::rows::units::UnitLabels;
 use crate::trust::card::TrustCard;
 
 /// Report of `flexframe check`.
@@ -94,6 +95,19 @@ impl fmt::Display for CheckReport {
 }
 
 impl CheckReport {
+    /// Each body that has lost its stability at a row, in words.
+    pub(crate) fn instabilities(&self) -> Vec<String> {
+        let of_body = |body: &BodyCheck| {
+            let name = if self.bodies.len() > 1 { format!("body {}: ", body.name) } else { String::new() };
+            let time = &self.units[2];
+            body.rows.iter().find_map(|row| {
+                let words = row.stability_in_words()?;
+                Some(format!("{name}at time {:.6} {time} {words}, by the full nonlinear body", row.state.time))
+            })
+        };
+        self.bodies.iter().filter_map(of_body).collect()
+    }
+
     /// The lines in the summary of a run.
     pub(crate) fn write_in_run(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for body in &self.bodies {
@@ -129,6 +143,19 @@ impl RowCheck {
                 false => write!(f, "\n    {name}: {} of {at}", percent(point.relative))?,
             }
         }
+        if let Some(stress) = &state.stress {
+            let unit = UnitLabels { length, mass: &units[1], time }.stress();
+            for PointStress { name, full, error } in &stress.points {
+                write!(f, "\n    stress at {name}: wrong by {error:.1e} of {full:.4e} {unit}")?;
+            }
+            if let Some(body) = stress.body {
+                let BodyStressCheck { full, error, max_error, .. } = body;
+                write!(
+                    f,
+                    "\n    largest stress {full:.4e} {unit}: wrong by {error:.1e} there, and by {max_error:.1e} at most"
+                )?;
+            }
+        }
         if !state.frequencies.is_empty() {
             let each = state.frequencies.iter().map(|f| format!("{:.4} ({:+.2} %)", f.full, 100.0 * f.error));
             let each: Vec<String> = each.collect();
@@ -155,9 +182,6 @@ impl RowCheck {
         let [length, _, time] = units;
         let why = self.why.join(", ");
         let mut words = format!("{} at time {:.6} {time} ({why})", self.error_in_words(length), self.state.time);
-        if let Some(stability) = self.stability_in_words() {
-            words = format!("{words}; {stability}");
-        }
         if !self.state.mends.is_empty() {
             words = format!("{words}; mended by {}", mends_in_words(&self.state.mends));
         }
@@ -176,14 +200,15 @@ impl RowCheck {
 
     fn stability_in_words(&self) -> Option<String> {
         let StateCheck { negative_directions, growth, .. } = self.state;
-        if growth > 0.0 {
-            return Some(format!("the true body is unstable there: a vibration grows at {growth:.3e} per time"));
-        }
-        match negative_directions {
-            Some(count @ 1..) => Some(format!(
+        match (negative_directions.unwrap_or(0), growth) {
+            (0, 0.0) => None,
+            (0, _) => Some(format!("the true body is unstable: a vibration grows at {growth:.3e} per time")),
+            (count, 0.0) => Some(format!(
                 "the true body has lost its stiffness in {count} direction(s): it buckles, or its spin alone holds it"
             )),
-            _ => None,
+            (count, _) => Some(format!(
+                "the true body has lost its stiffness in {count} direction(s): it buckles, and a vibration grows at {growth:.3e} per time"
+            )),
         }
     }
 }

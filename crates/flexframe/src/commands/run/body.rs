@@ -117,7 +117,7 @@ impl<'a> FollowedBody<'a> {
         last: &BodyRow,
         (stats, exchanged, scheme): (&Stats, f64, &str),
     ) -> (BodyRunReport, Vec<String>) {
-        let Watched { balances, right_unsummed, energy_tells, step_error, left_out, turned, warnings } =
+        let Watched { balances, right_unsummed, energy_tells, step_error, turned, warnings } =
             self.watch.finish(exchanged, stats.longest);
         let RunBody { scene, model } = self.of;
         let report = BodyRunReport {
@@ -141,7 +141,6 @@ impl<'a> FollowedBody<'a> {
             step_error,
             effects: effects::computed(scene, model),
             large_modes: model.large_modes().iter().map(|k| k + 1).collect(),
-            left_out,
         };
         (report, warnings)
     }

@@ -56,6 +56,4 @@ pub struct BodyRunReport {
     pub effects: Vec<(&'static str, bool)>,
     /// The modes that bent the body far; none without large deflection. Numbered from 1.
     pub large_modes: Vec<usize>,
-    /// The most that the orders beyond the fourth, which are left out, come to of the forces on these modes, about.
-    pub left_out: Option<f64>,
 }

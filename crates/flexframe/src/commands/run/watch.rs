@@ -41,8 +41,6 @@ pub struct Watched {
     pub energy_tells: bool,
     /// See `step_error` of the report of a body.
     pub step_error: Option<f64>,
-    /// See `left_out` of the report of a body.
-    pub left_out: Option<f64>,
     /// Angle along the way of the attitude, ∫|ω| dt, rad.
     pub turned: f64,
     /// Assumptions that did not hold, each a sentence or more.
@@ -139,7 +137,6 @@ impl<'a> Watch<'a> {
             // The equations of the paper do not keep the energy in any steps.
             energy_tells: scene.time.method.abilities.keeps_energy && !is_right_unsummed,
             step_error: self.step.as_ref().map(StepEstimate::largest),
-            left_out: self.review.left_out(),
             turned: self.turn.angle(),
             warnings: (plausible::doubts(scene, model).into_iter())
                 .chain(self.review.broken().iter().map(ToString::to_string))

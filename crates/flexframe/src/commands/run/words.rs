@@ -6,6 +6,7 @@ use std::fmt;
 use super::balances::Balances;
 use super::body_report::BodyRunReport;
 use super::report::RunReport;
+use crate::commands::check::report::CheckReport;
 use crate::commands::modes::frequency_unit;
 use crate::report::{quantity, rounded, size_and_mass};
 use crate::rows::effects;
@@ -41,6 +42,9 @@ impl fmt::Display for RunReport {
         writeln!(f, "  time     {}", self.times)?;
         write!(f, "  results  {} ({} rows)", self.results.display(), self.rows)?;
         for warning in &self.warnings {
+            write!(f, "\n  warning  {warning}")?;
+        }
+        for warning in self.check.iter().flat_map(CheckReport::instabilities) {
             write!(f, "\n  warning  {warning}")?;
         }
         Ok(())
@@ -95,15 +99,10 @@ impl BodyRunReport {
         if !self.effects.is_empty() {
             writeln!(f, "  effects  {}", effects::in_words(&self.effects))?;
         }
-        if let Some(left_out) = self.left_out {
+        if !self.large_modes.is_empty() {
             let modes: Vec<String> = self.large_modes.iter().map(ToString::to_string).collect();
             let s = if modes.len() == 1 { "" } else { "s" };
-            write!(f, "  large    mode{s} {}", modes.join(", "))?;
-            // The full body knows better.
-            match run.check {
-                Some(_) => writeln!(f)?,
-                None => writeln!(f, "; orders beyond the fourth left out, about {left_out:.1e} of the forces")?,
-            }
+            writeln!(f, "  large    mode{s} {}", modes.join(", "))?;
         }
         write!(f, "  motion   {}", self.steps_in_words(run))?;
         match is_single {
