@@ -11,7 +11,8 @@ use model::{BuildProgress, Builder};
 use scene::System;
 
 pub use error::ShockResponseError;
-pub use report::{ShockMode, ShockOutput, ShockReport};
+pub use peaks::ShockOutput;
+pub use report::{ShockMode, ShockReport};
 
 use crate::commands::linear::linearize::{LinearSettings, linear_model};
 use crate::commands::linear::srs::table;

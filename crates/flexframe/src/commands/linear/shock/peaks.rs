@@ -4,9 +4,27 @@ use std::f64::consts::TAU;
 
 use linear::{Output, RealModes, SecondOrder};
 use rayon::prelude::*;
+use serde::Serialize;
 use shock::{BaseMotion, ModalPeak, Peaks, ShockError, Sum};
 
-use super::report::ShockOutput;
+/// The largest value of an output, in three sums.
+#[derive(Debug, Clone, Serialize)]
+pub struct ShockOutput {
+    /// Its name.
+    pub output: String,
+    /// Its unit.
+    pub unit: String,
+    /// Σ of magnitudes: an upper bound.
+    pub absolute: f64,
+    /// Root of the sum of squares.
+    pub srss: f64,
+    /// Complete quadratic combination.
+    pub cqc: f64,
+    /// The part that no mode of the model has, at the largest magnitude of the table: it is in all three sums.
+    pub rigid: f64,
+    /// Number of the mode with the largest peak, from 1; none where the rigid part is larger.
+    pub largest_mode: Option<usize>,
+}
 
 /// The peaks of each mode.
 pub(super) struct ModePeaks {

@@ -6,7 +6,7 @@ use scene::Scene;
 use serde::Serialize;
 use shock::BaseMotion;
 
-use super::peaks::ModePeaks;
+use super::peaks::{ModePeaks, ShockOutput};
 use crate::commands::modes::frequency_unit;
 
 /// Most modes in the summary.
@@ -46,25 +46,6 @@ pub struct ShockMode {
     pub displacement: f64,
     /// Largest acceleration of its mass.
     pub acceleration: f64,
-}
-
-/// The largest value of an output, in three sums.
-#[derive(Debug, Clone, Serialize)]
-pub struct ShockOutput {
-    /// Its name.
-    pub output: String,
-    /// Its unit.
-    pub unit: String,
-    /// Σ of magnitudes: an upper bound.
-    pub absolute: f64,
-    /// Root of the sum of squares.
-    pub srss: f64,
-    /// Complete quadratic combination.
-    pub cqc: f64,
-    /// The part that no mode of the model has, at the largest magnitude of the table: it is in all three sums.
-    pub rigid: f64,
-    /// Number of the mode with the largest peak, from 1; none where the rigid part is larger.
-    pub largest_mode: Option<usize>,
 }
 
 impl ShockReport {
