@@ -101,7 +101,7 @@ fn a_run_says_after_its_check_that_a_body_buckles() {
         assert_eq!(said.contains(words), directions > 0, "{said}");
         let file = folder.path().join("column.h5");
         let report = flexframe(&["check", file.to_str().unwrap(), "--json"]).stdout;
-        let report: Value = serde_json::from_slice(&report).unwrap();
+        let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
         assert_eq!(report["bodies"][0]["rows"][0]["negative_directions"], directions, "{report}");
     }
 }
