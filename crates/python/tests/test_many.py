@@ -92,7 +92,8 @@ def test_what_was_computed_of_a_mesh_is_kept(tmp_path):
 
 def test_runs_of_one_body_search_no_modes_again(tmp_path, monkeypatch):
     monkeypatch.setenv("FLEXFRAME_CACHE", str(tmp_path))
-    scene = flexframe.Scene(RING, base=EXAMPLES)
+    # Large modes have responses of second order, which are more fields than the modes.
+    scene = flexframe.Scene(RING, base=EXAMPLES).with_values({"effects.large_deflection": False})
     body = flexframe.Body(scene)
     files = lambda: {path: path.stat().st_ino for path in tmp_path.rglob("*") if path.is_file()}
     kept = files()

@@ -143,7 +143,7 @@ class Body:
         """Where the points of the scene are in the undeformed body, mesh axes."""
     def displacements(self, modal_displacement: ArrayLike) -> NDArray[np.float64]:
         """Elastic displacement of each node, body axes (n x 3, or 6 with the rotations of the nodes), with what follows large
-        modes."""
+        modes, and that of a bent reference."""
 
 @final
 class Motion:
@@ -408,4 +408,4 @@ def linearized(
     outputs: list[str],
     reduce: str | None,
 ) -> dict[str, Any]:
-    """The state space of small motions of a scene, for `flexframe.linearize`: A, B, C, D, and names and units."""
+    """The state space of small motions of a scene: A, B, C, D, and names and units."""
