@@ -26,7 +26,7 @@ use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_results, outp
 use flexframe::psd::{self, PsdSettings};
 use flexframe::report::OfBodies;
 use flexframe::run::{RunProgress, RunSettings};
-use flexframe::shock::{self, ShockSettings};
+use flexframe::shock;
 use flexframe::srs::{self, SrsSettings};
 use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::system_modes::{self, AdviceOnSystems, ModesOfSystems};
@@ -994,7 +994,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         Command::Shock { scene: SceneArgs { scene, json }, table, input, about, outputs } => {
             GivenFile::expect(&table, &[GivenFile::Table], "a CSV file of times and values (docs/reference/cli.md)")?;
             let system = read_system(scene)?;
-            let settings = ShockSettings { linear: about.settings(vec![input], outputs) };
+            let settings = about.settings(vec![input], outputs);
             let report = shock::shock(&system, &builder, &table, &settings, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)

@@ -11,7 +11,6 @@ pub(crate) mod element;
 pub(crate) mod elimination;
 mod invariants;
 pub(crate) mod joint;
-mod locked;
 pub(crate) mod marker;
 pub(crate) mod radau;
 mod reactions;

@@ -1,5 +1,6 @@
 //! Files that commands read and write.
 
+pub(crate) mod csv;
 pub mod given_file;
 pub(crate) mod json;
 pub mod outputs;

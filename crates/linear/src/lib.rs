@@ -12,23 +12,20 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-mod balanced;
 mod channel;
 mod error;
 mod frequency_response;
 mod mat_file;
-mod modal;
 mod modal_form;
-mod parts;
 mod quadrature;
 mod random;
 mod real_modes;
 mod rows;
 mod second_order;
 mod state_space;
+mod truncation;
 mod values;
 
-pub use balanced::Balanced;
 pub use channel::Channel;
 pub use error::LinearError;
 pub use faer;
@@ -39,3 +36,4 @@ pub use random::{RandomInput, RandomResponse};
 pub use real_modes::RealModes;
 pub use second_order::{Damping, Output, Rate, SecondOrder};
 pub use state_space::StateSpace;
+pub use truncation::balanced::Balanced;

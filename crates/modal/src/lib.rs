@@ -43,7 +43,7 @@ pub use matrix::stiffness::{NodalStiffness, StiffnessMatrix};
 pub use memory_estimate::{Forecast, reserve_of_dense_products};
 pub use multigrid::NoCycles;
 pub use progress::{EnginePhase, Progress};
-pub use rates::ModeRates;
+pub use rates::{ModeRates, repeated};
 pub use reduction::body::{BodyPoint, Constants, ReducedBody};
 pub use reduction::fields::{acceleration_fields, centrifugal_fields, turning_field};
 pub use reduction::participation::{OfBase, Participation};

@@ -37,17 +37,7 @@ impl Modes {
     /// Groups of the first natural modes that have one frequency; a mode apart is none.
     pub fn repeated(&self, count: usize) -> Vec<Range<usize>> {
         let lambda = &self.eigenvalues[..count.min(self.natural())];
-        let mut groups = Vec::new();
-        let mut first = 0;
-        for k in 1..=lambda.len() {
-            if k == lambda.len() || lambda[k] - lambda[k - 1] > REPEATED * lambda[k] {
-                if k - first > 1 {
-                    groups.push(first..k);
-                }
-                first = k;
-            }
-        }
-        groups
+        repeated(lambda, |before, after| after - before <= REPEATED * after)
     }
 
     /// The number of first natural modes, `count` or a few more, that cuts no group of one frequency.
@@ -152,6 +142,17 @@ impl Solver<'_> {
         answer += Beyond { solver: self, modes, shapes, m_shapes }.solve(&own, &energies, forces)?;
         Ok(answer)
     }
+}
+
+/// Groups of more than one member of a list whose neighbours are the same.
+pub fn repeated<T>(list: &[T], is_same: impl FnMut(&T, &T) -> bool) -> Vec<Range<usize>> {
+    let mut end = 0;
+    let groups = list.chunk_by(is_same).map(|group| {
+        let start = end;
+        end += group.len();
+        start..end
+    });
+    groups.filter(|group| group.len() > 1).collect()
 }
 
 /// The displacements that are M-orthogonal to all shapes that are known and to the rigid ones.

@@ -13,8 +13,6 @@ pub(crate) mod ties;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use faer::Mat;
-use modal::NodalMass;
 use nonlinear::{FullBody, NonlinearError};
 use scene::Scene;
 
@@ -65,11 +63,7 @@ impl Builder {
             return Ok(None);
         }
         let FeMatrices::Assembled(matrices) = assembled.matrices()? else { return Ok(None) };
-        let mass = NodalMass::of_nodes(matrices.start(), matrices.nodes(), matrices.mass_by_nodes())
-            .map_err(crate::error::modal(scene))?;
-        let masses = mass.row_sums();
-        let weights = Mat::from_fn(masses.len(), 1, |node, _| masses[node]);
-        let weight = Arc::new(UnitWeight::new(weights, 3));
+        let weight = Arc::new(UnitWeight::of_elements(matrices).map_err(crate::error::modal(scene))?);
         let loads = mesh_load::on_mesh(scene, &assembled.mesh, 3, &weight)?;
         let markers = mesh_marker::on_mesh(scene, &assembled.mesh, 3)?;
         Ok(Some(FullModel { assembled, loads, markers }))

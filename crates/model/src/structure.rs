@@ -152,17 +152,8 @@ impl<'a> Structure<'a> {
         if let Some(found) = self.solver.get() {
             return Ok(found);
         }
-        let AssembledMesh { mesh, support, builder, .. } = self.assembled;
-        let solver = self.matrices()?.solver(self.positions()?, support).map_err(|error| self.refuse(error))?;
-        let edge_ends = if mesh.has_elements() { mesh.edge_ends() } else { None };
-        let solver = match edge_ends {
-            Some(edge_ends) => solver.with_edge_ends(edge_ends).map_err(|error| self.refuse(error))?,
-            None => solver,
-        };
-        let solver = match &builder.solver {
-            Some(slepc) => solver.with_engine(slepc.engine()),
-            None => solver,
-        };
+        let solver = self.assembled.solver(self.matrices()?, self.positions()?);
+        let solver = solver.map_err(|error| self.refuse(error))?;
         Ok(self.solver.get_or_init(|| solver))
     }
 

@@ -3,6 +3,7 @@
 
 pub mod accuracy;
 pub mod check;
+mod lot;
 pub mod nonlinear;
 pub mod stability;
 pub mod systems;

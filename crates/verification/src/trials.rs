@@ -8,6 +8,8 @@ use flexframe::fit::{Fit, FitSettings};
 use model::Builder;
 use scene::{Measured, MeasuredMode, Scene};
 
+use crate::lot::Lot;
+
 /// Fits of each case.
 const TRIALS: usize = 200;
 /// Standard deviation of the frequencies, relative.
@@ -48,23 +50,6 @@ struct Counted {
     sum: f64,
     squares: f64,
     width: f64,
-}
-
-/// Numbers drawn by lot (Marsaglia's xorshift, Box and Muller).
-struct Lot(u64);
-
-impl Lot {
-    fn number(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * self.number().ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.number()).cos()
-    }
 }
 
 /// The page. `notify` hears how far it is.
@@ -122,7 +107,7 @@ fn trials(case: &Case, stated: bool) -> Result<Vec<Counted>, Box<dyn Error>> {
     };
     let truth = Fit::new(&scene(case, 1.0)?.into(), &Builder::default(), &settings, |_| ())?.frequencies()?;
     let mut fit = Fit::new(&scene(case, START)?.into(), &Builder::default(), &settings, |_| ())?;
-    let mut lot = Lot(0x9e37_79b9_7f4a_7c15);
+    let mut lot = Lot::new();
     let mut counted = vec![Counted::default(); case.parameters.len()];
     for _ in 0..TRIALS {
         let measured: Vec<f64> = truth.iter().map(|frequency| frequency * (1.0 + NOISE * lot.normal())).collect();

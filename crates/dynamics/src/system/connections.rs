@@ -1,5 +1,6 @@
 //! What connects the bodies of a system.
 
+use std::ops::AddAssign;
 use std::sync::Arc;
 
 use crate::system::element::ForceElement;
@@ -49,6 +50,18 @@ impl Connections {
     pub fn names(&self) -> impl Iterator<Item = &str> {
         let of_joints = self.joints.iter().flat_map(|joint| (0..joint.row_count()).map(|_| joint.name.as_str()));
         of_joints.chain(self.couplings.iter().map(|coupling| coupling.name.as_str()))
+    }
+
+    /// Sums over the rows of each joint and coupling that has rows, with its name.
+    pub fn sums<T: AddAssign>(&self, of_rows: impl Iterator<Item = T>) -> Vec<(&str, T)> {
+        let mut sums: Vec<(&str, T)> = Vec::new();
+        for (name, of_row) in self.names().zip(of_rows) {
+            match sums.last_mut() {
+                Some((last, sum)) if *last == name => *sum += of_row,
+                _ => sums.push((name, of_row)),
+            }
+        }
+        sums
     }
 
     /// For each row, true if a drive moves it.

@@ -1,6 +1,7 @@
 //! A run of bodies with joints: steps to discontinuities and stops, rows and events within them.
 
 mod last_step;
+mod locked;
 pub(crate) mod observation;
 mod saved;
 pub(crate) mod setup;
@@ -103,14 +104,10 @@ impl SystemSimulation {
         let mut motion = SystemMotion::new(system, &states)?.with_scheme(scheme);
         let size = size(motion.system(), &states);
         let assembled = assemble(&mut motion, &states, relaxed, [size, end])?;
-        let mut redundant: Vec<(String, usize)> = Vec::new();
         let is_implied = motion.implied_rows();
-        for (name, _) in motion.system().connections.names().zip(&is_implied).filter(|(_, is_implied)| **is_implied) {
-            match redundant.last_mut() {
-                Some((last, rows)) if last == name => *rows += 1,
-                _ => redundant.push((name.to_owned(), 1)),
-            }
-        }
+        let implied = motion.system().connections.sums(is_implied.iter().map(|is_implied| usize::from(*is_implied)));
+        let redundant = implied.into_iter().filter(|(_, rows)| *rows > 0).map(|(name, rows)| (name.to_owned(), rows));
+        let redundant = redundant.collect();
         let system = motion.system();
         let loads: Vec<SharedLoad> = system.bodies().iter().flat_map(|body| body.loads()).cloned().collect();
         let longest_step = LongestStep::new(&loads, system.joints().iter().flat_map(|joint| joint.histories()), end)?;

@@ -28,6 +28,13 @@ pub struct Location {
     pub weights: Vec<f64>,
 }
 
+impl Location {
+    /// The value at the point of a field that is known on the nodes.
+    pub fn mean(&self, at: impl Fn(u32) -> Vector3<f64>) -> Vector3<f64> {
+        self.nodes.iter().zip(&self.weights).map(|(node, weight)| at(*node) * *weight).sum()
+    }
+}
+
 impl Mesh {
     /// The node at `point`, or the ten nodes of the element that contains it with their shape functions.
     ///

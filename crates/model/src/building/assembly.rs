@@ -8,7 +8,7 @@ use dynamics::{Drive, Effect};
 use fem_tet10::{Materials, Matrices, Mesh};
 use matrix_import::MatrixFiles;
 use mesh_import::Imported;
-use modal::Support;
+use modal::{ModalError, Solver, Support};
 use scene::{Body, Constraint, MeshedBody, RigidBody, Scene};
 
 use crate::body::given::read_body_file;
@@ -209,6 +209,19 @@ impl AssembledMesh {
             MadeOf::Elements(_) => self.asked()?.rest_of_body(|| self.assembled_matrices()),
             MadeOf::Files(_) => Ok(RestOfBody::NotAsked),
         }
+    }
+
+    /// The solver of modes and statics of matrices on this mesh, with the engine of the builder.
+    pub fn solver<'a>(&self, matrices: &'a FeMatrices, positions: &'a [[f64; 3]]) -> Result<Solver<'a>, ModalError> {
+        let Self { mesh, support, builder, .. } = self;
+        let mut solver = matrices.solver(positions, support)?;
+        if let Some(edge_ends) = mesh.has_elements().then(|| mesh.edge_ends()).flatten() {
+            solver = solver.with_edge_ends(edge_ends)?;
+        }
+        if let Some(slepc) = &builder.solver {
+            solver = solver.with_engine(slepc.engine());
+        }
+        Ok(solver)
     }
 
     /// Mass and stiffness about the reference: of the undeformed body without one.

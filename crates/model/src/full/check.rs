@@ -268,8 +268,7 @@ fn peak(u: &[f64]) -> f64 {
 
 fn checked((name, location): &(String, Location), truth: &[f64], error: &[f64]) -> PointCheck {
     let at = |list: &[f64]| -> Vector3<f64> {
-        let node = |node: &u32| Vector3::from_column_slice(&list[3 * *node as usize..3 * *node as usize + 3]);
-        location.nodes.iter().zip(&location.weights).map(|(n, weight)| node(n) * *weight).sum()
+        location.mean(|node| Vector3::from_column_slice(&list[3 * node as usize..3 * node as usize + 3]))
     };
     let (displacement, error) = (at(truth), at(error));
     PointCheck {

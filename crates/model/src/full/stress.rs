@@ -22,24 +22,24 @@ pub struct StressCheck {
 pub struct PointStress {
     /// Its name.
     pub name: String,
-    /// That of the full body, force per area.
+    /// Stress of the full body, force per area.
     pub full: f64,
-    /// That of the difference of both stresses.
+    /// Stress of the difference of both.
     pub error: f64,
 }
 
 /// The von Mises stress over the body.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct BodyStressCheck {
-    /// The largest of the full body, force per area, and its node.
+    /// Largest stress of the full body, force per area.
     pub full: f64,
     /// The node.
     pub node: u32,
     /// The von Mises stress of the difference of both stresses, there.
     pub error: f64,
-    /// Its largest one anywhere.
+    /// The largest stress of the difference anywhere.
     pub max_error: f64,
-    /// What the model states of `max_error`: the stress that its modes leave out of static responses.
+    /// Stress that the modes leave out of static responses: the model's own estimate of `max_error`.
     pub max_left_out: f64,
 }
 

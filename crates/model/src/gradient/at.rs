@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
-use faer::{Col, ColRef, Mat, MatRef};
+use faer::{Col, Mat, MatRef};
 use fem_tet10::{Location, MatrixRates, Mesh};
-use modal::{ModeRates, Modes, NodalMass, Solver, StaticAccuracy};
+use modal::{ModeRates, Modes, Solver, StaticAccuracy};
 use nalgebra::Vector3;
 use scene::{Load, MeshedBody, Scene};
 
@@ -57,14 +57,12 @@ impl At<'_> {
     /// Displacements (N×k) at the points, by column.
     pub fn at_points(&self, fields: MatRef<'_, f64>) -> Vec<Vec<Vector3<f64>>> {
         let at = |point: &Location, column: usize| {
-            let of = point.nodes.iter().zip(&point.weights);
-            let u = |node: u32| Vector3::from_fn(|axis, _| fields[(3 * node as usize + axis, column)]);
-            of.map(|(node, weight)| u(*node) * *weight).sum::<Vector3<f64>>()
+            point.mean(|node| Vector3::from_fn(|axis, _| fields[(3 * node as usize + axis, column)]))
         };
         (0..fields.ncols()).map(|column| self.points.iter().map(|point| at(point, column)).collect()).collect()
     }
 
-    /// Those of the modes that were asked for.
+    /// Values of the modes that were asked for.
     pub fn kept<T: Clone>(&self, of_modes: &[T]) -> Vec<T> {
         of_modes[..self.asked.min(of_modes.len())].to_vec()
     }
@@ -150,13 +148,12 @@ impl At<'_> {
         if self.points.is_empty() {
             return Ok(None);
         }
-        let mass = NodalMass::of_nodes(matrices.start(), matrices.nodes(), matrices.mass_by_nodes());
-        let masses = mass.map_err(modal(self.scene()))?.row_sums();
-        let weights = Mat::from_fn(masses.len(), 1, |node, _| masses[node]);
-        let list = mesh_load::on_mesh(self.scene(), self.mesh(), 3, &Arc::new(UnitWeight::new(weights, 3)))?;
-        let mut forces = Mat::zeros(3 * masses.len(), list.len());
+        let weight = UnitWeight::of_elements(matrices).map_err(modal(self.scene()))?;
+        let list = mesh_load::on_mesh(self.scene(), self.mesh(), 3, &Arc::new(weight))?;
+        let rows = 3 * self.mesh().positions().len();
+        let mut forces = Mat::zeros(rows, list.len());
         for (load, mut forces) in list.iter().zip(forces.col_iter_mut()) {
-            let mut of_load = vec![0.0; 3 * masses.len()];
+            let mut of_load = vec![0.0; rows];
             load.add_nodal_forces(&mut of_load);
             forces.copy_from(Col::from_fn(of_load.len(), |row| of_load[row]));
         }
@@ -227,15 +224,9 @@ impl At<'_> {
     }
 }
 
-/// Those of loads whose forces have known rates.
+/// Values of the loads whose forces have known rates.
 fn known<T>(of_loads: Vec<T>, is_known: &[bool]) -> Vec<Option<T>> {
     of_loads.into_iter().zip(is_known).map(|(of_load, is_known)| is_known.then_some(of_load)).collect()
-}
-
-/// The largest displacement of a node.
-pub(super) fn largest(shape: ColRef<'_, f64>) -> f64 {
-    let squared = |node: usize| (0..3).map(|axis| shape[3 * node + axis].powi(2)).sum::<f64>();
-    (0..shape.nrows() / 3).map(squared).fold(0.0, f64::max).sqrt()
 }
 
 /// Three numbers of each column.

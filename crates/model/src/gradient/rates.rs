@@ -42,13 +42,13 @@ pub struct Residues {
 /// Rates with one parameter: the derivatives of the numbers of [`BodyRates`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParameterRates {
-    /// Of the frequencies. Modes of one frequency that the parameter parts are in rising order of their rates.
+    /// Rates of the frequencies. Modes of one frequency that the parameter parts are in rising order of their rates.
     pub frequencies: Vec<f64>,
-    /// Of the eigenvalues ω².
+    /// Rates of the eigenvalues ω².
     pub eigenvalues: Vec<f64>,
-    /// Of the effective masses.
+    /// Rates of the effective masses.
     pub effective_masses: Option<Vec<[f64; TRANSLATIONS]>>,
-    /// Of the static displacements; none of a load whose forces on the nodes the parameter changes otherwise than by their mass.
+    /// Rates of the static displacements; none of a load whose forces on the nodes the parameter changes otherwise than by their mass.
     pub statics: Option<Vec<Option<Vec<Vector3<f64>>>>>,
     /// Residues of each load, none as of the static displacements; empty where they were not asked for.
     pub residues: Vec<Option<Residues>>,

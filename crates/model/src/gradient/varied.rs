@@ -8,13 +8,14 @@ use crate::building::assembly::{Assembled, AssembledMesh};
 use crate::building::builder::Builder;
 use crate::building::progress::BuildProgress;
 use crate::error::{BuildError, modal, refuse, too_many_modes};
-use crate::gradient::at::{Acted, At, largest, mean_of_groups};
+use crate::gradient::at::{Acted, At, mean_of_groups};
 use crate::gradient::parameter::{Parameter, meshed};
 use crate::gradient::rates::{BodyRates, RatesOf};
 use crate::load::mesh_load;
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::read::matrices;
 use crate::reduction::measured::{Seen, matched};
+use crate::reduction::modal_model::peak;
 
 /// Modes beyond those that are asked for: a group of modes of one frequency is not cut, and the rates of shapes come sooner.
 const BEYOND: usize = 4;
@@ -80,15 +81,7 @@ impl VariedBody {
     pub fn rates(&self, body: &MeshedBody, parameters: &[Parameter], of: RatesOf) -> Result<BodyRates, BuildError> {
         let AssembledMesh { mesh, support, scene, .. } = &*self.assembled;
         let matrices = FeMatrices::Assembled(matrices(scene, body, mesh)?);
-        let solver = matrices.solver(mesh.positions(), support).map_err(modal(scene))?;
-        let solver = match mesh.edge_ends() {
-            Some(ends) => solver.with_edge_ends(ends).map_err(modal(scene))?,
-            None => solver,
-        };
-        let solver = match &self.assembled.builder.solver {
-            Some(slepc) => solver.with_engine(slepc.engine()),
-            None => solver,
-        };
+        let solver = self.assembled.solver(&matrices, mesh.positions()).map_err(modal(scene))?;
         if self.modes > solver.available() {
             let (requested, available) = (self.modes, solver.available());
             return Err(too_many_modes(scene, ModalError::TooManyModes { requested, available }));
@@ -122,7 +115,7 @@ impl VariedBody {
         Ok(BodyRates {
             frequencies: modes.natural_frequencies()[..self.modes].to_vec(),
             shapes: at.at_points(modes.shapes.subcols(0, self.modes)),
-            peaks: modes.shapes.subcols(0, self.modes).col_iter().map(largest).collect(),
+            peaks: modes.shapes.subcols(0, self.modes).col_iter().map(|shape| peak(shape, 3)).collect(),
             effective_masses,
             statics: acted.statics.as_ref().map(|answers| at.at_points(answers.as_ref())),
             modal_forces: acted.loads.as_ref().map_or_else(Vec::new, |loads| {

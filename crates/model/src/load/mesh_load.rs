@@ -7,8 +7,8 @@ use dynamics::{
     SharedLoad,
 };
 use faer::Mat;
-use fem_tet10::{Location, Mesh};
-use modal::{BodyPoint, Modes, ReducedBody};
+use fem_tet10::{Location, Matrices, Mesh};
+use modal::{BodyPoint, ModalError, Modes, NodalMass, ReducedBody};
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 use scene::{Choice, Force, Load, Moment, Scene, Traction};
@@ -93,6 +93,12 @@ impl UnitWeight {
         }
         let mass = (0..weights.nrows() / dofs).map(|node| weights[(dofs * node, 0)]).sum();
         Self { forces: weights, mass }
+    }
+
+    /// The weight of the elements of a mesh.
+    pub fn of_elements(matrices: &Matrices) -> Result<Self, ModalError> {
+        let masses = NodalMass::of_nodes(matrices.start(), matrices.nodes(), matrices.mass_by_nodes())?.row_sums();
+        Ok(Self::new(Mat::from_fn(masses.len(), 1, |node, _| masses[node]), 3))
     }
 
     /// The centre of mass, which moves as the mean of all masses does: in a free body not at all.

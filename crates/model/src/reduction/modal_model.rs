@@ -2,7 +2,7 @@
 
 use advice::Case;
 use dynamics::Initial;
-use faer::Mat;
+use faer::{ColRef, Mat};
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 
@@ -28,13 +28,10 @@ impl ModalModel {
     pub fn new(model: &MeshModel<'_, '_>, body: ReducedBody, modes: &Modes) -> Result<Self, BuildError> {
         let &MeshModel { scene, mesh, .. } = model;
         let loads = loads(model, &body, modes, &[])?;
-        let peak = |shape: faer::ColRef<'_, f64>| {
-            let at = |node: usize| Vector3::from_fn(|axis, _| shape[model.dofs * node + axis]).norm();
-            (0..shape.nrows() / model.dofs).map(at).fold(0.0, f64::max)
-        };
+        let peaks = modes.shapes.as_ref().col_iter().map(|shape| peak(shape, model.dofs)).collect();
         Ok(Self {
             loads,
-            size: Size { length: mesh.diagonal(), peaks: modes.shapes.as_ref().col_iter().map(peak).collect() },
+            size: Size { length: mesh.diagonal(), peaks },
             damping_ratios: damping_ratios(scene, &body),
             initial: initial(scene, &body),
             body,
@@ -101,4 +98,10 @@ fn loads(
         ))
     };
     model.loads.iter().enumerate().map(reduced).collect()
+}
+
+/// The largest displacement of a node in a shape with so many degrees of freedom a node.
+pub(crate) fn peak(shape: ColRef<'_, f64>, dofs: usize) -> f64 {
+    let at = |node: usize| Vector3::from_fn(|axis, _| shape[dofs * node + axis]).norm();
+    (0..shape.nrows() / dofs).map(at).fold(0.0, f64::max)
 }

@@ -1,6 +1,7 @@
 //! Random scenes: bodies, supports, drives, loads and models drawn by lot, the same ones each time.
 
 use super::cases::{Case, SOFT, Truth};
+use crate::lot::Lot;
 
 /// A body, and the point at its end.
 const BODIES: [(&str, [f64; 3]); 4] = [
@@ -10,39 +11,9 @@ const BODIES: [(&str, [f64; 3]); 4] = [
     ("arc", [1.0, 0.0, 1.0]),
 ];
 
-/// Numbers drawn by lot (Marsaglia's xorshift).
-struct Lot(u64);
-
-impl Lot {
-    /// From 0 to 1.
-    fn number(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// From one number to another, their logarithms all alike.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.number())
-    }
-
-    /// One of so many.
-    fn of(&mut self, count: usize) -> usize {
-        ((self.number() * count as f64) as usize).min(count - 1)
-    }
-
-    /// A unit vector in a cube's directions, all signs alike.
-    fn direction(&mut self) -> [f64; 3] {
-        let vector = [(); 3].map(|()| 2.0 * self.number() - 1.0);
-        let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-3);
-        vector.map(|x| x / length)
-    }
-}
-
 /// So many scenes, each with the number of its model.
 pub fn random_cases(count: usize) -> Vec<(Case, usize)> {
-    let mut lot = Lot(0x9e37_79b9_7f4a_7c15);
+    let mut lot = Lot::new();
     (0..count).map(|_| random_case(&mut lot)).collect()
 }
 

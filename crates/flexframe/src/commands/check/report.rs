@@ -95,10 +95,15 @@ impl fmt::Display for CheckReport {
 }
 
 impl CheckReport {
+    /// The name of a body before what is said of it, where there are several.
+    fn head(&self, body: &BodyCheck) -> String {
+        if self.bodies.len() > 1 { format!("body {}: ", body.name) } else { String::new() }
+    }
+
     /// Each body that has lost its stability at a row, in words.
     pub(crate) fn instabilities(&self) -> Vec<String> {
         let of_body = |body: &BodyCheck| {
-            let name = if self.bodies.len() > 1 { format!("body {}: ", body.name) } else { String::new() };
+            let name = self.head(body);
             let time = &self.units[2];
             body.rows.iter().find_map(|row| {
                 let words = row.stability_in_words()?;
@@ -111,7 +116,7 @@ impl CheckReport {
     /// The lines in the summary of a run.
     pub(crate) fn write_in_run(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for body in &self.bodies {
-            let name = if self.bodies.len() > 1 { format!("body {}: ", body.name) } else { String::new() };
+            let name = self.head(body);
             match (body.worst(), &body.not_checked) {
                 (Some(row), _) => writeln!(f, "  check    {name}{}", row.in_words(&self.units))?,
                 (None, Some(why)) if why != RIGID => writeln!(f, "  check    {name}none: {why}")?,

@@ -9,6 +9,7 @@ use whole_file::WholeFile;
 use super::Exported;
 use super::error::ExportError;
 use super::rows::ExportRows;
+use crate::files::csv::quoted;
 use crate::files::outputs::{OutputError, Written, outputs_of_results};
 use crate::files::write_error::WriteError;
 use crate::rows::columns::COLUMNS;
@@ -140,9 +141,4 @@ fn parts<R: SystemRow>(history: History<R>, metadata: &Metadata) -> Vec<Part> {
         true => history.places(metadata).iter().map(|name| part(Some(name))).collect(),
         false => vec![part(None)],
     }
-}
-
-/// A field of the table, in quotes where it has to be.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

@@ -114,7 +114,7 @@ impl Fit {
             line: mode.line,
             mode: last.modes[i] + 1,
             measured: mode.frequency,
-            before: first.frequencies[i],
+            before: first[i],
             after: last.frequencies[i],
             deviation: self.is_stated.then_some(self.deviations[i]),
         });

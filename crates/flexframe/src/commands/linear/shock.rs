@@ -21,14 +21,7 @@ use peaks::ModePeaks;
 /// Damping between modes above this part of their own is told.
 const COUPLED: f64 = 0.02;
 
-/// Settings of an answer to a shock.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ShockSettings {
-    /// The state that the equations are about, the one input that follows the table, and the outputs.
-    pub linear: LinearSettings,
-}
-
-/// Sums the peaks of the modes of a scene where one of its inputs follows the CSV file.
+/// Sums the peaks of the modes of a scene where its input in the settings, which is one, follows the CSV file.
 ///
 /// # Errors
 /// [`ShockResponseError`].
@@ -36,12 +29,12 @@ pub fn shock(
     system: &System,
     builder: &Builder,
     table: &Path,
-    settings: &ShockSettings,
+    settings: &LinearSettings,
     progress: impl FnMut(BuildProgress),
 ) -> Result<ShockReport, ShockResponseError> {
     let motion = table::read(table)?;
     let scene = &system.bodies[0];
-    let model = linear_model(system, builder, &settings.linear, progress)?;
+    let model = linear_model(system, builder, settings, progress)?;
     let inputs: Vec<String> = model.equations.inputs.iter().map(|input| input.name.clone()).collect();
     let [input] = &inputs[..] else {
         return Err(ShockResponseError::Inputs { scene: scene.path.clone(), found: inputs.join(", ") });

@@ -35,8 +35,9 @@ pub(super) struct Residuals {
 /// The least sum of squares.
 pub(super) struct Solution {
     pub x: Vec<f64>,
-    /// At the start and at the end.
-    pub first: Residuals,
+    /// Frequencies at the start.
+    pub first: Vec<f64>,
+    /// Residuals at the end.
     pub last: Residuals,
     pub iterations: usize,
     /// Singular values of the Jacobian at the end, largest first, and their right vectors (n×n).
@@ -76,12 +77,11 @@ pub(super) fn solve<E>(
 ) -> Result<Solution, Fault<E>> {
     let mut residuals = |x: &[f64]| residuals(x).map_err(Fault::Residuals);
     let mut x = start.to_vec();
-    let first = residuals(&x)?;
-    let mut here = None;
+    let mut here = residuals(&x)?;
+    let first = here.frequencies.clone();
     let mut damping = 0.0;
     for iterations in 0..MAX_STEPS {
-        let now = here.as_ref().unwrap_or(&first);
-        let Directions { singular, right, along } = directions(now)?;
+        let Directions { singular, right, along } = directions(&here)?;
         let mut step = vec![0.0; x.len()];
         for (k, s) in singular.iter().enumerate() {
             let part = -along[k] * s / (s * s + damping * singular[0] * singular[0]);
@@ -96,17 +96,13 @@ pub(super) fn solve<E>(
         }
         let next_x = moved(part);
         let next = residuals(&next_x)?;
-        let is_lower = square(&next) < square(now);
+        let is_lower = square(&next) < square(&here);
         let is_still = part * size(&step) < STILL;
         if is_still || (!is_lower && part * size(&step) < ROUNDING) {
-            let last = match here {
-                Some(last) => last,
-                None => residuals(&x)?,
-            };
-            return Ok(Solution { x, first, last, iterations: iterations + 1, singular, right });
+            return Ok(Solution { x, first, last: here, iterations: iterations + 1, singular, right });
         }
         if is_lower {
-            (x, here) = (next_x, Some(next));
+            (x, here) = (next_x, next);
             damping = if damping < 1e-8 { 0.0 } else { 0.1 * damping };
         } else {
             damping = (10.0 * damping).max(1e-4);

@@ -78,9 +78,9 @@ pub struct FittedMode {
     pub mode: usize,
     /// The measured frequency, cycles per time.
     pub measured: f64,
-    /// That of the model in the scene.
+    /// Frequency of the model in the scene.
     pub before: f64,
-    /// That with the parameters.
+    /// Frequency of the model with the parameters.
     pub after: f64,
     /// Standard deviation of the measured one, where it is stated.
     pub deviation: Option<f64>,

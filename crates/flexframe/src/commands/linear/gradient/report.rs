@@ -64,15 +64,15 @@ pub struct ParameterReport {
     pub name: String,
     /// Its value.
     pub value: f64,
-    /// Of the frequencies. Of modes of one frequency they are those of the modes that the parameter parts, in rising order.
+    /// Rates of the frequencies: of modes of one frequency, rates of the modes that the parameter parts, in rising order.
     pub frequencies: Vec<f64>,
     /// Relative rates of the frequencies, d ln f / d ln p.
     pub relative: Vec<f64>,
-    /// Of the effective masses.
+    /// Rates of the effective masses.
     pub effective_masses: Vec<[f64; 3]>,
-    /// Of the static displacements, in their order; `null` of a load whose forces change with the shape.
+    /// Rates of the static displacements, in their order; `null` of a load whose forces change with the shape.
     pub statics: Vec<Option<[f64; 3]>>,
-    /// Of the responses, in their order: real and imaginary part at each frequency; `null` as of static displacements.
+    /// Rates of the responses, in their order: real and imaginary part at each frequency; `null` as of static displacements.
     pub responses: Vec<Option<Vec<[f64; 2]>>>,
 }
 

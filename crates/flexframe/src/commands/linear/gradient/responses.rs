@@ -11,7 +11,7 @@ use serde::Serialize;
 /// Relative step within a straight piece of a table of damping ratios.
 const WITHIN: f64 = 1e-6;
 /// Names of the axes.
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The response of a displacement of a point to the factor on a load, by the modes that are kept.
 #[derive(Debug, Clone, Serialize)]

@@ -77,7 +77,7 @@ impl Stiffness {
         all.filter(|stiffness| stiffness.value(system) > 0.0).collect()
     }
 
-    /// Those of some names; all without any.
+    /// The stiffnesses of some names; all without any.
     pub fn named(system: &System, names: &[String]) -> Result<Vec<Self>, GradientError> {
         let all = Self::all(system);
         if names.is_empty() && !all.is_empty() {
@@ -147,7 +147,10 @@ impl VariedSystem {
                 return Err(GradientError::Loaded { scene: system.bodies[0].path.clone() });
             }
         }
-        let repeated = repeated(&modes);
+        let is_one = |before: &SystemMode, after: &SystemMode| {
+            (after.eigenvalue - before.eigenvalue).norm() <= REPEATED * after.eigenvalue.norm()
+        };
+        let repeated = modal::repeated(&modes, is_one);
         let rate = |parameter: &Stiffness| -> Result<Vec<f64>, GradientError> {
             let (mut changed, value) = (system.clone(), parameter.value(system));
             parameter.set(&mut changed, 2.0 * value);
@@ -181,23 +184,6 @@ impl VariedSystem {
         let failed = |source| SystemModesError::Steady { scene: system.bodies[0].path.clone(), source };
         Ok(motion.simulation.motion().steady_state(&CommonSpin::REST).map_err(failed)?)
     }
-}
-
-/// Groups of modes of one eigenvalue; a mode apart is none.
-fn repeated(modes: &[SystemMode]) -> Vec<Range<usize>> {
-    let mut groups = Vec::new();
-    let mut first = 0;
-    for k in 1..=modes.len() {
-        let is_same =
-            |k: usize| (modes[k].eigenvalue - modes[k - 1].eigenvalue).norm() <= REPEATED * modes[k].eigenvalue.norm();
-        if k == modes.len() || !is_same(k) {
-            if k - first > 1 {
-                groups.push(first..k);
-            }
-            first = k;
-        }
-    }
-    groups
 }
 
 /// Rates of the frequencies of modes of one eigenvalue s: those of s are the eigenvalues of −G⁻¹S with S = YᵀK'Y and G = Yᵀ(2s + C)Y. None

@@ -3,9 +3,8 @@
 use std::fmt::Write;
 
 use super::report::GradientReport;
-
-/// Axes.
-const AXES: [&str; 3] = ["x", "y", "z"];
+use super::responses::AXES;
+use crate::files::csv::quoted;
 
 /// A row for each number and parameter.
 pub(super) fn rows(report: &GradientReport) -> String {
@@ -17,8 +16,8 @@ pub(super) fn rows(report: &GradientReport) -> String {
             let _ = writeln!(
                 csv,
                 "{},{value:e},{},{:e},{rate:e},{relative}",
-                field(&quantity),
-                field(&parameter.name),
+                quoted(&quantity),
+                quoted(&parameter.name),
                 parameter.value
             );
         };
@@ -52,7 +51,7 @@ pub(super) fn responses(report: &GradientReport) -> String {
             Some((format!("d {name} / d {}", parameter.name), rates))
         });
         for (name, values) in std::iter::once((name.clone(), &response.values[..])).chain(rates) {
-            heads.extend([field(&format!("re {name}")), field(&format!("im {name}"))]);
+            heads.extend([quoted(&format!("re {name}")), quoted(&format!("im {name}"))]);
             columns.push(values);
         }
     }
@@ -66,9 +65,4 @@ pub(super) fn responses(report: &GradientReport) -> String {
         csv.push('\n');
     }
     csv
-}
-
-/// A field of a CSV file, in quotes where it needs them.
-fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

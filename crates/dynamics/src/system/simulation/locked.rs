@@ -32,15 +32,8 @@ impl SystemMotion {
         let mut y = vec![0.0; is_implied.len()];
         y[row] = 1.0;
         of_rigid.solve(&patterns.rows, &mut y);
-        let mut shares: Vec<(String, f64)> = Vec::new();
-        for (row, name) in system.connections.names().enumerate() {
-            let share = y[row] * y[row] * of_rigid.diagonal(row);
-            match shares.last_mut() {
-                Some((last, sum)) if last == name => *sum += share,
-                _ => shares.push((name.to_owned(), share)),
-            }
-        }
+        let shares = system.connections.sums(y.iter().enumerate().map(|(row, y)| y * y * of_rigid.diagonal(row)));
         let largest = shares.iter().map(|(_, share)| *share).fold(0.0, f64::max);
-        shares.into_iter().filter(|(_, share)| *share >= SHARE * largest).map(|(name, _)| name).collect()
+        shares.into_iter().filter(|(_, share)| *share >= SHARE * largest).map(|(name, _)| name.to_owned()).collect()
     }
 }

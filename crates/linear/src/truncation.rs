@@ -1,0 +1,5 @@
+//! Models of lower order.
+
+pub(crate) mod balanced;
+mod modal;
+mod parts;
