@@ -77,14 +77,17 @@ pub(crate) fn meshio(job: &Job<'_>) -> Result<(Vec<String>, Vec<DeckMaterial>), 
 }
 
 /// Work of gmsh on the way from a file to MSH 4.1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum GmshTask {
     /// Nothing: the file is a mesh.
     Convert,
     /// It meshes geometry.
     Mesh,
     /// After that it moves nodes until no element is inverted by its curved edges; several times the work.
-    MeshAndOptimize,
+    MeshAndOptimize {
+        /// Scaled Jacobian determinant above which it leaves an element as it is.
+        threshold: f64,
+    },
 }
 
 /// Lets gmsh do a job.
@@ -94,7 +97,7 @@ pub(crate) fn gmsh(job: &Job<'_>, task: GmshTask) -> Result<(), ImportError> {
     let gmsh = named(GMSH, "gmsh");
     // The user's options of gmsh are for a mesh that he looks at; they are not read here.
     let mut command = match task {
-        GmshTask::MeshAndOptimize if has_fixed_addresses() => with_fixed_addresses(folder).arg(&gmsh),
+        GmshTask::MeshAndOptimize { .. } if has_fixed_addresses() => with_fixed_addresses(folder).arg(&gmsh),
         _ => ForeignProgram::new(&gmsh, folder),
     };
     command = command.env("GMSH_HOME", folder);
@@ -108,8 +111,10 @@ pub(crate) fn gmsh(job: &Job<'_>, task: GmshTask) -> Result<(), ImportError> {
             command = command.arg(file);
         }
         command = command.args(["-3", "-order", "2"]);
-        if task == GmshTask::MeshAndOptimize {
-            command = command.arg("-optimize_ho");
+        if let GmshTask::MeshAndOptimize { threshold } = task {
+            let file = folder.join("threshold.geo");
+            std::fs::write(&file, format!("Mesh.HighOrderThresholdMin = {threshold:e};\n")).map_err(of(source))?;
+            command = command.arg(file).arg("-optimize_ho");
         }
     } else if settings.raise_order {
         // The option -order only acts on what is meshed.
@@ -126,7 +131,7 @@ pub(crate) fn gmsh(job: &Job<'_>, task: GmshTask) -> Result<(), ImportError> {
     if !said.status.success() || !target.is_file() {
         let help = match task {
             GmshTask::Convert => "open it in gmsh, and see what is wrong with it",
-            GmshTask::Mesh | GmshTask::MeshAndOptimize => {
+            GmshTask::Mesh | GmshTask::MeshAndOptimize { .. } => {
                 "try a smaller mesh_size, or open it in gmsh, and see what is wrong with it"
             }
         };
