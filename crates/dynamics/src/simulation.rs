@@ -73,7 +73,8 @@ pub struct Simulation {
     last_step: Option<LastStep>,
     /// Where events look at the motion.
     looked_at: Observation,
-    observers: Observers,
+    account: EnergyAccount,
+    observers: Observers<Observation>,
     /// True if steps may be blind to work of the loads, whose energy scale is then known.
     may_miss_work: bool,
 }
@@ -176,15 +177,15 @@ impl Simulation {
         let drive = setup.physics.drive.as_ref().map(|drive| &drive.speed.history);
         let longest_step = LongestStep::new(setup.loads, drive, setup.end)?;
         let looked_at = Observation::new(motion.flexible(), setup.points.len());
-        let account = EnergyAccount::new(motion.energies(), energy_of_loads);
         Ok(Self {
             fingerprint: Fingerprint::of(setup),
+            account: EnergyAccount::new(motion.energies(), energy_of_loads),
             may_miss_work: setup.may_miss_work(motion.fastest_rate()),
             motion,
             events: Events::default(),
             last_step: None,
             looked_at,
-            observers: Observers::new(account),
+            observers: Observers::NONE,
             plan: Plan::new(setup.end, longest_step.discontinuities(), setup.rows),
             longest_step,
             walk,
@@ -220,8 +221,7 @@ impl Simulation {
         if self.phase == Phase::Row && !stays {
             self.phase = Phase::Steps;
         }
-        let account = &mut self.observers.energy;
-        *account = EnergyAccount::new(self.motion.energies(), account.of_loads());
+        self.account = EnergyAccount::new(self.motion.energies(), self.account.of_loads());
         self.events.forget();
         self.go_on_from_here();
         Ok(())
@@ -239,7 +239,7 @@ impl Simulation {
     pub fn loads_have_changed(&mut self) {
         self.motion.loads_have_changed();
         if self.may_miss_work {
-            self.observers.energy.raise_of_loads(self.motion.raise_energy_of_loads(self.end));
+            self.account.raise_of_loads(self.motion.raise_energy_of_loads(self.end));
         }
         self.events.forget();
     }
@@ -263,7 +263,7 @@ impl Simulation {
 
     /// Shows every step's end to an observer.
     pub fn watch(&mut self, observer: Arc<Mutex<dyn Observer>>) {
-        self.observers.others.push(observer);
+        self.observers.add(observer);
     }
 
     /// Keeps the start of each step from now on, for [`Self::interpolate`].
@@ -305,7 +305,9 @@ impl Simulation {
     /// Goes back to the first event in a step, and shows the step's end, which may be there, to the observers.
     fn look_at_step(&mut self) -> Result<Option<usize>, StepError> {
         let passed = self.go_to_event()?;
-        let Self { motion, events, looked_at, points, observers, stats, .. } = self;
+        let Self { motion, events, looked_at, points, account, observers, stats, .. } = self;
+        account.exchange(motion.work_and_dissipation());
+        account.check_motion(&**motion, stats.longest)?;
         observers.step(&mut StepEnd {
             motion: &mut **motion,
             points,
@@ -367,6 +369,7 @@ impl Simulation {
         if !out.is_finite() {
             return Err(StepError::NotFinite { time: out.time, what: "a quantity of the motion" });
         }
+        self.account.check_motion(&*self.motion, self.stats.longest)?;
         self.observers.observed(&mut StepEnd {
             motion: &mut *self.motion,
             points: &self.points,
@@ -378,7 +381,7 @@ impl Simulation {
 
     /// Sum of |work of the loads| + |dissipation| of all steps so far: how much energy has come and gone.
     pub fn exchanged(&self) -> f64 {
-        self.observers.energy.exchanged()
+        self.account.exchanged()
     }
 
     /// The state that has been reached, as words; they are equally many for all states of a run.
@@ -392,7 +395,7 @@ impl Simulation {
             walk: self.walk.clone(),
             steps_since_row: self.steps_since_row,
             phase: self.phase,
-            account: self.observers.energy,
+            account: self.account,
             stats: self.stats,
         };
         Ok(to_words(&encode(&(&self.fingerprint, encode(&saved)?))?))
@@ -414,7 +417,7 @@ impl Simulation {
         self.walk.check_saved(&saved.walk)?;
         self.motion.restore(&saved.motion)?;
         self.plan.set_progress(&saved.plan)?;
-        (self.walk, self.observers.energy, self.stats) = (saved.walk, saved.account, saved.stats);
+        (self.walk, self.account, self.stats) = (saved.walk, saved.account, saved.stats);
         (self.phase, self.steps_since_row) = (saved.phase, saved.steps_since_row);
         Ok(self)
     }

@@ -4,43 +4,37 @@ use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::StepError;
-use crate::observation::observer::{Observer, StepEnd};
-use crate::simulation::account::EnergyAccount;
+use crate::observation::observer::{Observed, Observer, StepEnd};
 
-/// Observers of a run. Its copies have the same ones, but for the account of the energy, of which each has its own.
+/// Observers of a run. Its copies have the same ones.
 #[derive(Clone)]
-pub(crate) struct Observers {
-    pub energy: EnergyAccount,
-    pub others: Vec<Arc<Mutex<dyn Observer>>>,
-}
+pub(crate) struct Observers<O: Observed>(Vec<Arc<Mutex<dyn Observer<O>>>>);
 
-impl Observers {
-    pub fn new(energy: EnergyAccount) -> Self {
-        Self { energy, others: Vec::new() }
+impl<O: Observed> Observers<O> {
+    pub const NONE: Self = Self(Vec::new());
+
+    pub fn add(&mut self, observer: Arc<Mutex<dyn Observer<O>>>) {
+        self.0.push(observer);
     }
 
     /// Shows the end of a step to all of them.
-    pub fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
+    pub fn step(&self, now: &mut StepEnd<'_, O>) -> Result<(), StepError> {
         self.each(|observer| observer.step(now))
     }
 
     /// Shows a state whose motion is asked for to all of them.
-    pub fn observed(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
+    pub fn observed(&self, now: &mut StepEnd<'_, O>) -> Result<(), StepError> {
         self.each(|observer| observer.observed(now))
     }
 
-    fn each(&mut self, mut show: impl FnMut(&mut dyn Observer) -> Result<(), StepError>) -> Result<(), StepError> {
-        show(&mut self.energy)?;
-        for observer in &self.others {
-            // An observer that panicked in another thread still sees what comes.
-            show(&mut *observer.lock().unwrap_or_else(PoisonError::into_inner))?;
-        }
-        Ok(())
+    fn each(&self, mut show: impl FnMut(&mut dyn Observer<O>) -> Result<(), StepError>) -> Result<(), StepError> {
+        // An observer that panicked in another thread still sees what comes.
+        self.0.iter().try_for_each(|observer| show(&mut *observer.lock().unwrap_or_else(PoisonError::into_inner)))
     }
 }
 
-impl fmt::Debug for Observers {
+impl<O: Observed> fmt::Debug for Observers<O> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Observers").field("energy", &self.energy).field("others", &self.others.len()).finish()
+        f.debug_tuple("Observers").field(&self.0.len()).finish()
     }
 }

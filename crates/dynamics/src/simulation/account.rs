@@ -7,8 +7,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::StepError;
+use crate::motion::Motion;
 use crate::observation::energies::Energies;
-use crate::observation::observer::{Observer, StepEnd};
 use crate::simulation::checkpoint::{CheckpointError, equal_room, finite};
 
 /// The account of a run.
@@ -136,19 +136,12 @@ impl EnergyAccount {
         };
         if is_off { Err(StepError::Energy { time, energy: internal, accounted, step }) } else { Ok(()) }
     }
-}
-
-impl Observer for EnergyAccount {
-    fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
-        self.exchange(now.motion().work_and_dissipation());
-        self.observed(now)
-    }
 
     /// Checks the energy where the scheme last found it: of the conservative form that is the start of the last step or
     /// the last observation, since it takes an evaluation of the rates.
-    fn observed(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
-        match now.motion().energies() {
-            Some(energies) => self.check(&energies, now.motion().fastest_rate(), now.longest_step()),
+    pub(crate) fn check_motion(&mut self, motion: &dyn Motion, longest_step: f64) -> Result<(), StepError> {
+        match motion.energies() {
+            Some(energies) => self.check(&energies, motion.fastest_rate(), longest_step),
             None => Ok(()),
         }
     }

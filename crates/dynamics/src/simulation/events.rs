@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::error::StepError;
 use crate::observation::Observation;
+use crate::observation::observer::Observed;
 
 /// Which way an event function passes through zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -23,18 +24,6 @@ pub struct Event<O = Observation> {
     name: String,
     crossing: Crossing,
     function: Arc<dyn Fn(&O) -> f64 + Send + Sync>,
-}
-
-/// A motion that events look at.
-pub(crate) trait Seen {
-    /// Its time.
-    fn time(&self) -> f64;
-}
-
-impl Seen for Observation {
-    fn time(&self) -> f64 {
-        self.time
-    }
 }
 
 /// A step that has been done, inside of which events are looked for.
@@ -66,7 +55,7 @@ impl<O> Event<O> {
     /// Value of its function at a motion.
     fn value(&self, now: &O) -> Result<f64, StepError>
     where
-        O: Seen,
+        O: Observed,
     {
         let value = (self.function)(now);
         if value.is_finite() { Ok(value) } else { Err(StepError::EventFunction { time: now.time(), found: value }) }
@@ -128,7 +117,7 @@ impl<O> Default for Events<O> {
     }
 }
 
-impl<O: Seen> Events<O> {
+impl<O: Observed> Events<O> {
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
@@ -207,7 +196,7 @@ impl<O: Seen> Events<O> {
 
 /// The time, to rounding, at which an event function has passed through zero between two times: regula falsi in the
 /// Illinois form, which halves the value at an end that stays.
-fn locate<O: Seen>(
+fn locate<O: Observed>(
     event: &Event<O>,
     [mut from, mut to]: [f64; 2],
     [mut before, mut after]: [f64; 2],

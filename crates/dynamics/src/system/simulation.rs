@@ -6,6 +6,8 @@ pub(crate) mod observation;
 mod saved;
 pub(crate) mod setup;
 
+use std::sync::{Arc, Mutex};
+
 use serde::{Deserialize, Serialize};
 
 use crate::body::motion_state::MotionState;
@@ -15,6 +17,8 @@ use crate::load::SharedLoad;
 use crate::observation::Observation;
 use crate::observation::energies::Energies;
 use crate::observation::moment::Moment;
+use crate::observation::observer::{Observer, StepEnd};
+use crate::observation::observers::Observers;
 use crate::simulation::Reached;
 use crate::simulation::account::{EnergyAccount, Exchanged};
 use crate::simulation::checkpoint::{equal_room, fixed_room};
@@ -56,8 +60,9 @@ pub struct SystemSimulation {
     account: EnergyAccount,
     exchanged: Vec<Exchanged>,
     events: Events<SystemObservation>,
-    /// Where events look at the motion.
+    /// Where events and observers look at the motion.
     looked_at: SystemObservation,
+    observers: Observers<SystemObservation>,
     /// Kept where there may be rows or events within steps.
     last_step: Option<Box<LastStep>>,
     due: Due,
@@ -122,6 +127,7 @@ impl SystemSimulation {
             walk: Walk { segment: None, equal: EqualSteps::default(), next: FIRST * end, longest: f64::INFINITY },
             exchanged: vec![Exchanged::default(); system.bodies().len()],
             looked_at: SystemObservation::new(system, &points),
+            observers: Observers::NONE,
             last_step: is_within.then(|| Box::new(LastStep::new(&motion, &points))),
             motion,
             control,
@@ -234,7 +240,15 @@ impl SystemSimulation {
             sum.work += out.work.work;
             sum.dissipation += out.work.dissipation;
         }
-        self.account.check(&sum, 0.0, step)
+        self.account.check(&sum, 0.0, step)?;
+        let Self { points, looked_at, observers, .. } = self;
+        observers.observed(&mut StepEnd {
+            motion,
+            points,
+            longest_step: step,
+            observation: looked_at,
+            is_observed: false,
+        })
     }
 
     /// The bodies and joints at the time that has been reached.
@@ -315,6 +329,11 @@ impl SystemSimulation {
     /// An event by its number.
     pub fn event(&self, number: usize) -> Option<&Event<SystemObservation>> {
         self.events.get(number)
+    }
+
+    /// Shows every step's end to an observer, and the motion at each row.
+    pub fn watch(&mut self, observer: Arc<Mutex<dyn Observer<SystemObservation>>>) {
+        self.observers.add(observer);
     }
 
     /// Leaves what the last step has done beyond the row within it that has been reached.
@@ -445,11 +464,19 @@ impl SystemSimulation {
             }
             self.tell_stop();
             self.pending_event = event?;
+            self.show_step()?;
             if let Some(reached) = self.next_due()? {
                 return Ok(reached);
             }
         }
         Ok(Reached::Between)
+    }
+
+    /// Shows the end of the step, which may be at an event within it, to the observers.
+    fn show_step(&mut self) -> Result<(), StepError> {
+        let Self { motion, points, stats, looked_at, observers, .. } = self;
+        let longest_step = stats.longest;
+        observers.step(&mut StepEnd { motion, points, longest_step, observation: looked_at, is_observed: false })
     }
 
     /// Goes back to a stop that has been set within the step that has been done, beyond the row there that has been reached.

@@ -1,11 +1,11 @@
 //! Runs of bodies with joints: rows, discontinuities, balances, checkpoints.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use dynamics::{
-    ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MotionState, Observation, Physics,
-    PointForce, PointShapes, Reached, Rows, SetupError, SharedLoad, StepControl, System, SystemScheme, SystemSetup,
-    SystemSimulation, Table,
+    ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MotionState, Observation, Observer,
+    Physics, PointForce, PointShapes, Reached, Rows, SetupError, SharedLoad, StepControl, StepEnd, StepError, System,
+    SystemObservation, SystemScheme, SystemSetup, SystemSimulation, Table,
 };
 use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -91,6 +91,69 @@ fn the_balances_of_each_body_close_with_what_joints_and_springs_do() {
 }
 
 /// Regression only: the same bits with and without an interruption.
+/// Conserved: without gravity's work and the spring's, the observer sees the energies of every step, and its error ends the run
+/// between two steps: what follows is what would have followed.
+#[test]
+fn an_observer_sees_every_step_and_every_row_and_leaves_the_motion_alone() {
+    #[derive(Default)]
+    struct Watcher {
+        steps: Vec<f64>,
+        rows: usize,
+        most_off: f64,
+        fails_after: Option<f64>,
+    }
+
+    impl Observer<SystemObservation> for Watcher {
+        fn step(&mut self, now: &mut StepEnd<'_, SystemObservation>) -> Result<(), StepError> {
+            let time = now.motion().time();
+            self.steps.push(time);
+            let bodies = &now.observation()?.bodies;
+            let excess: f64 = bodies.iter().map(|of| of.energy() - of.work.work + of.work.dissipation).sum();
+            self.most_off = self.most_off.max(excess.abs());
+            match self.fails_after.take_if(|at| time > *at) {
+                Some(_) => Err(StepError::NotFinite { time, what: "what is watched" }),
+                None => Ok(()),
+            }
+        }
+
+        fn observed(&mut self, now: &mut StepEnd<'_, SystemObservation>) -> Result<(), StepError> {
+            self.rows += 1;
+            assert_eq!(now.motion().time(), now.observation()?.time);
+            Ok(())
+        }
+    }
+
+    let alone = rows(SystemSimulation::new(pendulum(StepControl::Tolerance(1e-9), None)).unwrap());
+    let mut simulation = SystemSimulation::new(pendulum(StepControl::Tolerance(1e-9), None)).unwrap();
+    let watcher = Arc::new(Mutex::new(Watcher { fails_after: Some(1.1), ..Watcher::default() }));
+    let turns = Arc::new(Mutex::new(0));
+    let counted = turns.clone();
+    simulation.watch(watcher.clone());
+    simulation.watch(Arc::new(Mutex::new(move |now: &SystemObservation| {
+        *counted.lock().unwrap() += usize::from(now.joints[0].turn_effort == 0.0);
+    })));
+    let (mut found, mut failures) = (Vec::new(), 0);
+    let mut row = |simulation: &mut SystemSimulation| {
+        let mut row: Vec<Observation> = (0..2).map(|body| simulation.room(body)).collect();
+        simulation.observe(&mut row).unwrap();
+        found.push(row);
+    };
+    row(&mut simulation);
+    loop {
+        match simulation.advance(u64::MAX) {
+            Ok(Reached::End) => break,
+            Ok(_) => row(&mut simulation),
+            Err(_) => failures += 1,
+        }
+    }
+    assert_eq!((found, failures), (alone.clone(), 1));
+    let watcher = watcher.lock().unwrap();
+    assert_eq!(watcher.steps.len() as u64, simulation.stats().accepted);
+    assert!(watcher.steps.windows(2).all(|pair| pair[0] < pair[1]) && watcher.rows == alone.len());
+    assert!(watcher.most_off < 1e-7, "{:e}", watcher.most_off);
+    assert!(*turns.lock().unwrap() > 0);
+}
+
 #[test]
 fn a_run_goes_on_from_a_checkpoint_bit_for_bit() {
     for control in [StepControl::Tolerance(1e-6), StepControl::Fixed(0.01)] {

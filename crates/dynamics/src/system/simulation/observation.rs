@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use crate::body::shapes::PointShapes;
-use crate::error::RateError;
+use crate::error::{RateError, StepError};
 use crate::observation::Observation;
-use crate::simulation::events::{Crossing, Event, Seen};
+use crate::observation::observer::Observed;
+use crate::simulation::events::{Crossing, Event};
 use crate::system::description::System;
 use crate::system::joint::observation::JointObservation;
 use crate::system::radau::SystemMotion;
@@ -46,9 +47,22 @@ impl SystemObservation {
     }
 }
 
-impl Seen for SystemObservation {
+impl Observed for SystemObservation {
+    type Motion = SystemMotion;
+    type Points = Vec<PointShapes>;
+
     fn time(&self) -> f64 {
         self.time
+    }
+
+    fn find(
+        &mut self,
+        motion: &mut SystemMotion,
+        points: &[Vec<PointShapes>],
+        longest_step: f64,
+    ) -> Result<(), StepError> {
+        let time = motion.time();
+        self.fill(motion, points).map_err(|error| error.in_step(time, longest_step))
     }
 }
 
