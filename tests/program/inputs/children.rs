@@ -139,7 +139,7 @@ fn under_nohup_the_end_of_the_terminal_changes_nothing() {
         Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("meshes/slender_bar.msh").to_str().unwrap(),
     );
     let mut command = Command::new("nohup");
-    let inner = case.command(&["animate", "bar.toml", "-o", "bar.gif", "--frames", "200"]);
+    let inner = case.command(&["animate", "bar.toml", "-o", "bar.gif", "--frames", "40"]);
     command.arg(inner.get_program()).args(inner.get_args()).current_dir(case.folder.path());
     command.envs(inner.get_envs().filter_map(|(name, value)| Some((name, value?))));
     let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
