@@ -269,7 +269,7 @@ enum Command {
     },
     /// Write the linear model of small motions, x' = A x + B u and y = C x + D u, for control and for other programs.
     ///
-    /// It is about rest, or about the steady spin that a free body begins with or a driven hinge has. Inputs are the loads of the scene (the factor
+    /// It is about rest, or about the steady spin that a free body begins with, or a driven hinge or joint has. Inputs are the loads of the scene (the factor
     /// that multiplies each, in the place of its history) and forces along the coordinates of joints; outputs are displacement,
     /// velocity and acceleration of the points of [output], along the axes of the body, and joint coordinates.
     Linearize {
@@ -598,8 +598,8 @@ struct SceneArgs {
 /// The state that a linear model is about.
 #[derive(Debug, Args)]
 struct AboutArgs {
-    /// Angular velocity of the steady spin about the center of mass, radians per time, global; 0,0,0 is rest [default: that of the scene's
-    /// free body or drive].
+    /// Angular velocity of the steady spin about the center of mass or the axis of a driven joint, radians per time, global; 0,0,0 is rest
+    /// [default: that of the scene's free body or drive].
     #[arg(long, value_name = "X,Y,Z", value_parser = angular_velocity, allow_hyphen_values = true)]
     spin: Option<[f64; 3]>,
     /// Time of the run at which bodies are where they then are, under the loads of that time [default: the beginning].

@@ -14,6 +14,7 @@ mod rigid;
 mod settings;
 mod space;
 mod state;
+mod system_spin;
 
 use std::borrow::Cow;
 use std::path::Path;

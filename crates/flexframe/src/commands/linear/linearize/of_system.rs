@@ -1,6 +1,6 @@
 //! Small motions of free bodies, and of bodies in joints, about rest or a steady spin.
 
-use dynamics::{CommonSpin, Coordinate, MotionState, Row, SteadyState, SystemMotion};
+use dynamics::{Coordinate, MotionState, Row, SteadyState, SystemMotion};
 use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
@@ -11,6 +11,7 @@ use super::channels::{Channels, input_channels, point_outputs, stress_outputs, u
 use super::error::LinearizeError;
 use super::settings::LinearSettings;
 use super::state::State;
+use super::system_spin::SystemSpin;
 use crate::commands::linear::names::is_asked;
 use crate::motion::{self, Beginning, Motion, Moving};
 use crate::rows::units::UnitLabels;
@@ -42,9 +43,9 @@ pub(super) fn of_system(
     }
     let Motion::Tied(simulation) = &*motion else { return Err(no_body()) };
     let motion = simulation.motion();
-    let omega_global = spin.unwrap_or_else(Vector3::zeros);
-    let common = CommonSpin { omega_global, point_global: motion.center_of_mass() };
     let failed = |source| LinearizeError::Steady { scene: scene.path.clone(), source: Box::new(source) };
+    let SystemSpin { common, warning } = SystemSpin::new(motion, spin).map_err(failed)?;
+    let omega_global = common.omega_global;
     let steady = motion.steady_state(&common).map_err(failed)?;
     let (linear, _) = steady.linear.with_loose_apart().map_err(failed)?;
     let joint_drives: Vec<usize> = (0..joints.len())
@@ -175,7 +176,8 @@ pub(super) fn of_system(
         }
     }
     let equations = SecondOrder { stiffness, damping, forces, inputs, outputs, coordinates };
-    let warnings = unsteady(motion, &steady, &omega_global);
+    let mut warnings = unsteady(motion, &steady, &omega_global);
+    warnings.extend(warning);
     let state = State { time: motion.time(), omega_global: omega_global.into(), rigid: linear.rigid, warnings };
     Ok((Channels { equations, usual, more_inputs }, state))
 }

@@ -3,8 +3,8 @@
 /// Settings of a linear model.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LinearSettings {
-    /// Angular velocity of the steady spin, global, radians per time, about the center of mass; `None` is that which a free body of the
-    /// scene has at the time, or of its drive, and rest of bodies in joints.
+    /// Angular velocity of the steady spin, global, radians per time, about the center of mass, or the axis of the joint to the ground that a
+    /// drive turns; `None` is that which a free body of the scene has at the time, or of the drive of a held body or of that joint.
     pub spin: Option<[f64; 3]>,
     /// Time of the run whose state the model is about; `None` is the beginning.
     pub time: Option<f64>,
