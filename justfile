@@ -120,6 +120,10 @@ check-table:
 fit-trials:
     cargo run --quiet --package verification --bin fit_trials -- docs/evidence/fit.md --overwrite
 
+# Frequencies of a spinning disc in CalculiX, which a test of `flexframe campbell` has (meshio from `./dev test`, calculix-ccx; seconds).
+calculix-disc:
+    .tools/meshio/bin/python crates/verification/calculix/dished_disc.py out/calculix-disc
+
 # Steps a second of every scheme on one core, steps of chains of bodies, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package dynamics --bench steps
@@ -225,7 +229,7 @@ paraview: build
             out/paraview/{two.h5,two.vtkhdf,two_modes.vtkhdf,vtu} || exit 1; \
     done
 
-# Build the page of reports from its sources (npm). It is checked in, so that nobody else needs npm.
+# Build the pages of reports and responses from their sources (npm). It is checked in, so that nobody else needs npm.
 report-page:
     cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build
 
@@ -267,13 +271,13 @@ live-page-test:
 film-test:
     cargo test --quiet --package flexframe-cli --test program films_have -- --ignored
 
-# The page of reports in a headless Chromium; before that, whether it is what its sources give (npm).
+# The pages of reports and responses in a headless Chromium; before that, whether it is what its sources give (npm).
 report-page-test:
     mkdir -p out/report-page
-    cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build -- ../../../out/report-page/page.html
-    cmp crates/report/web/page.html out/report-page/page.html || \
-        { echo "report-page-test: page.html is not what web/src gives: run ./dev report-page" >&2; exit 1; }
-    for kind in small large unfinished rigid hinged nodes patch several compared; do \
+    cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build -- ../../../out/report-page
+    for page in page responses; do cmp crates/report/web/$page.html out/report-page/$page.html || \
+        { echo "report-page-test: $page.html is not what web/src gives: run ./dev report-page" >&2; exit 1; }; done
+    for kind in small large unfinished rigid hinged nodes patch several compared responses; do \
         cargo run --quiet --package report --example synthetic -- $kind out/report-page/$kind.html; done
     cd crates/report/web && REPORTS=../../../out/report-page npm test --silent
 

@@ -14,6 +14,7 @@ pub(crate) mod hand_over;
 pub(crate) mod html_report;
 pub(crate) mod linear;
 pub(crate) mod new_scene;
+pub(crate) mod rotors;
 pub(crate) mod srs;
 pub(crate) mod sweep;
 pub(crate) mod systems;

@@ -4,16 +4,16 @@
 //!
 //! `small` is a struck plate, `large` one of 60 000 vertices and 40 modes, `unfinished` a run that was stopped, `rigid` a
 //! body without a surface, `hinged` a plate that turns about one end, `nodes` one of which only the nodes are known, `patch`
-//! a square whose displacement and stress are the same everywhere, `several` three bodies, and `compared` a plate of few rows
-//! with another one that flies beside it.
+//! a square whose displacement and stress are the same everywhere, `several` three bodies, `compared` a plate of few rows
+//! with another one that flies beside it, and `responses` answers over the frequency.
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use report::{
-    Balance, Body, Compared, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind,
-    StressField, Surface, Trust, TrustLine, Units,
+    Balance, Body, Chart, Compared, Component, Curve, Effect, Fact, History, Motion, Report, Responses, RunState,
+    SceneText, Shape, ShapeKind, StressField, Surface, Trust, TrustLine, Units,
 };
 
 const LENGTH: f64 = 1000.0;
@@ -25,6 +25,9 @@ const DURATION: f64 = 0.5;
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [kind, path] = arguments.as_slice() else { return Err("expected: KIND FILE".into()) };
+    if kind == "responses" {
+        return Ok(responses().write(Path::new(path))?);
+    }
     let mut report = match kind.as_str() {
         "small" | "unfinished" | "hinged" | "nodes" => plate(120, 8, 6, 5001, "Free plate, 50 N end pulse"),
         "large" => plate(1000, 26, 40, 5001, "Plate of 60 000 vertices and 40 modes"),
@@ -33,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "several" => several(),
         "compared" => compared(),
         _ => {
-            let expected = "small, large, unfinished, rigid, hinged, nodes, patch, several or compared";
+            let expected = "small, large, unfinished, rigid, hinged, nodes, patch, several, compared or responses";
             return Err(format!("{kind}: expected {expected}").into());
         }
     };
@@ -341,5 +344,38 @@ fn trust() -> Trust {
             line("steps", Some(1e-6), "motion off by at most 1e-4 % of its largest", "bounded by `tolerance`", ""),
         ],
         unseen: "Not seen: phase.".into(),
+    }
+}
+
+/// Two oscillators at 10 and 100 Hz, and an output that sees nothing: their response, and the phase.
+fn responses() -> Responses {
+    let frequencies: Vec<f64> = (0..500).map(f64::from).collect();
+    let curve = |name: &str, natural: f64, unit: &str| {
+        let of = |f: &f64| {
+            let (stiff, damped) = (natural * natural - f * f, 0.04 * natural * f);
+            [1.0 / stiff.hypot(damped), (-damped).atan2(stiff).to_degrees()]
+        };
+        let values: Vec<[f64; 2]> = frequencies.iter().map(of).collect();
+        Curve {
+            name: name.to_owned(),
+            units: vec![unit.to_owned(), "°".to_owned()],
+            values: [0, 1].map(|k| values.iter().map(|value| value[k]).collect()).to_vec(),
+            about: vec![format!("at {natural} Hz")],
+        }
+    };
+    let nothing = Curve { values: vec![vec![0.0; 500]; 2], ..curve("nothing / </script><b>push", 1.0, "mm per N") };
+    Responses {
+        title: "Two oscillators".to_owned(),
+        program: "flexframe".to_owned(),
+        facts: vec![Fact { label: "About".to_owned(), value: "rest".to_owned() }],
+        warnings: vec!["a warning".to_owned()],
+        frequency_unit: "Hz".to_owned(),
+        logarithmic: false,
+        charts: [("Magnitude", true), ("Phase, degrees", false)]
+            .map(|(name, logarithmic)| Chart { name: name.to_owned(), logarithmic })
+            .to_vec(),
+        headings: vec!["Highest".to_owned()],
+        curves: vec![curve("slow / push", 10.0, "mm per N"), curve("fast / push", 100.0, "mm/s per N"), nothing],
+        frequencies,
     }
 }

@@ -1,7 +1,8 @@
 //! One HTML page with everything about a run, which opens without a network.
 //!
 //! [`Report`] is plain data: the surfaces of the bodies, their mode shapes, the rows of their motion, histories and balances,
-//! and words. [`html`] and [`write()`] check it and put it into the page, whose program (in `web/`) draws it.
+//! and words. [`html`] and [`write()`] check it and put it into the page, whose program (in `web/`) draws it. [`Responses`] are a page of
+//! answers over the frequency.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
@@ -14,6 +15,7 @@ mod packed;
 mod page;
 mod peak;
 mod report;
+mod responses;
 mod thin;
 
 pub use error::ReportError;
@@ -22,3 +24,4 @@ pub use report::{
     Balance, Body, Compared, Component, Control, Effect, Fact, History, Live, LiveBody, Motion, Report, RunState,
     SceneText, Shape, ShapeKind, StressField, Surface, Trust, TrustLine, Units,
 };
+pub use responses::{Chart, Curve, Responses};

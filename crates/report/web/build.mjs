@@ -1,5 +1,6 @@
-// Builds page.html: markup, style and program in one file that needs nothing else.
-//   node build.mjs [FILE]
+// Builds page.html, the page of a run, and responses.html, that of answers over the frequency: each markup, style and program in one file
+// that needs nothing else.
+//   node build.mjs [FOLDER]
 import { build } from "esbuild";
 import { readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -7,22 +8,24 @@ import { fileURLToPath } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const read = (name) => readFileSync(join(here, name), "utf8");
+const notices = read("NOTICES.txt").trim();
 
-const { outputFiles } = await build({
-    absWorkingDir: here,
-    entryPoints: ["src/main.ts"],
-    bundle: true,
-    minify: true,
-    format: "iife",
-    target: "es2022",
-    legalComments: "none", // the notices are in NOTICES.txt, which goes into the page
-    outdir: "unused",
-    write: false,
-});
-const output = (ending) => outputFiles.find(({ path }) => path.endsWith(ending)).text.trim();
-
-const page = read("src/page.html")
-    .replace("<!-- notices -->", () => `<!--\n${read("NOTICES.txt").trim()}\n-->`)
-    .replace("/* style */", () => output(".css"))
-    .replace("/* program */", () => output(".js"));
-writeFileSync(process.argv[2] ?? join(here, "page.html"), page);
+for (const [name, folder] of [["page", "src"], ["responses", "src/responses"]]) {
+    const { outputFiles } = await build({
+        absWorkingDir: here,
+        entryPoints: [`${folder}/main.ts`],
+        bundle: true,
+        minify: true,
+        format: "iife",
+        target: "es2022",
+        legalComments: "none", // the notices are in NOTICES.txt, which goes into the page
+        outdir: "unused",
+        write: false,
+    });
+    const output = (ending) => outputFiles.find(({ path }) => path.endsWith(ending)).text.trim();
+    const page = read(`${folder}/page.html`)
+        .replace("<!-- notices -->", () => `<!--\n${notices}\n-->`)
+        .replace("/* style */", () => output(".css"))
+        .replace("/* program */", () => output(".js"));
+    writeFileSync(join(process.argv[2] ?? here, `${name}.html`), page);
+}

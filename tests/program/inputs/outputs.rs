@@ -96,12 +96,12 @@ const CASES: [Case; 24] = [
     case(&["linearize", "bar.toml", "-o", "o/b.mat"], &["o/b.mat"], &OF_SCENE),
     case(
         &["frf", "bar.toml", "--frequencies", "1:2:2", "-o", "o"],
-        &["o/frf.csv", "o/frf.svg", "o/frf.pdf", "o/frf.png"],
+        &["o/frf.csv", "o/frf.html", "o/frf.svg", "o/frf.pdf", "o/frf.png"],
         &OF_SCENE,
     ),
     case(
         &["psd", "bar.toml", "--spectra", "spectra.csv", "-o", "o"],
-        &["o/psd.csv", "o/psd.svg", "o/psd.pdf", "o/psd.png"],
+        &["o/psd.csv", "o/psd.html", "o/psd.svg", "o/psd.pdf", "o/psd.png"],
         &["bar.toml", "bar.msh", "pulse.csv", "spectra.csv"],
     ),
     case(
@@ -125,7 +125,7 @@ const CASES: [Case; 24] = [
     ),
     case(
         &["srs", "pulse.csv", "--frequencies", "1e3:1e5:5", "-o", "o"],
-        &["o/srs.csv", "o/srs.svg", "o/srs.pdf", "o/srs.png"],
+        &["o/srs.csv", "o/srs.html", "o/srs.svg", "o/srs.pdf", "o/srs.png"],
         &["pulse.csv"],
     ),
     Case {

@@ -528,7 +528,7 @@ impl Fault for FitError {
 impl Fault for SrsError {
     fn known(&self) -> Known {
         match self {
-            Self::Figure(_) | Self::Write(_) => Known::default(),
+            Self::Figure(_) | Self::Page(_) | Self::Write(_) => Known::default(),
             Self::Unreadable { path, .. } => Kind::Io.of(path),
             Self::Line { path, line, .. } | Self::Order { path, line, .. } => {
                 Kind::Input.with(Details { line: Some(*line), ..Details::of_file(path) })
@@ -543,7 +543,7 @@ impl Fault for SrsError {
 impl Fault for LinearizeError {
     fn known(&self) -> Known {
         match self {
-            Self::Build(_) | Self::Begin(_) | Self::Write(_) | Self::Figure(_) => Known::default(),
+            Self::Build(_) | Self::Begin(_) | Self::Write(_) | Self::Figure(_) | Self::Page(_) => Known::default(),
             Self::Steady { scene, .. } | Self::Rest { scene, .. } => Kind::Run.of(scene),
             Self::Linear { scene, .. } | Self::Refused { scene, .. } => Kind::Refused.of(scene),
             Self::Run { scene, .. } => Kind::Run.of(scene),
@@ -559,7 +559,9 @@ impl Fault for LinearizeError {
 impl Fault for PsdError {
     fn known(&self) -> Known {
         match self {
-            Self::Linearize(_) | Self::Spectra(_) | Self::Write(_) | Self::Figure(_) => Known::default(),
+            Self::Linearize(_) | Self::Spectra(_) | Self::Write(_) | Self::Figure(_) | Self::Page(_) => {
+                Known::default()
+            }
             Self::Linear { scene, .. } => Kind::Refused.of(scene),
         }
     }

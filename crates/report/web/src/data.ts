@@ -84,12 +84,15 @@ export const double = (numbers: Numbers) => stored(numbers as Numbers & { type: 
 export const quantised = (numbers: Numbers) => stored(numbers as Numbers & { type: "i16" });
 export const indices = (numbers: Numbers) => stored(numbers as Numbers & { type: "u16" | "u32" });
 
-export async function readReport(): Promise<Report> {
+/// The data of the page, with all its lists.
+export async function readData<Data>(): Promise<Data> {
     const lists: Numbers[] = [];
-    const report = JSON.parse(document.getElementById("data")!.textContent!, (_, value) => {
+    const data = JSON.parse(document.getElementById("data")!.textContent!, (_, value) => {
         if (typeof value?.packed === "string") lists.push(value);
         return value;
-    }) as Report;
+    }) as Data;
     await Promise.all(lists.map(unpack));
-    return report;
+    return data;
 }
+
+export const readReport = () => readData<Report>();

@@ -29,7 +29,7 @@ export async function open(t, browser, kind, options = {}) {
         assert.deepEqual(said.filter((text) => !text.includes("GPU stall due to ReadPixels")), []);
     });
     await page.goto(url);
-    await page.waitForFunction(() => window.reportPage);
+    await page.waitForFunction(() => window.reportPage ?? window.responsesPage);
     await frame(page);
     return page;
 }

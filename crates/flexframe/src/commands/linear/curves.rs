@@ -1,8 +1,9 @@
-//! Files of answers over the frequency: a table for programs, and a chart.
+//! Files of answers over the frequency: a table for programs, a chart, and a page.
 
 use std::path::{Path, PathBuf};
 
 use figures::{FigureError, LineChart, Series, Stroke};
+use report::{Fact, ReportError, Responses};
 use whole_file::write_whole;
 
 use crate::files::write_error::WriteError;
@@ -12,23 +13,44 @@ const MAX_CURVES: usize = 12;
 /// Curves with a colour of their own: those after them are dashed.
 const COLOURS: usize = 7;
 
-/// The files of an answer in a folder: `<name>.csv`, and `<name>` as SVG, PDF and PNG.
+/// An answer over the frequency.
+pub(super) struct Answer {
+    pub csv: String,
+    pub chart: LineChart,
+    pub page: Responses,
+}
+
+/// The files of an answer in a folder: `<name>.csv`, `<name>.html`, and `<name>` as SVG, PDF and PNG.
 pub(super) fn files(folder: &Path, name: &str) -> Vec<PathBuf> {
-    std::iter::once(folder.join(format!("{name}.csv"))).chain(figures::files(&folder.join(name))).collect()
+    texts(folder, name).into_iter().chain(figures::files(&folder.join(name))).collect()
+}
+
+fn texts(folder: &Path, name: &str) -> [PathBuf; 2] {
+    ["csv", "html"].map(|ending| folder.join(format!("{name}.{ending}")))
 }
 
 /// Writes the files of an answer.
-pub(super) fn write<E: From<WriteError> + From<FigureError>>(
+pub(super) fn write<E: From<WriteError> + From<FigureError> + From<ReportError>>(
     folder: &Path,
     name: &str,
-    csv: String,
-    chart: &LineChart,
+    Answer { csv, chart, page }: Answer,
 ) -> Result<Vec<PathBuf>, E> {
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
-    let table = folder.join(format!("{name}.csv"));
+    let [table, html] = texts(folder, name);
     write_whole(&table, csv).map_err(WriteError::of(&table))?;
+    page.write(&html)?;
     let pictures = chart.save(folder.join(name))?;
-    Ok(std::iter::once(table).chain(pictures).collect())
+    Ok([table, html].into_iter().chain(pictures).collect())
+}
+
+/// Name and version of the program, as a page says them.
+pub(super) fn program() -> String {
+    format!("flexframe {}", env!("CARGO_PKG_VERSION"))
+}
+
+/// A line of the summary of a page.
+pub(super) fn fact(label: &str, value: impl Into<String>) -> Fact {
+    Fact { label: label.to_owned(), value: value.into() }
 }
 
 /// Adds a curve to those of a chart with a logarithmic axis while there is room, where it has a point above zero.

@@ -1,5 +1,7 @@
 //! `flexframe frf`: frequency responses of a scene about rest or a steady spin, as a table and as charts.
 
+mod page;
+
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -10,7 +12,7 @@ use model::{BuildProgress, Builder};
 use scene::System;
 use serde::Serialize;
 
-use crate::commands::linear::curves;
+use crate::commands::linear::curves::{self, Answer};
 use crate::commands::linear::frequencies::Frequencies;
 use crate::commands::linear::linearize::{LinearSettings, LinearizeError, linear_model};
 use crate::commands::modes::frequency_unit;
@@ -69,7 +71,7 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
     curves::files(folder, NAME)
 }
 
-/// Computes the responses of a scene, and writes `frf.csv`, and `frf` as SVG, PDF and PNG to a folder.
+/// Computes the responses of a scene, and writes `frf.csv`, the page `frf.html`, and `frf` as SVG, PDF and PNG to a folder.
 ///
 /// # Errors
 /// [`LinearizeError`].
@@ -93,11 +95,21 @@ pub fn frf(
     let response = equations.frequency_response(&frequencies, damping_of(settings.loss_factor)).map_err(failed)?;
 
     let unit = frequency_unit(&scene.units.time);
-    let chart = chart(&scene.title, &unit, equations, &response, settings.logarithmic);
+    let logarithmic = settings.logarithmic;
+    let answer = Answer {
+        csv: csv(equations, &response),
+        chart: chart(&scene.title, &unit, equations, &response, logarithmic),
+        page: page::page(
+            &scene.title,
+            &unit,
+            (equations, &response, &model.state),
+            (settings.loss_factor, logarithmic),
+        ),
+    };
     Ok(FrfReport {
         title: scene.title.clone(),
         frequency_unit: unit,
-        files: curves::write::<LinearizeError>(folder, NAME, csv(equations, &response), &chart)?,
+        files: curves::write::<LinearizeError>(folder, NAME, answer)?,
         peaks: peaks(equations, &response),
         warnings: model.state.warnings,
     })

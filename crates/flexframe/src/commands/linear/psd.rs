@@ -2,6 +2,7 @@
 
 mod error;
 mod files;
+mod page;
 mod report;
 mod responses;
 
@@ -31,7 +32,8 @@ pub struct PsdSettings {
     pub loss_factor: Option<f64>,
 }
 
-/// Computes the response of a scene to the random inputs in a CSV file, and writes `psd.csv`, and `psd` as SVG, PDF and PNG to a folder.
+/// Computes the response of a scene to the random inputs in a CSV file, and writes `psd.csv`, the page `psd.html`, and `psd` as SVG, PDF and
+/// PNG to a folder.
 ///
 /// # Errors
 /// [`PsdError`].
@@ -56,6 +58,8 @@ pub fn psd(
     let input = spectra.at(&names, &rule.frequencies)?;
     let response = model.equations.frequency_response(&rule.frequencies, damping).map_err(failed)?;
     let responses = Responses::new(&model.equations, &response, &input, &rule.weights).map_err(failed)?;
-    let files = files::write(&scene.title, &scene.units.time, &responses, folder)?;
-    Ok(PsdReport::new(scene, &model, band, &responses, files))
+    let mut report = PsdReport::new(scene, &model, band, &responses);
+    let page = page::page(scene, &model.state, &report, &responses, &rule.weights);
+    report.files = files::write(&scene.title, &scene.units.time, &responses, page, folder)?;
+    Ok(report)
 }

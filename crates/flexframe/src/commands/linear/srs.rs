@@ -3,6 +3,7 @@
 mod diagram;
 mod error;
 mod files;
+mod page;
 mod report;
 pub(super) mod table;
 
@@ -26,7 +27,8 @@ pub struct SrsSettings {
     pub damping_ratios: Vec<f64>,
 }
 
-/// Computes the spectra of the base motion in a CSV file, and writes `srs.csv`, and `srs` as SVG, PDF and PNG to `folder`.
+/// Computes the spectra of the base motion in a CSV file, and writes `srs.csv`, the page `srs.html`, and `srs` as SVG, PDF
+/// and PNG to `folder`.
 ///
 /// # Errors
 /// [`SrsError`].

@@ -6,6 +6,7 @@ use dynamics::{LoadedError, SetupError, SteadyError, StepError};
 use figures::FigureError;
 use linear::LinearError;
 use model::BuildError;
+use report::ReportError;
 
 use crate::files::write_error::WriteError;
 use crate::motion::BeginError;
@@ -61,4 +62,7 @@ pub enum LinearizeError {
     /// A chart cannot be drawn.
     #[error("{0}")]
     Figure(#[from] FigureError),
+    /// The page cannot be made.
+    #[error("{0}")]
+    Page(#[from] ReportError),
 }

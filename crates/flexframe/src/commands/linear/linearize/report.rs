@@ -9,6 +9,7 @@ use scene::Scene;
 use serde::Serialize;
 
 use super::space::LinearSpace;
+use super::state::in_words;
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 
@@ -88,15 +89,7 @@ impl LinearReport {
 impl fmt::Display for LinearReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
-        let [x, y, z] = self.omega_global;
-        match self.omega_global == [0.0; 3] {
-            true => write!(f, "  about    rest")?,
-            false => write!(f, "  about    a spin of ({x:.6}, {y:.6}, {z:.6}) rad per time, global")?,
-        }
-        if self.time != 0.0 {
-            write!(f, ", at time {}", self.time)?;
-        }
-        writeln!(f)?;
+        writeln!(f, "  about    {}", in_words(self.omega_global, self.time))?;
         write!(f, "  model    {} states, {} inputs, {} outputs", self.states, self.inputs.len(), self.outputs.len())?;
         match self.error_bound {
             Some(bound) => writeln!(f, "; of {} states, no response wrong by more than {bound:.3e}", self.whole)?,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use figures::FigureError;
 use linear::LinearError;
+use report::ReportError;
 
 use crate::commands::linear::linearize::LinearizeError;
 use crate::commands::linear::spectra::SpectraError;
@@ -28,4 +29,7 @@ pub enum PsdError {
     /// A chart cannot be drawn.
     #[error("{0}")]
     Figure(#[from] FigureError),
+    /// The page cannot be made.
+    #[error("{0}")]
+    Page(#[from] ReportError),
 }

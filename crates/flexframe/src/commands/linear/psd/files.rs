@@ -1,13 +1,14 @@
-//! Densities as a table for programs, and as a chart.
+//! Densities as a table for programs, as a chart and as a page.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use figures::{LineChart, Scale};
+use report::Responses as Page;
 
 use super::error::PsdError;
 use super::responses::Responses;
-use crate::commands::linear::curves;
+use crate::commands::linear::curves::{self, Answer};
 use crate::commands::modes::frequency_unit;
 
 const NAME: &str = "psd";
@@ -21,9 +22,11 @@ pub(super) fn write(
     title: &str,
     time_unit: &str,
     responses: &Responses,
+    page: Page,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, PsdError> {
-    curves::write(folder, NAME, csv(responses), &chart(title, &frequency_unit(time_unit), responses))
+    let chart = chart(title, &frequency_unit(time_unit), responses);
+    curves::write(folder, NAME, Answer { csv: csv(responses), chart, page })
 }
 
 /// A row a frequency: the density of each output, unit² per cycle per time.

@@ -53,13 +53,8 @@ pub struct RandomOutput {
 }
 
 impl PsdReport {
-    pub(super) fn new(
-        scene: &Scene,
-        model: &LinearModel,
-        band: [f64; 2],
-        responses: &Responses,
-        files: Vec<PathBuf>,
-    ) -> Self {
+    /// The report before files are written.
+    pub(super) fn new(scene: &Scene, model: &LinearModel, band: [f64; 2], responses: &Responses) -> Self {
         let output = |(k, (channel, response)): (usize, &(linear::Channel, RandomResponse))| {
             let is_signal = k < responses.first_von_mises;
             RandomOutput {
@@ -77,7 +72,7 @@ impl PsdReport {
             frequencies: responses.frequencies.len(),
             inputs: model.equations.inputs.iter().map(|input| input.name.clone()).collect(),
             outputs: responses.outputs.iter().enumerate().map(output).collect(),
-            files,
+            files: Vec::new(),
             warnings: model.state.warnings.clone(),
         }
     }

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use figures::FigureError;
+use report::ReportError;
 use shock::ShockError;
 
 use crate::files::write_error::WriteError;
@@ -43,6 +44,9 @@ pub enum SrsError {
     /// The diagram cannot be drawn.
     #[error("{0}")]
     Figure(#[from] FigureError),
+    /// The page cannot be made.
+    #[error("{0}")]
+    Page(#[from] ReportError),
     /// A file cannot be written.
     #[error("{0}")]
     Write(#[from] WriteError),

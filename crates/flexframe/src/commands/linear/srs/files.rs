@@ -1,4 +1,4 @@
-//! The spectra as a table for programs, and as a diagram.
+//! The spectra as a table for programs, as a diagram and as a page.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -8,7 +8,8 @@ use shock::Spectrum;
 
 use super::diagram::diagram;
 use super::error::SrsError;
-use crate::commands::linear::curves;
+use super::page::page;
+use crate::commands::linear::curves::{self, Answer};
 
 const NAME: &str = "srs";
 
@@ -17,9 +18,10 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
     curves::files(folder, NAME)
 }
 
-/// Writes `srs.csv`, and `srs` as SVG, PDF and PNG.
+/// Writes `srs.csv`, `srs.html`, and `srs` as SVG, PDF and PNG.
 pub(super) fn write(table: &Path, spectra: &[Spectrum], folder: &Path) -> Result<Vec<PathBuf>, SrsError> {
-    curves::write(folder, NAME, rows(spectra), &diagram(table, spectra))
+    let (chart, page) = (diagram(table, spectra), page(table, spectra));
+    curves::write(folder, NAME, Answer { csv: rows(spectra), chart, page })
 }
 
 /// A row a frequency: for each damping ratio the quantities of a spectrum.
