@@ -158,18 +158,31 @@ exudyn: build
     RAYON_NUM_THREADS=1 .tools/exudyn/bin/python crates/verification/performance/systems.py \
         {{flexframe}} target/debug/systems docs/evidence/systems.md
 
-# The Python package: its wheel, with HDF5 inside, into target/wheels, and its tests in a fresh installation (Python packages).
-python profile="release":
+# The wheel of the Python package, with HDF5 inside, into target/wheels (Python packages).
+wheel profile="release":
     #!/usr/bin/env bash
     set -euo pipefail
-    target="${CARGO_TARGET_DIR:-$PWD/target}"
-    built="$target/{{ if profile == "dev" { "debug" } else { profile } }}"
     # HDF5 wants a newer cmake than Debian has.
     python3 -m venv .tools/python
     .tools/python/bin/pip install -q "maturin>=1.9,<2" "cmake>=3.26"
     export PATH="$PWD/.tools/python/bin:$PATH"
     rm -f target/wheels/flexframe-*.whl
     maturin build --quiet --locked --profile {{profile}} --manifest-path crates/python/Cargo.toml --out target/wheels
+
+# A controller of python-control and a spacecraft of MuJoCo with flexframe in the loop: examples/python (Python packages).
+cosimulation profile="release": (wheel profile)
+    python3 -m venv .tools/cosimulation
+    .tools/cosimulation/bin/pip install -q control==0.10.2 mujoco==4.0.0
+    .tools/cosimulation/bin/pip install -q --force-reinstall --no-deps target/wheels/flexframe-*.whl
+    for example in lqr_panel mujoco_spacecraft; do .tools/cosimulation/bin/python examples/python/$example.py; done
+
+# The Python package: its wheel, and its tests in a fresh installation (Python packages).
+python profile="release": (wheel profile)
+    #!/usr/bin/env bash
+    set -euo pipefail
+    target="${CARGO_TARGET_DIR:-$PWD/target}"
+    built="$target/{{ if profile == "dev" { "debug" } else { profile } }}"
+    export PATH="$PWD/.tools/python/bin:$PATH"
     # With the features of the wheel, so that nothing is built twice.
     cargo build --quiet --locked --profile {{profile}} --package flexframe-cli --package flexframe-python \
         --features flexframe-python/static-hdf5 --bin flexframe --example controller --example spring_to_ground
