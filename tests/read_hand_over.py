@@ -2,7 +2,7 @@
 
 usage: read_hand_over.py FILE
 
-OP4 is read by pyYeti and by pyNastran, which have to agree; glTF by pygltflib. The other forms are read here as the programs read them that
+OP4 and OP2 are read by pyYeti and by pyNastran, which have to agree; glTF by pygltflib. The other forms are read here as the programs read them that
 they are for: `modal.cc` of MBDyn, `InitFlexModes` of 42, the keywords of Standard Input Data.
 """
 
@@ -26,6 +26,26 @@ def op4(path):
         data = np.asarray(data[1] if isinstance(data, tuple) else data)
         assert np.array_equal(data, ours[name.upper()]), name
         found[name.upper()] = data.tolist()
+    return found
+
+
+def op2(path):
+    import numpy as np
+    from pyNastran.op2.op2 import OP2
+    from pyyeti.nastran import op2 as yeti
+
+    with yeti.OP2(path) as file:
+        ours = file.rdop2mats()
+    model = OP2(debug=None)
+    model.set_additional_matrices_to_read({"TREC": True})
+    model.read_op2(path)
+    assert set(ours) == set(model.matrices), (set(ours), set(model.matrices))
+    found = {}
+    for name, matrix in model.matrices.items():
+        data = matrix.data
+        data = data.toarray() if hasattr(data, "toarray") else np.asarray(data)
+        assert np.array_equal(data, ours[name]), name
+        found[name] = data.tolist()
     return found
 
 
@@ -127,7 +147,7 @@ def glb(path):
     }
 
 
-READERS = {"op4": op4, "fem": mbdyn, "flex42": flex42, "sid_fem": sid, "glb": glb}
+READERS = {"op2": op2, "op4": op4, "fem": mbdyn, "flex42": flex42, "sid_fem": sid, "glb": glb}
 
 if __name__ == "__main__":
     json.dump(READERS[sys.argv[1].rsplit(".", 1)[1]](sys.argv[1]), sys.stdout)

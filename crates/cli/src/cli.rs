@@ -134,7 +134,7 @@ enum Command {
     Reduce {
         #[command(flatten)]
         scene: SceneArgs,
-        /// The body file to write; for other programs a file that ends in .op4 (Nastran), .fem (MBDyn), .flex42 (NASA's 42), .sid_fem
+        /// The body file to write; for other programs a file that ends in .op4 or .op2 (Nastran), .fem (MBDyn), .flex42 (NASA's 42), .sid_fem
         /// (SIMPACK, Modelica) or .glb (pictures).
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,

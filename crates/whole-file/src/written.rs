@@ -65,6 +65,8 @@ impl Written {
     pub const FMU: Self = Self { what: "an FMU", endings: &["fmu"], in_any_order: false };
     /// Matrices for Nastran.
     pub const OP4: Self = Self { what: "an OP4 file of matrices", endings: &["op4"], in_any_order: false };
+    /// Matrices in binary records of Nastran.
+    pub const OP2: Self = Self { what: "an OP2 file of matrices", endings: &["op2"], in_any_order: false };
     /// A modal body for MBDyn.
     pub const MBDYN: Self = Self { what: "a modal data file of MBDyn", endings: &["fem"], in_any_order: false };
     /// A flexible body for 42.

@@ -81,6 +81,15 @@ fn op4_is_a_model_of_craig_and_bampton() {
     assert!((recovery[(7, 5)] - 202.07).abs() < 1e-9 && recovery.nrows() == 12 && recovery[(9, 3)] == 1.0);
 }
 
+/// Conserved: the same numbers in both files, bit for bit.
+#[test]
+fn op2_has_the_matrices_of_op4() {
+    let folder = tempfile::tempdir().unwrap();
+    let [binary, text] = ["op2", "op4"].map(|ending| handed_over(folder.path(), ending));
+    assert_eq!(binary, text);
+    assert_eq!(binary.as_object().unwrap().len(), 4);
+}
+
 /// Conserved: three files say the same of one body by their own integrals, 42's `L` and `N` turned as `InitFlexModes` turns them.
 #[test]
 fn integrals_of_mbdyn_42_and_standard_input_data_agree() {

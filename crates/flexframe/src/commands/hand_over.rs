@@ -1,9 +1,11 @@
 //! Reduced bodies in the files of other programs: the ending of a file names its form.
 
+mod craig_bampton;
 mod error;
 mod flex42;
 mod gltf;
 mod mbdyn;
+mod op2;
 mod op4;
 mod reduced;
 mod sid;
@@ -14,6 +16,7 @@ use model::{BuildProgress, Builder, Model};
 use scene::Scene;
 use whole_file::{Written, write_whole};
 
+use craig_bampton::matrices;
 pub use error::HandOverError;
 use reduced::Reduced;
 
@@ -25,6 +28,8 @@ use crate::files::write_error::WriteError;
 pub enum Form {
     /// OP4 of Nastran: mass, stiffness and damping matrices of the base and the modes, as Craig–Bampton has them.
     Op4,
+    /// The same in OP2 of Nastran.
+    Op2,
     /// File of MBDyn's modal joint.
     Mbdyn,
     /// Flex file of NASA's 42.
@@ -36,7 +41,7 @@ pub enum Form {
 }
 
 impl Form {
-    const ALL: [Self; 5] = [Self::Op4, Self::Mbdyn, Self::Flex42, Self::Sid, Self::Gltf];
+    const ALL: [Self; 6] = [Self::Op4, Self::Op2, Self::Mbdyn, Self::Flex42, Self::Sid, Self::Gltf];
 
     /// The form that the ending of a file names; none for any other file.
     pub fn of(path: &Path) -> Option<Self> {
@@ -48,6 +53,7 @@ impl Form {
     pub fn written(self) -> Written {
         match self {
             Self::Op4 => Written::OP4,
+            Self::Op2 => Written::OP2,
             Self::Mbdyn => Written::MBDYN,
             Self::Flex42 => Written::FLEX,
             Self::Sid => Written::SID,
@@ -76,7 +82,8 @@ pub fn hand_over(
 fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<(), HandOverError> {
     let bytes = match form {
         Form::Gltf => gltf::bytes(scene, model)?,
-        Form::Op4 => op4::text(&Reduced::new(scene, model)?).into_bytes(),
+        Form::Op4 => op4::text(&matrices(&Reduced::new(scene, model)?)).into_bytes(),
+        Form::Op2 => op2::bytes(&matrices(&Reduced::new(scene, model)?)),
         Form::Mbdyn => mbdyn::text(&Reduced::new(scene, model)?).into_bytes(),
         Form::Flex42 => flex42::text(&Reduced::new(scene, model)?).into_bytes(),
         Form::Sid => sid::text(&Reduced::new(scene, model)?).into_bytes(),

@@ -1,0 +1,79 @@
+//! Matrices of a body in the coordinates of Craig and Bampton, as Nastran names them.
+//!
+//! Coordinates are the six motions of the base (translations along and rotations about the axes of the mesh, through the origin), then the
+//! modes: the interface of a body that one rigid support holds, and its internal coordinates. `TREC` takes them to the
+//! displacements and rotations of the nodes, six rows for each.
+
+use faer::Mat;
+
+use super::reduced::Reduced;
+
+/// Motions of the base.
+const BASE: usize = 6;
+
+/// A matrix with its name and Nastran's number of its form.
+pub struct Named {
+    pub name: &'static str,
+    pub matrix: Mat<f64>,
+    pub form: i32,
+}
+
+/// Forms of a matrix.
+const SYMMETRIC: i32 = 6;
+const OTHER: i32 = 2;
+/// Type of a matrix of real numbers in double precision.
+pub const DOUBLE: i32 = 2;
+
+/// Mass, stiffness, damping and recovery; those without rows are left out.
+pub fn matrices(body: &Reduced<'_>) -> Vec<Named> {
+    let size = BASE + body.count();
+    let [mut mass, mut stiffness, mut damping] = [(); 3].map(|()| Mat::<f64>::zeros(size, size));
+    for (i, j) in (0..BASE).flat_map(|i| (0..BASE).map(move |j| (i, j))) {
+        mass[(i, j)] = body.rigid_mass[(i, j)];
+    }
+    for k in 0..body.count() {
+        let row = BASE + k;
+        for i in 0..3 {
+            for (column, value) in [(i, body.momenta[k][i]), (3 + i, body.angular_momenta[k][i])] {
+                mass[(row, column)] = value;
+                mass[(column, row)] = value;
+            }
+        }
+        mass[(row, row)] = 1.0;
+        stiffness[(row, row)] = body.omegas[k].powi(2);
+        damping[(row, row)] = body.damping(k);
+    }
+    let mut recovery = Mat::<f64>::zeros(6 * body.nodes.len(), size);
+    for (n, node) in body.nodes.iter().enumerate() {
+        let arm = node.position.cross_matrix();
+        for i in 0..3 {
+            recovery[(6 * n + i, i)] = 1.0;
+            recovery[(6 * n + 3 + i, 3 + i)] = 1.0;
+            for j in 0..3 {
+                recovery[(6 * n + i, 3 + j)] = -arm[(i, j)];
+            }
+            for k in 0..body.count() {
+                recovery[(6 * n + i, BASE + k)] = node.shapes[k][i];
+                recovery[(6 * n + 3 + i, BASE + k)] = node.turns[k][i];
+            }
+        }
+    }
+    let all = [
+        ("MXX", mass, SYMMETRIC),
+        ("KXX", stiffness, SYMMETRIC),
+        ("BXX", damping, SYMMETRIC),
+        ("TREC", recovery, OTHER),
+    ];
+    let all = all.into_iter().filter(|(_, matrix, _)| matrix.nrows() > 0);
+    all.map(|(name, matrix, form)| Named { name, matrix, form }).collect()
+}
+
+impl Named {
+    /// A column: its first row that is not zero, from 0, with the numbers from there to the last that is not; none of a column of zeros.
+    pub fn filled(&self, column: usize) -> Option<(usize, Vec<f64>)> {
+        let column = self.matrix.col(column);
+        let filled = |value: &f64| *value != 0.0;
+        let (first, last) = (column.iter().position(filled)?, column.iter().rposition(filled)?);
+        Some((first, (first..=last).map(|i| column[i]).collect()))
+    }
+}
