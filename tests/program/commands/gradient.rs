@@ -173,6 +173,21 @@ fn stiffnesses_of_a_system_have_the_rates_of_central_differences() {
     assert!(sums.iter().all(|sum| *sum < 0.5 + 1e-3) && sums[0] > 0.4, "{sums:?}");
 }
 
+#[test]
+fn a_system_that_forces_deform_has_no_rates() {
+    let folder = tempfile::tempdir().unwrap();
+    write_system(folder.path(), "");
+    for set in [
+        "springs[0].free_length=40.0",
+        "bodies.bar.loads=[{ kind = \"force\", at = [202.07, 0, 0], direction = [0, 1, 0], amplitude = 1.0 }]",
+    ] {
+        let refused = run(folder.path(), &["gradient", "system.toml", "--set", set, "-o", "other"]);
+        let told = String::from_utf8(refused.stderr).unwrap();
+        assert!(refused.status.code() == Some(4) && told.contains("forces deform at the start"), "{set}: {told}");
+        assert!(!folder.path().join("other").exists());
+    }
+}
+
 /// Closed form: a stone on a spring along a rail swings with √(k/m)/2π, whose relative rate is a half.
 #[test]
 fn a_stone_on_a_spring_has_a_relative_rate_of_a_half() {

@@ -70,10 +70,10 @@ def linearize(
 ) -> LinearModel:
     """The linear model of small motions of a scene, as `flexframe linearize` writes it.
 
-    It is about rest, the steady spin that a free body begins with or a drive has, `spin` (global, about the center of mass), or the
-    state of the run at `time`. `inputs` and `outputs` are names or beginnings of them, such as "loads[0]", "base.acceleration.z",
-    "tip.acceleration"; without any they are loads and forces at joints, points and joints. `reduce` lowers the order:
-    "balanced:12" or "modal:12".
+    It is about rest, the steady spin that a free body begins with or a drive has, `spin` (global, about the center of mass or the
+    axis of a driven joint), or the state of the run at `time`. `inputs` and `outputs` are names or beginnings of them, such as
+    "loads[0]", "base.acceleration.z", "tip.acceleration"; without any they are loads and forces at joints, points and joints.
+    `reduce` lowers the order: "balanced:12" or "modal:12".
     """
     found = _flexframe.linearized(
         scene,
