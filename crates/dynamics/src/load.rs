@@ -19,7 +19,7 @@ use keys::{Key, Keyed};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::body::second_order::SecondOrder;
-use crate::body::shapes::{PointShapes, RotationShapes};
+use crate::body::shapes::{PointShapes, RotationShapes, sum};
 use crate::error::SetupError;
 use crate::history::History;
 
@@ -415,11 +415,6 @@ impl<'a> Applied<'a> {
         }
         self.modal_power += power;
     }
-}
-
-/// Σ columns_k c_k
-fn sum(columns: &[Vector3<f64>], coordinates: &[f64]) -> Vector3<f64> {
-    columns.iter().zip(coordinates).map(|(column, c)| column * *c).sum()
 }
 
 /// Refuses a force or moment that is not finite, and a place of a body with fewer modes than `flexible`.

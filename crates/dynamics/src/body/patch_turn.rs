@@ -23,14 +23,44 @@ pub struct PatchTurn {
     rest: Matrix3<f64>,
     /// Q_k = Σ ψ_k dᵀ of each flexible mode.
     modes: Vec<Matrix3<f64>>,
+    /// The normal of a flat patch.
+    normal: Option<Vector3<f64>>,
 }
+
+/// A patch where it is: R and (tr P − P)⁻¹.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PatchFit {
+    pub rotation: Matrix3<f64>,
+    inverse: Matrix3<f64>,
+}
+
+impl PatchFit {
+    /// That of a patch that is torn flat: no number.
+    pub const NONE: Self = Self { rotation: NO_NUMBERS, inverse: NO_NUMBERS };
+}
+
+const NO_NUMBERS: Matrix3<f64> =
+    Matrix3::new(f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN);
 
 impl PatchTurn {
     /// By Σ d dᵀ, and Σ ψ dᵀ of each flexible mode; `None` where the nodes lie on a line.
     pub fn new(rest: Matrix3<f64>, modes: Vec<Matrix3<f64>>) -> Option<Self> {
-        let turn = Self { rest, modes };
+        let eigen = rest.symmetric_eigen();
+        let least = eigen.eigenvalues.imin();
+        let most = eigen.eigenvalues.max();
+        if eigen.eigenvalues.sum() - most - eigen.eigenvalues[least] <= FLAT * most {
+            return None;
+        }
+        let is_flat = eigen.eigenvalues[least] < FLAT * most;
+        let normal = is_flat.then(|| eigen.eigenvectors.column(least).into());
+        let turn = Self { rest, modes, normal };
         turn.polar(&rest)?;
         Some(turn)
+    }
+
+    /// The rotation of the patch where the flexible modes have the displacements ξ; `None` of one that is torn flat.
+    pub fn rotation(&self, xi: &[f64]) -> Option<Matrix3<f64>> {
+        Some(self.fit(xi.iter().copied())?.rotation)
     }
 
     /// Number of flexible modes.
@@ -40,24 +70,61 @@ impl PatchTurn {
 
     /// The first of the modes only.
     pub(crate) fn truncated(&self, modes: usize) -> Self {
-        Self { rest: self.rest, modes: self.modes[..modes.min(self.modes.len())].to_vec() }
+        Self { modes: self.modes[..modes.min(self.modes.len())].to_vec(), ..*self }
+    }
+
+    /// Its Q_k.
+    pub(crate) fn modes(&self) -> &[Matrix3<f64>] {
+        &self.modes
+    }
+
+    /// The same patch by other coordinates, with their Q_k.
+    pub(crate) fn with_modes(&self, modes: Vec<Matrix3<f64>>) -> Self {
+        Self { modes, ..*self }
     }
 
     /// Forces of a moment on the flexible modes where these have the displacements ξ; `None` of a patch that is torn flat.
-    pub(crate) fn forces(&self, moment: &Vector3<f64>, xi: &[f64]) -> Option<impl Iterator<Item = f64> + '_> {
-        let g = self.modes.iter().zip(xi).fold(self.rest, |sum, (q, x)| sum + q * *x);
-        let r = self.polar(&g)?;
-        let p = r.transpose() * g;
-        let n = (Matrix3::from_diagonal_element(p.trace()) - p).try_inverse()? * r.tr_mul(moment);
-        let turned = r * n.cross_matrix();
-        Some(self.modes.iter().map(move |q| turned.dot(q)))
+    pub(crate) fn forces<'a>(
+        &'a self,
+        moment: &Vector3<f64>,
+        xi: &[f64],
+    ) -> Option<impl Iterator<Item = f64> + use<'a>> {
+        Some(self.forces_at(&self.fit(xi.iter().copied())?, moment))
+    }
+
+    /// Where the patch is at displacements ξ; `None` of one that is torn flat.
+    pub(crate) fn fit(&self, xi: impl Iterator<Item = f64>) -> Option<PatchFit> {
+        let g = self.modes.iter().zip(xi).fold(self.rest, |sum, (q, x)| sum + q * x);
+        let rotation = self.polar(&g)?;
+        let p = rotation.transpose() * g;
+        let inverse = (Matrix3::from_diagonal_element(p.trace()) - p).try_inverse()?;
+        Some(PatchFit { rotation, inverse })
+    }
+
+    /// Forces of a moment on the flexible modes where the patch is.
+    pub(crate) fn forces_at<'a>(
+        &'a self,
+        fit: &PatchFit,
+        moment: &Vector3<f64>,
+    ) -> impl Iterator<Item = f64> + use<'a> {
+        let PatchFit { rotation, inverse } = fit;
+        let turned = rotation * (inverse.transpose() * rotation.tr_mul(moment)).cross_matrix();
+        self.modes.iter().map(move |q| turned.dot(q))
+    }
+
+    /// Its angular velocity where it is, at the rates of ξ.
+    pub(crate) fn spin_at(&self, fit: &PatchFit, rates: impl Iterator<Item = f64>) -> Vector3<f64> {
+        let PatchFit { rotation, inverse } = fit;
+        let g_rate = self.modes.iter().zip(rates).fold(Matrix3::zeros(), |sum, (q, rate)| sum + q * rate);
+        let a = rotation.tr_mul(&g_rate);
+        let axial = Vector3::new(a[(2, 1)] - a[(1, 2)], a[(0, 2)] - a[(2, 0)], a[(1, 0)] - a[(0, 1)]);
+        rotation * (inverse * axial)
     }
 
     /// R of G, by the iteration of Newton: the mean of a matrix and its transposed inverse.
     fn polar(&self, g: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         // A patch may be flat: out of its plane it has the size that makes it a rotation.
-        let normal = self.normal();
-        let mut r = match normal {
+        let mut r = match self.normal {
             Some(normal) => {
                 let [a, b] = across(&normal);
                 let (a, b) = (g * a, g * b);
@@ -75,13 +142,6 @@ impl PatchTurn {
             }
         }
         (r.determinant() > 0.0).then_some(r)
-    }
-
-    /// The normal of a flat patch.
-    fn normal(&self) -> Option<Vector3<f64>> {
-        let eigen = self.rest.symmetric_eigen();
-        let least = eigen.eigenvalues.imin();
-        (eigen.eigenvalues[least] < FLAT * eigen.eigenvalues.max()).then(|| eigen.eigenvectors.column(least).into())
     }
 }
 
@@ -105,6 +165,13 @@ impl Keyed for PatchTurn {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nodes_on_a_line_have_no_turn() {
+        let along = Vector3::new(0.3, -0.7, 0.2);
+        let rest = [-1.0, 0.0, 1.0].iter().map(|x| along * *x * (along * *x).transpose()).sum();
+        assert!(PatchTurn::new(rest, Vec::new()).is_none());
+    }
 
     /// Closed form: of a rigid turn by φ about z, the forces on modes that turn it further are those of the moment about z, however far it
     /// has turned; of a shape that stretches it, none.

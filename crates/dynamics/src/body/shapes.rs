@@ -3,7 +3,8 @@
 use faer::MatRef;
 use keys::{Key, Keyed};
 use modal::{BodyPoint, ReducedBody};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
+use rigid_kin::transformation_matrix;
 
 use crate::body::components::{Components, ComponentsFrom};
 use crate::body::patch_turn::PatchTurn;
@@ -143,6 +144,11 @@ pub struct RotationShapes {
     patch: Option<PatchTurn>,
 }
 
+/// Σ columns_k c_k
+pub(crate) fn sum(columns: &[Vector3<f64>], coordinates: &[f64]) -> Vector3<f64> {
+    columns.iter().zip(coordinates).map(|(column, c)| column * *c).sum()
+}
+
 /// A place as serde has it.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Rotations(Vec<Vector3<f64>>, Option<SecondOrder>, Option<PatchTurn>);
@@ -181,6 +187,15 @@ impl RotationShapes {
     pub fn with_patch(self, patch: Option<PatchTurn>) -> Self {
         let fits = |patch: &PatchTurn| patch.flexible() == self.flexible();
         Self { patch: patch.filter(fits), ..self }
+    }
+
+    /// The rotation of the place where the flexible modes have the displacements `xi`: that which fits its nodes best, or the one whose
+    /// rotation vector the modes give.
+    pub fn rotation(&self, xi: &[f64]) -> Matrix3<f64> {
+        match self.patch.as_ref().and_then(|patch| patch.rotation(xi)) {
+            Some(rotation) => rotation,
+            None => transformation_matrix(&-sum(&self.columns[6..], xi)),
+        }
     }
 
     /// The turn of its nodes, if it is known.

@@ -100,7 +100,7 @@ impl ConservativeBody {
     }
 
     /// Number of coordinates z: that of the modes, but on a manifold.
-    pub(super) fn coordinates(&self) -> usize {
+    pub(crate) fn coordinates(&self) -> usize {
         self.manifold.as_ref().map_or(self.flexible(), Manifold::size)
     }
 
@@ -127,9 +127,9 @@ impl ConservativeBody {
         BodyList { values: &state.values, flexible: self.flexible() }
     }
 
-    /// True if it moves and turns freely, is not driven and has no large modes.
+    /// True if it moves and turns freely and is not driven.
     pub(crate) fn is_free(&self) -> bool {
-        self.translation == Translation::Free && self.axes.len() == 3 && self.drive.is_none() && self.manifold.is_none()
+        self.translation == Translation::Free && self.axes.len() == 3 && self.drive.is_none()
     }
 
     /// Numbers of the components of π that the body turns freely with: none of a driven one.

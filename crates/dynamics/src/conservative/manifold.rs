@@ -20,7 +20,10 @@
 //! B has two or three entries in a row. A matrix A of the extended shapes, EᵀAE of these coordinates, is made once. M, the
 //! slopes of the manifold and the forces of V are polynomials of the large and following modes.
 
+pub(crate) mod in_joints;
 mod monomials;
+
+pub(crate) use in_joints::{BentPlace, BentTerms};
 
 use std::sync::Arc;
 
@@ -83,6 +86,8 @@ struct Constants {
     /// V beyond ½ qᵀΛq, and its derivatives.
     energy: Energy,
     forces: Polynomials,
+    /// Its second derivatives: entries i ≥ j of the bent modes.
+    stiffness: Polynomials,
 }
 
 /// The parts of a manifold, as serde has it.
@@ -217,6 +222,7 @@ impl Manifold {
             slopes,
             locked: locked_mass(&monomials, &of_displacement, coefficients.as_ref(), &bent, dynamic),
             forces: energy.forces(&monomials),
+            stiffness: energy.stiffness(&monomials),
             energy,
             shapes_by_coordinates,
             monomials,
@@ -302,8 +308,20 @@ impl Manifold {
 
     /// Goes to q: z there, and M.
     pub(crate) fn go(&self, q: &[f64], place: &mut ManifoldPoint, z: &mut [f64]) {
-        let Constants { bent, modes, factors, monomials, slopes, locked, .. } = &*self.0;
-        let ManifoldPoint { displacement: x, monomials: values, partials, slopes: at_q, factor, .. } = place;
+        self.go_to(q, place, z);
+        let Constants { bent, monomials, slopes, locked, .. } = &*self.0;
+        let ManifoldPoint { displacement: x, monomials: values, slopes: at_q, factor, .. } = place;
+        monomials.find(x, values);
+        slopes.find(values, at_q);
+        // Of M, the other modes leave to the bent ones what is here.
+        locked.find(values, factor);
+        factorize(bent.len(), factor);
+    }
+
+    /// Goes to q: z and B there alone.
+    pub(crate) fn go_to(&self, q: &[f64], place: &mut ManifoldPoint, z: &mut [f64]) {
+        let Constants { bent, modes, factors, .. } = &*self.0;
+        let ManifoldPoint { displacement: x, partials, .. } = place;
         bent_of(bent, q, 1.0, x);
         let (of_modes, products) = z.split_at_mut(*modes);
         of_modes.copy_from_slice(q);
@@ -312,11 +330,6 @@ impl Manifold {
             *partials = [b * c, a * c, a * b];
             *product = a * b * c;
         }
-        monomials.find(x, values);
-        slopes.find(values, at_q);
-        // Of M, the other modes leave to the bent ones what is here.
-        locked.find(values, factor);
-        factorize(bent.len(), factor);
     }
 
     /// Goes along with q̇: ż.
@@ -374,15 +387,15 @@ impl Manifold {
     pub(crate) fn add_projection(&self, place: &ManifoldPoint, y: &[f64], out: &mut [f64]) {
         let (of_modes, products) = y.split_at(self.0.modes);
         out.iter_mut().zip(of_modes).for_each(|(out, y)| *out += y);
-        self.add_products(&place.partials, products, out);
+        self.add_products(&place.partials, products.iter().copied(), out);
     }
 
     /// Adds Ḋᵀ of momenta of the products.
     pub(crate) fn add_projected_rate(&self, place: &ManifoldPoint, momenta: &[f64], out: &mut [f64]) {
-        self.add_products(&place.partial_rates, momenta, out);
+        self.add_products(&place.partial_rates, momenta.iter().copied(), out);
     }
 
-    fn add_products(&self, partials: &[[f64; 3]], of_products: &[f64], out: &mut [f64]) {
+    fn add_products(&self, partials: &[[f64; 3]], of_products: impl Iterator<Item = f64>, out: &mut [f64]) {
         let Constants { bent, factors, .. } = &*self.0;
         let mut sums = Bent::default();
         for ((partials, factors), y) in partials.iter().zip(factors).zip(of_products) {

@@ -1,7 +1,7 @@
 //! The rows of all joints of a system, and what they do to its bodies.
 
 use crate::system::connections::Connections;
-use crate::system::elimination::inverse::Number;
+use crate::system::elimination::number::Number;
 use crate::system::joint::wrench::RowWrench;
 use crate::system::marker::motion::MarkerWrench;
 use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
@@ -145,15 +145,14 @@ impl Constraints {
         number: usize,
         row: Compliant,
         wrenches: impl Iterator<Item = (&'a Marker, &'a MarkerPlace, &'a MarkerWrench)>,
-        modal_displacements: impl Fn(usize) -> &'q [f64],
+        body: impl Fn(usize) -> BodyPlace<'q>,
     ) {
         self.compliant[number] = row;
         let ends = &mut self.ends[self.residuals.len() + number];
         clear(ends);
         for (marker, place, MarkerWrench { force_global, moment_global }) in wrenches {
             let Some(end) = ends.iter_mut().find(|end| Some(end.body) == marker.body()) else { continue };
-            let q = modal_displacements(end.body);
-            marker.add_wrench(place, q, [force_global, moment_global], &mut end.entries);
+            marker.add_wrench(place, &body(end.body), [force_global, moment_global], &mut end.entries);
         }
     }
 
@@ -208,6 +207,6 @@ fn add<'a>(
     for ((marker, place), wrench) in markers.iter().zip(places).zip(wrench.on_both()) {
         let Some(end) = ends.iter_mut().find(|end| Some(end.body) == marker.body()) else { continue };
         let [force, moment] = wrench.map(|vector| vector * factor);
-        marker.add_wrench(place, body(end.body).q, [&force, &moment], &mut end.entries);
+        marker.add_wrench(place, &body(end.body), [&force, &moment], &mut end.entries);
     }
 }

@@ -30,15 +30,14 @@ impl System {
     /// Bodies that move freely but for the joints.
     ///
     /// # Errors
-    /// [`SetupError`] for a body that is held, driven or has large modes, and for a marker on a body that is not there or has
-    /// other modes.
+    /// [`SetupError`] for a body that is held or driven, and for a marker on a body that is not there or has other modes.
     pub fn new(bodies: Vec<ConservativeBody>, joints: Vec<Joint>) -> Result<Self, SetupError> {
         let mut first = vec![0];
         for body in &bodies {
             if !body.is_free() {
                 return Err(SetupError::NotInFormulation {
                     formulation: "systems with joints",
-                    what: "a body that is held, driven or has large modes",
+                    what: "a body that is held or driven",
                 });
             }
             first.push(first[first.len() - 1] + 6 + body.flexible());
@@ -141,10 +140,11 @@ fn check(marker: &Marker, bodies: &[ConservativeBody]) -> Result<(), SetupError>
         let what = "the number of a marker's body";
         return Err(SetupError::Value { what, found: number as f64, expected: "that of a body, from 0" });
     };
-    let (found, expected) = (marker.flexible(), body.flexible());
-    if found != 0 && found != expected {
+    let (found, expected) = (marker.coordinates(), body.coordinates());
+    if found != 0 && (found != expected || marker.is_bent() != body.manifold.is_some()) {
         return Err(SetupError::Length { what: "the shapes of a marker", expected, found });
     }
+    let expected = body.flexible();
     if let Some(found) = marker.least_of_second_order().filter(|found| *found < expected) {
         return Err(SetupError::Length { what: "the second order of a marker", expected, found });
     }

@@ -52,12 +52,7 @@ impl Stage {
     /// Mass of a body, and its inertia about the global origin, global.
     fn inertia_about_origin(&self, b: usize) -> (f64, nalgebra::Matrix3<f64>) {
         let inertia = &self.inertia[b];
-        let mut own = inertia.locked;
-        for (i, a) in inertia.coupling.iter().enumerate() {
-            for (j, b) in inertia.coupling.iter().enumerate() {
-                own[(i, j)] += a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            }
-        }
+        let own = inertia.whole();
         let arm = cross_matrix(&self.positions[b]);
         (inertia.mass, self.attitudes[b].transpose() * own * self.attitudes[b] - arm * arm * inertia.mass)
     }

@@ -180,7 +180,7 @@ impl Joint {
 /// Rows for displacements and turns that are not free, see [`Joint::locked`].
 fn locked_rows(markers: &[Marker; 2], displacements: [bool; 3], turns: [bool; 3]) -> Vec<Row> {
     let is_point = displacements == [true; 3];
-    let of = usize::from(is_point && markers[0].flexible() == 0 && markers[1].flexible() > 0);
+    let of = usize::from(is_point && markers[0].coordinates() == 0 && markers[1].coordinates() > 0);
     let axes = |list: [bool; 3], is: bool| (0..3).filter(move |axis| list[*axis] == is);
     let mut rows: Vec<Row> = axes(displacements, true).map(|axis| Row::Point { of, axis }).collect();
     match axes(turns, true).count() {

@@ -158,7 +158,7 @@ impl SystemMotion {
             last_length: 0.0,
             bend: [zeros(), zeros()],
             stage_rates: std::array::from_fn(|_| StageRates::new(&flexible, joints)),
-            matrices: Matrices::new(&flexible, &patterns),
+            matrices: Matrices::new(&system, &patterns),
             room: Room {
                 real: Solution::new(coordinates, &patterns),
                 complex: Solution::new(coordinates, &patterns),

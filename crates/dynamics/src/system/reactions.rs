@@ -126,7 +126,7 @@ impl Index1<'_> {
         let passing = Passing { x, x_rates, velocities };
         find_row_accelerations((self.system, self.start), self.scratch, passing, times, out);
         let Self { system, matrices, patterns, scratch, .. } = self;
-        if !matrices.factor_mass(system, patterns, stage) {
+        if !matrices.factor_mass(patterns, stage) {
             return Err(RateError::Inertia);
         }
         for (b, body) in system.bodies.iter().enumerate() {

@@ -128,16 +128,11 @@ impl SystemMotion {
 pub(crate) fn rigid_inverses(inertias: &[Inertia]) -> Option<Vec<Inverse<f64>>> {
     let of_body = |inertia: &Inertia| {
         let flexible = inertia.coupling[0].len();
-        let mut rigid = inertia.clone();
         // J of the body as it is deformed, without its modes.
-        for (i, a) in inertia.coupling.iter().enumerate() {
-            for (j, b) in inertia.coupling.iter().enumerate() {
-                rigid.locked[(i, j)] += a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            }
-        }
+        let mut rigid = Inertia { locked: inertia.whole(), bent: None, ..inertia.clone() };
         rigid.coupling.iter_mut().for_each(|s| s.fill(0.0));
         let mut inverse = Inverse::new(flexible);
-        inverse.find(1.0, &rigid, std::iter::repeat_n([f64::INFINITY, 0.0], flexible)).then_some(inverse)
+        inverse.find(1.0, &rigid, |_| [f64::INFINITY, 0.0]).then_some(inverse)
     };
     inertias.iter().map(of_body).collect()
 }

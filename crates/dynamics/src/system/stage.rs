@@ -84,7 +84,6 @@ impl Stage {
     pub fn new(system: &System) -> Self {
         let (coordinates, rows) = (system.coordinates(), system.rows());
         let zeros = || vec![0.0; coordinates];
-        let flexible = system.bodies.iter().map(Equations::flexible);
         let constraints = Constraints::new(&system.connections, &system.first);
         let most_markers = system.connections.elements.iter().map(|element| element.markers().len()).max().unwrap_or(0);
         Self {
@@ -97,7 +96,7 @@ impl Stage {
             velocities: zeros(),
             x_rates: zeros(),
             y_rates: zeros(),
-            inertia: flexible.map(Inertia::new).collect(),
+            inertia: system.bodies.iter().map(Inertia::of).collect(),
             attitudes: vec![Matrix3::identity(); system.bodies.len()],
             positions: vec![Vector3::zeros(); system.bodies.len()],
             q: zeros(),
@@ -113,7 +112,7 @@ impl Stage {
 
     /// Finds where the bodies are.
     pub fn place(&mut self, system: &System, start: &Start) {
-        for (b, body) in start.bodies.iter().enumerate() {
+        for (b, (body, of)) in start.bodies.iter().zip(&system.bodies).enumerate() {
             let first = system.first[b];
             let theta = vector(&self.x, first + 3);
             self.attitudes[b] = transformation_matrix(&theta) * body.body_from_global;
@@ -121,18 +120,16 @@ impl Stage {
             for k in first + 6..system.first[b + 1] {
                 self.q[k] = start.q[k] + self.x[k];
             }
+            of.bend(&self.q[first + 6..system.first[b + 1]], &mut self.evaluations[b]);
         }
     }
 
     /// Finds g and G where the bodies have been placed, at a time by the branch of another.
     pub fn find_constraints(&mut self, system: &System, start: &Start, times: [f64; 2]) {
-        let Self { constraints, positions, attitudes, q, .. } = self;
+        let Self { constraints, positions, attitudes, q, evaluations, .. } = self;
         let expected_turn = |joint: usize| start.turn(joint, times[0]);
-        constraints.find(&system.connections, expected_turn, times, |b| BodyPlace {
-            origin: positions[b],
-            body_from_global: attitudes[b],
-            q: &q[system.first[b] + 6..system.first[b + 1]],
-        });
+        let places = Places { system, positions, attitudes, q, evaluations };
+        constraints.find(&system.connections, expected_turn, times, |b| places.of(b));
     }
 
     /// Finds velocities, rates, g and G at a time; laws with branches are taken as they are at the branch time.
@@ -174,6 +171,10 @@ impl Stage {
             inertia.locked = e.locked_inertia;
             inertia.locked_inverse = e.locked_inertia.try_inverse().ok_or(RateError::Inertia)?;
             body.copy_coupling(e, &mut inertia.coupling);
+            if let (Some(bent), Some(manifold)) = (&mut inertia.bent, &body.manifold) {
+                manifold.find_bent_terms(&e.place, &mut bent.terms);
+                bent.solve_coupling(&inertia.coupling);
+            }
         }
         self.find_constraints(system, start, times);
         self.add_elements(system, times);
@@ -232,12 +233,9 @@ impl Stage {
     }
 
     /// The place of a body.
-    pub fn body_place(&self, system: &System, b: usize) -> BodyPlace<'_> {
-        BodyPlace {
-            origin: self.positions[b],
-            body_from_global: self.attitudes[b],
-            q: &self.q[system.first[b] + 6..system.first[b + 1]],
-        }
+    pub fn body_place<'a>(&'a self, system: &'a System, b: usize) -> BodyPlace<'a> {
+        let Self { positions, attitudes, q, evaluations, .. } = self;
+        Places { system, positions, attitudes, q, evaluations }.of(b)
     }
 
     /// The coordinates of a joint, where the bodies have been placed and move with the velocities; the turn is next to what is
@@ -255,10 +253,9 @@ impl Stage {
 
     /// The motion of a marker at its place.
     pub fn motion_of(&self, system: &System, marker: &Marker, place: &MarkerPlace) -> MarkerMotion {
-        let of_body = marker.body().map_or([&[][..]; 2], |b| {
-            [self.body_place(system, b).q, &self.velocities[system.first[b]..system.first[b + 1]]]
-        });
-        marker.motion(place, of_body)
+        let body = marker.body().map(|b| self.body_place(system, b));
+        let velocities = marker.body().map_or(&[][..], |b| &self.velocities[system.first[b]..system.first[b + 1]]);
+        marker.motion(place, body.as_ref(), velocities)
     }
 
     /// Adds the forces of joints along their coordinates to those of the elements.
@@ -284,7 +281,18 @@ impl Stage {
         self.add_joint_forces(system, times);
         for element in &system.connections.elements {
             self.find_marker_motions(system, element.markers());
-            let Self { marker_places, marker_motions, wrenches, element_forces: forces, q, .. } = self;
+            let Self {
+                marker_places,
+                marker_motions,
+                wrenches,
+                element_forces: forces,
+                positions,
+                attitudes,
+                q,
+                evaluations,
+                ..
+            } = self;
+            let places = Places { system, positions, attitudes, q, evaluations };
             let markers = element.markers();
             wrenches.clear();
             wrenches.resize(markers.len(), MarkerWrench::default());
@@ -296,7 +304,7 @@ impl Stage {
                 if let Some(b) = markers[k].body() {
                     markers[k].add_wrench(
                         &marker_places[k],
-                        &q[system.first[b] + 6..system.first[b + 1]],
+                        &places.of(b),
                         [force_global, moment_global],
                         &mut forces[system.first[b]..system.first[b + 1]],
                     );
@@ -314,19 +322,15 @@ impl Stage {
 
     /// Finds the places and motions of markers.
     fn find_marker_motions(&mut self, system: &System, markers: &[Marker]) {
-        let Self { marker_places, marker_motions, positions, attitudes, q, velocities, .. } = self;
+        let Self { marker_places, marker_motions, positions, attitudes, q, evaluations, velocities, .. } = self;
+        let places = Places { system, positions, attitudes, q, evaluations };
         marker_places.clear();
         marker_motions.clear();
         for marker in markers {
-            let own = |b: usize| system.first[b]..system.first[b + 1];
-            let place = marker.body().map(|b| BodyPlace {
-                origin: positions[b],
-                body_from_global: attitudes[b],
-                q: &q[own(b)][6..],
-            });
-            let place = marker.place(place.as_ref());
-            let of_body = marker.body().map_or([&[][..]; 2], |b| [&q[own(b)][6..], &velocities[own(b)]]);
-            marker_motions.push(marker.motion(&place, of_body));
+            let body = marker.body().map(|b| places.of(b));
+            let place = marker.place(body.as_ref());
+            let own = marker.body().map_or(&[][..], |b| &velocities[system.first[b]..system.first[b + 1]]);
+            marker_motions.push(marker.motion(&place, body.as_ref(), own));
             marker_places.push(place);
         }
     }
@@ -345,18 +349,15 @@ impl Stage {
         for element in system.connections.elements.iter().filter(|element| element.directions() > 0) {
             let markers = element.markers();
             self.find_marker_motions(system, markers);
-            let Self { marker_places, marker_motions, constraints, q, .. } = self;
-            let modal_displacements = |b: usize| &q[system.first[b] + 6..system.first[b + 1]];
+            let Self { marker_places, marker_motions, constraints, positions, attitudes, q, evaluations, .. } = self;
+            let places = Places { system, positions, attitudes, q, evaluations };
             element.linearize(times, marker_motions, &mut |direction, [stiffness, damping], wrenches| {
                 if direction < element.directions() {
                     let on_markers = markers.iter().zip(&*marker_places).zip(wrenches);
                     let on_markers = on_markers.map(|((marker, place), wrench)| (marker, place, wrench));
-                    constraints.set_compliant(
-                        number + direction,
-                        Compliant { stiffness, damping },
-                        on_markers,
-                        modal_displacements,
-                    );
+                    constraints.set_compliant(number + direction, Compliant { stiffness, damping }, on_markers, |b| {
+                        places.of(b)
+                    });
                 }
             });
             number += element.directions();
@@ -434,6 +435,28 @@ impl Stage {
             }
         }
         left
+    }
+}
+
+/// Where the bodies of a stage are.
+#[derive(Clone, Copy)]
+struct Places<'a> {
+    system: &'a System,
+    positions: &'a [Vector3<f64>],
+    attitudes: &'a [Matrix3<f64>],
+    q: &'a [f64],
+    evaluations: &'a [Evaluation],
+}
+
+impl<'a> Places<'a> {
+    fn of(self, b: usize) -> BodyPlace<'a> {
+        let Self { system, positions, attitudes, q, evaluations } = self;
+        BodyPlace {
+            origin: positions[b],
+            body_from_global: attitudes[b],
+            q: &q[system.first[b] + 6..system.first[b + 1]],
+            bent: system.bodies[b].bent_place(&evaluations[b]),
+        }
     }
 }
 

@@ -1,11 +1,12 @@
 //! Forces of joints, springs and bushings on a body in a state of its system, at its markers.
 
-use dynamics::{Marker, MarkerWrench, MotionState, SystemMotion};
+use dynamics::{Marker, MarkerWrench, MotionState, PointShapes, RotationShapes, SystemMotion};
+use nalgebra::Matrix3;
 
 use crate::full::FullError;
 use crate::full::acting::MarkerForce;
 use crate::model::Model;
-use crate::tie::body_marker::BodyMarker;
+use crate::tie::body_marker::carried;
 use crate::tie::tied::Tied;
 
 impl Tied {
@@ -29,7 +30,7 @@ impl Tied {
             if marker.body() != Some(body) {
                 return;
             }
-            if let Some((marker, part)) = numbers(&model.markers, marker) {
+            if let Some((marker, part)) = numbers(model, marker) {
                 forces.push(MarkerForce { marker, part, force_global, moment_global });
             }
         });
@@ -38,12 +39,17 @@ impl Tied {
 }
 
 /// The number of a marker among those of its body, and that of the part that it is.
-fn numbers(markers: &[BodyMarker], marker: &Marker) -> Option<(usize, Option<usize>)> {
-    markers.iter().enumerate().find_map(|(number, of_body)| {
-        let is_part = |part: &crate::tie::body_marker::MarkerPart| marker.is_of(&part.point, &part.turning);
-        match marker.is_of(&of_body.point, &of_body.turning) {
-            true => Some((number, None)),
-            false => of_body.parts.iter().position(is_part).map(|part| (number, Some(part))),
+fn numbers(model: &Model, marker: &Marker) -> Option<(usize, Option<usize>)> {
+    let manifold = model.physics.large_deflection.as_ref();
+    let is_at = |point: &PointShapes, turning: &RotationShapes| {
+        let number = marker.body().unwrap_or_default();
+        marker.moves_as(&carried(number, manifold, (point, turning), Matrix3::identity()))
+    };
+    model.markers.iter().enumerate().find_map(|(number, of_body)| match is_at(&of_body.point, &of_body.turning) {
+        true => Some((number, None)),
+        false => {
+            let part = of_body.parts.iter().position(|part| is_at(&part.point, &part.turning));
+            part.map(|part| (number, Some(part)))
         }
     })
 }

@@ -488,7 +488,7 @@ impl MeshLoad {
                     Some(second_order) => rotation.with_second_order(second_order),
                     None => rotation,
                 };
-                let rotation = rotation.with_patch(patch.patch_turn(mesh, self.dofs, modes));
+                let rotation = rotation.with_patch(patch.patch_turn(mesh, self.dofs, modes, None));
                 Arc::new(PointMoment { rotation, moment: moment * self.size, frame, history })
             }
             Action::Field { nodes, forces, .. } => {

@@ -70,13 +70,25 @@ impl Rotation {
         RotationShapes::new(body, Mat::from_fn(3, turned.len(), |axis, k| turned[k][axis]).as_ref())
     }
 
-    /// The turn of the nodes of a patch in the modes, however far it goes.
-    pub fn patch_turn(&self, mesh: &Mesh, dofs: usize, modes: &Modes) -> Option<PatchTurn> {
+    /// The turn of the nodes of a patch in the modes, however far it goes. Nodes count by their `weights`, if these are of the same
+    /// nodes, or all alike.
+    pub fn patch_turn(
+        &self,
+        mesh: &Mesh,
+        dofs: usize,
+        modes: &Modes,
+        weights: Option<(&[u32], &[f64])>,
+    ) -> Option<PatchTurn> {
         let Self::Mean(patch) = self else { return None };
         let position = |node: &u32| Vector3::from(mesh.positions()[*node as usize]);
-        let mean = patch.nodes.iter().map(position).sum::<Vector3<f64>>() / patch.nodes.len().max(1) as f64;
+        let alike = vec![1.0; patch.nodes.len()];
+        let weights =
+            weights.filter(|(nodes, _)| *nodes == &patch.nodes[..]).map_or(&alike[..], |(_, weights)| weights);
+        let weighted = || patch.nodes.iter().zip(weights);
+        let mean = weighted().map(|(node, weight)| position(node) * *weight).sum::<Vector3<f64>>();
+        let mean = mean / weights.iter().sum::<f64>().max(f64::MIN_POSITIVE);
         let of = |moved: &dyn Fn(u32) -> Vector3<f64>| -> Matrix3<f64> {
-            patch.nodes.iter().map(|node| moved(*node) * (position(node) - mean).transpose()).sum()
+            weighted().map(|(node, weight)| moved(*node) * (position(node) - mean).transpose() * *weight).sum()
         };
         let shape = |node: u32, k: usize| Vector3::from_fn(|axis, _| modes.shapes[(dofs * node as usize + axis, k)]);
         let of_modes = (0..modes.shapes.ncols()).map(|k| of(&|node| shape(node, k))).collect();

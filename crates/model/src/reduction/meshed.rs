@@ -80,7 +80,11 @@ pub(crate) fn reduce(
         Some(large) => points(&model, large.modes(), large.manifold.body())?,
         None => points(&model, &modes, &reduced.body)?,
     };
-    let markers = mesh_marker::reduced(&model.markers, scene, mesh, (&reduced.body, &modes), &of_markers, &warps)?;
+    let in_shapes = match &large {
+        Some(large) => (large.manifold.body(), large.modes(), true),
+        None => (&reduced.body, &modes, false),
+    };
+    let markers = mesh_marker::reduced(&model.markers, scene, mesh, in_shapes, &of_markers, &warps)?;
     let reference_points = reference_points(scene, mesh, &reduced.body);
     let extended = large.as_ref().map(|large| (&large.manifold, large.modes()));
     let has_gravity = decision.effects[Effect::Gravity];

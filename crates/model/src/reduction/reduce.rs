@@ -103,9 +103,16 @@ impl Reduction {
             None => None,
         };
         let of_markers = match &of_markers {
-            Some(responses) if physics::may_stress(model.scene) => {
-                model.structure.stress_stiffness(responses.as_ref(), &modes, &[])?
-            }
+            Some(responses) if physics::may_stress(model.scene) => match &large {
+                // As of loads: the manifold has the stress along the modes that bend the body, and between them.
+                Some(large) => {
+                    let bent = large.manifold.bent();
+                    let stressing = model.structure.without_parts(&modes, bent, responses.as_ref())?;
+                    let found = model.structure.stress_stiffness(stressing.as_ref(), &modes, &[])?;
+                    found.into_iter().map(|k| beside(k, bent)).collect()
+                }
+                None => model.structure.stress_stiffness(responses.as_ref(), &modes, &[])?,
+            },
             _ => Vec::new(),
         };
         let findings = Findings {

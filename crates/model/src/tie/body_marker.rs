@@ -1,6 +1,6 @@
 //! Places with axes on a reduced body.
 
-use dynamics::{PointShapes, RotationShapes};
+use dynamics::{Manifold, PointShapes, RotationShapes};
 use faer::Mat;
 use modal::{BodyPoint, ReducedBody};
 use nalgebra::{Matrix3, Vector3};
@@ -37,6 +37,19 @@ pub struct MarkerPart {
     pub point: PointShapes,
     /// How the modes turn it; not at all where it is a node.
     pub turning: RotationShapes,
+}
+
+/// The marker of a system at a place of a body, by its number there, with these axes as columns, body axes.
+pub(crate) fn carried(
+    number: usize,
+    manifold: Option<&Manifold>,
+    (point, turning): (&PointShapes, &RotationShapes),
+    axes: Matrix3<f64>,
+) -> dynamics::Marker {
+    match manifold {
+        Some(manifold) => dynamics::Marker::on_bent(number, manifold, point, turning, axes),
+        None => dynamics::Marker::on_flexible(number, point, turning, axes),
+    }
 }
 
 /// Turns at a marker that its nodes do not tell.

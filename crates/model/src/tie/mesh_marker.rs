@@ -69,13 +69,13 @@ pub(crate) fn warps(markers: &[MeshMarker], mesh: &Mesh, responses: MatRef<'_, f
     markers.iter().map(of_marker).collect()
 }
 
-/// Markers on a body in some modes. `stiffness` is that (nf×nf each) by the stress of the forces of
+/// Markers on a body in some modes, which are the extended shapes with large ones (true). `stiffness` is that (nf×nf each) by the stress of the forces of
 /// [`unit_forces`]; none where it is left out.
 pub(crate) fn reduced(
     markers: &[MeshMarker],
     scene: &Scene,
     mesh: &Mesh,
-    body: (&ReducedBody, &Modes),
+    body: (&ReducedBody, &Modes, bool),
     stiffness: &[Mat<f64>],
     warps: &[Option<Warp>],
 ) -> Result<Vec<BodyMarker>, BuildError> {
@@ -173,14 +173,14 @@ impl MeshMarker {
         &self,
         scene: &Scene,
         mesh: &Mesh,
-        body: (&ReducedBody, &Modes),
+        body: (&ReducedBody, &Modes, bool),
         stiffness: &[Mat<f64>],
     ) -> Result<BodyMarker, BuildError> {
         // Patterns are orthonormal: the parts are combined of them as they are of the parts.
         let of_places: Vec<Vec<Mat<f64>>> = if stiffness.is_empty() {
             vec![Vec::new(); self.places().len()]
         } else {
-            let flexible = body.0.flexible();
+            let flexible = stiffness[0].nrows();
             let none = |place: &Place| vec![Mat::zeros(flexible, flexible); place.wrenches().len()];
             let mut sums: Vec<Vec<Mat<f64>>> = self.places().into_iter().map(none).collect();
             for (load, stiffness) in self.loads().iter().zip(stiffness) {

@@ -104,19 +104,23 @@ impl Place {
         }
     }
 
-    /// How the modes move and turn it. `stiffness` is that by the stress of each of the [`Self::wrenches`]; none where it is left
+    /// How the modes move and turn it, however far with large modes (`is_bent`). `stiffness` is that by the stress of each of the [`Self::wrenches`]; none where it is left
     /// out.
     pub fn shapes(
         &self,
         scene: &Scene,
         mesh: &Mesh,
         dofs: usize,
-        (body, modes): (&ReducedBody, &Modes),
+        (body, modes, is_bent): (&ReducedBody, &Modes, bool),
         stiffness: Vec<Mat<f64>>,
     ) -> Result<(PointShapes, RotationShapes), BuildError> {
         let point = BodyPoint::new(modes, mesh.positions(), &self.nodes, &self.weights).map_err(modal(scene))?;
         let mut point = PointShapes::new(body, &point);
         let mut turning = match &self.rotation {
+            Some(rotation) if is_bent => {
+                let patch = rotation.patch_turn(mesh, dofs, modes, Some((&self.nodes, &self.weights)));
+                rotation.shapes(dofs, body, modes).with_patch(patch)
+            }
             Some(rotation) => rotation.shapes(dofs, body, modes),
             None => RotationShapes::new(body, Mat::zeros(3, body.flexible()).as_ref()),
         };

@@ -158,7 +158,7 @@ impl<'a> Island<'a> {
         both(between, &self.scene.ground, |body, marker| {
             let number = self.bodies.iter().position(|of| *of == body).unwrap_or_default();
             let axes = self.scene.bodies[body].markers[marker].axes.as_ref();
-            EndAtStart::on_body(number, &self.models[body].markers[marker], axes, &self.states[number])
+            EndAtStart::on_body((number, self.models[body]), marker, axes, &self.states[number])
         })
     }
 

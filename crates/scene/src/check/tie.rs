@@ -428,17 +428,12 @@ fn number_of<'n>(name: &str, known: impl Iterator<Item = &'n str>, what: &str, t
     Err(NoEnd { found: format!("the {what}, which is not there"), expected, help })
 }
 
-/// Refuses a body in joints that is held, or has large modes, or effects that joints need off.
+/// Refuses a body in joints that is held, or effects that joints need off.
 fn can_be_tied(scene: &Scene) -> Result<(), SceneError> {
     let in_joint = "of a body that joints, springs or bushings hold";
     if scene.constraint.is_some() {
         let help = "say it as a joint between a marker of the body and \"ground\"";
         return Err(scene.refuse("constraints", format!("constraints {in_joint}"), "none", help));
-    }
-    if scene.modes.large.is_some() || scene.effects.choices[Effect::LargeDeflection] == Choice::On {
-        let key = if scene.modes.large.is_some() { "modes.large" } else { "effects.large_deflection" };
-        let help = "remove it: a body that bends far can be made of several in joints";
-        return Err(scene.refuse(key, format!("large modes {in_joint}"), "modes that are small", help));
     }
     for effect in [Effect::Translation, Effect::Rotation] {
         if scene.effects.choices[effect] == Choice::Off {

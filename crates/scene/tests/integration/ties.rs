@@ -228,7 +228,6 @@ fn refusals_name_the_place_and_the_way_out() {
             "bodies.arm.constraints",
             "\"ground\"",
         ),
-        ("flexible = 4", "flexible = 4, large = 1", "bodies.arm.modes.large", "large modes of a body that joints"),
         (
             "modes = { flexible = 4 }",
             "modes = { flexible = 4 }\neffects = { rotation = false }",

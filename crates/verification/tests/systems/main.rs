@@ -1,5 +1,6 @@
 //! Systems of bodies in joints against joined meshes. One program, so that it is linked once.
 
+mod bent;
 mod four_bar;
 mod hinged;
 mod princeton;

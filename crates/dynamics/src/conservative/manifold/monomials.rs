@@ -147,4 +147,21 @@ impl Energy {
             }
         })
     }
+
+    /// The second derivatives by the coordinates: entries i ≥ j, row by row.
+    pub fn stiffness(&self, monomials: &Monomials) -> Polynomials {
+        let (first, coordinates) = (monomials.count(2), monomials.count(1));
+        Polynomials::new(monomials, coordinates * (coordinates + 1) / 2, [1, 3], |add| {
+            for (coefficient, product) in self.coefficients.iter().zip(&monomials.factors[first..]) {
+                for i in 0..coordinates {
+                    let Some((times, rest)) = Monomials::derivative(product, i) else { continue };
+                    for j in 0..=i {
+                        if let Some((again, rest)) = Monomials::derivative(&rest, j) {
+                            add(i * (i + 1) / 2 + j, &rest, times * again * coefficient);
+                        }
+                    }
+                }
+            }
+        })
+    }
 }

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use pulp::Simd;
 
 use crate::conservative::body::ConservativeBody;
+use crate::conservative::manifold::BentPlace;
 use crate::conservative::rates::evaluation::Evaluation;
 use crate::error::RateError;
 use crate::matrix::four::Group;
@@ -61,6 +62,19 @@ impl ConservativeBody {
         e.locked_inertia -= self.inertia_of_modes(simd, e);
     }
 
+    /// Goes to z of q on a manifold of large modes, where its markers are then.
+    pub(crate) fn bend(&self, q: &[f64], e: &mut Evaluation) {
+        if let Some(manifold) = &self.manifold {
+            manifold.go_to(q, &mut e.place, &mut e.coordinates);
+        }
+    }
+
+    /// The place on the manifold of large modes.
+    pub(crate) fn bent_place<'a>(&'a self, e: &'a Evaluation) -> Option<BentPlace<'a>> {
+        let manifold = self.manifold.as_ref()?;
+        Some(BentPlace { manifold, point: &e.place, z: &e.coordinates })
+    }
+
     /// SᵀM⁻¹S
     #[inline(always)]
     fn inertia_of_modes<S: Simd>(&self, simd: S, e: &Evaluation) -> Matrix3<f64> {
@@ -92,6 +106,10 @@ impl ConservativeBody {
 
     /// Copies S where `e` is, a list (nf) for each axis; zeros where it is zero.
     pub(crate) fn copy_coupling(&self, e: &Evaluation, out: &mut [Vec<f64>; 3]) {
+        if self.manifold.is_some() {
+            out.iter_mut().zip(&e.s).for_each(|(list, s)| list.copy_from_slice(s));
+            return;
+        }
         for (axis, list) in out.iter_mut().enumerate().take(self.s_count) {
             let values = self.s_lists(&e.products).rows().flat_map(|row| row[axis]);
             list.iter_mut().zip(values).for_each(|(s, value)| *s = value);

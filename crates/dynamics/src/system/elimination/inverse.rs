@@ -1,39 +1,66 @@
 //! The inverse of Z = κ M + D + Λ/κ of one body, by a 3×3 matrix: Eq. (J8) of `docs/method/systems.md`.
 
-use nalgebra::{ComplexField, Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
-/// A number of the structured elimination, real or complex.
-pub(crate) trait Number: ComplexField<RealField = f64> + Copy {}
-impl<T: ComplexField<RealField = f64> + Copy> Number for T {}
+use crate::conservative::ConservativeBody;
+use crate::system::elimination::bent::{BentInertia, BentInverse};
+use crate::system::elimination::number::Number;
 
 /// The inertia of a body where it is.
 #[derive(Debug, Clone)]
 pub(crate) struct Inertia {
     pub mass: f64,
-    /// J − SᵀS.
+    /// J − SᵀM⁻¹S, with M of the modes: 1, but with large modes.
     pub locked: Matrix3<f64>,
     pub locked_inverse: Matrix3<f64>,
     /// S, a list (nf) for each axis.
     pub coupling: [Vec<f64>; 3],
+    /// M of the modes beside 1, with large modes.
+    pub bent: Option<BentInertia>,
 }
 
 impl Inertia {
     pub fn new(flexible: usize) -> Self {
         let coupling = std::array::from_fn(|_| vec![0.0; flexible]);
-        Self { mass: 1.0, locked: Matrix3::identity(), locked_inverse: Matrix3::identity(), coupling }
+        Self { mass: 1.0, locked: Matrix3::identity(), locked_inverse: Matrix3::identity(), coupling, bent: None }
+    }
+
+    /// Room for that of a body.
+    pub fn of(body: &ConservativeBody) -> Self {
+        let bent = body.manifold.as_ref().map(|manifold| BentInertia::new(manifold, body.flexible()));
+        Self { bent, ..Self::new(body.flexible()) }
+    }
+
+    /// M⁻¹S.
+    fn solved_coupling(&self) -> &[Vec<f64>; 3] {
+        self.bent.as_ref().map_or(&self.coupling, |bent| &bent.solved)
+    }
+
+    /// J.
+    pub fn whole(&self) -> Matrix3<f64> {
+        let mut sum = self.locked;
+        for (i, a) in self.solved_coupling().iter().enumerate() {
+            for (j, b) in self.coupling.iter().enumerate() {
+                sum[(i, j)] += a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            }
+        }
+        sum
     }
 
     /// Turns generalised forces (F, τ, Q) into the velocities M⁻¹ of them.
     pub fn solve<T: Number>(&self, x: &mut [T]) {
         let (rigid, modal) = x.split_at_mut(6);
         rigid[..3].iter_mut().for_each(|force| *force = force.unscale(self.mass));
+        if let Some(bent) = &self.bent {
+            bent.solve(modal);
+        }
         let mut right = Vector3::new(rigid[3], rigid[4], rigid[5]);
         for (right, s) in right.iter_mut().zip(&self.coupling) {
             s.iter().zip(&*modal).for_each(|(s, q)| *right -= q.scale(*s));
         }
         let spin = product(&self.locked_inverse, &right);
         rigid[3..].copy_from_slice(spin.as_slice());
-        for (s, w) in self.coupling.iter().zip(spin.iter()) {
+        for (s, w) in self.solved_coupling().iter().zip(spin.iter()) {
             modal.iter_mut().zip(s).for_each(|(q, s)| *q -= w.scale(*s));
         }
     }
@@ -43,7 +70,7 @@ impl Inertia {
         let (rigid, modal) = x.split_at_mut(6);
         rigid[..3].iter_mut().for_each(|velocity| *velocity = velocity.scale(self.mass));
         let spin = Vector3::new(rigid[3], rigid[4], rigid[5]);
-        for (s, w) in self.coupling.iter().zip(spin.iter()) {
+        for (s, w) in self.solved_coupling().iter().zip(spin.iter()) {
             modal.iter_mut().zip(s).for_each(|(q, s)| *q += w.scale(*s));
         }
         let mut moment = product(&self.locked, &spin);
@@ -51,6 +78,9 @@ impl Inertia {
             s.iter().zip(&*modal).for_each(|(s, q)| *moment += q.scale(*s));
         }
         rigid[3..].copy_from_slice(moment.as_slice());
+        if let Some(bent) = &self.bent {
+            bent.multiply(modal);
+        }
     }
 }
 
@@ -64,8 +94,9 @@ pub(crate) fn product<T: Number>(a: &Matrix3<f64>, x: &Vector3<T>) -> Vector3<T>
 pub(crate) struct Inverse<T> {
     kappa: T,
     mass: T,
-    /// z⁻¹ of each mode (nf).
+    /// z⁻¹ of each mode (nf); without large modes that of the modes is this diagonal.
     modes: Vec<T>,
+    bent: Option<BentInverse<T>>,
     coupling: [Vec<f64>; 3],
     /// (κ J − κ² Sᵀ z⁻¹ S)⁻¹
     spin: Matrix3<T>,
@@ -75,28 +106,64 @@ impl<T: Number> Inverse<T> {
     pub fn new(flexible: usize) -> Self {
         let one = T::from_real(1.0);
         let coupling = std::array::from_fn(|_| vec![0.0; flexible]);
-        Self { kappa: one, mass: one, modes: vec![one; flexible], coupling, spin: Matrix3::identity() }
+        Self { kappa: one, mass: one, modes: vec![one; flexible], bent: None, coupling, spin: Matrix3::identity() }
+    }
+
+    /// Room for that of a body.
+    pub fn of(body: &ConservativeBody) -> Self {
+        let bent = body.manifold.as_ref().map(|manifold| BentInverse::new(manifold, body.flexible()));
+        Self { bent, ..Self::new(body.flexible()) }
+    }
+
+    /// Finds M⁻¹. False where M is singular.
+    pub fn find_of_mass(&mut self, inertia: &Inertia) -> bool {
+        self.find_with(T::from_real(1.0), inertia, |_| [0.0; 2], false)
     }
 
     /// Finds it for κ; `oscillators` are Λ_k and D_k of each mode. False where Z is singular.
-    pub fn find(&mut self, kappa: T, inertia: &Inertia, oscillators: impl Iterator<Item = [f64; 2]>) -> bool {
+    pub fn find(&mut self, kappa: T, inertia: &Inertia, oscillators: impl Fn(usize) -> [f64; 2]) -> bool {
+        self.find_with(kappa, inertia, oscillators, true)
+    }
+
+    fn find_with(
+        &mut self,
+        kappa: T,
+        inertia: &Inertia,
+        oscillators: impl Fn(usize) -> [f64; 2],
+        has_stiffness: bool,
+    ) -> bool {
         (self.kappa, self.mass) = (kappa, kappa * T::from_real(inertia.mass));
-        for (inverse, [stiffness, damping]) in self.modes.iter_mut().zip(oscillators) {
+        for (k, inverse) in self.modes.iter_mut().enumerate() {
+            let [stiffness, damping] = oscillators(k);
             *inverse = (kappa + T::from_real(damping) + T::from_real(stiffness) / kappa).recip();
         }
-        // J = (J − SᵀS) + SᵀS, so that the sum is κ (J − SᵀS) + κ Sᵀ (1 − κ z⁻¹) S.
+        for (own, s) in self.coupling.iter_mut().zip(&inertia.coupling) {
+            own.copy_from_slice(s);
+        }
+        // J = (J − SᵀM⁻¹S) + SᵀM⁻¹S, so that the sum is κ (J − SᵀM⁻¹S) + κ Sᵀ (M⁻¹ − κ z⁻¹) S.
         let mut spin = inertia.locked.map(|entry| kappa * T::from_real(entry));
-        for (i, a) in inertia.coupling.iter().enumerate() {
-            self.coupling[i].copy_from_slice(a);
-            for (j, b) in inertia.coupling.iter().enumerate().take(i + 1) {
-                let mut sum = T::from_real(0.0);
-                for ((a, b), inverse) in a.iter().zip(b).zip(&self.modes) {
-                    sum += (T::from_real(1.0) - kappa * *inverse).scale(a * b);
+        if let (Some(bent), Some(of_mass)) = (&mut self.bent, &inertia.bent) {
+            bent.find(kappa, &of_mass.terms, &self.modes, oscillators, has_stiffness);
+            bent.solve_coupling(&self.modes, &inertia.coupling);
+            for (i, a) in inertia.coupling.iter().enumerate() {
+                for j in 0..3 {
+                    for (a, (of_mass, inverse)) in a.iter().zip(of_mass.solved[j].iter().zip(&bent.solved[j])) {
+                        spin[(i, j)] += kappa * (T::from_real(*of_mass) - kappa * *inverse).scale(*a);
+                    }
                 }
-                sum *= kappa;
-                spin[(i, j)] += sum;
-                if i != j {
-                    spin[(j, i)] += sum;
+            }
+        } else {
+            for (i, a) in inertia.coupling.iter().enumerate() {
+                for (j, b) in inertia.coupling.iter().enumerate().take(i + 1) {
+                    let mut sum = T::from_real(0.0);
+                    for ((a, b), inverse) in a.iter().zip(b).zip(&self.modes) {
+                        sum += (T::from_real(1.0) - kappa * *inverse).scale(a * b);
+                    }
+                    sum *= kappa;
+                    spin[(i, j)] += sum;
+                    if i != j {
+                        spin[(j, i)] += sum;
+                    }
                 }
             }
         }
@@ -113,8 +180,9 @@ impl<T: Number> Inverse<T> {
         let inverse_mass = self.mass.recip();
         rigid[..3].iter_mut().for_each(|force| *force *= inverse_mass);
         let mut right = Vector3::new(rigid[3], rigid[4], rigid[5]);
-        for (q, inverse) in modal.iter_mut().zip(&self.modes) {
-            *q *= *inverse;
+        match &self.bent {
+            Some(bent) => bent.apply(&self.modes, modal),
+            None => modal.iter_mut().zip(&self.modes).for_each(|(q, inverse)| *q *= *inverse),
         }
         for (i, s) in self.coupling.iter().enumerate() {
             let mut sum = T::from_real(0.0);
@@ -123,10 +191,15 @@ impl<T: Number> Inverse<T> {
         }
         let spin = self.spin * right;
         rigid[3..].copy_from_slice(spin.as_slice());
-        for (s, w) in self.coupling.iter().zip(spin.iter()) {
+        for (axis, w) in spin.iter().enumerate() {
             let w = self.kappa * *w;
-            for ((q, s), inverse) in modal.iter_mut().zip(s).zip(&self.modes) {
-                *q -= *inverse * w.scale(*s);
+            match &self.bent {
+                Some(bent) => modal.iter_mut().zip(&bent.solved[axis]).for_each(|(q, s)| *q -= w * *s),
+                None => {
+                    for ((q, s), inverse) in modal.iter_mut().zip(&self.coupling[axis]).zip(&self.modes) {
+                        *q -= *inverse * w.scale(*s);
+                    }
+                }
             }
         }
     }
@@ -143,11 +216,12 @@ mod tests {
     fn the_inverse_is_that_of_the_sum() {
         let locked = Matrix3::new(2.0, 0.1, -0.2, 0.1, 3.0, 0.3, -0.2, 0.3, 1.5);
         let coupling = [vec![0.3, -0.2], vec![0.1, 0.5], vec![-0.4, 0.2]];
-        let inertia = Inertia { mass: 2.5, locked, locked_inverse: locked.try_inverse().unwrap(), coupling };
+        let inertia =
+            Inertia { mass: 2.5, locked, locked_inverse: locked.try_inverse().unwrap(), coupling, bent: None };
         let oscillators = [[9.0, 0.1], [4e6, 3.0]];
         let kappa = Complex::new(20.0, 30.0);
         let mut inverse = Inverse::new(2);
-        assert!(inverse.find(kappa, &inertia, oscillators.into_iter()));
+        assert!(inverse.find(kappa, &inertia, |k| oscillators[k]));
         let start: Vec<Complex<f64>> = (0..8).map(|k| Complex::new(f64::from(k) - 3.0, 0.5 * f64::from(k))).collect();
         let mut velocity = start.clone();
         inverse.apply(&mut velocity);

@@ -7,7 +7,8 @@
 use nalgebra::Complex;
 
 use crate::system::constraints::{Constraints, End};
-use crate::system::elimination::inverse::{Inverse, Number};
+use crate::system::elimination::inverse::Inverse;
+use crate::system::elimination::number::Number;
 
 /// A pivot below this part of its diagonal entry belongs to a row that others imply. Of a diagonal entry counts the smallest part
 /// by one body, times the number of bodies: a body of hardly any mass has a large part, and the row is not implied for that.
@@ -393,6 +394,7 @@ mod tests {
                 origin: Vector3::new(body as f64, 0.3, -0.1 * body as f64),
                 body_from_global: rigid_kin::transformation_matrix(&Vector3::new(0.1, 0.2 * body as f64, 0.3)),
                 q: &[0.0; 2],
+                bent: None,
             },
         );
         // The modes of each body move its markers, too.
@@ -402,7 +404,8 @@ mod tests {
         let mut inertia = Inertia::new(2);
         inertia.coupling = std::array::from_fn(|axis| vec![0.02 * axis as f64, 0.01]);
         let mut inverse = Inverse::new(2);
-        assert!(inverse.find(3.0, &inertia, [[5.0, 0.1], [700.0, 0.0]].into_iter()));
+        let oscillators = [[5.0, 0.1], [700.0, 0.0]];
+        assert!(inverse.find(3.0, &inertia, |k| oscillators[k]));
         let rows: Vec<usize> = connections.groups().collect();
         (Pattern::new(&rows, &constraints.ends, bodies), constraints, vec![inverse; bodies])
     }

@@ -5,8 +5,9 @@ use nalgebra::Complex;
 use crate::conservative::ConservativeBody;
 use crate::system::constraints::{Compliant, End};
 use crate::system::description::System;
-use crate::system::elimination::inverse::{Inverse, Number};
+use crate::system::elimination::inverse::Inverse;
 use crate::system::elimination::joint_matrix::JointMatrix;
+use crate::system::elimination::number::Number;
 use crate::system::elimination::patterns::Patterns;
 use crate::system::stage::Stage;
 
@@ -34,24 +35,24 @@ pub(in crate::system) struct NewtonMatrix<T> {
 }
 
 impl Matrices {
-    /// Room for bodies with these numbers of modes.
-    pub fn new(flexible: &[usize], patterns: &Patterns) -> Self {
-        let coordinates = flexible.iter().map(|nf| 6 + nf).sum();
+    /// Room for those of a system.
+    pub fn new(system: &System, patterns: &Patterns) -> Self {
+        let coordinates = system.coordinates();
         Self {
             compliant: vec![Compliant::default(); patterns.newton.len() - patterns.rows.len()],
             is_left_out: vec![false; patterns.newton.len()],
-            mass: flexible.iter().map(|nf| Inverse::new(*nf)).collect(),
+            mass: system.bodies.iter().map(Inverse::of).collect(),
             of_mass: JointMatrix::new(&patterns.rows, coordinates),
-            real: NewtonMatrix::new(flexible, patterns),
-            complex: NewtonMatrix::new(flexible, patterns),
+            real: NewtonMatrix::new(system, patterns),
+            complex: NewtonMatrix::new(system, patterns),
         }
     }
 
     /// The factor of G M⁻¹ Gᵀ where a stage is. False where an inertia is singular.
-    pub fn factor_mass(&mut self, system: &System, patterns: &Patterns, stage: &Stage) -> bool {
+    pub fn factor_mass(&mut self, patterns: &Patterns, stage: &Stage) -> bool {
         let Self { is_left_out, mass, of_mass, .. } = self;
-        for ((body, inertia), mass) in system.bodies.iter().zip(&stage.inertia).zip(&mut *mass) {
-            if !mass.find(1.0, inertia, oscillators(body).map(|_| [0.0; 2])) {
+        for (inertia, mass) in stage.inertia.iter().zip(&mut *mass) {
+            if !mass.find_of_mass(inertia) {
                 return false;
             }
         }
@@ -62,7 +63,7 @@ impl Matrices {
 
     /// Factors of G M⁻¹ Gᵀ, and of the Newton matrix of a real κ, where a stage is. False where an inertia is singular.
     pub fn factor_real(&mut self, system: &System, patterns: &Patterns, stage: &Stage, kappa: f64) -> bool {
-        if !self.factor_mass(system, patterns, stage) {
+        if !self.factor_mass(patterns, stage) {
             return false;
         }
         let compliant = self.is_left_out[system.rows()..].iter_mut().zip(&self.compliant);
@@ -91,11 +92,11 @@ impl Matrices {
 }
 
 impl<T: Number> NewtonMatrix<T> {
-    fn new(flexible: &[usize], patterns: &Patterns) -> Self {
-        let coordinates = flexible.iter().map(|nf| 6 + nf).sum();
+    fn new(system: &System, patterns: &Patterns) -> Self {
+        let coordinates = system.coordinates();
         Self {
             kappa: T::from_real(1.0),
-            bodies: flexible.iter().map(|nf| Inverse::new(*nf)).collect(),
+            bodies: system.bodies.iter().map(Inverse::of).collect(),
             rows: JointMatrix::new(&patterns.newton, coordinates),
         }
     }
@@ -111,7 +112,7 @@ impl<T: Number> NewtonMatrix<T> {
     ) -> bool {
         self.kappa = kappa;
         for ((body, inertia), inverse) in system.bodies.iter().zip(&stage.inertia).zip(&mut self.bodies) {
-            if !inverse.find(kappa, inertia, oscillators(body)) {
+            if !inverse.find(kappa, inertia, |k| oscillator(body, k)) {
                 return false;
             }
         }
@@ -124,7 +125,8 @@ impl<T: Number> NewtonMatrix<T> {
     }
 }
 
-/// Λ_k and D_k of each mode.
-pub(in crate::system) fn oscillators(body: &ConservativeBody) -> impl Iterator<Item = [f64; 2]> {
-    body.circular_frequencies.iter().zip(&body.damping_ratios).map(|(omega, zeta)| [omega * omega, 2.0 * zeta * omega])
+/// Λ_k and D_k of a mode.
+fn oscillator(body: &ConservativeBody, k: usize) -> [f64; 2] {
+    let (omega, zeta) = (body.circular_frequencies[k], body.damping_ratios[k]);
+    [omega * omega, 2.0 * zeta * omega]
 }

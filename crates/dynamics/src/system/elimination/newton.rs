@@ -1,9 +1,9 @@
 //! One pass of Newton's method: Eqs. (J8) of `docs/method/systems.md`.
 
 use crate::system::description::System;
-use crate::system::elimination::inverse::Number;
 use crate::system::elimination::joint_matrix::Times;
 use crate::system::elimination::matrices::{Matrices, NewtonMatrix};
+use crate::system::elimination::number::Number;
 use crate::system::elimination::patterns::Patterns;
 use crate::system::stage::{Stage, vector};
 
@@ -70,7 +70,11 @@ impl Frozen<'_> {
         for (b, own) in bodies() {
             let body = &system.bodies[b];
             inertia[b].solve(&mut velocity[own.clone()]);
-            for (k, at) in own.skip(6).enumerate() {
+            let modes = own.start + 6..own.end;
+            if let Some(bent) = &inertia[b].bent {
+                bent.add_stiffness(-kappa.recip(), &x[modes.clone()], &mut y[modes.clone()]);
+            }
+            for (k, at) in modes.enumerate() {
                 let (omega, zeta) = (body.circular_frequencies[k], body.damping_ratios[k]);
                 let forces = velocity[at].scale(2.0 * zeta * omega) - x[at].scale(omega * omega) / kappa;
                 y[at] += forces;

@@ -70,6 +70,9 @@ impl SystemMotion {
         let (mut last, mut since) = (f64::INFINITY, 0);
         for pass in 1..=MAX_PASSES {
             self.evaluate_stages(h)?;
+            if pass == 1 {
+                self.find_energy(h);
+            }
             since = if self.factor(h, pass == 1)? { 1 } else { since + 1 };
             let [position, change] = self.improve(h);
             if !change.is_finite() {
@@ -90,6 +93,15 @@ impl SystemMotion {
             }
         }
         Err(Failed::Newton)
+    }
+
+    /// The energy that changes are measured by, where the start has none: that of bodies at rest, on which loads begin to act within the
+    /// step.
+    fn find_energy(&mut self, h: f64) {
+        let Self { stages, system, largest_energy, .. } = self;
+        if *largest_energy == 0.0 {
+            *largest_energy = stages.iter_mut().map(|stage| stage.energy(system, h)).fold(0.0, f64::max);
+        }
     }
 
     fn evaluate_stages(&mut self, h: f64) -> Result<(), RateError> {
@@ -168,7 +180,8 @@ impl SystemMotion {
             let [position, mut energy] = sizes(system, dx, h);
             energy += matrices.strain_energy(&stages[1], dx);
             moved = moved.max(position);
-            largest = largest.max(position).max((energy / *largest_energy).sqrt());
+            let of_energy = if energy == 0.0 { 0.0 } else { (energy / *largest_energy).sqrt() };
+            largest = largest.max(position).max(of_energy);
             stages[i].add_in_body_axes(system, dx, dy);
             for row in 0..multipliers[i].len() {
                 multipliers[i][row] += change(real.lambda[row], complex.lambda[row]);

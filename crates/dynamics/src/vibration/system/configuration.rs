@@ -118,7 +118,7 @@ impl Configuration {
     /// The place of a body.
     pub fn place(&self, body: usize) -> BodyPlace<'_> {
         let BodyConfiguration { origin, body_from_global, q, .. } = &self.bodies[body];
-        BodyPlace { origin: *origin, body_from_global: *body_from_global, q }
+        BodyPlace { origin: *origin, body_from_global: *body_from_global, q, bent: None }
     }
 
     /// Where the two markers of a joint, or of a part of it, are.

@@ -130,7 +130,7 @@ impl Terms {
         for (b, inertia) in inertias.iter().enumerate() {
             let flexible = system.first[b + 1] - system.first[b] - 6;
             let mut inverse = Inverse::new(flexible);
-            if !inverse.find(1.0, inertia, std::iter::repeat_n([0.0; 2], flexible)) {
+            if !inverse.find_of_mass(inertia) {
                 return Err(SteadyError::Inertia);
             }
             self.mass_inverses.push(inverse);
