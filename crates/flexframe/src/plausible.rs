@@ -244,6 +244,39 @@ mod tests {
         assert!(told.contains("takes long") && told.contains("leaves 0.81 of the strain energy"), "{told}");
     }
 
+    /// A marker whose faces warp so.
+    fn warped(left_out: &[f64], along: Option<nalgebra::Vector3<f64>>) -> BodyMarker {
+        let (zero, inertia) = (nalgebra::Vector3::zeros(), nalgebra::Matrix3::identity());
+        let body = modal::ReducedBody::rigid(1.0, zero, inertia, modal::RigidMotion::free()).unwrap();
+        let none = faer::Mat::zeros(3, 0);
+        let point = modal::BodyPoint { position_body: zero, shapes: none.clone() };
+        BodyMarker {
+            name: "face".to_owned(),
+            point: dynamics::PointShapes::new(&body, &point),
+            turning: dynamics::RotationShapes::new(&body, none.as_ref()),
+            parts: Vec::new(),
+            by_nodes: false,
+            warp: Some(model::Warp { left_out: left_out.to_vec(), along }),
+            axes: inertia,
+            unknown_turns: model::UnknownTurns::None,
+        }
+    }
+
+    #[test]
+    fn faces_that_warp_in_two_directions_are_told_of_both() {
+        let along = Some(nalgebra::Vector3::new(1e-9, 0.6, -0.8));
+        let told = warping(&warped(&[0.2, 0.16, 0.15, 0.14, 0.14, 0.13], along)).unwrap();
+        let proposal = "`patches = 6` with `along = [0.0, 0.6, -0.8]` leaves out 13 %";
+        for words in ["\"face\"", "warp by 20 %", proposal, "patches help in one"] {
+            assert!(told.contains(words), "{words}: {told}");
+        }
+        let told = warping(&warped(&[0.2, 0.05, 0.03, 0.02, 0.02, 0.01], along)).unwrap();
+        assert!(told.contains("`patches = 2` with `along") && !told.contains("help in one"), "{told}");
+        let told = warping(&warped(&[0.2, 0.05, 0.03, 0.02, 0.02, 0.01], None)).unwrap();
+        assert!(told.contains("`patches = 2` leaves out 5 %"), "{told}");
+        assert!(warping(&warped(&[0.04, 0.03, 0.03, 0.02, 0.02, 0.01], along)).is_none());
+    }
+
     #[test]
     fn steel_in_the_wrong_units_is_told() {
         let steel = |young_modulus, density| Material { young_modulus, poisson_ratio: 0.3, density };

@@ -138,3 +138,86 @@ fn a_blade_flaps_in_its_closed_form() {
         assert!(off < 1e-3, "{off}");
     }
 }
+
+/// Closed form: the first shape of a clamped beam has 0.3395 of its displacement at the end in its middle.
+#[test]
+fn shapes_of_a_system_are_in_a_file_for_paraview() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = welded_bar(folder.path());
+    let out = folder.path().join("pictures");
+    json(&["modes", &scene, "-o", out.to_str().unwrap()]);
+    let file = hdf5::File::open(out.join("modes.vtkhdf")).unwrap();
+    let root = file.group("VTKHDF").unwrap();
+    // The hub has no mesh.
+    assert!(root.group("hub").is_err() && root.group("bar").is_ok());
+    let points = file.dataset("VTKHDF/bar/Points").unwrap().read_raw::<f64>().unwrap();
+    let fields = file.group("VTKHDF/bar/PointData").unwrap();
+    let names = fields.member_names().unwrap();
+    let first = names.iter().min().unwrap();
+    let shape = fields.dataset(first).unwrap().read_raw::<f64>().unwrap();
+    assert_eq!(shape.len(), points.len(), "{names:?}");
+    let near = |x: f64| {
+        let distance = |k: &usize| (points[3 * k] - x).abs();
+        let node = (0..points.len() / 3).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap();
+        assert!(distance(&node) < 0.02 * LENGTH, "no point near {x}");
+        // Across the bar.
+        f64::hypot(shape[3 * node + 1], shape[3 * node + 2])
+    };
+    let ends = points.chunks(3).map(|x| x[0]);
+    let low = ends.clone().fold(f64::INFINITY, f64::min);
+    let (middle, end) = (near(low + 0.5 * LENGTH), near(low + LENGTH));
+    println!("{first}: {middle} {end}");
+    assert!((middle / end / 0.3395 - 1.0).abs() < 0.03, "{middle} {end}");
+}
+
+/// Closed form: a wheel of the inertia I about its axle, with a spring of the stiffness k, and a stone of the mass m and the inertia i
+/// that a drive takes out along it to the radius r: √(k/(I + i + m r²)).
+#[test]
+fn modes_are_taken_where_a_run_has_the_bodies_at_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("wheel.toml");
+    let inertia = |i: f64| format!("inertia = [[{i}, 0, 0], [0, {i}, 0], [0, 0, {i}]]");
+    let text = format!(
+        r#"
+title = "Stone on a wheel"
+units = {{ length = "m", mass = "kg", time = "s" }}
+[bodies.wheel]
+rigid = {{ mass = 1.0, center_of_mass = [0, 0, 0], {} }}
+markers = {{ axle = {{ at = [0, 0, 0] }}, rail = {{ at = [0.5, 0, 0] }} }}
+[bodies.stone]
+rigid = {{ mass = 3.0, center_of_mass = [0, 0, 0], {} }}
+initial = {{ position = [0.5, 0, 0] }}
+markers = {{ middle = {{ at = [0, 0, 0] }} }}
+[[joints]]
+name = "axle"
+kind = "revolute"
+between = ["ground", "wheel.axle"]
+axis = [0, 0, 1]
+spring = {{ stiffness = 40.0 }}
+[[joints]]
+name = "rail"
+kind = "prismatic"
+between = ["wheel.rail", "stone.middle"]
+axis = [1, 0, 0]
+drive = {{ amplitude = 2.0, history = {{ kind = "expression", formula = "t" }} }}
+[time]
+end = 0.5
+tolerance = 1e-8
+"#,
+        inertia(2.0),
+        inertia(0.1)
+    );
+    std::fs::write(&scene, text).unwrap();
+    let scene = scene.to_str().unwrap();
+    for time in [0.0, 0.25] {
+        let radius = 0.5 + 2.0 * time;
+        let expected = f64::sqrt(40.0 / (2.0 + 0.1 + 3.0 * radius * radius)) / TAU;
+        let report = json(&["modes", scene, "--time", &time.to_string()]);
+        let modes = report["systems"][0]["modes"].as_array().unwrap();
+        let found = number(&modes[0]["frequency"]);
+        println!("{time}: {found} {expected}");
+        assert!(modes.len() == 1 && (found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+    }
+    let refused = flexframe(&["modes", scene, "--time", "0.7"]);
+    assert!(!refused.status.success());
+}

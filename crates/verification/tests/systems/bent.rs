@@ -209,15 +209,15 @@ fn a_free_pair_of_bent_bars_keeps_its_momenta_and_energy() {
             let about =
                 |of: &Observation| of.origin_global.cross(&of.linear_momentum_global) + of.angular_momentum_global;
             let angular: Vector3<f64> = row.iter().map(about).sum();
-            (linear, angular, row.iter().map(|of| of.kinetic_energy + of.strain_energy).sum::<f64>())
+            ([linear, angular], row.iter().map(|of| of.kinetic_energy + of.strain_energy).sum::<f64>())
         };
-        let start = sums(&found[0]);
-        let off = |of: fn(&(Vector3<f64>, Vector3<f64>, f64)) -> Vector3<f64>| {
-            let size = of(&start).norm();
-            found.iter().map(|row| (of(&sums(row)) - of(&start)).norm() / size).fold(0.0, f64::max)
+        let (momenta, energy_at_start) = sums(&found[0]);
+        let off = |which: usize| {
+            let of_row = |row| (sums(row).0[which] - momenta[which]).norm();
+            found.iter().map(of_row).fold(0.0, f64::max) / momenta[which].norm()
         };
-        let (linear, angular) = (off(|sums| sums.0), off(|sums| sums.1));
-        let energy = found.iter().map(|row| (sums(row).2 / start.2 - 1.0).abs()).fold(0.0, f64::max);
+        let [linear, angular] = [0, 1].map(off);
+        let energy = found.iter().map(|row| (sums(row).1 / energy_at_start - 1.0).abs()).fold(0.0, f64::max);
         let q =
             found.iter().flat_map(|row| row[0].modal_displacement.iter()).fold(0.0_f64, |most, q| most.max(q.abs()));
         println!("{tolerance:e}: momenta {linear:.1e} {angular:.1e}, energy {energy:.1e}, q {q:.4}");

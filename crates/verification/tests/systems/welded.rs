@@ -76,3 +76,23 @@ fn welded_halves_have_the_frequencies_of_the_whole() {
     assert!(one < -0.03 && one > -0.08, "{one}");
     assert!(two.abs() < 0.01 && three.abs() < two.abs(), "{two} {three}");
 }
+
+/// Conserved: a square face bends as much along one side as along the other, so that patches that follow each other along one of them
+/// leave out half of it at best, however many they are.
+#[test]
+fn a_square_face_is_told_one_of_two_directions() {
+    let directory = tempfile::tempdir().unwrap();
+    write(directory.path(), "block", &box_mesh([0.03, 0.3, 0.3], [1, 6, 6]), &[]).unwrap();
+    let text = format!(
+        "title = 'block'\nunits = {{ length = 'm', mass = 'kg', time = 's' }}\n[bodies.block]\nmesh = 'block.msh'\n{MATERIAL}\
+         modes = {{ flexible = 4 }}\nmarkers = {{ face = {{ box = [[-1e-6, -1, -1], [1e-6, 1, 1]] }} }}\n\
+         [[joints]]\nkind = 'fixed'\nbetween = ['ground', 'block.face']\n[time]\nend = 1.0\ntolerance = 1e-4\n"
+    );
+    let built = built(directory.path(), &text).unwrap();
+    let warp = built.models[0].markers[0].warp.clone().unwrap();
+    println!("{warp:?}");
+    let along = warp.along.unwrap();
+    assert!(along.y.abs() > 1.0 - 1e-6 || along.z.abs() > 1.0 - 1e-6, "{along}");
+    let [one, most] = [warp.left_out[0], *warp.left_out.last().unwrap()];
+    assert!(warp.patches().is_some() && one > 0.05 && most > 0.5 * one && most < one, "{warp:?}");
+}

@@ -32,9 +32,9 @@ impl BentInertia {
     pub fn solve_coupling(&mut self, coupling: &[Vec<f64>; 3]) {
         let Self { terms, inverse, .. } = self;
         inverse.find(terms.modes.len(), |i, j| terms.left[i * terms.modes.len() + j]);
-        for axis in 0..3 {
+        for (axis, s) in coupling.iter().enumerate() {
             let mut list = std::mem::take(&mut self.solved[axis]);
-            list.copy_from_slice(&coupling[axis]);
+            list.copy_from_slice(s);
             self.solve(&mut list);
             self.solved[axis] = list;
         }
@@ -137,9 +137,9 @@ impl<T: Number> BentInverse<T> {
 
     /// Finds Z⁻¹S.
     pub fn solve_coupling(&mut self, inverses: &[T], coupling: &[Vec<f64>; 3]) {
-        for axis in 0..3 {
+        for (axis, s) in coupling.iter().enumerate() {
             let mut list = std::mem::take(&mut self.solved[axis]);
-            list.iter_mut().zip(&coupling[axis]).for_each(|(own, s)| *own = T::from_real(*s));
+            list.iter_mut().zip(s).for_each(|(own, s)| *own = T::from_real(*s));
             self.apply(inverses, &mut list);
             self.solved[axis] = list;
         }
