@@ -158,6 +158,11 @@ exudyn: build
     RAYON_NUM_THREADS=1 .tools/exudyn/bin/python crates/verification/performance/systems.py \
         {{flexframe}} target/debug/systems docs/evidence/systems.md
 
+# Systems of bodies in joints by radau and rkmk4: processor time at equal error.
+schemes:
+    cargo build --quiet --package verification --bin systems
+    RAYON_NUM_THREADS=1 python3 crates/verification/performance/schemes.py target/debug/systems
+
 # The wheel of the Python package, with HDF5 inside, into target/wheels (Python packages).
 wheel profile="release":
     #!/usr/bin/env bash

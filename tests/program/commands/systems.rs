@@ -221,3 +221,29 @@ tolerance = 1e-8
     let refused = flexframe(&["modes", scene, "--time", "0.7"]);
     assert!(!refused.status.success());
 }
+
+/// With large modes a body runs in joints, and its true error is found with their forces; linearised equations there are none.
+#[test]
+fn a_body_in_joints_may_have_large_modes() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = welded_bar(folder.path());
+    let text = std::fs::read_to_string(&scene).unwrap().replace("flexible = 10", "flexible = 10, large = 1");
+    std::fs::write(&scene, text.replace("formula = \"t\"", "formula = \"1e3*t^3\"")).unwrap();
+    let out = folder.path().join("out");
+    let run = flexframe(&["run", &scene, "-o", out.to_str().unwrap()]);
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let results = out.join("hub.h5");
+    let checked = flexframe(&["check", results.to_str().unwrap()]);
+    let told = String::from_utf8_lossy(&checked.stdout);
+    println!("{told}");
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+    for command in ["modes", "campbell"] {
+        let mut words = vec![command, &scene];
+        if command == "campbell" {
+            words.extend(["--speeds", "0:10:3", "-o", out.to_str().unwrap()]);
+        }
+        let refused = flexframe(&words);
+        let said = String::from_utf8_lossy(&refused.stderr);
+        assert!(!refused.status.success() && said.contains("has large modes"), "{command}: {said}");
+    }
+}

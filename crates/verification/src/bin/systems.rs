@@ -1,6 +1,6 @@
 //! A system at several tolerances, timed: what `just exudyn` holds against Exudyn.
 //!
-//! `systems SCENE BODY POINT ROWS TOLERANCE...` prints a line of JSON for each tolerance: processor seconds of the motion
+//! `systems SCENE BODY POINT ROWS TOLERANCE...`, a tolerance also as SCHEME:TOLERANCE, prints a line of JSON for each tolerance: processor seconds of the motion
 //! alone, steps, evaluations, and the position of a point of a body at equal times.
 
 use std::error::Error;
@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use dynamics::{Observation, Reached, StepControl};
+use dynamics::{Observation, Reached, StepControl, SystemScheme};
 use verification::systems::run::built;
 
 /// Time of all runs of one tolerance together, at least.
@@ -64,6 +64,9 @@ fn ladder(scene: &Path, [body, point]: [&str; 2], rows: &str, tolerances: &[Stri
     let end = system.bodies[0].time.end;
     for tolerance in tolerances {
         let interval = end / rows.parse::<f64>()?;
+        let (scheme, tolerance) = tolerance.split_once(':').unwrap_or((SystemScheme::Radau.name(), tolerance));
+        let known = SystemScheme::ALL.into_iter().find(|known| known.name() == scheme);
+        let scheme = known.ok_or("no such scheme")?;
         let control = StepControl::Tolerance(tolerance.parse()?);
         let (_, shapes) = &built.models[number].points[seen];
         let place = |row: &[Observation]| {
@@ -74,7 +77,7 @@ fn ladder(scene: &Path, [body, point]: [&str; 2], rows: &str, tolerances: &[Stri
         // Short runs are repeated: clocks are coarse.
         let (mut seconds, mut runs) = (0.0, 0.0);
         let (positions, simulation) = loop {
-            let mut simulation = built.start(control, end, interval, false)?;
+            let mut simulation = built.start_by(scheme, control, end, interval, false)?;
             let mut row: Vec<Observation> = (0..built.models.len()).map(|body| simulation.room(body)).collect();
             let begin = Clock::new();
             simulation.observe(&mut row)?;
@@ -93,7 +96,8 @@ fn ladder(scene: &Path, [body, point]: [&str; 2], rows: &str, tolerances: &[Stri
         let stats = simulation.stats();
         let positions: Vec<String> = positions.iter().map(|x| format!("[{:?}, {:?}, {:?}]", x.x, x.y, x.z)).collect();
         println!(
-            "{{\"tolerance\": {tolerance}, \"seconds\": {seconds}, \"steps\": {}, \"positions\": [{}]}}",
+            "{{\"scheme\": \"{}\", \"tolerance\": {tolerance}, \"seconds\": {seconds}, \"steps\": {}, \"positions\": [{}]}}",
+            scheme.name(),
             stats.accepted,
             positions.join(", ")
         );

@@ -44,12 +44,27 @@ impl Built {
         interval: f64,
         relaxed: bool,
     ) -> Result<SystemSimulation, NonlinearError> {
+        self.start_by(SystemScheme::Radau, control, end, interval, relaxed)
+    }
+
+    /// The same by another scheme.
+    ///
+    /// # Errors
+    /// Errors of the start.
+    pub fn start_by(
+        &self,
+        scheme: SystemScheme,
+        control: StepControl,
+        end: f64,
+        interval: f64,
+        relaxed: bool,
+    ) -> Result<SystemSimulation, NonlinearError> {
         let points = |body: &usize| self.models[*body].points.iter().map(|(_, point)| point.clone()).collect();
         SystemSimulation::new(SystemSetup {
             system: self.tied.system.clone(),
             states: self.tied.states.clone(),
             relaxed,
-            scheme: SystemScheme::Radau,
+            scheme,
             control,
             end,
             rows: Rows::Interval(interval),
