@@ -1,6 +1,6 @@
 //! Places with axes that bodies carry: the ends of joints.
 //!
-//! Eqs. (J1)–(J3) and (J15) of `docs/method/systems.md`.
+//! Eqs. (J1)–(J3), (J15) and (J19) of `docs/method/systems.md`.
 
 pub(crate) mod motion;
 pub(crate) mod tangent;
