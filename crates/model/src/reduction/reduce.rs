@@ -12,7 +12,7 @@ use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
 use crate::reduction::physics;
 use crate::reduction::survey::Survey;
-use crate::stress::{Stress, beside};
+use crate::stress::{Stress, beside, in_shapes};
 use crate::structure::kept::Basis;
 use crate::tie::mesh_marker::warps;
 use crate::tie::warp::Warp;
@@ -109,7 +109,8 @@ impl Reduction {
                     let bent = large.manifold.bent();
                     let stressing = model.structure.without_parts(&modes, bent, responses.as_ref())?;
                     let found = model.structure.stress_stiffness(stressing.as_ref(), &modes, &[])?;
-                    found.into_iter().map(|k| beside(k, bent)).collect()
+                    let shapes = large.manifold.body().flexible();
+                    found.into_iter().map(|k| in_shapes(&beside(k, bent), shapes)).collect()
                 }
                 None => model.structure.stress_stiffness(responses.as_ref(), &modes, &[])?,
             },
