@@ -120,7 +120,7 @@ check-table:
 fit-trials:
     cargo run --quiet --package verification --bin fit_trials -- docs/evidence/fit.md --overwrite
 
-# Frequencies of a spinning disc in CalculiX, which a test of `flexframe campbell` has (meshio from `./dev test`, calculix-ccx; seconds).
+# Frequencies of a spinning disc in CalculiX, which a test of `flexframe campbell` has (calculix-ccx, Python packages; seconds).
 calculix-disc:
     .tools/meshio/bin/python crates/verification/calculix/dished_disc.py out/calculix-disc
 
@@ -247,7 +247,7 @@ paraview: build
             out/paraview/{two.h5,two.vtkhdf,two_modes.vtkhdf,vtu} || exit 1; \
     done
 
-# Build the pages of reports and responses from their sources (npm). It is checked in, so that nobody else needs npm.
+# Build the pages of reports and responses from their sources (npm). They are checked in, so that nobody else needs npm.
 report-page:
     cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build
 
@@ -289,7 +289,7 @@ live-page-test:
 film-test:
     cargo test --quiet --package flexframe-cli --test program films_have -- --ignored
 
-# The pages of reports and responses in a headless Chromium; before that, whether it is what its sources give (npm).
+# The pages of reports and responses in a headless Chromium; before that, whether they are what their sources give (npm).
 report-page-test:
     mkdir -p out/report-page
     cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build -- ../../../out/report-page

@@ -78,7 +78,7 @@ def scene(bodies: dict) -> flexframe.Scene:
 
 
 def rotation_vector(rotation: np.ndarray) -> np.ndarray:
-    """Of a turn by less than half a turn."""
+    """Rotation vector of a turn by less than half a turn."""
     axial = 0.5 * np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]])
     sine = np.linalg.norm(axial)
     return axial * (math.atan2(sine, 0.5 * (np.trace(rotation) - 1)) / sine if sine > 1e-12 else 1.0)

@@ -258,7 +258,7 @@ enum Command {
         /// Damping ratios, 0 to less than 1: a spectrum for each.
         #[arg(long, value_name = "ZETA,ZETA,…", value_delimiter = ',', default_values_t = [0.05], value_parser = finite, allow_hyphen_values = true)]
         damping: Vec<f64>,
-        /// Folder for srs.csv and the diagram [default: out/<name of the table>].
+        /// Folder for srs.csv, the diagram and the page [default: out/<name of the table>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
         #[command(flatten)]
@@ -305,7 +305,7 @@ enum Command {
         /// Loss factor of structural damping, in the place of the scene's damping.
         #[arg(long, value_name = "FACTOR", value_parser = positive)]
         structural: Option<f64>,
-        /// Folder for frf.csv and the chart [default: out/<name of the scene file>].
+        /// Folder for frf.csv, the chart and the page [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
         #[command(flatten)]
@@ -333,7 +333,7 @@ enum Command {
         /// Loss factor of structural damping, in the place of the scene's damping.
         #[arg(long, value_name = "FACTOR", value_parser = positive)]
         structural: Option<f64>,
-        /// Folder for psd.csv and the chart [default: out/<name of the scene file>].
+        /// Folder for psd.csv, the chart and the page [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
         #[command(flatten)]
@@ -598,7 +598,7 @@ struct SceneArgs {
 /// The state that a linear model is about.
 #[derive(Debug, Args)]
 struct AboutArgs {
-    /// Angular velocity of the steady spin about the center of mass or the axis of a driven joint, radians per time, global; 0,0,0 is rest
+    /// Angular velocity of the steady spin about the center of mass or the axis of a driven joint to the ground, radians per time, global; 0,0,0 is rest
     /// [default: that of the scene's free body or drive].
     #[arg(long, value_name = "X,Y,Z", value_parser = angular_velocity, allow_hyphen_values = true)]
     spin: Option<[f64; 3]>,

@@ -233,11 +233,9 @@ fn a_body_in_joints_may_have_large_modes() {
     let run = flexframe(&["run", &scene, "-o", out.to_str().unwrap()]);
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     let results = out.join("hub.h5");
-    let checked = flexframe(&["check", results.to_str().unwrap()]);
-    let told = String::from_utf8_lossy(&checked.stdout);
-    println!("{told}");
-    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
-    for command in ["modes", "campbell"] {
+    let checked = json(&["check", results.to_str().unwrap()]);
+    println!("{checked}");
+    for command in ["modes", "campbell", "linearize"] {
         let mut words = vec![command, &scene];
         if command == "campbell" {
             words.extend(["--speeds", "0:10:3", "-o", out.to_str().unwrap()]);

@@ -35,7 +35,7 @@ pub(crate) struct PatchFit {
 }
 
 impl PatchFit {
-    /// That of a patch that is torn flat: no number.
+    /// A patch that is torn flat: no number.
     pub const NONE: Self = Self { rotation: NO_NUMBERS, inverse: NO_NUMBERS };
 }
 

@@ -41,6 +41,12 @@ pub(crate) fn total(sums: [f64; 4]) -> f64 {
     (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
+/// The larger of two numbers. NaN stays, where `max` would drop it.
+#[inline(always)]
+pub(crate) fn larger(most: f64, other: f64) -> f64 {
+    if most.is_nan() || other <= most { most } else { other }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -351,9 +351,18 @@ impl SystemMotion {
             return self.try_explicit_step(h, [end, branch_time], tolerance);
         }
         self.predict(h);
-        let passes = self.newton(h, exactness)?;
-        let error = self.error(h);
-        if error <= tolerance {
+        let energy = self.largest_energy;
+        let tried = self.newton(h, exactness).map(|passes| Tried { error: self.error(h), passes });
+        let is_taken = tried.as_ref().is_ok_and(|tried| tried.error <= tolerance);
+        if !is_taken {
+            // That of a step that is too long says nothing about a shorter one.
+            self.largest_energy = energy;
+        }
+        let tried = tried?;
+        if tried.error.is_nan() {
+            return Err(Failed::Newton);
+        }
+        if is_taken {
             for (last, stage) in self.last.iter_mut().zip(&self.stages) {
                 last[0].copy_from_slice(&stage.x);
                 last[1].copy_from_slice(&stage.y);
@@ -365,7 +374,7 @@ impl SystemMotion {
             let weights = self.scheme.weights.map(|weight| h * weight);
             self.land([end, branch_time], h, weights)?;
         }
-        Ok(Tried { error, passes })
+        Ok(tried)
     }
 
     /// Takes the state as the start of a step.

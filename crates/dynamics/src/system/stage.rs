@@ -7,6 +7,7 @@ use crate::conservative::Evaluation;
 use crate::conservative::{Slow, get, part, set};
 use crate::equations::Equations;
 use crate::error::RateError;
+use crate::matrix::lists::larger;
 use crate::system::constraints::{Compliant, Constraints};
 use crate::system::description::System;
 use crate::system::elimination::inverse::Inertia;
@@ -412,12 +413,15 @@ impl Stage {
     }
 
     /// Removes the part of the velocities that the rows forbid, and the momenta that go with it, by `solve` of A λ = G v.
-    /// Returns the largest rate that was left.
+    /// Returns the largest rate that was left, NaN where one is no number.
     pub fn project_velocities(&mut self, system: &System, momenta: &mut [f64], solve: impl Fn(&mut [f64])) -> f64 {
         let mut left = f64::INFINITY;
         for _ in 0..MAX_PROJECTIONS {
             self.constraints.rates(&self.velocities, &mut self.constraint_rates);
-            let largest = self.constraint_rates.iter().fold(0.0_f64, |most, rate| most.max(rate.abs()));
+            let largest = self.constraint_rates.iter().fold(0.0, |most, rate| larger(most, rate.abs()));
+            if largest.is_nan() {
+                return largest;
+            }
             if largest >= 0.5 * left || largest == 0.0 {
                 return largest.min(left);
             }

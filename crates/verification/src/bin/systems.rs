@@ -1,7 +1,7 @@
-//! A system at several tolerances, timed: what `just exudyn` holds against Exudyn.
+//! A system at several tolerances, timed, for `./dev exudyn` and `./dev schemes`.
 //!
-//! `systems SCENE BODY POINT ROWS TOLERANCE...`, a tolerance also as SCHEME:TOLERANCE, prints a line of JSON for each tolerance: processor seconds of the motion
-//! alone, steps, evaluations, and the position of a point of a body at equal times.
+//! `systems SCENE BODY POINT ROWS TOLERANCE...`, a tolerance also as SCHEME:TOLERANCE, prints a line of JSON for each
+//! tolerance: processor seconds of the motion alone, steps, evaluations, and the position of a point of a body at equal times.
 
 use std::error::Error;
 use std::path::Path;

@@ -108,6 +108,7 @@ fn a_cantilever_on_a_fixed_joint_bends_as_one_that_is_clamped() {
         let scene = scene::Scene::parse(&text, directory.path().join("scene.toml")).unwrap();
         let model = model::Model::build(&scene, |_| ()).unwrap();
         let alone = cases::rows(&scene, &model).unwrap().last().unwrap().points[0].displacement;
+        let mut of_joint = f64::INFINITY;
         for (what, moved) in
             [("joint", in_joint), ("clamp", alone), ("joint, small modes", found("flexible = 16, damping_ratio = 0.7"))]
         {
@@ -116,10 +117,14 @@ fn a_cantilever_on_a_fixed_joint_bends_as_one_that_is_clamped() {
                 "{deflection}, {what}: {:.6} {:.6} instead of {:.6} {:.6}: {:+.2e} {:+.2e}",
                 moved.x, moved.z, expected.x, expected.z, off.x, off.z
             );
-            assert!(
-                what.contains("small") || off.x.abs() < within[0] && off.z.abs() < within[1],
-                "{what}: {moved} {expected}"
-            );
+            match what {
+                // They do not draw the bar in.
+                "joint, small modes" => assert!(off.x.abs() > 2.0 * of_joint, "{off} {of_joint}"),
+                _ => assert!(off.x.abs() < within[0] && off.z.abs() < within[1], "{what}: {moved} {expected}"),
+            }
+            if what == "joint" {
+                of_joint = off.x.abs();
+            }
         }
     }
 }
@@ -172,7 +177,7 @@ fn a_soft_pendulum_swings_as_the_whole_mesh_does() {
         // Conserved: energy, but for the work of loads and joints.
         assert!(lost < 1e-5, "{lost}");
     }
-    assert!(offs[0] < 0.01, "{offs:?}");
+    assert!(offs[0] < 2e-3 && offs[0] < 0.4 * offs[2], "{offs:?}");
 }
 
 /// Conserved: momenta to rounding, and energy by the tolerance, of two bars that tumble freely, bent far, on a hinge.

@@ -166,7 +166,7 @@ fn x_len<T>(list: &[T]) -> usize {
     list.len().max(1)
 }
 
-/// L and d⁻¹ of a symmetric matrix L diag(d) Lᵀ, whose real part is positive definite: entries i ≥ j, row by row, d⁻¹ on the diagonal.
+/// L and d⁻¹ of a symmetric matrix L diag(d) Lᵀ: entries i ≥ j, row by row, d⁻¹ on the diagonal.
 #[derive(Debug, Clone)]
 struct Factor<T>(Vec<T>);
 
@@ -175,7 +175,7 @@ impl<T: Number> Factor<T> {
         Self(vec![T::from_real(1.0); size * (size + 1) / 2])
     }
 
-    /// Of a matrix by its entries i ≥ j.
+    /// Finds them from the entries i ≥ j of a matrix.
     fn find(&mut self, size: usize, entry: impl Fn(usize, usize) -> T) {
         let Self(factor) = self;
         for i in 0..size {

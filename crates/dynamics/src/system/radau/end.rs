@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::conservative::{get, part};
 use crate::error::RateError;
+use crate::matrix::lists::larger;
 use crate::state::attitude_at;
 use crate::system::collocation::STAGES;
 use crate::system::radau::{Failed, SystemMotion};
@@ -52,7 +53,10 @@ impl SystemMotion {
         let is_rigid = system.coordinates() == 6 * system.bodies.len();
         let (mut left, real) = (f64::INFINITY, &mut room.real);
         for pass in 0..MAX_PROJECTIONS {
-            let largest = last.constraints.residuals.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
+            let largest = last.constraints.residuals.iter().fold(0.0, |most, g| larger(most, g.abs()));
+            if largest.is_nan() {
+                return Err(Failed::Newton);
+            }
             let is_slow = largest >= 0.5 * left;
             left = largest.min(left);
             // The first may be slow where flexible bodies have far to go; later ones are where rounding is all that is left.
@@ -87,6 +91,9 @@ impl SystemMotion {
         self.evaluations += 1;
         real.y.fill(0.0);
         let rates = last.project_velocities(system, &mut real.y, |rates| matrices.of_mass.solve(&patterns.rows, rates));
+        if rates.is_nan() {
+            return Err(Failed::Newton);
+        }
         for (b, state) in self.bodies.iter_mut().enumerate() {
             let body = &system.bodies[b];
             let (first, end_of_body) = (system.first[b], system.first[b + 1]);

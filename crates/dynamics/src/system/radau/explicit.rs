@@ -34,6 +34,9 @@ impl SystemMotion {
             self.next_rates(h, branch_time, place)?;
         }
         let error = self.explicit_error(h, times)?;
+        if error.is_nan() {
+            return Err(Failed::Newton);
+        }
         if error <= tolerance {
             self.last_length = h;
             let weights = self.scheme.weights.map(|weight| h * weight);

@@ -3,6 +3,7 @@
 use nalgebra::Complex;
 
 use crate::error::RateError;
+use crate::matrix::lists::larger;
 use crate::system::collocation::STAGES;
 use crate::system::constraints::Compliant;
 use crate::system::elimination::newton::{Frozen, sizes};
@@ -76,6 +77,8 @@ impl SystemMotion {
             since = if self.factor(h, pass == 1)? { 1 } else { since + 1 };
             let [position, change] = self.improve(h);
             if !change.is_finite() {
+                // The next try begins with them.
+                self.multipliers.iter_mut().chain(&mut self.velocity_multipliers).for_each(|of| of.fill(0.0));
                 return Err(Failed::Newton);
             }
             let rate = if since == 1 { 0.5 } else { change / last };
@@ -179,9 +182,9 @@ impl SystemMotion {
             }
             let [position, mut energy] = sizes(system, dx, h);
             energy += matrices.strain_energy(&stages[1], dx);
-            moved = moved.max(position);
+            moved = larger(moved, position);
             let of_energy = if energy == 0.0 { 0.0 } else { (energy / *largest_energy).sqrt() };
-            largest = largest.max(position).max(of_energy);
+            largest = larger(larger(largest, position), of_energy);
             stages[i].add_in_body_axes(system, dx, dy);
             for row in 0..multipliers[i].len() {
                 multipliers[i][row] += change(real.lambda[row], complex.lambda[row]);

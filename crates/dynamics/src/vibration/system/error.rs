@@ -24,7 +24,7 @@ pub enum SteadyError {
     },
     /// A body has large modes, about which these equations know nothing.
     #[error(
-        "body {body} of the system has large modes, about whose bent shapes there are no linearised equations; make its modes small"
+        "body {body} of the system (from 0) has large modes, about whose bent shapes there are no linearised equations; make its modes small"
     )]
     LargeModes {
         /// Its number in the system, from 0.

@@ -5,13 +5,13 @@
 
 use super::craig_bampton::{DOUBLE, Named};
 
-/// What a file begins with: a date (always the same, as the file of the same body), a title, and the label that Nastran writes where nobody gives one.
+/// Head of a file: a date (always the same, as the file of the same body), a title, and the label that Nastran writes where nobody gives one.
 const DATE: [i32; 3] = [1, 1, 0];
 const TITLE: &[u8; 28] = b"NASTRAN FORT TAPE ID CODE - ";
 const LABEL: &[u8; 8] = b"XXXXXXXX";
 /// Number of the first data block.
 const FIRST: i32 = 101;
-/// What stands after the name of a matrix in its second record.
+/// Words after the name of a matrix in its second record.
 const AFTER_NAME: [i32; 2] = [170; 2];
 /// Kinds of the parts of a data block: an end, or a column of a matrix.
 const END: i32 = 0;

@@ -1,4 +1,4 @@
-// What the page receives; `src/responses.rs` of the crate writes the same fields.
+// Data of the page; `src/responses.rs` of the crate writes the same fields.
 
 import { double, readData, single, type Numbers } from "../data";
 
