@@ -6,3 +6,4 @@ pub(crate) mod lists;
 pub(crate) mod side_by_side;
 pub(crate) mod stack;
 pub(crate) mod symmetric;
+pub(crate) mod triangle;

@@ -282,19 +282,18 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
         measure: measure.into(),
         reason: reason.into(),
     };
-    let fact = |label: &str, value: String| Fact { label: label.into(), value };
     Report {
         title: title.to_owned(),
         program: "flexframe 0.1.0".to_owned(),
         state: RunState::Complete,
         units: Units { length: "mm".into(), time: "s".into(), frequency: "Hz".into() },
-        facts: vec![fact("Time", format!("{DURATION} s in {rows} rows"))],
+        facts: vec![Fact::new("Time", format!("{DURATION} s in {rows} rows"))],
         bodies: vec![Body {
             name: "body".to_owned(),
             facts: vec![
-                fact("Mass", "9.35 kg".into()),
-                fact("Surface", format!("{} vertices", surface.vertices.len())),
-                fact("Shapes", format!("{modes}")),
+                Fact::new("Mass", "9.35 kg"),
+                Fact::new("Surface", format!("{} vertices", surface.vertices.len())),
+                Fact::new("Shapes", modes.to_string()),
             ],
             stress: (modes > 0).then(|| StressField { unit: "MPa".into(), shapes: stresses, products: Vec::new() }),
             surface: Some(surface),
@@ -367,7 +366,7 @@ fn responses() -> Responses {
     Responses {
         title: "Two oscillators".to_owned(),
         program: "flexframe".to_owned(),
-        facts: vec![Fact { label: "About".to_owned(), value: "rest".to_owned() }],
+        facts: vec![Fact::new("About", "rest")],
         warnings: vec!["a warning".to_owned()],
         frequency_unit: "Hz".to_owned(),
         logarithmic: false,

@@ -157,6 +157,13 @@ pub struct Fact {
     pub value: String,
 }
 
+impl Fact {
+    /// By its name and its text.
+    pub fn new(label: &str, value: impl Into<String>) -> Self {
+        Self { label: label.to_owned(), value: value.into() }
+    }
+}
+
 /// Surface of the undeformed body, or its nodes alone where nothing is known of a surface: then there are no triangles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {

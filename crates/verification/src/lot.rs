@@ -14,7 +14,7 @@ impl Lot {
         self.draw(0.0)
     }
 
-    /// Of the normal distribution, with deviation 1 (Box and Muller).
+    /// Number of the normal distribution with deviation 1 (Box and Muller).
     pub fn normal(&mut self) -> f64 {
         // Neither 0 nor 1: one has no logarithm.
         let radius = (-2.0 * self.draw(0.5).ln()).sqrt();

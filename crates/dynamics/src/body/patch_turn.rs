@@ -145,7 +145,7 @@ impl PatchTurn {
     }
 }
 
-/// A patch whose nodes lie this much closer to a plane than to its middle is flat.
+/// Squared distance of the nodes from a plane, or from a line, over that from the middle: below this a patch is flat, or a line.
 const FLAT: f64 = 1e-9;
 
 /// Two unit vectors across a third one, right-handed before it.

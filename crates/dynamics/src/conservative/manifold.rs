@@ -35,6 +35,7 @@ use crate::conservative::manifold::monomials::{Energy, Monomials, Polynomials};
 use crate::error::SetupError;
 use crate::matrix::blocked_matrix::BlockedMatrix;
 use crate::matrix::lists::dot;
+use crate::matrix::triangle::entry;
 
 /// Most modes that may be large.
 pub const MAX_LARGE: usize = 4;
@@ -538,11 +539,6 @@ fn factorize(count: usize, factor: &mut [f64]) {
 fn bent_of(bent: &[usize], q: &[f64], last: f64, x: &mut Bent) {
     x.iter_mut().zip(bent).for_each(|(x, k)| *x = q[*k]);
     x[bent.len()] = last;
-}
-
-/// Where a triangle row by row has the entry i ≥ j.
-fn entry(i: usize, j: usize) -> usize {
-    i * (i + 1) / 2 + j
 }
 
 impl Keyed for Manifold {

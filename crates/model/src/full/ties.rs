@@ -30,7 +30,7 @@ impl Tied {
             if marker.body() != Some(body) {
                 return;
             }
-            if let Some((marker, part)) = numbers(model, marker) {
+            if let Some((marker, part)) = numbers(model, body, marker) {
                 forces.push(MarkerForce { marker, part, force_global, moment_global });
             }
         });
@@ -38,12 +38,11 @@ impl Tied {
     }
 }
 
-/// The number of a marker among those of its body, and that of the part that it is.
-fn numbers(model: &Model, marker: &Marker) -> Option<(usize, Option<usize>)> {
+/// The number of a marker among the ones of its body, and that of the part that it is.
+fn numbers(model: &Model, body: usize, marker: &Marker) -> Option<(usize, Option<usize>)> {
     let manifold = model.physics.large_deflection.as_ref();
     let is_at = |point: &PointShapes, turning: &RotationShapes| {
-        let number = marker.body().unwrap_or_default();
-        marker.moves_as(&carried(number, manifold, (point, turning), Matrix3::identity()))
+        marker.moves_as(&carried(body, manifold, (point, turning), Matrix3::identity()))
     };
     model.markers.iter().enumerate().find_map(|(number, of_body)| match is_at(&of_body.point, &of_body.turning) {
         true => Some((number, None)),

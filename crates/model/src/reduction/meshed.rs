@@ -32,6 +32,7 @@ use crate::structure::Structure;
 use crate::structure::kept::Found;
 use crate::support::reactions::SupportRows;
 use crate::tie::mesh_marker;
+use crate::tie::place::ShapedBody;
 
 /// The model of a scene, from its mesh and the modes that it asks for.
 pub(crate) fn reduce(
@@ -76,23 +77,17 @@ pub(crate) fn reduce(
     }
 
     let started = Instant::now();
-    let points = match &large {
-        Some(large) => points(&model, large.modes(), large.manifold.body())?,
-        None => points(&model, &modes, &reduced.body)?,
+    let (manifold, in_shapes, shapes) = match &large {
+        Some(large) => (Some(&large.manifold), large.manifold.body(), large.modes()),
+        None => (None, &reduced.body, &modes),
     };
-    let in_shapes = match &large {
-        Some(large) => (large.manifold.body(), large.modes(), true),
-        None => (&reduced.body, &modes, false),
-    };
-    let markers = mesh_marker::reduced(&model.markers, scene, mesh, in_shapes, &of_markers, &warps)?;
+    let points = points(&model, shapes, in_shapes)?;
+    let on_body = ShapedBody { body: in_shapes, modes: shapes, is_bent: manifold.is_some() };
+    let markers = mesh_marker::reduced(&model.markers, scene, mesh, &on_body, &of_markers, &warps)?;
     let reference_points = reference_points(scene, mesh, &reduced.body);
-    let extended = large.as_ref().map(|large| (&large.manifold, large.modes()));
+    let extended = manifold.map(|manifold| (manifold, shapes));
     let has_gravity = decision.effects[Effect::Gravity];
     let body_stress = BodyStress::new(&model, &modes, extended, &reduced.body.origin, has_gravity)?;
-    let (manifold, shapes) = match &large {
-        Some(large) => (Some(&large.manifold), large.modes()),
-        None => (None, &modes),
-    };
     let supports = SupportRows::new(&model, shapes, manifold, &decision.effects, has_gravity)?;
     times.reduction += started.elapsed();
 

@@ -3,7 +3,6 @@
 use faer::prelude::ReborrowMut;
 use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Location, Mesh, Patch, Strip};
-use modal::{Modes, ReducedBody};
 use nalgebra::{Matrix3, Vector3};
 use scene::{Marker, MarkerPlace, Region, Scene, Tie, key_path};
 
@@ -12,7 +11,7 @@ use crate::load::rotation::Rotation;
 use crate::support::region_nodes;
 use crate::tie::body_marker::{BodyMarker, MarkerPart, UnknownTurns, axes};
 use crate::tie::patterns::patterns;
-use crate::tie::place::Place;
+use crate::tie::place::{Place, ShapedBody};
 use crate::tie::warp::Warp;
 
 /// A face on the boundary of a region is in it whatever rounding did to it: relative to the size of the mesh.
@@ -69,13 +68,13 @@ pub(crate) fn warps(markers: &[MeshMarker], mesh: &Mesh, responses: MatRef<'_, f
     markers.iter().map(of_marker).collect()
 }
 
-/// Markers on a body in some modes, which are the extended shapes with large ones (true). `stiffness` is that (nf×nf each) by the stress of the forces of
-/// [`unit_forces`]; none where it is left out.
+/// Markers on a body. `stiffness` is that (nf×nf each) by the stress of the forces of [`unit_forces`]; none where it is left
+/// out.
 pub(crate) fn reduced(
     markers: &[MeshMarker],
     scene: &Scene,
     mesh: &Mesh,
-    body: (&ReducedBody, &Modes, bool),
+    body: &ShapedBody<'_>,
     stiffness: &[Mat<f64>],
     warps: &[Option<Warp>],
 ) -> Result<Vec<BodyMarker>, BuildError> {
@@ -168,12 +167,12 @@ impl MeshMarker {
         self.places().into_iter().enumerate().flat_map(of_place).collect()
     }
 
-    /// The marker on a body in some modes, which its loads stiffen so (nf×nf each).
+    /// The marker on a body, which its loads stiffen so (nf×nf each).
     fn reduced(
         &self,
         scene: &Scene,
         mesh: &Mesh,
-        body: (&ReducedBody, &Modes, bool),
+        body: &ShapedBody<'_>,
         stiffness: &[Mat<f64>],
     ) -> Result<BodyMarker, BuildError> {
         // Patterns are orthonormal: the parts are combined of them as they are of the parts.
@@ -201,7 +200,7 @@ impl MeshMarker {
         };
         let parts = self.parts.iter().zip(of_places).map(of_part).collect::<Result<_, BuildError>>()?;
         // What does not deform is turned as the body is.
-        let unknown_turns = if body.0.flexible() == 0 { UnknownTurns::None } else { self.whole.unknown_turns };
+        let unknown_turns = if body.body.flexible() == 0 { UnknownTurns::None } else { self.whole.unknown_turns };
         let by_nodes = self.patterns.is_some();
         Ok(BodyMarker {
             name: self.name.clone(),

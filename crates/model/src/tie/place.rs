@@ -16,6 +16,14 @@ const LINE: f64 = 1e-10;
 /// Nodes are apart from this part of the size of the mesh on.
 const ON: f64 = 1e-6;
 
+/// A body with the modes that move its markers: with large ones, in the extended shapes.
+pub(crate) struct ShapedBody<'a> {
+    pub body: &'a ReducedBody,
+    pub modes: &'a Modes,
+    /// True with large modes.
+    pub is_bent: bool,
+}
+
 /// Nodes that carry a place together.
 pub(crate) struct Place {
     pub nodes: Vec<u32>,
@@ -104,14 +112,14 @@ impl Place {
         }
     }
 
-    /// How the modes move and turn it, however far with large modes (`is_bent`). `stiffness` is that by the stress of each of the [`Self::wrenches`]; none where it is left
-    /// out.
+    /// How the modes move and turn it, however far with large ones. `stiffness` is that by the stress of each of the
+    /// [`Self::wrenches`]; none where it is left out.
     pub fn shapes(
         &self,
         scene: &Scene,
         mesh: &Mesh,
         dofs: usize,
-        (body, modes, is_bent): (&ReducedBody, &Modes, bool),
+        &ShapedBody { body, modes, is_bent }: &ShapedBody<'_>,
         stiffness: Vec<Mat<f64>>,
     ) -> Result<(PointShapes, RotationShapes), BuildError> {
         let point = BodyPoint::new(modes, mesh.positions(), &self.nodes, &self.weights).map_err(modal(scene))?;

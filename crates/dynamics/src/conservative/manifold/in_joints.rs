@@ -1,6 +1,7 @@
 //! The manifold as markers and the Newton matrix of a system know it.
 
-use crate::conservative::manifold::{Bent, Constants, MAX_BENT, Manifold, ManifoldPoint, along, bent_of, entry};
+use crate::conservative::manifold::{Bent, Constants, MAX_BENT, Manifold, ManifoldPoint, along, bent_of};
+use crate::matrix::triangle::entry;
 
 /// M and the strain energy V beyond ½ qᵀΛq in the rows and columns of the bent modes; M of the other modes is 1.
 #[derive(Debug, Clone, Default)]

@@ -6,6 +6,7 @@ use faer::Mat;
 use modal::Products;
 
 use crate::matrix::blocked_matrix::BlockedMatrix;
+use crate::matrix::triangle::entry;
 
 /// Monomials of the first to the fifth degree, those of a lower degree first. Of each, but for the coordinates
 /// themselves, a coordinate times one before it.
@@ -157,7 +158,7 @@ impl Energy {
                     let Some((times, rest)) = Monomials::derivative(product, i) else { continue };
                     for j in 0..=i {
                         if let Some((again, rest)) = Monomials::derivative(&rest, j) {
-                            add(i * (i + 1) / 2 + j, &rest, times * again * coefficient);
+                            add(entry(i, j), &rest, times * again * coefficient);
                         }
                     }
                 }

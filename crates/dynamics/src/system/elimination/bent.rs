@@ -10,6 +10,7 @@
 //! M is the same with κ = 1 and without D and K.
 
 use crate::conservative::manifold::{BentTerms, Manifold};
+use crate::matrix::triangle::entry;
 use crate::system::elimination::number::Number;
 
 /// M of the modes of a body with large modes, and its inverse.
@@ -43,7 +44,7 @@ impl BentInertia {
     /// x = M x
     pub fn multiply<T: Number>(&self, x: &mut [T]) {
         let BentTerms { modes, left, .. } = &self.terms;
-        let own = self.bent_of(x);
+        let own = bent_of(modes, x);
         for (a, own) in own.iter().enumerate().take(modes.len()) {
             x.iter_mut().zip(self.terms.row(a)).for_each(|(x, c)| *x += own.scale(*c));
         }
@@ -58,7 +59,7 @@ impl BentInertia {
     /// x = M⁻¹ x
     pub fn solve<T: Number>(&self, x: &mut [T]) {
         let BentTerms { modes, .. } = &self.terms;
-        let mut own = self.bent_of(x);
+        let mut own = bent_of(modes, x);
         for (a, own) in own.iter_mut().enumerate().take(modes.len()) {
             x.iter().zip(self.terms.row(a)).for_each(|(x, c)| *own -= x.scale(*c));
         }
@@ -76,12 +77,13 @@ impl BentInertia {
             row.iter().zip(modes).for_each(|(k, of)| forces[*mode] += factor * x[*of].scale(*k));
         }
     }
+}
 
-    fn bent_of<T: Number>(&self, x: &[T]) -> [T; BentTerms::MOST] {
-        let mut own = [T::from_real(0.0); BentTerms::MOST];
-        own.iter_mut().zip(&self.terms.modes).for_each(|(own, mode)| *own = x[*mode]);
-        own
-    }
+/// The bent ones of a list over all modes.
+fn bent_of<T: Number>(modes: &[usize], x: &[T]) -> [T; BentTerms::MOST] {
+    let mut own = [T::from_real(0.0); BentTerms::MOST];
+    own.iter_mut().zip(modes).for_each(|(own, mode)| *own = x[*mode]);
+    own
 }
 
 /// Z⁻¹ of the modes of a body with large modes.
@@ -107,15 +109,17 @@ impl<T: Number> BentInverse<T> {
         }
     }
 
-    /// Finds it, by z⁻¹ of each mode and by Λ and D of each, where these count.
-    pub fn find(
-        &mut self,
-        kappa: T,
-        terms: &BentTerms,
-        inverses: &[T],
-        oscillators: impl Fn(usize) -> [f64; 2],
-        has_stiffness: bool,
-    ) {
+    /// Takes M⁻¹ and M⁻¹S for it.
+    pub fn copy_of_mass(&mut self, of_mass: &BentInertia) {
+        let solved = self.solved.iter_mut().zip(&of_mass.solved);
+        let lists = [(&mut self.across, &of_mass.terms.across), (&mut self.factor.0, &of_mass.inverse.0)];
+        for (own, list) in solved.chain(lists) {
+            own.iter_mut().zip(list).for_each(|(own, number)| *own = T::from_real(*number));
+        }
+    }
+
+    /// Finds it, by z⁻¹ of each mode and by Λ and D of each.
+    pub fn find(&mut self, kappa: T, terms: &BentTerms, inverses: &[T], oscillators: impl Fn(usize) -> [f64; 2]) {
         let (n, modes) = (self.modes.len(), &self.modes);
         self.across.iter_mut().zip(&terms.across).for_each(|(own, c)| *own = kappa.scale(*c));
         self.factor.find(n, |i, j| {
@@ -124,9 +128,7 @@ impl<T: Number> BentInverse<T> {
                 of_others += (T::from_real(1.0) - kappa * *inverse).scale(a * b);
             }
             let mut sum = kappa * (T::from_real(terms.left[i * n + j]) + of_others);
-            if has_stiffness {
-                sum += T::from_real(terms.stiffness[i * n + j]) / kappa;
-            }
+            sum += T::from_real(terms.stiffness[i * n + j]) / kappa;
             if i == j {
                 let [stiffness, damping] = oscillators(modes[i]);
                 sum += T::from_real(damping) + T::from_real(stiffness) / kappa;
@@ -147,9 +149,8 @@ impl<T: Number> BentInverse<T> {
 
     /// x = Z⁻¹ x
     pub fn apply(&self, inverses: &[T], x: &mut [T]) {
-        let rows = || self.across.chunks_exact(x_len(inverses));
-        let mut own = [T::from_real(0.0); BentTerms::MOST];
-        own.iter_mut().zip(&self.modes).for_each(|(own, mode)| *own = x[*mode]);
+        let rows = || self.across.chunks_exact(inverses.len().max(1));
+        let mut own = bent_of(&self.modes, x);
         x.iter_mut().zip(inverses).for_each(|(x, inverse)| *x *= *inverse);
         for (row, own) in rows().zip(&mut own) {
             x.iter().zip(row).for_each(|(x, c)| *own -= *c * *x);
@@ -162,10 +163,6 @@ impl<T: Number> BentInverse<T> {
     }
 }
 
-fn x_len<T>(list: &[T]) -> usize {
-    list.len().max(1)
-}
-
 /// L and d⁻¹ of a symmetric matrix L diag(d) Lᵀ: entries i ≥ j, row by row, d⁻¹ on the diagonal.
 #[derive(Debug, Clone)]
 struct Factor<T>(Vec<T>);
@@ -176,23 +173,23 @@ impl<T: Number> Factor<T> {
     }
 
     /// Finds them from the entries i ≥ j of a matrix.
-    fn find(&mut self, size: usize, entry: impl Fn(usize, usize) -> T) {
+    fn find(&mut self, size: usize, of: impl Fn(usize, usize) -> T) {
         let Self(factor) = self;
         for i in 0..size {
             // The row times d first.
             for j in 0..=i {
-                let mut sum = entry(i, j);
+                let mut sum = of(i, j);
                 for k in 0..j {
-                    let other = factor[place(j, k)];
-                    sum -= factor[place(i, k)] * if i == j { factor[place(i, k)] * factor[place(k, k)] } else { other };
+                    let other = factor[entry(j, k)];
+                    sum -= factor[entry(i, k)] * if i == j { factor[entry(i, k)] * factor[entry(k, k)] } else { other };
                 }
-                factor[place(i, j)] = sum;
+                factor[entry(i, j)] = sum;
             }
             for j in 0..i {
-                let scaled = factor[place(i, j)] * factor[place(j, j)];
-                factor[place(i, j)] = scaled;
+                let scaled = factor[entry(i, j)] * factor[entry(j, j)];
+                factor[entry(i, j)] = scaled;
             }
-            factor[place(i, i)] = factor[place(i, i)].recip();
+            factor[entry(i, i)] = factor[entry(i, i)].recip();
         }
     }
 
@@ -202,24 +199,19 @@ impl<T: Number> Factor<T> {
         for i in 0..x.len() {
             for k in 0..i {
                 let known = x[k];
-                x[i] -= number(factor[place(i, k)]) * known;
+                x[i] -= number(factor[entry(i, k)]) * known;
             }
         }
         for i in 0..x.len() {
-            x[i] *= number(factor[place(i, i)]);
+            x[i] *= number(factor[entry(i, i)]);
         }
         for i in (0..x.len()).rev() {
             for k in i + 1..x.len() {
                 let known = x[k];
-                x[i] -= number(factor[place(k, i)]) * known;
+                x[i] -= number(factor[entry(k, i)]) * known;
             }
         }
     }
-}
-
-/// Where a triangle row by row has the entry i ≥ j.
-fn place(i: usize, j: usize) -> usize {
-    i * (i + 1) / 2 + j
 }
 
 #[cfg(test)]
@@ -293,7 +285,7 @@ mod tests {
             factor: Factor::new(2),
         };
         let inverses = oscillators.map(|[stiffness, damping]| (kappa + damping + stiffness / kappa).inv());
-        inverse.find(kappa, &terms, &inverses, |k| oscillators[k], true);
+        inverse.find(kappa, &terms, &inverses, |k| oscillators[k]);
         let y: Vec<Complex<f64>> = x.iter().map(|x| Complex::new(*x, 0.5 - x)).collect();
         let mut found = y.clone();
         inverse.apply(&inverses, &mut found);

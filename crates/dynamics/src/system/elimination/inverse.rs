@@ -117,33 +117,26 @@ impl<T: Number> Inverse<T> {
 
     /// Finds M⁻¹. False where M is singular.
     pub fn find_of_mass(&mut self, inertia: &Inertia) -> bool {
-        self.find_with(T::from_real(1.0), inertia, |_| [0.0; 2], false)
+        let one = T::from_real(1.0);
+        self.begin(one, inertia);
+        self.modes.fill(one);
+        if let (Some(bent), Some(of_mass)) = (&mut self.bent, &inertia.bent) {
+            bent.copy_of_mass(of_mass);
+        }
+        self.invert(&inertia.locked.map(T::from_real))
     }
 
     /// Finds it for κ; `oscillators` are Λ_k and D_k of each mode. False where Z is singular.
     pub fn find(&mut self, kappa: T, inertia: &Inertia, oscillators: impl Fn(usize) -> [f64; 2]) -> bool {
-        self.find_with(kappa, inertia, oscillators, true)
-    }
-
-    fn find_with(
-        &mut self,
-        kappa: T,
-        inertia: &Inertia,
-        oscillators: impl Fn(usize) -> [f64; 2],
-        has_stiffness: bool,
-    ) -> bool {
-        (self.kappa, self.mass) = (kappa, kappa * T::from_real(inertia.mass));
+        self.begin(kappa, inertia);
         for (k, inverse) in self.modes.iter_mut().enumerate() {
             let [stiffness, damping] = oscillators(k);
             *inverse = (kappa + T::from_real(damping) + T::from_real(stiffness) / kappa).recip();
         }
-        for (own, s) in self.coupling.iter_mut().zip(&inertia.coupling) {
-            own.copy_from_slice(s);
-        }
         // J = (J − SᵀM⁻¹S) + SᵀM⁻¹S, so that the sum is κ (J − SᵀM⁻¹S) + κ Sᵀ (M⁻¹ − κ z⁻¹) S.
         let mut spin = inertia.locked.map(|entry| kappa * T::from_real(entry));
         if let (Some(bent), Some(of_mass)) = (&mut self.bent, &inertia.bent) {
-            bent.find(kappa, &of_mass.terms, &self.modes, oscillators, has_stiffness);
+            bent.find(kappa, &of_mass.terms, &self.modes, oscillators);
             bent.solve_coupling(&self.modes, &inertia.coupling);
             for (i, a) in inertia.coupling.iter().enumerate() {
                 for j in 0..3 {
@@ -167,6 +160,18 @@ impl<T: Number> Inverse<T> {
                 }
             }
         }
+        self.invert(&spin)
+    }
+
+    fn begin(&mut self, kappa: T, inertia: &Inertia) {
+        (self.kappa, self.mass) = (kappa, kappa * T::from_real(inertia.mass));
+        for (own, s) in self.coupling.iter_mut().zip(&inertia.coupling) {
+            own.copy_from_slice(s);
+        }
+    }
+
+    /// Takes the inverse of what the modes leave to the spin. False where that is singular.
+    fn invert(&mut self, spin: &Matrix3<T>) -> bool {
         match spin.try_inverse() {
             Some(inverse) => self.spin = inverse,
             None => return false,

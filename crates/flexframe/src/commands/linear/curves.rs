@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use figures::{FigureError, LineChart, Series, Stroke};
-use report::{Fact, ReportError, Responses};
+use report::{ReportError, Responses};
 use whole_file::write_whole;
 
 use crate::files::write_error::WriteError;
@@ -46,11 +46,6 @@ pub(super) fn write<E: From<WriteError> + From<FigureError> + From<ReportError>>
 /// Name and version of the program, as a page says them.
 pub(super) fn program() -> String {
     format!("flexframe {}", env!("CARGO_PKG_VERSION"))
-}
-
-/// A line of the summary of a page.
-pub(super) fn fact(label: &str, value: impl Into<String>) -> Fact {
-    Fact { label: label.to_owned(), value: value.into() }
 }
 
 /// Adds a curve to those of a chart with a logarithmic axis while there is room, where it has a point above zero.

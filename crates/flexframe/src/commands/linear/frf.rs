@@ -1,6 +1,7 @@
 //! `flexframe frf`: frequency responses of a scene about rest or a steady spin, as a table and as charts.
 
 mod page;
+mod peaks;
 
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
@@ -11,6 +12,9 @@ use linear::{Damping, FrequencyResponse, SecondOrder};
 use model::{BuildProgress, Builder};
 use scene::System;
 use serde::Serialize;
+
+pub use peaks::Peak;
+use peaks::peaks;
 
 use crate::commands::linear::curves::{self, Answer};
 use crate::commands::linear::frequencies::Frequencies;
@@ -51,21 +55,6 @@ pub struct FrfReport {
     pub warnings: Vec<String>,
 }
 
-/// The highest response of an output to an input.
-#[derive(Debug, Clone, Serialize)]
-pub struct Peak {
-    /// The output.
-    pub output: String,
-    /// Its unit, by that of the input.
-    pub unit: String,
-    /// The input.
-    pub input: String,
-    /// Magnitude.
-    pub magnitude: f64,
-    /// Cycles per time.
-    pub frequency: f64,
-}
-
 /// The files that [`frf`] writes to a folder.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
     curves::files(folder, NAME)
@@ -96,21 +85,17 @@ pub fn frf(
 
     let unit = frequency_unit(&scene.units.time);
     let logarithmic = settings.logarithmic;
+    let peaks = peaks(equations, &response);
     let answer = Answer {
         csv: csv(equations, &response),
         chart: chart(&scene.title, &unit, equations, &response, logarithmic),
-        page: page::page(
-            &scene.title,
-            &unit,
-            (equations, &response, &model.state),
-            (settings.loss_factor, logarithmic),
-        ),
+        page: page::page(&scene.title, &unit, (&response, &peaks, &model.state), (settings.loss_factor, logarithmic)),
     };
     Ok(FrfReport {
         title: scene.title.clone(),
         frequency_unit: unit,
         files: curves::write::<LinearizeError>(folder, NAME, answer)?,
-        peaks: peaks(equations, &response),
+        peaks,
         warnings: model.state.warnings,
     })
 }
@@ -138,20 +123,6 @@ fn csv(equations: &SecondOrder, response: &FrequencyResponse) -> String {
         csv.push('\n');
     }
     csv
-}
-
-fn peaks(equations: &SecondOrder, response: &FrequencyResponse) -> Vec<Peak> {
-    let mut peaks = Vec::new();
-    for (j, input) in equations.inputs.iter().enumerate() {
-        for (i, output) in equations.outputs.iter().enumerate() {
-            let all = response.frequencies.iter().zip(&response.values).map(|(f, values)| (*f, values[(i, j)].norm()));
-            let (frequency, magnitude) = all.fold((0.0, 0.0), |best, at| if at.1 > best.1 { at } else { best });
-            let unit = format!("{} per {}", output.channel.unit, input.unit);
-            let (output, input) = (output.channel.name.clone(), input.name.clone());
-            peaks.push(Peak { output, unit, input, magnitude, frequency });
-        }
-    }
-    peaks
 }
 
 fn chart(

@@ -1,41 +1,43 @@
 //! The page of frequency responses: magnitude and phase.
 
 use faer::c64;
-use linear::{FrequencyResponse, SecondOrder};
-use report::{Chart, Curve, Responses};
+use linear::FrequencyResponse;
+use report::{Chart, Curve, Fact, Responses};
 
-use crate::commands::linear::curves::{fact, program};
+use super::peaks::Peak;
+use crate::commands::linear::curves::program;
 use crate::commands::linear::linearize::State;
 
 /// The page of all responses.
 pub(super) fn page(
     title: &str,
     frequency_unit: &str,
-    (equations, response, state): (&SecondOrder, &FrequencyResponse, &State),
+    (response, peaks, state): (&FrequencyResponse, &[Peak], &State),
     (loss_factor, logarithmic): (Option<f64>, bool),
 ) -> Responses {
-    let mut curves = Vec::new();
-    for (j, input) in equations.inputs.iter().enumerate() {
-        for (i, output) in equations.outputs.iter().enumerate() {
-            let values: Vec<c64> = response.values.iter().map(|h| h[(i, j)]).collect();
-            let magnitude: Vec<f64> = values.iter().map(|value| value.norm()).collect();
-            let phase = values.iter().map(|value| value.im.atan2(value.re).to_degrees()).collect();
-            let of = response.frequencies.iter().zip(&magnitude);
-            let (at, highest) = of.fold((0.0, 0.0), |best, (f, h)| if *h > best.1 { (*f, *h) } else { best });
-            curves.push(Curve {
-                name: format!("{} / {}", output.channel.name, input.name),
-                units: vec![format!("{} per {}", output.channel.unit, input.unit), "°".to_owned()],
-                values: vec![magnitude, phase],
-                about: vec![format!("{highest:.4e} at {at:.6} {frequency_unit}")],
-            });
+    let (rows, columns) = response.values.first().map_or((0, 0), |h| (h.nrows(), h.ncols()));
+    let places = (0..columns).flat_map(|j| (0..rows).map(move |i| (i, j)));
+    let curve = |((i, j), peak): ((usize, usize), &Peak)| {
+        let values: Vec<c64> = response.values.iter().map(|h| h[(i, j)]).collect();
+        let magnitude = values.iter().map(|value| value.norm()).collect();
+        let phase = values.iter().map(|value| value.im.atan2(value.re).to_degrees()).collect();
+        Curve {
+            name: format!("{} / {}", peak.output, peak.input),
+            units: vec![peak.unit.clone(), "°".to_owned()],
+            values: vec![magnitude, phase],
+            about: vec![format!("{:.4e} at {:.6} {frequency_unit}", peak.magnitude, peak.frequency)],
         }
-    }
+    };
     let damping = loss_factor.map_or_else(|| "of the scene".to_owned(), |g| format!("structural, loss factor {g}"));
     let count = response.frequencies.len();
     Responses {
         title: format!("{title}: frequency response"),
         program: program(),
-        facts: vec![fact("About", state.to_string()), fact("Frequencies", count.to_string()), fact("Damping", damping)],
+        facts: vec![
+            Fact::new("About", state.to_string()),
+            Fact::new("Frequencies", count.to_string()),
+            Fact::new("Damping", damping),
+        ],
         warnings: state.warnings.clone(),
         frequency_unit: frequency_unit.to_owned(),
         logarithmic,
@@ -45,6 +47,6 @@ pub(super) fn page(
             Chart { name: "Phase, degrees".to_owned(), logarithmic: false },
         ],
         headings: vec!["Highest".to_owned()],
-        curves,
+        curves: places.zip(peaks).map(curve).collect(),
     }
 }

@@ -44,9 +44,7 @@ pub(super) fn of_system(
     let Motion::Tied(simulation) = &*motion else { return Err(no_body()) };
     let motion = simulation.motion();
     let failed = |source| LinearizeError::Steady { scene: scene.path.clone(), source: Box::new(source) };
-    let SystemSpin { common, warning } = SystemSpin::new(motion, spin).map_err(failed)?;
-    let omega_global = common.omega_global;
-    let steady = motion.steady_state(&common).map_err(failed)?;
+    let SystemSpin { omega_global, steady, warning } = SystemSpin::new(motion, spin).map_err(failed)?;
     let (linear, _) = steady.linear.with_loose_apart().map_err(failed)?;
     let joint_drives: Vec<usize> = (0..joints.len())
         .filter(|joint| {

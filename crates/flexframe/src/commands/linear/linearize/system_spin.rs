@@ -1,11 +1,12 @@
 //! The common spin of bodies in joints: that which is asked for, or that of the drive that turns all of them.
 
-use dynamics::{CommonSpin, Row, SteadyError, SystemMotion};
+use dynamics::{CommonSpin, Row, SteadyError, SteadyState, SystemMotion};
 use nalgebra::Vector3;
 
 /// The spin that equations are about.
 pub(super) struct SystemSpin {
-    pub common: CommonSpin,
+    pub omega_global: Vector3<f64>,
+    pub steady: SteadyState,
     /// A drive that turns, but not all bodies together.
     pub warning: Option<String>,
 }
@@ -15,29 +16,32 @@ impl SystemSpin {
     /// mass. Without one the bodies spin as that drive does at the time of the motion, if all of them can.
     ///
     /// # Errors
-    /// [`SteadyError`], other than that a joint does not allow the spin.
+    /// [`SteadyError`]; that a joint does not allow the spin only of one that is asked for.
     pub fn new(motion: &SystemMotion, asked: Option<Vector3<f64>>) -> Result<Self, SteadyError> {
         let driven = of_drives(motion);
         let axis = driven.first().map(|(_, spin)| spin.point_global);
         let point_global = axis.unwrap_or_else(|| motion.center_of_mass());
-        let at = |omega_global| CommonSpin { omega_global, point_global };
+        let at = |omega_global, warning| -> Result<Self, SteadyError> {
+            let steady = motion.steady_state(&CommonSpin { omega_global, point_global })?;
+            Ok(Self { omega_global, steady, warning })
+        };
         if let Some(omega_global) = asked {
-            return Ok(Self { common: at(omega_global), warning: None });
+            return at(omega_global, None);
         }
-        let rest = at(Vector3::zeros());
+        let rest = |warning| at(Vector3::zeros(), warning);
         let turning: Vec<&(String, CommonSpin)> =
             driven.iter().filter(|(_, spin)| spin.omega_global.norm() > 0.0).collect();
         let [(name, spin)] = turning[..] else {
             let warning = (!turning.is_empty()).then(|| "several drives turn; the equations are about rest".to_owned());
-            return Ok(Self { common: rest, warning });
+            return rest(warning);
         };
         match motion.steady_state(spin) {
-            Ok(_) => Ok(Self { common: *spin, warning: None }),
+            Ok(steady) => Ok(Self { omega_global: spin.omega_global, steady, warning: None }),
             Err(SteadyError::Against { joint, .. }) => {
                 let warning = format!(
                     "the drive of {name} turns, but joint {joint} keeps bodies from turning with it; the equations are about rest"
                 );
-                Ok(Self { common: rest, warning: Some(warning) })
+                rest(Some(warning))
             }
             Err(error) => Err(error),
         }

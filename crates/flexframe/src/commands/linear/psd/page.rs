@@ -1,12 +1,12 @@
 //! The page of random responses: densities, and the root mean square that has come together up to each frequency.
 
 use linear::{Channel, RandomResponse};
-use report::{Chart, Curve, Responses as Page};
+use report::{Chart, Curve, Fact, Responses as Page};
 use scene::Scene;
 
 use super::report::PsdReport;
 use super::responses::Responses;
-use crate::commands::linear::curves::{fact, program};
+use crate::commands::linear::curves::program;
 use crate::commands::linear::linearize::State;
 use crate::commands::modes::frequency_unit;
 
@@ -31,10 +31,10 @@ pub(super) fn page(scene: &Scene, state: &State, report: &PsdReport, responses: 
         title: format!("{}: random response", scene.title),
         program: program(),
         facts: vec![
-            fact("About", state.to_string()),
-            fact("Band", format!("{low} to {high} {unit}")),
-            fact("Inputs", report.inputs.join(", ")),
-            fact("Frequencies", responses.frequencies.len().to_string()),
+            Fact::new("About", state.to_string()),
+            Fact::new("Band", format!("{low} to {high} {unit}")),
+            Fact::new("Inputs", report.inputs.join(", ")),
+            Fact::new("Frequencies", responses.frequencies.len().to_string()),
         ],
         warnings: state.warnings.clone(),
         frequency_unit: unit.clone(),

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use report::{Chart, Curve, Responses};
+use report::{Chart, Curve, Fact, Responses};
 use shock::Spectrum;
 
-use crate::commands::linear::curves::{fact, program};
+use crate::commands::linear::curves::program;
 
 /// The page of some spectra of a table.
 pub(super) fn page(table: &Path, spectra: &[Spectrum]) -> Responses {
@@ -23,7 +23,7 @@ pub(super) fn page(table: &Path, spectra: &[Spectrum]) -> Responses {
     Responses {
         title: format!("{name}: shock response spectrum"),
         program: program(),
-        facts: vec![fact("Base motion", table.display().to_string())],
+        facts: vec![Fact::new("Base motion", table.display().to_string())],
         warnings: Vec::new(),
         frequency_unit: "1/time".to_owned(),
         logarithmic: true,

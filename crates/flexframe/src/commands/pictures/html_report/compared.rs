@@ -47,7 +47,7 @@ pub(super) fn compared(mut first: Report, other: Report, name: &str) -> Option<R
             .warnings
             .push(format!("{alone} courses are not compared: {name} does not have them, or in another unit."));
     }
-    first.facts.push(Fact { label: "Compared with".to_owned(), value: format!("{name}: {}", other.title) });
+    first.facts.push(Fact::new("Compared with", format!("{name}: {}", other.title)));
     first.compared = Some(Compared { name: name.to_owned(), times: other.times, bodies: other.bodies });
     Some(first)
 }

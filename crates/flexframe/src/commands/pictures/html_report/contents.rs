@@ -99,34 +99,30 @@ fn state(file: &Path, results: &Results) -> Option<RunState> {
     Some(RunState::Unfinished(words))
 }
 
-fn fact(label: &str, value: String) -> Fact {
-    Fact { label: label.to_owned(), value }
-}
-
 /// Facts about the run.
 fn facts(results: &Results) -> Option<Vec<Fact>> {
     let Metadata { units, bodies, scheme, formulation, .. } = &results.metadata;
     let last = results.numbers("time")?.last().copied().unwrap_or_default();
-    let several = (bodies.len() > 1).then(|| fact("Bodies", bodies.len().to_string()));
-    let time = fact("Time", format!("{} {} in {} rows", quantity(last), units.time, results.rows()));
-    Some(several.into_iter().chain([time, fact("Scheme", format!("{scheme} ({formulation})"))]).collect())
+    let several = (bodies.len() > 1).then(|| Fact::new("Bodies", bodies.len().to_string()));
+    let time = Fact::new("Time", format!("{} {} in {} rows", quantity(last), units.time, results.rows()));
+    Some(several.into_iter().chain([time, Fact::new("Scheme", format!("{scheme} ({formulation})"))]).collect())
 }
 
 fn facts_of_body(body: &BodyProperties, units: &results::Units) -> Vec<Fact> {
-    let mut facts = vec![fact("Mass", format!("{} {}", quantity(body.mass), units.mass))];
+    let mut facts = vec![Fact::new("Mass", format!("{} {}", quantity(body.mass), units.mass))];
     match &body.mesh {
         Some(MeshProperties { nodes, elements: 0, .. }) => {
-            facts.push(fact("Mesh", format!("{nodes} nodes, matrices of another program")));
+            facts.push(Fact::new("Mesh", format!("{nodes} nodes, matrices of another program")));
         }
         Some(MeshProperties { nodes, elements, .. }) => {
-            facts.push(fact("Mesh", format!("{nodes} nodes, {elements} elements")));
+            facts.push(Fact::new("Mesh", format!("{nodes} nodes, {elements} elements")));
         }
         None => {}
     }
     facts.push(match (natural_modes(body), body.static_shapes) {
-        (0, 0) => fact("Shapes", "rigid body".to_owned()),
-        (modes, 0) => fact("Shapes", format!("{modes} modes")),
-        (modes, fixed) => fact("Shapes", format!("{modes} modes, {fixed} static")),
+        (0, 0) => Fact::new("Shapes", "rigid body".to_owned()),
+        (modes, 0) => Fact::new("Shapes", format!("{modes} modes")),
+        (modes, fixed) => Fact::new("Shapes", format!("{modes} modes, {fixed} static")),
     });
     facts
 }
