@@ -15,6 +15,8 @@ use mesh_import::{ImportError, ImportSettings, Imported, MeshFile, Reader, read_
 const PYTHON: &str = "FLEXFRAME_PYTHON";
 /// Names a Python with meshlane instead of meshio.
 const MESHLANE: &str = "FLEXFRAME_MESHLANE";
+/// Names the log of a gmsh whose first optimization does nothing.
+const LAZY: &str = "FLEXFRAME_LAZY";
 
 const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false };
 const RAISED: ImportSettings = ImportSettings { raise_order: true, ..AS_IT_IS };
@@ -32,7 +34,12 @@ fn formats() -> &'static Formats {
 
 impl Formats {
     fn new() -> Self {
-        let folder = if with_meshlane() { "formats_meshlane" } else { "formats" };
+        // Each process has a folder of its own: they run side by side.
+        let folder = match std::env::var_os(LAZY) {
+            Some(_) => "formats_lazy",
+            None if with_meshlane() => "formats_meshlane",
+            None => "formats",
+        };
         let formats = Self { folder: Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder) };
         fs::create_dir_all(&formats.folder).unwrap();
         let geo = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model/tests/data/bar.geo");
@@ -344,10 +351,12 @@ fn an_optimization_that_fails_is_tried_with_higher_thresholds() {
                   for a; do shift; [ \"$a\" = -optimize_ho ] || set -- \"$@\" \"$a\"; done; fi\nexec gmsh \"$@\"\n";
     fs::write(&lazy, script).unwrap();
     fs::set_permissions(&lazy, fs::Permissions::from_mode(0o755)).unwrap();
+    // An earlier run may have left one in this folder.
     let log = formats.path("lazy.log");
+    fs::write(&log, "").unwrap();
     let output = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "curved_elements_that_would_be_inverted_are_optimized"])
-        .envs([("FLEXFRAME_GMSH", &lazy), ("FLEXFRAME_LAZY", &log)])
+        .envs([("FLEXFRAME_GMSH", &lazy), (LAZY, &log)])
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
