@@ -126,6 +126,9 @@ enum Command {
         /// Numbers of the rows, from 0 [default: those where a model is most likely to be wrong].
         #[arg(long, value_name = "N,…", value_delimiter = ',')]
         rows: Vec<usize>,
+        /// Write the trust card with what the check finds into the results file, so that `flexframe report` shows it.
+        #[arg(long)]
+        write: bool,
         /// Print the report as JSON, for scripts, and errors as JSON on standard error.
         #[arg(long)]
         json: bool,
@@ -759,12 +762,13 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             drop(bar);
             output::print(&report, json)
         }
-        Command::Check { file, rows, json } => {
+        Command::Check { file, rows, write, json } => {
             GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
             let rows = if rows.is_empty() { CheckRows::Worst } else { CheckRows::Given(rows) };
             let report = check::check(&file, &builder, &rows, |p| bar.check(p))?;
             drop(bar);
-            output::print(&report, json)
+            output::print(&report, json)?;
+            if write { Ok(check::write_card(&report)?) } else { Ok(()) }
         }
         Command::Reduce { scene: SceneArgs { scene, json }, output, files, solver, matrices, stress } => {
             output::require_file("--output", Some(&output))?;

@@ -32,6 +32,9 @@ pub enum FileError {
     /// The run to be resumed has come to its end.
     #[error("{path}: this run is complete; there is nothing to resume", path = .path.display())]
     Complete { path: PathBuf },
+    /// The run has not come to its end.
+    #[error("{path}: this run is unfinished, and its file has no trust card yet: let it come to its end, or go on with `flexframe resume`", path = .path.display())]
+    NotComplete { path: PathBuf },
     /// There is no unfinished run.
     #[error(
         "{path}: there is no unfinished run ({part} does not exist); check the name, or begin with `flexframe run`",
@@ -93,6 +96,7 @@ impl FileError {
             | Self::Unfinished { path, .. }
             | Self::NotResults { path, .. }
             | Self::Complete { path, .. }
+            | Self::NotComplete { path, .. }
             | Self::NothingToResume { path, .. }
             | Self::PlaceName { path, .. }
             | Self::NulInText { path, .. }

@@ -56,4 +56,4 @@ pub use paraview::vtkhdf::{Block, VtkHdf};
 pub use paraview::vtu::{PvdEntry, write_pvd, write_vtu};
 pub use reader::{BodyResults, ColumnTable, Results};
 pub use shapes::{Shapes, StressShapes};
-pub use writer::{Expected, Resumed, Writer, bytes_per_row, unfinished};
+pub use writer::{Expected, Resumed, Writer, bytes_per_row, replace_trust, unfinished};

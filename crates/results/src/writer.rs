@@ -300,13 +300,7 @@ impl<R: SystemRow> Writer<R> {
     /// [`FileError::Exists`] where a file has come there meanwhile that may not be replaced; [`FileError::Sealed`] if the file cannot be written; the unfinished file stays.
     pub fn finish(mut self) -> Result<(), FileError> {
         self.write_waiting()?;
-        let room = Room { rows: self.rows_written, checkpoint_words: None };
-        let file = self.place.temporary()?;
-        let path = &self.place.path;
-        let mut store = Store::create(&file, path, &self.metadata, ShapeSource::File(&self.store), self.columns, room)?;
-        store.copy_rows(&self.store, self.rows_written)?;
-        store.seal()?;
-        drop(store);
+        let file = complete(&self.place, &self.metadata, &self.store, self.rows_written, self.columns)?;
         self.place.put_results(file, self.overwrite)?;
         self.place.remove_part()
     }
@@ -378,6 +372,44 @@ fn are_finite(values: &[f64]) -> bool {
 
 fn rows_per_write(numbers_per_row: usize) -> usize {
     (NUMBERS_PER_WRITE / numbers_per_row.max(1)).clamp(1, ROWS_PER_WRITE)
+}
+
+/// A sealed results file that has no name yet, of the shapes and the first `rows` rows of another.
+fn complete<R: SystemRow>(
+    place: &ResultsPaths,
+    metadata: &Metadata,
+    from: &Store,
+    rows: usize,
+    columns: &'static [Column<R>],
+) -> Result<TemporaryFile, FileError> {
+    let file = place.temporary()?;
+    let room = Room { rows, checkpoint_words: None };
+    let mut store = Store::create(&file, &place.path, metadata, ShapeSource::File(from), columns, room)?;
+    store.copy_rows(from, rows)?;
+    store.seal()?;
+    Ok(file)
+}
+
+/// Replaces the trust card of the results file of a run that has come to its end. The new file takes the place of the old one in one go.
+///
+/// # Errors
+/// [`FileError::NotComplete`] for an unfinished file, [`FileError::Link`]; those of [`Results::open`]; [`FileError::Sealed`] if the file cannot be written:
+/// the old one stays.
+pub fn replace_trust<R: SystemRow>(
+    path: impl AsRef<Path>,
+    columns: &'static [Column<R>],
+    lines: Vec<TrustLine>,
+) -> Result<(), FileError> {
+    let path = path.as_ref();
+    let place = ResultsPaths { path: path.to_owned(), part: unfinished(path) };
+    place.refuse_links()?;
+    let store = Store::open(path, columns)?;
+    if !store.is_complete() {
+        return Err(FileError::NotComplete { path: path.to_owned() });
+    }
+    let metadata = Metadata { trust: lines, ..store.metadata().clone() };
+    let file = complete(&place, &metadata, &store, store.rows(), columns)?;
+    place.put_results(file, true)
 }
 
 /// A sealed unfinished file that has no name yet.

@@ -100,6 +100,42 @@ fn a_sample_that_is_not_finite_is_refused_and_those_before_it_stay() {
     assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 20);
 }
 
+/// Conserved: all of a file but its card.
+#[test]
+fn the_trust_card_of_a_finished_file_is_replaced_and_nothing_else() {
+    let (folder, path) = folder();
+    let line = |place: &str, error| TrustLine {
+        place: place.into(),
+        body: None,
+        error,
+        meaning: "displacements".into(),
+        known: "estimated".into(),
+        next: "mesh_size".into(),
+    };
+    let card = |error| vec![line("mesh", error), line("modes", None)];
+    let write = |card| {
+        let mut writer =
+            Writer::create(&path, &metadata(2, &["P1"]), &[Some(shapes(2))], &COLUMNS, Expected::default());
+        (0..700).for_each(|i| writer.as_mut().unwrap().push(&Row::new(i, 2, 1)).unwrap());
+        writer.as_mut().unwrap().trust(card);
+        writer.unwrap()
+    };
+    let unfinished = unfinished(&path);
+    drop(write(card(None)));
+    let before = std::fs::read(&unfinished).unwrap();
+    assert!(matches!(replace_trust(&unfinished, &COLUMNS, card(Some(0.1))), Err(FileError::NotComplete { .. })));
+    assert_eq!(std::fs::read(&unfinished).unwrap(), before);
+    std::fs::remove_file(unfinished).unwrap();
+
+    write(card(Some(0.1))).finish().unwrap();
+    let expected = std::fs::read(&path).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    write(card(None)).finish().unwrap();
+    replace_trust(&path, &COLUMNS, card(Some(0.1))).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), expected);
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
+}
+
 #[test]
 fn rows_that_could_not_be_written_wait_for_another_try() {
     let (folder, path) = folder();

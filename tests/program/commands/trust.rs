@@ -117,6 +117,18 @@ fn the_card_is_the_same_wherever_it_is_shown() {
         assert_eq!(error(&checked, place), error(&report, place));
     }
     assert!(error(&checked, "modes") >= error(&report, "modes"));
+    // Its card can be kept: then it is that of the file, whose rows are as they were.
+    let before = Results::open(&file, &COLUMNS).unwrap();
+    assert_eq!(serde_json::to_value(&before.metadata.trust).unwrap(), report["trust"]["lines"], "kept without --write");
+    let kept: Value =
+        serde_json::from_slice(&flexframe(&["check", path, "--rows", "1", "--write", "--json"]).stdout).unwrap();
+    assert_ne!(kept["trust"], report["trust"]);
+    let (mut after, shapes) = Results::open_with_shapes(&file, &COLUMNS).unwrap();
+    assert_eq!(serde_json::to_value(&after.metadata.trust).unwrap(), kept["trust"]["lines"]);
+    after.metadata.trust = before.metadata.trust.clone();
+    assert_eq!(after, before);
+    assert!(shapes[0].is_some());
+    assert!(flexframe(&["report", path, "--overwrite"]).status.success());
 }
 
 #[test]

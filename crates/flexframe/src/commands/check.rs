@@ -12,7 +12,7 @@ pub(crate) mod rows;
 use std::path::Path;
 
 use model::{Builder, Model};
-use results::Results;
+use results::{FileError, Results};
 
 pub use checked_rows::{CheckProgress, check_run};
 pub use error::CheckError;
@@ -51,4 +51,13 @@ pub fn check(
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     report.trust = Some(trust::of_check(&results, &report, &name));
     Ok(report)
+}
+
+/// Writes the trust card of a report into its results file, whose run has come to its end. All else in the file stays.
+///
+/// # Errors
+/// [`FileError`].
+pub fn write_card(report: &CheckReport) -> Result<(), FileError> {
+    let Some(card) = &report.trust else { return Ok(()) };
+    results::replace_trust(&report.results, &COLUMNS, card.lines.clone())
 }

@@ -39,10 +39,15 @@ impl ResultsPaths {
         self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
     }
 
+    /// Refuses names that lead to other files.
+    pub(crate) fn refuse_links(&self) -> Result<(), FileError> {
+        refuse_link(&self.part)?;
+        refuse_link(&self.path)
+    }
+
     /// Refuses to begin where something would be lost.
     pub(crate) fn check(&self, overwrite: bool) -> Result<(), FileError> {
-        refuse_link(&self.part)?;
-        refuse_link(&self.path)?;
+        self.refuse_links()?;
         if self.part.exists() {
             if is_busy(&self.part) {
                 return Err(FileError::Busy { path: self.part.clone() });
