@@ -146,6 +146,10 @@ factor:
     FLEXFRAME_MESHES=$(realpath out/factor/{plate_6,plate_4.2,block_5}.msh | paste -sd :) \
         cargo test --quiet --release --package modal --features threads-in-faer --lib against_faer -- --ignored --nocapture
 
+# Layouts of small matrices in the time loop against each other and against faer: the table of docs/evidence/layouts.md (seconds, once built).
+layouts:
+    cargo test --quiet --release --package dynamics --lib the_layouts_of_matrices -- --ignored --nocapture
+
 # docs/evidence/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: twenty minutes, `full`: hours, with all peers to their ends; parts: `modes`, `size`, `loop`, `page`).
 performance *what: build
     .tools/performance/bin/python crates/verification/performance/performance.py {{what}}

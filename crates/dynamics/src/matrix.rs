@@ -1,5 +1,7 @@
 //! Layouts of small matrices and lists for the time loop.
 
+#[cfg(test)]
+mod against_faer;
 pub(crate) mod blocked_matrix;
 pub(crate) mod four;
 pub(crate) mod lists;

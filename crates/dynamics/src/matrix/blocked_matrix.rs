@@ -107,6 +107,7 @@ impl<F: FnMut(usize, &[f64])> WithSimd for Product<'_, F> {
             6 => take(block_product::<S, 6>(simd, rest, x).all()),
             8 => take(block_product::<S, 8>(simd, rest, x).all()),
             10 => take(block_product::<S, 10>(simd, rest, x).all()),
+            12 => take(block_product::<S, 12>(simd, rest, x).all()),
             // No vectors, or short ones: more than the registers hold.
             _ => take(&plain_product(height, rest, x)),
         }
