@@ -31,6 +31,10 @@ lint:
 circles:
     .ci/circles
 
+# Documentation of items begins with what they are, and limits have one word.
+words:
+    .ci/words
+
 # Links, pages, paths and functions that the documentation names are there.
 pages:
     .ci/pages

@@ -151,10 +151,10 @@ impl Observation {
         // 0·x = 0 only for finite x.
         let [w, x, y, z] = attitude.wxyz();
         let numbers = [*time, *kinetic_energy, *strain_energy, *work, *dissipation, w, x, y, z];
-        let noughts = numbers.into_iter().chain(reaction.numbers().copied()).map(|number| 0.0 * number).sum::<f64>()
+        let zeros = numbers.into_iter().chain(reaction.numbers().copied()).map(|number| 0.0 * number).sum::<f64>()
             + vectors.into_iter().chain(momenta).map(|vector| 0.0 * vector).sum::<Vector3<f64>>().sum()
             + points.iter().map(of_points).sum::<f64>();
-        noughts == 0.0 && modal.into_iter().all(|list| all_finite(list))
+        zeros == 0.0 && modal.into_iter().all(|list| all_finite(list))
     }
 
     /// Kinetic + strain energy.

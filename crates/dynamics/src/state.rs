@@ -48,7 +48,7 @@ pub struct Rotation {
 }
 
 impl Layout {
-    /// Adds a part of so many numbers; returns its first place. Its name is that of an error, after "is not finite:".
+    /// Adds a part of `count` numbers; returns its first place. Its name is that of an error, after "is not finite:".
     pub fn add(&mut self, name: &'static str, count: usize) -> usize {
         let first = self.length;
         self.parts.push((name, first..first + count));

@@ -16,9 +16,9 @@ pub use beginning::{BeginError, Beginning, BodyForces, JointForces, MarkerForces
 /// A motion with steps of its own.
 #[derive(Debug, Clone)]
 pub enum Motion {
-    /// Of one body.
+    /// The motion of one body.
     Alone(Box<Simulation>),
-    /// Of several bodies, or of one that is tied to the ground.
+    /// The motion of several bodies, or of one that is tied to the ground.
     Tied(Box<SystemSimulation>),
 }
 
@@ -79,7 +79,7 @@ impl Motion {
         }
     }
 
-    /// Goes on to its next row, event or stop, or as far as so many tries lead; `watch` sees each of its bodies at every step.
+    /// Goes on to its next row, event or stop, or for at most `tries` tries of a step; `watch` sees each of its bodies at every step.
     ///
     /// # Errors
     /// [`StepError`].

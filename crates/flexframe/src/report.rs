@@ -147,7 +147,7 @@ impl fmt::Display for Times {
     }
 }
 
-/// A number to so many significant digits.
+/// A number to `digits` significant digits.
 pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }

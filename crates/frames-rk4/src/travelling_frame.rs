@@ -17,7 +17,7 @@ use crate::state::State;
 /// The name of the formulation.
 pub(crate) const FORMULATION: &str = "paper";
 
-/// The attitude is checked after so many steps: often enough for a sum, and too seldom to cost anything.
+/// Number of steps after which the attitude is checked: often enough for a sum, and too seldom to cost anything.
 const STEPS_OF_ATTITUDE: u64 = 8;
 
 /// Evaluations of the rates in a step.

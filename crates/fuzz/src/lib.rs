@@ -55,7 +55,7 @@ pub static COLUMNS: [Column<Row>; 5] = [
     ),
 ];
 
-/// Writes a file of so many bodies, each with so many modes and points, and so many rows, finished or not.
+/// Writes a file of bodies, modes, points and rows of these numbers, finished or not.
 pub fn write_results(
     path: &Path,
     bodies: usize,

@@ -1,4 +1,4 @@
-//! What may be changed in a run while it goes.
+//! Changes in a run while it goes.
 
 use std::sync::Arc;
 

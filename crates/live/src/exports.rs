@@ -46,7 +46,7 @@ fn told(message: &mut String, done: Result<(), LiveError>) -> u32 {
     u32::from(done.is_err())
 }
 
-/// Room for so many bytes from the page, at a multiple of eight.
+/// Room for `bytes` bytes from the page, at a multiple of eight.
 #[unsafe(no_mangle)]
 pub extern "C" fn room(bytes: usize) -> *mut u64 {
     of_page(|page| {
@@ -56,7 +56,7 @@ pub extern "C" fn room(bytes: usize) -> *mut u64 {
     })
 }
 
-/// Begins the run whose data have been given, so many bytes.
+/// Begins the run whose data have been given, of `bytes` bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn begin(bytes: usize, frame: f64) -> u32 {
     of_page(|page| {

@@ -5,7 +5,7 @@ use crate::error::MatrixError;
 use crate::nodes::NodeFile;
 use crate::source::{Next, Source, fields, shown};
 
-const CURE: &str = "name the .dof file that CalculiX writes beside the matrices, or write a line `node, dof` for each row, dof from 1 to 6";
+const HELP: &str = "name the .dof file that CalculiX writes beside the matrices, or write a line `node, dof` for each row, dof from 1 to 6";
 
 /// Reads `node.dof` (CalculiX) or `node, dof` for each row.
 pub(crate) fn read_dofs(source: &Source<'_>) -> Result<Vec<Index>, MatrixError> {
@@ -27,7 +27,7 @@ pub(crate) fn read_dofs(source: &Source<'_>) -> Result<Vec<Index>, MatrixError> 
                 let help = "write the matrices of a mechanical model, without temperatures";
                 return Err(source.refuse(Some(line), shown(text), expected, help));
             }
-            None => return Err(source.refuse(Some(line), shown(text), "`node.dof` or `node, dof`", CURE)),
+            None => return Err(source.refuse(Some(line), shown(text), "`node.dof` or `node, dof`", HELP)),
         }
         Ok(Next::Go)
     })?;

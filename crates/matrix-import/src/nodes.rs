@@ -15,7 +15,7 @@ pub(crate) struct NodeFile {
     index: HashMap<u64, u32>,
 }
 
-const CURE: &str = "write a line `node, x, y, z` for each node (with a fifth field for its groups, separated by blanks), or name the \
+const HELP: &str = "write a line `node, x, y, z` for each node (with a fifth field for its groups, separated by blanks), or name the \
                     .inp file that the matrices come from";
 
 impl NodeFile {
@@ -23,7 +23,7 @@ impl NodeFile {
         let is_inp = source.path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("inp"));
         let nodes = if is_inp { read_inp(source)? } else { read_table(source)? };
         if nodes.labels.is_empty() {
-            return Err(source.refuse(None, "a file without nodes", "the nodes of the body", CURE));
+            return Err(source.refuse(None, "a file without nodes", "the nodes of the body", HELP));
         }
         Ok(nodes)
     }
@@ -35,7 +35,7 @@ impl NodeFile {
     fn add(&mut self, source: &Source<'_>, line: usize, label: u64, position: [f64; 3]) -> Result<u32, MatrixError> {
         let index = self.labels.len() as u32;
         if self.index.insert(label, index).is_some() {
-            return Err(source.refuse(Some(line), format!("the node {label} a second time"), "each node once", CURE));
+            return Err(source.refuse(Some(line), format!("the node {label} a second time"), "each node once", HELP));
         }
         self.labels.push(label);
         self.positions.push(position);
@@ -65,11 +65,11 @@ fn read_table(source: &Source<'_>) -> Result<NodeFile, MatrixError> {
             };
             if !matches!(coordinates, ["x", "y", "z"] | ["x", "y", "z", "groups"]) {
                 let expected = "the columns `node, x, y, z`, or `node, x, y, z, groups`";
-                return Err(source.refuse(Some(line), shown(text), expected, CURE));
+                return Err(source.refuse(Some(line), shown(text), expected, HELP));
             }
             return Ok(Next::Go);
         }
-        let refuse = |expected: &str| source.refuse(Some(line), shown(text), expected, CURE);
+        let refuse = |expected: &str| source.refuse(Some(line), shown(text), expected, HELP);
         let (label, coordinates, groups) = match fields[..] {
             [x, y, z] => (None, [x, y, z], ""),
             [node, x, y, z] => (Some(node), [x, y, z], ""),
@@ -99,7 +99,7 @@ fn position(source: &Source<'_>, line: usize, text: &str, fields: [&str; 3]) -> 
     let coordinates = fields.map(|field| if field.is_empty() { Some(0.0) } else { number(field) });
     match coordinates {
         [Some(x), Some(y), Some(z)] if [x, y, z].iter().all(|c| c.is_finite()) => Ok([x, y, z]),
-        _ => Err(source.refuse(Some(line), shown(text), "three coordinates that are finite numbers", CURE)),
+        _ => Err(source.refuse(Some(line), shown(text), "three coordinates that are finite numbers", HELP)),
     }
 }
 
@@ -127,7 +127,7 @@ fn read_inp(source: &Source<'_>) -> Result<NodeFile, MatrixError> {
         let fields = fields(text);
         match &block {
             Block::Nodes(set) => {
-                let refuse = || source.refuse(Some(line), shown(text), "`node, x, y, z`", CURE);
+                let refuse = || source.refuse(Some(line), shown(text), "`node, x, y, z`", HELP);
                 let (Some(label), 2..=4) = (fields[0].parse().ok(), fields.len()) else { return Err(refuse()) };
                 let field = |i: usize| fields.get(i).copied().unwrap_or_default();
                 let node =

@@ -10,7 +10,7 @@ use crate::error::ImportError;
 /// The keyword of the copies, which no deck has: the program that reads them takes nothing else in.
 const KEYWORD: &str = "*FLEXFRAME INCLUDE";
 
-const CURE: &str =
+const HELP: &str =
     "write `*INCLUDE, INPUT=FILE` on one line, with the path of a file relative to the one that includes it";
 
 /// Reads a deck. In the copies each `*INCLUDE` names the copy of a file.
@@ -60,18 +60,18 @@ impl DeckReader {
             found: format!("line {line}: {found}"),
             help: help.to_owned(),
         };
-        let Some(name) = name else { return Err(refused("*INCLUDE without the name of a file".to_owned(), CURE)) };
+        let Some(name) = name else { return Err(refused("*INCLUDE without the name of a file".to_owned(), HELP)) };
         let path = of.parent().unwrap_or(Path::new("")).join(name);
         if self.around.contains(&path) {
-            return Err(refused(format!("*INCLUDE of {}, which includes this file", path.display()), CURE));
+            return Err(refused(format!("*INCLUDE of {}, which includes this file", path.display()), HELP));
         }
         if let Some(known) = self.files.iter().find(|file| file.path == path) {
             return Ok(known.name.clone());
         }
         if self.files.len() >= MAX_FILES {
-            return Err(refused(format!("more than {MAX_FILES} files that include each other"), CURE));
+            return Err(refused(format!("more than {MAX_FILES} files that include each other"), HELP));
         }
-        let cannot = |cause| refused(format!("*INCLUDE of {}, which cannot be read: {cause}", path.display()), CURE);
+        let cannot = |cause| refused(format!("*INCLUDE of {}, which cannot be read: {cause}", path.display()), HELP);
         let mut bytes = Vec::new();
         open_ordinary(&path).and_then(|mut file| std::io::Read::read_to_end(&mut file, &mut bytes)).map_err(cannot)?;
         self.file(&path, bytes)

@@ -45,7 +45,7 @@ const WRITES: &str = "which can write files";
 const READS: &str = "which reads files";
 const NAMES: &str = "which can make the name of any command";
 
-const CURE: &str = "read the file; if you trust whoever wrote it, let gmsh do all that it says: --trust-geometry";
+const HELP: &str = "read the file; if you trust whoever wrote it, let gmsh do all that it says: --trust-geometry";
 
 /// Commands that include a file, whose name must be a text.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -180,7 +180,7 @@ fn refused(path: &Path, line: Option<usize>, found: &str) -> ImportError {
     ImportError::Refused {
         source_name: path.display().to_string(),
         found: format!("{at}found {found}; expected geometry alone, since a .geo file is a program"),
-        help: CURE.to_owned(),
+        help: HELP.to_owned(),
     }
 }
 

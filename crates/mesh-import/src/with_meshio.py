@@ -25,7 +25,7 @@ CORNERS = {"tetra10": 4, "triangle6": 3}
 NASTRAN = (".bdf", ".nas", ".fem")
 # Abaqus' faces of a tetrahedron.
 FACES = {"S1": (0, 1, 2), "S2": (0, 3, 1), "S3": (1, 3, 2), "S4": (2, 3, 0)}
-CURE = "install it (pip install meshio h5py), or name a Python that has it in FLEXFRAME_PYTHON"
+HELP = "install it (pip install meshio h5py), or name a Python that has it in FLEXFRAME_PYTHON"
 
 
 class Refused(Exception):
@@ -52,7 +52,7 @@ def main(source, target, raise_order):
     try:
         import numpy as np
     except ImportError:
-        raise Refused(f"{sys.executable} has no numpy", CURE)
+        raise Refused(f"{sys.executable} has no numpy", HELP)
     notes = []
     if Path(source).suffix.lower() == ".inp":
         file = Abaqus(notes).read(np, Path(source))
@@ -126,7 +126,7 @@ def with_meshio(np, source, target, notes):
         try:
             import meshlane as meshio
         except ImportError:
-            raise Refused(f"{sys.executable} has neither meshio nor meshlane", CURE)
+            raise Refused(f"{sys.executable} has neither meshio nor meshlane", HELP)
     said = io.StringIO()
     help = "check the file, or write it as VTU, .inp or MSH 4.1"
     try:

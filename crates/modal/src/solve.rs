@@ -418,7 +418,7 @@ impl<'a> Solver<'a> {
         Ok(cycles.map_err(|reason| self.without_cycles(reason)).ok())
     }
 
-    /// What cycles are made of.
+    /// Parts of the cycles.
     pub(crate) fn cycled_body(&self) -> Result<CycledBody<'_>, ModalError> {
         Ok(CycledBody {
             stiffness: self.stiffness,

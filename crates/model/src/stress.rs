@@ -124,7 +124,7 @@ pub(crate) fn beside(mut stiffness: Mat<f64>, bent: &[usize]) -> Mat<f64> {
     stiffness
 }
 
-/// A stiffness on the first of so many shapes.
+/// A stiffness on the first of all shapes.
 pub(crate) fn in_shapes(stiffness: &Mat<f64>, shapes: usize) -> Mat<f64> {
     let count = stiffness.ncols();
     Mat::from_fn(shapes, shapes, |a, b| if a < count && b < count { stiffness[(a, b)] } else { 0.0 })

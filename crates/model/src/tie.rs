@@ -1,4 +1,4 @@
-//! What ties bodies together: places with axes on them, and the systems of those that joints connect.
+//! Ties between bodies: places with axes on them, and the systems of those that joints connect.
 
 mod axes;
 pub(crate) mod body_marker;

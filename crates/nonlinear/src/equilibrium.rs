@@ -26,14 +26,14 @@ pub struct EquilibriumSettings {
     /// The largest change of the displacement of a node that ends the iteration, over the largest displacement.
     pub tolerance: f64,
     /// Most factors for one step of the load.
-    pub most_factors: usize,
+    pub max_factors: usize,
     /// Steps of the load and of the square of the spin that are tried in turn, until one of them leads to an end.
     pub steps: &'static [usize],
 }
 
 impl Default for EquilibriumSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-10, most_factors: 20, steps: &[1, 4, 16] }
+        Self { tolerance: 1e-10, max_factors: 20, steps: &[1, 4, 16] }
     }
 }
 
@@ -125,7 +125,7 @@ fn in_steps(
                 let negative_pivots = tangent.negative_pivots();
                 return Ok(Equilibrium { displacement: u, stresses, factors, negative_pivots });
             }
-            if iteration >= settings.most_factors {
+            if iteration >= settings.max_factors {
                 return Err(NonlinearError::NoEquilibrium { steps: factors, left });
             }
             last = left;

@@ -43,19 +43,19 @@ pub struct StateErrorSettings {
     /// The last change over the error that ends the iteration where the error is not small.
     pub settled: f64,
     /// Most factors, beside that of the body at rest.
-    pub most_factors: usize,
+    pub max_factors: usize,
 }
 
 impl Default for StateErrorSettings {
     fn default() -> Self {
-        Self { small: 0.01, settled: 0.1, most_factors: 4 }
+        Self { small: 0.01, settled: 0.1, max_factors: 4 }
     }
 }
 
 impl StateErrorSettings {
     /// To the end of the iteration: the answer of the full body.
     pub fn converged() -> Self {
-        Self { small: 1e-11, settled: 1e-9, most_factors: 40 }
+        Self { small: 1e-11, settled: 1e-9, max_factors: 40 }
     }
 }
 
@@ -147,7 +147,7 @@ pub fn state_error<'a>(
         let last_change = if of_error > 0.0 { of_step / of_error } else { 0.0 };
         let is_small = of_error <= settings.small * of_body;
         let is_settled = factors > 1 && last_change <= settings.settled;
-        if is_small || is_settled || factors >= settings.most_factors {
+        if is_small || is_settled || factors >= settings.max_factors {
             let negative_pivots = tangent.negative_pivots();
             return Ok(StateError {
                 error,

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! K* of a body that can move is singular at rest: with springs c on E, A is not, and elimination of the second row takes them out again.
-//! What is left beside A is a matrix of at most 18 rows. By Sylvester's law the negative eigenvalues of K* in the space without
+//! The rest beside A is a matrix of at most 18 rows. By Sylvester's law the negative eigenvalues of K* in the space without
 //! rigid modes are those of A and of what is left, less one for each of R.
 
 use faer::{Mat, MatRef};

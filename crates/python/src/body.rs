@@ -33,7 +33,7 @@ use crate::values::numbers::numbers;
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Body {
     scene: Py<Scene>,
-    /// That of this body.
+    /// The scene of this body.
     of: Arc<flexframe::scene::Scene>,
     model: Arc<Model>,
     /// The assembly that other scenes of the same body share with it.

@@ -59,7 +59,7 @@ impl Scene {
         &self.system
     }
 
-    /// What builds its bodies.
+    /// The builder of its bodies.
     pub(crate) fn builder(&self) -> &Builder {
         &self.builder
     }

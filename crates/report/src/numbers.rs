@@ -39,7 +39,7 @@ impl Numbers {
         Self::of_bytes("f64", 1.0, 1, values.map(f64::to_le_bytes))
     }
 
-    /// In single precision, with so many components in a row.
+    /// In single precision, with the number of components in a row.
     pub(crate) fn single(values: impl Iterator<Item = f64>, components: usize) -> Self {
         Self::of_bytes("f32", 1.0, components.max(1), values.map(|value| (value as f32).to_le_bytes()))
     }

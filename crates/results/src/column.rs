@@ -71,17 +71,17 @@ pub enum Role {
 /// Functions that take the numbers of a column from a row, by what the numbers belong to.
 #[derive(Debug)]
 pub enum Values<R: SystemRow> {
-    /// Those of the system.
+    /// Values of the system.
     OfSystem(Quantity<R>),
-    /// Those of a body.
+    /// Values of a body.
     OfBody(Quantity<R::Body>),
     /// One number for each flexible mode of a body: the dataset has the shape T×nf.
     OfModes(fn(&R::Body) -> &[f64]),
-    /// Those of each point of a body: T×P×….
+    /// Values of each point of a body: T×P×….
     OfPoints(Quantities<R::Body>),
-    /// Those of each support of a body: T×S×….
+    /// Values of each support of a body: T×S×….
     OfSupports(Quantities<R::Body>),
-    /// Those of a joint.
+    /// Values of a joint.
     OfJoint(Quantity<R::Joint>),
 }
 

@@ -347,7 +347,7 @@ fn with_widths<R: SystemRow>(columns: &'static [Column<R>], metadata: &Metadata)
     histories(columns, metadata).map(|history| (history, history.width(metadata))).collect()
 }
 
-/// Those of the histories, and the time.
+/// Numbers of the histories, and the time.
 fn numbers_per_row<R: SystemRow>(present: &[(History<R>, usize)]) -> usize {
     1 + present.iter().map(|(_, width)| width).sum::<usize>()
 }

@@ -437,7 +437,7 @@ fn of_runs_that_begin_at_once_each_has_the_file_to_itself() {
     assert!(done >= 20 && done + busy == 80, "{done} {busy}");
 }
 
-/// Of a file that is finished, one that is not, one that has grown, and one that was resumed; HDF5 finds the same numbers.
+/// Files that are finished, unfinished, grown and resumed: HDF5 finds the same numbers.
 #[test]
 fn the_shapes_of_the_body_come_back_bit_for_bit() {
     let (_folder, path) = folder();

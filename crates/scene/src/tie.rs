@@ -1,4 +1,4 @@
-//! What connects bodies: markers, joints, springs, bushings and couplings, as they are written and as plain data.
+//! Connections of bodies: markers, joints, springs, bushings and couplings, as they are written and as plain data.
 
 pub(crate) mod joint;
 pub(crate) mod marker;

@@ -51,7 +51,7 @@ pub enum SealedError {
     Declared { path: PathBuf, dataset: String, what: &'static str },
 }
 
-/// What helps where the system has refused something.
+/// The help where the system has refused something.
 fn help(error: &io::Error) -> &'static str {
     use io::ErrorKind::*;
     match error.kind() {

@@ -208,7 +208,7 @@ impl SealedFile {
 
     fn no_room(&self, dataset: &str) -> SealedError {
         let (path, dataset) = (self.path.clone(), dataset.to_owned());
-        SealedError::Declared { path, dataset, what: "there is no room for so many numbers" }
+        SealedError::Declared { path, dataset, what: "there is no room for all its numbers" }
     }
 
     fn place<T: Number>(&self, dataset: &str) -> Result<&StoredArray, SealedError> {

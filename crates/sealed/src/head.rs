@@ -29,7 +29,7 @@ use crate::format::{Format, MAGIC};
 const HEAD: u64 = 72;
 /// Bytes before the hash.
 const BEFORE_HASH: usize = 40;
-/// The longest description that is read, in bytes. A scene has at most 1 MiB, and not so many points and modes.
+/// The longest description that is read, in bytes. A scene has at most 1 MiB, and points and modes to match.
 const LONGEST: u64 = 64 << 20;
 /// Bytes that are read at a time.
 const BLOCK: usize = 1 << 14;

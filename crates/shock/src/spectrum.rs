@@ -12,7 +12,7 @@ use crate::oscillator::{Oscillator, Step, Swing};
 /// Steps in a period: the extremes between them are then good to 3e-7 of the largest value.
 const STEPS: f64 = 64.0;
 /// Most cycles of an oscillator in a base motion.
-const MOST_CYCLES: f64 = 1e6;
+const MAX_CYCLES: f64 = 1e6;
 /// Phase after which a strongly damped oscillator is still.
 const STILL: f64 = 40.0;
 
@@ -60,8 +60,8 @@ impl BaseMotion {
             return Err(ShockError::Value { what: "the damping ratio", found: damping_ratio, expected });
         }
         let cycles = frequency * self.duration();
-        if cycles > MOST_CYCLES {
-            return Err(ShockError::Cycles { frequency, cycles, most: MOST_CYCLES });
+        if cycles > MAX_CYCLES {
+            return Err(ShockError::Cycles { frequency, cycles, most: MAX_CYCLES });
         }
         let mut watch = Watch::new(Oscillator { omega: TAU * frequency, zeta: damping_ratio });
         for (duration, base) in self.pieces() {

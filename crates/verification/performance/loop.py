@@ -132,10 +132,10 @@ def ladder(results, modes, program):
 def errors(results, modes, program):
     """(step, error) from long to short, against the shortest step: of Exudyn, that of RK4."""
     is_reference = program != ALPHA
-    rungs = ladder(results, modes, program)
-    references = rungs if is_reference else ladder(results, modes, RK4)
+    refinements = ladder(results, modes, program)
+    references = refinements if is_reference else ladder(results, modes, RK4)
     finest = max(references)
-    pairs = [(k, angle(rungs[k]["attitude"], references[finest]["attitude"])) for k in sorted(rungs)]
+    pairs = [(k, angle(refinements[k]["attitude"], references[finest]["attitude"])) for k in sorted(refinements)]
     return [(END / 2**k, error) for k, error in pairs if not (is_reference and k == finest)]
 
 

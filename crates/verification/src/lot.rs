@@ -34,7 +34,7 @@ impl Lot {
         low * (high / low).powf(self.number())
     }
 
-    /// One of so many.
+    /// One of `count`.
     pub fn of(&mut self, count: usize) -> usize {
         ((self.number() * count as f64) as usize).min(count - 1)
     }

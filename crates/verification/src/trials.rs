@@ -55,7 +55,7 @@ struct Counted {
 /// The page. `notify` hears how far it is.
 ///
 /// # Errors
-/// What refuses the scene or a fit.
+/// The refusal of the scene or of a fit.
 pub fn page(mut notify: impl FnMut(String)) -> Result<String, Box<dyn Error>> {
     let mut rows = String::new();
     for case in &CASES {
@@ -131,7 +131,7 @@ fn table(modes: usize) -> Measured {
     Measured { file: "trials.csv".into(), places: Vec::new(), modes: (1..=modes).map(mode).collect() }
 }
 
-/// The scene of a case with its parameters, which are so many times the true ones.
+/// The scene of a case with its parameters, as multiples of the true ones.
 fn scene(case: &Case, times: f64) -> Result<Scene, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let value = |name: &str, default: f64| {

@@ -1,4 +1,4 @@
-//! What somebody adds to flexframe from outside, each in as few lines as it takes: an own load, an own observer, an own scheme,
+//! Additions to flexframe from outside, each in as few lines as it takes: an own load, an own observer, an own scheme,
 //! an own force between bodies, and an own joint. The tests run them.
 
 pub mod drag;

@@ -26,7 +26,7 @@ fn scene(folder: &Path) -> PathBuf {
     path
 }
 
-/// What the reader finds in the file of this ending.
+/// The reader's view of the file of this ending.
 fn handed_over(folder: &Path, ending: &str) -> Value {
     let file = folder.join(format!("bar.{ending}"));
     done(&["reduce", scene(folder).to_str().unwrap(), "-o", file.to_str().unwrap()]);
@@ -41,7 +41,7 @@ fn matrix(value: &Value) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
 }
 
-/// What `flexframe modes` says of the scene.
+/// The report of `flexframe modes` about the scene.
 fn modes(folder: &Path) -> Value {
     json(&["modes", scene(folder).to_str().unwrap()])
 }

@@ -1,4 +1,4 @@
-//! What a page says that a command prints, against what it prints.
+//! Output of a command on a page, against what the command prints.
 
 /// Numbers that stand for nothing but rounding, such as balances that are closed, may be any as small.
 const ROUNDING: f64 = 1e-6;

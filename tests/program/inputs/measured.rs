@@ -11,7 +11,7 @@ fn mesh() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/rotating_bar.msh"))
 }
 
-/// What `flexframe modes` makes of the free bar with a table: its report, or its refusal.
+/// The report of `flexframe modes` about the free bar with a table, or its refusal.
 fn modes(folder: &Path, table: &str) -> Result<Value, String> {
     std::fs::write(folder.join("test.csv"), table).unwrap();
     report(folder, "measured = \"test.csv\"")

@@ -82,7 +82,7 @@ fn numbers(file: &Path) -> Vec<(String, Vec<f64>)> {
     found
 }
 
-/// What comes after a run, made in a folder.
+/// Files that come after a run, made in a folder.
 fn what_comes_after(folder: &Path, results: &str) {
     done(folder, &["report", results, "-o", "page.html"]);
     done(folder, &["export", results, "--csv", "table.csv", "--vtkhdf", "moving.vtkhdf", "--modes", "modes.vtkhdf"]);
@@ -159,7 +159,7 @@ fn the_whole_volume_comes_from_the_body_file() {
     }
 }
 
-/// Of a run whose results file does not carry the shapes, as where they are too large for it.
+/// A run whose results file does not carry the shapes, as where they are too large for it.
 #[test]
 fn shapes_that_are_not_in_the_results_file_come_from_the_body_file_that_it_names() {
     let desk = desk(MESH);

@@ -95,7 +95,7 @@ fn each_body_moves_as_it_would_alone_to_the_last_bit() {
             let (found, expected) = (columns_of(&both, body), columns_of(&alone, body));
             assert!(found.len() > 20 && found.len() == expected.len(), "{}", found.len());
             for ((path, found), (_, expected)) in found.iter().zip(&expected) {
-                // With rows after so many steps, those of both are at common times, and a step that a load has cut is
+                // With rows after a number of steps, those of both are at common times, and a step that a load has cut is
                 // no row of the other body.
                 let both_have = if time == FIXED { found.len() - 1.. } else { 0.. };
                 let rows = expected.len() - found[both_have.clone()].len()..;

@@ -38,7 +38,7 @@ impl Course {
     pub(crate) fn new(history: &History, end: f64, among: usize) -> Self {
         let stops = stops(&[history], end);
         let largest = history.largest(end);
-        let most = most_intervals(history, among, stops.len());
+        let most = max_intervals(history, among, stops.len());
         let mut start = 0.0;
         let mut resolved = true;
         let mut pieces = Vec::with_capacity(stops.len());
@@ -66,7 +66,7 @@ impl Course {
                 continue;
             }
             let found = histories.iter().zip(&courses).map(|(history, course)| {
-                Piece::new(history, start, stop, CLOSE * course.largest, most_intervals(history, among, stops.len()))
+                Piece::new(history, start, stop, CLOSE * course.largest, max_intervals(history, among, stops.len()))
             });
             let found: Vec<(Piece, bool)> = found.collect();
             let count = found.iter().map(|(piece, _)| piece.samples.len() - 1).max().unwrap_or(1);
@@ -187,14 +187,14 @@ fn stops(histories: &[&History], end: f64) -> Vec<f64> {
 }
 
 /// Most intervals in each of `pieces` of a history, `among` others that cost more than closed forms do.
-fn most_intervals(history: &History, among: usize, pieces: usize) -> usize {
+fn max_intervals(history: &History, among: usize, pieces: usize) -> usize {
     // What a value costs is in the number of samples as its square root: the walks for the size have the other part.
     let share = history.cost().sqrt() * among.max(1) as f64;
     ((MAX_IN_ALL / pieces).clamp(1, MOST) as f64 / share).max(1.0) as usize
 }
 
 impl Piece {
-    /// In so many intervals.
+    /// In `n` intervals.
     fn of(history: &History, start: f64, stop: f64, n: usize) -> Self {
         let inside = 0.5 * (start + stop);
         let at = |i: usize| history.at(start + (stop - start) * i as f64 / n as f64, inside);

@@ -101,7 +101,7 @@ struct Sampled<'a> {
 }
 
 impl Sampled<'_> {
-    /// The integral of the formula's magnitude, in so many parts.
+    /// The integral of the formula's magnitude, in `parts` parts.
     fn magnitude(&self, parts: u32) -> f64 {
         (0..parts).map(|part| self.rules(part, parts).magnitude).filter(|part| !part.is_nan()).sum()
     }

@@ -7,7 +7,7 @@ use crate::matrix::lists::dot;
 
 /// Rows of a block: its sums stay in registers over all columns.
 const HEIGHT: usize = 48;
-/// Rows come in groups of so many, which fill whole vectors of any processor.
+/// Rows of a group, which fill whole vectors of any processor.
 const GROUP: usize = 8;
 
 /// A matrix in blocks of [`HEIGHT`] rows, the last one of fewer, each column by column. Rows are added to a multiple of

@@ -17,7 +17,7 @@ pub enum StepControl {
 /// When the motion is observed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Rows {
-    /// At the beginning, after every so many steps, and at the end.
+    /// At the beginning, after every N-th step, and at the end.
     EverySteps(u64),
     /// At the beginning, at every multiple of this time, and at the end.
     Interval(f64),

@@ -1,4 +1,4 @@
-//! What connects the bodies of a system.
+//! Connections of the bodies of a system.
 
 use std::ops::AddAssign;
 use std::sync::Arc;

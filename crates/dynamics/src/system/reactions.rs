@@ -57,7 +57,7 @@ impl SystemMotion {
         system.bodies[body].observe(&bodies[body], &mut first.evaluations[body], points, out)
     }
 
-    /// What a joint puts on its second marker, after [`Self::find_reactions`]; on the first it is the opposite, about the same
+    /// Force and moment of a joint on its second marker, after [`Self::find_reactions`]; on the first they are the opposite, about the same
     /// point.
     pub fn reaction(&self, joint: usize) -> MarkerWrench {
         let Self { system, first, .. } = self;
@@ -80,7 +80,7 @@ impl SystemMotion {
         sum
     }
 
-    /// What the drive and the motors of a joint put in now, after [`Self::find_reactions`].
+    /// Power of the drive and the motors of a joint now, after [`Self::find_reactions`].
     pub fn drive_power(&self, joint: usize) -> f64 {
         let Self { system, first, .. } = self;
         let joints = &system.connections.joints;

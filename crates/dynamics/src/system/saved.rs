@@ -96,7 +96,7 @@ impl SystemMotion {
 
     /// The joint or coupling that is farthest from closed where the system is, with the residual of its row and the rate of that;
     /// `None` without any.
-    pub(super) fn most_open(&mut self) -> Result<Option<(String, [f64; 2])>, RateError> {
+    pub(super) fn largest_gap(&mut self) -> Result<Option<(String, [f64; 2])>, RateError> {
         let [residuals, rates] = self.residuals()?;
         let open = |row: usize| [residuals[row].abs(), rates[row].abs()];
         let largest = |row: &usize| open(*row).into_iter().fold(0.0, f64::max);

@@ -93,7 +93,7 @@ struct Due {
     rows: u64,
     /// True if the stop has been reached, and is still to be told.
     stop: bool,
-    /// The same of a row after so many steps.
+    /// The same of a row after a number of steps.
     row: bool,
 }
 

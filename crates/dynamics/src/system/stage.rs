@@ -31,7 +31,7 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// What is expected of the turn of a joint at a time.
+    /// The turn of a joint that is expected at a time.
     pub fn turn(&self, joint: usize, time: f64) -> f64 {
         self.joints[joint].turn_after(time - self.time)
     }
@@ -86,7 +86,7 @@ impl Stage {
         let (coordinates, rows) = (system.coordinates(), system.rows());
         let zeros = || vec![0.0; coordinates];
         let constraints = Constraints::new(&system.connections, &system.first);
-        let most_markers = system.connections.elements.iter().map(|element| element.markers().len()).max().unwrap_or(0);
+        let max_markers = system.connections.elements.iter().map(|element| element.markers().len()).max().unwrap_or(0);
         Self {
             x: zeros(),
             y: zeros(),
@@ -105,9 +105,9 @@ impl Stage {
             scratch: zeros(),
             element_forces: zeros(),
             element_power: 0.0,
-            marker_places: Vec::with_capacity(most_markers),
-            marker_motions: Vec::with_capacity(most_markers),
-            wrenches: Vec::with_capacity(most_markers),
+            marker_places: Vec::with_capacity(max_markers),
+            marker_motions: Vec::with_capacity(max_markers),
+            wrenches: Vec::with_capacity(max_markers),
         }
     }
 

@@ -1,4 +1,4 @@
-//! What is conserved, and what loads and damping account for.
+//! Balances: conserved quantities, and the account of loads and damping.
 
 use dynamics::{Initial, Method, Rows, StepControl};
 use modal::ReducedBody;

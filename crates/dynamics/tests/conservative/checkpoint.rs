@@ -65,7 +65,7 @@ fn every_method_goes_on_bit_for_bit() {
     }
 }
 
-/// What a load of this name does.
+/// The action of a load of this name.
 fn thrust(name: &str) -> SharedLoad {
     let point = plate().point([500.0, 0.0, 10.0]);
     Arc::new(LoadFn::new(name, move |_, applied| applied.force(&point, &Vector3::new(0.1, 0.0, 0.2))))

@@ -136,7 +136,7 @@ fn steps_end_at_rows_and_at_discontinuities_and_at_nothing_beyond_them() {
             let least = (0.5 / step).ceil() as usize;
             assert!((least..least + 10).contains(&ends.len()), "{method:?}: {}", ends.len());
         }
-        // With a row after so many steps, the discontinuities are met all the same.
+        // With a row after a number of steps, the discontinuities are met all the same.
         let free: Vec<f64> =
             self::ends(&run, method, control, Rows::EverySteps(1000)).iter().map(|end| end.0).collect();
         assert!(

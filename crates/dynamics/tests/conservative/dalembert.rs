@@ -1,4 +1,4 @@
-//! What is observed against sums over the nodes and differences in time: a second way to every equation of motion.
+//! Observations against sums over the nodes and differences in time: a second way to every equation of motion.
 //!
 //! A particle at `x = X + Φq` of the body frame has `v = V + ω×x + Φq̇` and
 //! `a = A + α×x + ω×(ω×x) + 2ω×Φq̇ + Φq̈`. By d'Alembert's principle the forces less `M a` do no work in a rigid

@@ -1,4 +1,4 @@
-//! What is refused before the run, and what ends it.
+//! Refusals before a run, and ends of runs.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 

@@ -1,4 +1,4 @@
-//! What the number of modes does: the motion is that of the same body.
+//! Numbers of modes: the motion is that of the same body.
 
 use dynamics::{Initial, Method, Rows, StepControl};
 use nalgebra::Vector3;

@@ -1,4 +1,4 @@
-//! What is no history, with the number or the place that is wrong.
+//! Refused histories, with the number or the place that is wrong.
 
 use dynamics::{Expression, History, SetupError, Table};
 

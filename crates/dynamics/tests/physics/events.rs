@@ -22,7 +22,7 @@ fn clock(time: f64) -> Event {
     Event::new("clock", Crossing::Any, move |now: &Observation| now.time - time)
 }
 
-/// What is reached from here to the end, and when.
+/// The rows and events from here to the end, and their times.
 fn rest(simulation: &mut Simulation) -> Vec<(Reached, f64)> {
     let mut reached = Vec::new();
     while reached.last().is_none_or(|(what, _)| *what != Reached::End) {

@@ -1,4 +1,4 @@
-//! What programs outside take part with: states, stop times, times between steps, observers, and attitudes to begin at.
+//! Doors for programs outside: states, stop times, times between steps, observers, and attitudes to begin at.
 
 use std::sync::{Arc, Mutex};
 

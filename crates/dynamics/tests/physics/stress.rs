@@ -1,4 +1,4 @@
-//! What stresses a body stiffens it: loads and drives that do their work on displacements of second order.
+//! Stress stiffens a body: loads and drives that do their work on displacements of second order.
 
 use dynamics::{Drive, DrivenMotion, DrivenSpeed, History, PointShapes, SecondOrder};
 use faer::Mat;
@@ -12,7 +12,7 @@ fn stiffness(i: usize, nf: usize) -> Mat<f64> {
     Mat::from_fn(nf, nf, |k, l| (1.3 * (k + l) as f64 + (k * l) as f64 + 2.1 * i as f64).sin())
 }
 
-/// Of made-up stiffness in three directions.
+/// Displacements of second order by made-up stiffnesses in three directions.
 pub fn second_order(nf: usize) -> SecondOrder {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     SecondOrder::new(axes.into_iter().enumerate().map(|(i, axis)| (axis, stiffness(i, nf))).collect()).unwrap()

@@ -217,7 +217,7 @@ fn rod(omega: f64, force: JointForce, gravity: f64, rows: Rows, end: f64) -> Sys
 /// Moment of inertia of the rod about the hinge.
 const INERTIA: f64 = 1.0 / 3.0;
 
-/// What is reached from here to the end, and when.
+/// The rows and events from here to the end, and their times.
 fn rest(simulation: &mut SystemSimulation) -> Vec<(Reached, f64)> {
     let mut reached = Vec::new();
     while reached.last().is_none_or(|(what, _)| *what != Reached::End) {

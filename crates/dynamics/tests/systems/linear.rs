@@ -22,7 +22,7 @@ fn bar() -> &'static Jointed {
     BAR.get_or_init(|| Jointed::new("half_bar", aluminium, 4, &["left", "right"]))
 }
 
-/// Of each body V̇, ω̇ in its axes, and q̈.
+/// Accelerations V̇, ω̇ of each body in its axes, and q̈.
 fn accelerations(motion: &mut SystemMotion) -> Vec<f64> {
     motion.find_reactions().unwrap();
     let mut all = Vec::new();

@@ -98,7 +98,7 @@ fn an_observer_sees_every_step_and_every_row_and_leaves_the_motion_alone() {
     struct Watcher {
         steps: Vec<f64>,
         rows: usize,
-        most_off: f64,
+        largest_excess: f64,
         fails_after: Option<f64>,
     }
 
@@ -108,7 +108,7 @@ fn an_observer_sees_every_step_and_every_row_and_leaves_the_motion_alone() {
             self.steps.push(time);
             let bodies = &now.observation()?.bodies;
             let excess: f64 = bodies.iter().map(|of| of.energy() - of.work.work + of.work.dissipation).sum();
-            self.most_off = self.most_off.max(excess.abs());
+            self.largest_excess = self.largest_excess.max(excess.abs());
             match self.fails_after.take_if(|at| time > *at) {
                 Some(_) => Err(StepError::NotFinite { time, what: "what is watched" }),
                 None => Ok(()),
@@ -150,7 +150,7 @@ fn an_observer_sees_every_step_and_every_row_and_leaves_the_motion_alone() {
     let watcher = watcher.lock().unwrap();
     assert_eq!(watcher.steps.len() as u64, simulation.stats().accepted);
     assert!(watcher.steps.windows(2).all(|pair| pair[0] < pair[1]) && watcher.rows == alone.len());
-    assert!(watcher.most_off < 1e-7, "{:e}", watcher.most_off);
+    assert!(watcher.largest_excess < 1e-7, "{:e}", watcher.largest_excess);
     // The step at whose end the first one fails is not shown to the second.
     assert_eq!(*count.lock().unwrap() + 1, simulation.stats().accepted);
 }

@@ -50,7 +50,7 @@ pub enum SweepProgress {
     Build(BuildProgress),
     /// Rows that are done or have failed.
     Rows {
-        /// So many.
+        /// Their number.
         done: u64,
         /// Number of all.
         total: u64,
@@ -66,7 +66,7 @@ pub struct SweepSettings {
     pub large: bool,
     /// Runs at once.
     pub threads: usize,
-    /// What builds the bodies.
+    /// The builder of the bodies.
     pub builder: Builder,
     /// Only the rows of this part of the sweep, into a table of its own ([`Shard::table`]).
     pub shard: Option<Shard>,

@@ -6,7 +6,7 @@ use fem_tet10::{AssemblyError, Mesh, StressRecovery};
 use model::{Meshed, Model, ProductStrains, stress_about};
 use results::{Shapes, StressShapes};
 
-/// A body without elements is drawn by so many of its nodes at the most.
+/// Largest number of nodes that a body without elements is drawn by.
 const MAX_NODES: usize = 20_000;
 
 /// The shapes on the surface, with their stress; of a body without elements, on its nodes. `None` for a rigid body without a

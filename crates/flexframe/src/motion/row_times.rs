@@ -16,12 +16,12 @@ pub(crate) struct RowTimes {
 enum Spacing {
     /// Multiples of a time.
     Interval(f64),
-    /// Every so many of equal steps of this length.
+    /// Every N-th of equal steps of this length.
     Steps(u64, f64),
 }
 
 impl RowTimes {
-    /// The times that a scene asks for. Every so many steps are those of a body whose loads have no discontinuities.
+    /// The times that a scene asks for. Every N-th step is for a body whose loads have no discontinuities.
     pub fn new(scene: &Scene) -> Self {
         let end = scene.time.end;
         let spacing = match (scene.output.rows, scene.time.control) {

@@ -1,4 +1,4 @@
-//! What is read off a state, against sums over the nodes.
+//! Quantities that are read off a state, against sums over the nodes.
 
 use frames_rk4::{BodyMotion, State};
 use nalgebra::{DVector, Vector3};

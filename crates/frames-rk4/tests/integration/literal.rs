@@ -6,7 +6,7 @@ use rigid_kin::{ReferencePoints, f_inverse, relative_velocity_rate, transformati
 
 use crate::common::Specimen;
 
-/// What the paper leaves open.
+/// Choices that the paper leaves open.
 #[derive(Debug, Clone, Copy)]
 pub struct Reading {
     /// Each step begins with x_n = Ψ q_n. Otherwise x_n keeps what T turned out of the span of the modes.

@@ -1,4 +1,4 @@
-//! What cannot start or go on is refused with what was found, and the state before it is kept.
+//! A run that cannot start or go on is refused with what was found, and the state before it is kept.
 
 use dynamics::{Initial, Motion, Physics, Rows, Setup, SetupError, Simulation, StepControl, StepError};
 use frames_rk4::{ModalModel, Paper, PaperScheme};

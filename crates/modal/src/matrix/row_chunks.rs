@@ -6,7 +6,7 @@
 use faer::{MatMut, MatRef};
 use rayon::prelude::*;
 
-/// So many rows each, the last ones fewer.
+/// An equal number of rows each, the last ones fewer.
 pub(crate) fn row_chunks(a: MatRef<'_, f64>, rows: usize) -> impl IndexedParallelIterator<Item = MatRef<'_, f64>> {
     let chunk = move |task: usize| a.subrows(rows * task, rows.min(a.nrows() - rows * task));
     (0..a.nrows().div_ceil(rows)).into_par_iter().map(chunk)

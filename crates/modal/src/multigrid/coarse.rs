@@ -54,7 +54,7 @@ impl Corners {
         self.nodes.len()
     }
 
-    /// Number of corners with which so many vectors over them can be told from each other.
+    /// Number of corners with which `vectors` vectors over them can be told from each other.
     pub(crate) fn needed_for(vectors: usize) -> usize {
         (2 * vectors).div_ceil(3)
     }

@@ -1,6 +1,6 @@
 //! The door of this room: cycles for a body, its modes by them, and the inverse that static responses come from.
 //!
-//! The factor of a thin body has few entries for each unknown; that of a bulky one, and of a very large thin one, has so many
+//! The factor of a thin body has few entries for each unknown; that of a bulky one, and of a very large thin one, has many, so
 //! that the cycles take less time and memory.
 
 use std::time::{Duration, Instant};
@@ -37,7 +37,7 @@ const LEFT_BY_CYCLE: f64 = 0.75;
 /// The cycles by which it is found.
 const TRIAL_CYCLES: usize = 4;
 
-/// True if the factor of K + sM, of so many multiplications, takes longer than cycles for `modes` modes.
+/// True if the factor of K + sM, of this number of multiplications, takes longer than cycles for `modes` modes.
 pub(crate) fn are_faster(multiplications: f64, unknowns: usize, modes: usize) -> bool {
     multiplications > LONG * unknowns as f64 * modes.max(FEW) as f64
 }

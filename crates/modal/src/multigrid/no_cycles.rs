@@ -55,7 +55,7 @@ pub enum NoCycles {
         /// Steps.
         steps: usize,
     },
-    /// What stops any other search, too.
+    /// An error that stops any other search, too.
     #[error("{0}")]
     Failed(Arc<ModalError>),
 }

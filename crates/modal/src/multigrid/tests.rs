@@ -248,7 +248,7 @@ fn where_cycles_are_no_help_they_say_why() {
     };
     let block = Block::new([6, 5, 4]);
     assert!(matches!(cycles(&solver(&block), 20), Err(NoCycles::NoCorners)));
-    // So many modes are not to be had from the corners.
+    // The corners do not have that many modes.
     let few = refused(solver(&block), &block, 250);
     assert!(matches!(few, NoCycles::FewCorners { modes: 250, needed: 256, found: 210 }), "{few}");
     let support = Support { nodes: vec![0, 1, 2, 3], ..Support::free() };

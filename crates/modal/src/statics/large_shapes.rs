@@ -20,7 +20,7 @@ use crate::solve::{Modes, Solver};
 /// Smallest part of a static response beside the modes with which it is added: less is rounding.
 const DEPENDENT: f64 = 1e-6;
 /// Factors of following modes in a product, at most: the body is linear in these about the large ones.
-const MOST_FOLLOWING: usize = 2;
+const MAX_FOLLOWING: usize = 2;
 
 /// The products of the coordinates of some large modes and of modes that follow them. The large ones are numbered first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl Products {
 
     /// Products of two, by their factors, ascending.
     pub fn second(&self) -> Vec<Vec<usize>> {
-        self.with(2, MOST_FOLLOWING)
+        self.with(2, MAX_FOLLOWING)
     }
 
     /// Products of three large modes.
@@ -55,11 +55,11 @@ impl Products {
     /// The products in the strain energy beyond the linear one, to the fifth: of three all, since a load holds the modes that
     /// follow to one side, too, and that changes their stiffness by a first order.
     pub fn of_energy(&self) -> Vec<Vec<usize>> {
-        let factors = [(3, 3), (4, MOST_FOLLOWING), (5, MOST_FOLLOWING)];
+        let factors = [(3, 3), (4, MAX_FOLLOWING), (5, MAX_FOLLOWING)];
         factors.into_iter().flat_map(|(factors, following)| self.with(factors, following)).collect()
     }
 
-    /// Products of so many factors, of which so many follow at most, in ascending order.
+    /// Products by their number of factors, with a limit on those that follow, in ascending order.
     fn with(&self, factors: usize, following: usize) -> Vec<Vec<usize>> {
         let mut products: Vec<Vec<usize>> = vec![Vec::new()];
         for _ in 0..factors {

@@ -6,7 +6,7 @@ use sealed::{Array, SealedError, SealedFile};
 
 /// A value that is kept in a file.
 pub(crate) trait Keep: Sized {
-    /// What is known of it before it is read, such as its size.
+    /// Description that is read before it, such as its size.
     type Known<'k>: Copy;
 
     fn write(&self, to: &mut Arrays);

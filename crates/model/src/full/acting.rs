@@ -1,4 +1,4 @@
-//! What acts on the displaced nodes of a full body at a time.
+//! Forces on the displaced nodes of a full body at a time.
 
 use nalgebra::Vector3;
 use nonlinear::{Acting, ExternalForces};

@@ -1,4 +1,4 @@
-//! What would mend an error that a check has found.
+//! Means against an error that a check has found.
 
 use serde::Serialize;
 

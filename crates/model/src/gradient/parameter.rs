@@ -14,7 +14,7 @@ const THICKNESS: &str = "thickness";
 pub struct Parameter {
     /// Its name.
     pub name: String,
-    /// What it is to the body.
+    /// Its meaning in the body.
     pub number: BodyNumber,
 }
 

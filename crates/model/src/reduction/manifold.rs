@@ -16,7 +16,7 @@ const DRAWN_IN: f64 = 0.02;
 /// A mode that is drawn in has a frequency of more than this times theirs. What is as slow as they are moves by itself: the
 /// bending of the plate in its plane relieves 9 % of its twist with its bending out of it.
 const STIFFER: f64 = 4.0;
-/// So many of the slowest modes are asked whether they draw in what the program would take as large.
+/// Number of the slowest modes that are asked whether they draw in what the program would take as large.
 const SLOWEST: usize = 4;
 
 impl Bent {

@@ -100,7 +100,7 @@ fn loads(
     model.loads.iter().enumerate().map(reduced).collect()
 }
 
-/// The largest displacement of a node in a shape with so many degrees of freedom a node.
+/// The largest displacement of a node in a shape, with its number of degrees of freedom a node.
 pub(crate) fn peak(shape: ColRef<'_, f64>, dofs: usize) -> f64 {
     let at = |node: usize| Vector3::from_fn(|axis, _| shape[dofs * node + axis]).norm();
     (0..shape.nrows() / dofs).map(at).fold(0.0, f64::max)

@@ -109,7 +109,7 @@ fn bears_weight(scene: &Scene, mass: f64) -> bool {
 
 /// How many modes are large where the scene asks for large deflection and does not say of which.
 const DEFAULT_LARGE: usize = 1;
-/// Modes up to so many times the lowest frequency follow the large ones.
+/// The multiple of the lowest frequency up to which modes follow the large ones.
 const FOLLOWING: f64 = 25.0;
 
 /// Which of the modes that are kept bend the body far: those that the scene names, or what is advised. The paper's formulation

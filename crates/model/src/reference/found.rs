@@ -24,7 +24,7 @@ use crate::reference::{Reference, Steady};
 const FAR: f64 = 0.05;
 const KEY: &str = "modes.about";
 /// How often the axis of a spin follows the bent body, and the change, over the spin, with which it has settled.
-const MOST_AXES: usize = 10;
+const MAX_AXES: usize = 10;
 const SETTLED: f64 = 1e-12;
 /// Largest distance of a spin from a principal axis, over the spin.
 const OFF_AXIS: f64 = 0.1;
@@ -241,7 +241,7 @@ fn find(asked: &Asked<'_>, matrices: &Matrices, steady: Steady) -> Result<Vec<f6
     let turns = support.motion.rotations().len() == 3;
     let mut omega = steady.omega_body;
     let mut found = equilibrium(&body, &forces, &omega, None, &settings).map_err(fails)?;
-    for _ in 0..MOST_AXES {
+    for _ in 0..MAX_AXES {
         let Some(axis) = turns.then(|| principal_axis(&inertia(&body, &found.displacement), &omega)) else { break };
         let turned = axis * omega.norm();
         let by = (turned - omega).norm() / omega.norm();

@@ -4,7 +4,7 @@
 //! S = S₀ + C:sym(F₀ᵀ∇u) + …        F₀ = 1 + ∇u₀,   S₀ = C:E(u₀)
 //! ```
 //!
-//! What follows beyond the linear terms is the same as about the undeformed body.
+//! Terms beyond the linear ones are those about the undeformed body.
 
 use faer::{Mat, MatRef};
 use fem_tet10::{AssemblyError, StressRecovery};

@@ -1,4 +1,4 @@
-//! What modes leave out of static responses.
+//! Remainders of static responses beside the modes.
 
 /// Remainders of static responses beside the modes, √(uᵀMu − Σ(Φ_kᵀMu)²).
 #[derive(Debug, Clone, Default)]

@@ -57,7 +57,7 @@ pub(crate) fn carried(
 pub enum UnknownTurns {
     /// None: its nodes span a surface, or its body is rigid.
     None,
-    /// Those about a line that its nodes are on: a unit vector, body axes.
+    /// Turns about the line that its nodes are on: a unit vector, body axes.
     About(Vector3<f64>),
     /// All: it is one node that has no rotation.
     All,

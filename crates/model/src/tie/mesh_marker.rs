@@ -20,7 +20,7 @@ const ON: f64 = 1e-6;
 const LEAST_PART: f64 = 1e-9;
 
 /// Most nodes that are tied one by one.
-const MOST_NODES: usize = 100;
+const MAX_NODES: usize = 100;
 
 /// A place with axes on a mesh.
 pub(crate) struct MeshMarker {
@@ -321,10 +321,10 @@ pub(crate) fn faces(mesh: &Mesh, region: &Region) -> Option<Vec<[u32; 6]>> {
 /// The nodes in a part of the mesh, few enough to be tied one by one.
 fn nodes(scene: &Scene, mesh: &Mesh, region: &Region, key: &str) -> Result<Vec<u32>, BuildError> {
     let nodes = region_nodes(scene, mesh, region, key, 1)?;
-    if nodes.len() <= MOST_NODES {
+    if nodes.len() <= MAX_NODES {
         return Ok(nodes);
     }
     let found = format!("{} nodes to be tied one by one", nodes.len());
     let help = "each adds three static shapes: take fewer nodes, or faces as `patches`";
-    Err(scene.refuse(&key_path(key, "tie"), found, format!("{MOST_NODES} nodes or fewer"), help).into())
+    Err(scene.refuse(&key_path(key, "tie"), found, format!("{MAX_NODES} nodes or fewer"), help).into())
 }

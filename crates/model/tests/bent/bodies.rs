@@ -54,7 +54,7 @@ impl Body {
         )
     }
 
-    /// So many times a dead force at its tip.
+    /// A multiple of a dead force at its tip.
     pub fn force(&self, force: [f64; 3], times: f64, history: &str) -> String {
         let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
         let (tip, direction, amplitude) = (self.tip, force.map(|f| f / size), size * times);

@@ -63,7 +63,7 @@ fn resting(scene: &Scene, model: &Model) -> MotionState {
 /// The rest of a model in its spin, checked by the full body.
 fn rest(scene: &Scene) -> (Model, StateCheck) {
     let model = built(scene);
-    let settings = StateErrorSettings { small: 0.0, most_factors: 12, ..StateErrorSettings::converged() };
+    let settings = StateErrorSettings { small: 0.0, max_factors: 12, ..StateErrorSettings::converged() };
     let full = Builder::default().full(scene, |_| ()).unwrap().unwrap();
     let body = full.body().unwrap();
     let checker = Checker::new(&full, scene, &model, &body).unwrap();
@@ -128,7 +128,7 @@ fn a_free_body_that_tumbles_has_no_reference() {
     assert!(loads.contains("its spin alone"), "{loads}");
 }
 
-/// What joints do at markers is not known before the motion: the rest without it would be another one.
+/// Forces of joints at markers are not known before the motion: the rest without them would be another one.
 #[test]
 fn a_body_with_markers_has_no_reference() {
     let tip = Marker { name: "tip".to_owned(), place: MarkerPlace::Point(BRACKET.tip), tie: Tie::Mean, axes: None };

@@ -1,4 +1,4 @@
-//! What is refused of a model that has no rest, and what the full body says there.
+//! Refusals of a model that has no rest, and the answer of the full body there.
 
 use advice::{Refusal, RestOfBody};
 use model::Model;

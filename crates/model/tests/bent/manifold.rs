@@ -7,7 +7,7 @@ use scene::{Choice, Flexible, Scene};
 use crate::bodies::{ARC, BLADE, BRACKET, Body, CLAMP, CONED, CONSTANT, built, checked};
 
 impl Body {
-    /// Spinning at so many times its first frequency at rest.
+    /// Spinning at this multiple of its first frequency at rest.
     fn spinning(&self, modes: &str, part: f64) -> Scene {
         self.scene(modes, &self.driven(part * self.first()))
     }

@@ -24,7 +24,7 @@ impl Body {
 /// The rest of a model, checked by the full body.
 fn rest(scene: &Scene) -> (Model, StateCheck) {
     // Two factors at least: after the first one the tangent is that of the linear stress.
-    let settings = StateErrorSettings { small: 0.0, most_factors: 12, ..StateErrorSettings::converged() };
+    let settings = StateErrorSettings { small: 0.0, max_factors: 12, ..StateErrorSettings::converged() };
     checked(scene, &settings)
 }
 
@@ -113,7 +113,7 @@ fn vibrations_of_the_full_body_are_those_of_the_modes_about_it() {
     }
 }
 
-/// What is seen is counted from the undeformed body, and the motion begins in the reference.
+/// Displacements are counted from the undeformed body, and the motion begins in the reference.
 #[test]
 fn a_motion_begins_in_the_reference_and_stays_there() {
     let spin = BLADE.first();

@@ -31,7 +31,7 @@ fn shapes(marker: &BodyMarker) -> Mat<f64> {
     Mat::from_fn(6, point.len(), |i, k| if i < 3 { point[k][i] } else { turning[k][i - 3] })
 }
 
-/// What unit forces and moments on two markers do to them by deformation (12×12).
+/// Displacements and rotations of two markers by deformation, under unit forces and moments on them (12×12).
 fn compliance(model: &Model) -> Mat<f64> {
     let [one, other] = [0, 1].map(|i| shapes(&model.markers[i]));
     let all = Mat::from_fn(12, one.ncols(), |i, k| if i < 6 { one[(i, k)] } else { other[(i - 6, k)] });

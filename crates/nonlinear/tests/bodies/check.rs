@@ -37,7 +37,7 @@ fn the_error_of_a_linear_answer_is_known_by_one_factor_and_to_a_percent_of_it_by
             equilibrium(&body, &forces, &Vector3::zeros(), None, &EquilibriumSettings::default()).unwrap().displacement;
         let linear = at_rest.answer(&forces.at(body.mesh(), &truth).unwrap()).unwrap();
         let state = steady(&body, linear.clone(), Vector3::zeros(), forces);
-        let settings = StateErrorSettings { small: 0.0, most_factors: 2, ..StateErrorSettings::default() };
+        let settings = StateErrorSettings { small: 0.0, max_factors: 2, ..StateErrorSettings::default() };
         let found = state_error(&body, &at_rest, &state, &settings).unwrap();
         let size = |v: &[f64]| {
             let at = &v[3 * tip..3 * tip + 3];

@@ -356,7 +356,7 @@ class Simulation:
         """Goes on to the end, and gives the rows from here; events are passed, and listed. Where it fails, the rows before are
         in the attribute `results` of the exception."""
     def advance(self, steps: int | None = None) -> Reached:
-        """Goes on to the next row or event, or so many tries of a step."""
+        """Goes on to the next row or event, or for at most `steps` tries of a step."""
     def advance_to(self, time: float) -> Reached:
         """Goes on to a time, past rows, or to an event before it. The time is later than now by more than 1e-12 of the end."""
     def add_event(

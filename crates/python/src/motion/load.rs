@@ -194,7 +194,7 @@ impl ModalForce {
     }
 }
 
-/// The load of a Force or a ModalForce on a body with such points and so many modes.
+/// The load of a Force or a ModalForce on a body with these points and this number of modes.
 pub(crate) fn load_of(
     object: &Bound<'_, PyAny>,
     points: &Points,

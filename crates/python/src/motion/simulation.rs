@@ -133,7 +133,7 @@ impl Simulation {
         })
     }
 
-    /// Goes on to the next row, event or stop, or so many tries of a step. Looks at signals now and then.
+    /// Goes on to the next row, event or stop, or for at most `tries` tries of a step. Looks at signals now and then.
     fn go_on(
         &self,
         py: Python<'_>,
@@ -459,7 +459,7 @@ impl Simulation {
         }
     }
 
-    /// Goes on to the next row or event, or so many tries of a step.
+    /// Goes on to the next row or event, or for at most `steps` tries of a step.
     #[pyo3(signature = (steps=None))]
     fn advance(&self, py: Python<'_>, steps: Option<u64>) -> PyResult<Reached> {
         let mut running = self.running()?;

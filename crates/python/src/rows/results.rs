@@ -97,7 +97,7 @@ fn of_trust<'py>(py: Python<'py>, line: &TrustLine) -> PyResult<Bound<'py, PyDic
     Ok(data)
 }
 
-/// What is known of a body besides its columns.
+/// Properties of a body besides its columns.
 fn of_body<'py>(py: Python<'py>, body: &BodyMetadata) -> PyResult<Bound<'py, PyDict>> {
     let data = PyDict::new(py);
     data.set_item("name", &body.name)?;

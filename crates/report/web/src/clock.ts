@@ -52,7 +52,7 @@ export class Clock {
         this.changed();
     }
 
-    /// After so many seconds of film.
+    /// After this number of seconds of film.
     advance(seconds: number) {
         const time = this.time + seconds * this.speed;
         if (time >= this.motion.end) this.playing = false;

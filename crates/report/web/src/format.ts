@@ -2,7 +2,7 @@
 
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
-/// So many significant digits; a power of ten where the number is very small or large.
+/// A number to `digits` significant digits; a power of ten where the number is very small or large.
 export function number(value: number, digits = 4): string {
     if (value === 0) return "0";
     const magnitude = Math.abs(value);

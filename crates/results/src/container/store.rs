@@ -45,7 +45,7 @@ pub(crate) struct Store {
 /// Where the shapes of a new file come from.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ShapeSource<'a> {
-    /// Those of each body, in order; none of the bodies after the last.
+    /// Shapes of each body, in order; none of the bodies after the last.
     Given(&'a [Option<Shapes>]),
     File(&'a Store),
 }

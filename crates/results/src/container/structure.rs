@@ -14,7 +14,7 @@ use ndarray::{ArrayView2, ArrayViewD, aview0, aview1};
 use sealed::{Declared, Format, Kind, SealedError};
 use std::path::Path;
 
-/// The datasets of the times and the histories, with room for so many rows.
+/// The datasets of the times and the histories, with room for `rows` rows.
 pub(crate) fn declared<R: SystemRow>(columns: &'static [Column<R>], metadata: &Metadata, rows: usize) -> Vec<Declared> {
     let times = Declared::new("time", Kind::F64, &[rows], [&metadata.units.time, "none", "time of each row"]);
     let of_history = |history: History<R>| {

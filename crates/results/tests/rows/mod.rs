@@ -59,7 +59,7 @@ pub fn body(name: &str, modes: usize, point_names: &[&str]) -> BodyMetadata {
     }
 }
 
-/// Three nodes on one face, with the shapes of so many coordinates; one of them is large and has a shape that follows.
+/// Three nodes on one face, with the shapes of `modes` coordinates; one of them is large and has a shape that follows.
 pub fn shapes(modes: usize) -> Shapes {
     let value = |i: usize, k: usize| (i + 10 * k) as f64 - 0.125;
     Shapes {
@@ -156,7 +156,7 @@ impl Row {
         Self::of_bodies(i, &[(modes, points)])
     }
 
-    /// Of bodies with so many modes and points.
+    /// A row of bodies with these numbers of modes and points.
     pub fn of_bodies(i: usize, bodies: &[(usize, usize)]) -> Self {
         let time = i as f64 * 1e-4;
         let body =

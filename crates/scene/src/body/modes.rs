@@ -55,7 +55,7 @@ pub enum Large {
 /// How many flexible modes are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flexible {
-    /// So many; 0 is a body that does not deform.
+    /// Their number; 0 is a body that does not deform.
     Count(usize),
     /// `"auto"`: as many as the loads call for.
     Auto {

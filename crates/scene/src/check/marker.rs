@@ -15,7 +15,7 @@ use crate::tie::section::{GroundMarkerSection, InOrder, MarkerSection, TieName};
 /// Sine of the angle between z and x below which they have one direction.
 const PARALLEL: f64 = 1e-6;
 /// Most patches of a marker.
-const MOST_PATCHES: u32 = 32;
+const MAX_PATCHES: u32 = 32;
 
 impl Check<'_> {
     pub fn markers(&self, InOrder(sections): InOrder<MarkerSection>, body: &Body) -> Result<Vec<Marker>, SceneError> {
@@ -89,7 +89,7 @@ impl Check<'_> {
         }
         let help = "a patch adds six static shapes; remove `patches` for one, or tie `\"nodes\"`";
         let key_of = join(key, "patches");
-        self.require((2..=MOST_PATCHES).contains(&count), &key_of, &format!("from 2 to {MOST_PATCHES}"), help)?;
+        self.require((2..=MAX_PATCHES).contains(&count), &key_of, &format!("from 2 to {MAX_PATCHES}"), help)?;
         let along = along.map(|mut along| {
             let help = "give the direction from patch to patch; its length does not matter";
             self.normalise(&join(key, "along"), &mut along, help).map(|()| along)

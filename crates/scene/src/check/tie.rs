@@ -21,7 +21,7 @@ use crate::tie::section::{
     TieSections,
 };
 
-/// What ties the bodies of a scene together.
+/// Ties between the bodies of a scene.
 #[derive(Default)]
 pub(crate) struct Ties {
     pub ground: Vec<GroundMarker>,

@@ -162,7 +162,7 @@ pub struct JointDrive {
     pub history: History,
 }
 
-/// What acts along a free coordinate of a joint by its value and its rate.
+/// Forces along a free coordinate of a joint by its value and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointSpring {
     /// The coordinate.

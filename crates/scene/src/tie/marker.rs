@@ -20,7 +20,7 @@ pub struct Marker {
 pub enum Tie {
     /// It moves and turns as the mean of the region does.
     Mean,
-    /// Key `patches`: so many strips of its faces side by side, each as its own mean.
+    /// Key `patches`: number of strips of its faces side by side, each as its own mean.
     Patches {
         /// Two or more.
         count: usize,

@@ -363,7 +363,7 @@ fn without_scheme((_, row, m): Found<'_>) -> String {
     format!("{} ({})", duration(m.seconds), setting(row.setting))
 }
 
-/// At most so many rows, evenly spread, with the first and the last.
+/// At most this number of rows, evenly spread, with the first and the last.
 fn shown(rows: &[LadderRun]) -> impl Iterator<Item = &LadderRun> {
     let count = rows.len().min(ROWS_SHOWN);
     (0..count).map(move |i| if count > 1 { i * (rows.len() - 1) / (count - 1) } else { 0 }).filter_map(|i| rows.get(i))

@@ -86,7 +86,7 @@ pub fn pair(case: &Case, model: usize, left_out: &mut Vec<String>) -> Result<Opt
         Err(error) => return Err(words(&error)),
     };
     let true_error: Vec<f64> = of_truth.iter().zip(&state.displacement).map(|(t, u)| t - u).collect();
-    let two = StateErrorSettings { small: 0.0, settled: 0.0, most_factors: 2 };
+    let two = StateErrorSettings { small: 0.0, settled: 0.0, max_factors: 2 };
     let estimate = by(two).map_err(|error| words(&error))?;
     let own = by(StateErrorSettings::default()).map_err(|error| words(&error))?;
     let nodes = full_tip(&body, case.tip);

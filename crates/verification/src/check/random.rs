@@ -11,7 +11,7 @@ const BODIES: [(&str, [f64; 3]); 4] = [
     ("arc", [1.0, 0.0, 1.0]),
 ];
 
-/// So many scenes, each with the number of its model.
+/// `count` scenes, each with the number of its model.
 pub fn random_cases(count: usize) -> Vec<(Case, usize)> {
     let mut lot = Lot::new();
     (0..count).map(|_| random_case(&mut lot)).collect()

@@ -14,7 +14,7 @@ const SUBSPACE: usize = 20;
 const TOLERANCE: f64 = 1e-11;
 
 impl Solid {
-    /// The displacements at rest under forces that depend on them, from zero in so many steps of the forces. `shift`, zero
+    /// The displacements at rest under forces that depend on them, from zero in `steps` steps of the forces. `shift`, zero
     /// for a body that is held, is a small square of a circular frequency: forces on a free body have no resultant.
     ///
     /// # Errors
@@ -96,7 +96,7 @@ impl Solid {
     }
 
     /// The displacements of least strain energy with given parts `amounts` along M-orthonormal `shapes`, those of rigid
-    /// motion among them for a free body, in so many steps from zero. `shift` is a small square of a circular frequency,
+    /// motion among them for a free body, in `steps` steps from zero. `shift` is a small square of a circular frequency,
     /// against the others.
     ///
     /// # Errors

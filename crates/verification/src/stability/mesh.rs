@@ -399,7 +399,7 @@ const PLACES: [[f64; 3]; 6] = [
     [-0.291, -0.013, 0.284],
 ];
 
-/// A cube with a mass of so many times its own, spread over the nodes around a place.
+/// A cube with a mass of a multiple of its own, spread over the nodes around a place.
 fn loaded(at: [f64; 3], times: f64, flexible: usize) -> Result<Elastic, String> {
     let mass = PointMass { at, mass: times, spread: Some(0.6) };
     solve_with(box_mesh([1.0; 3], [2; 3]), METRES, &[mass], flexible)

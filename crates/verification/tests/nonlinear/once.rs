@@ -21,7 +21,7 @@ fn changed(name: &str, changes: &[(&str, &str)]) -> Scene {
     Scene::parse(&text, example(name)).unwrap()
 }
 
-/// The motion with stiffening alone, or with so many large modes.
+/// The motion with stiffening alone, or with this number of large modes.
 fn run(scene: &Scene, large: usize) -> (Model, Vec<Observation>) {
     let mut scene = scene.clone();
     scene.effects.refuse = false;

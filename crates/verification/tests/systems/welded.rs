@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 const MATERIAL: &str = "material = { young_modulus = 7e10, poisson_ratio = 0.33, density = 2700.0 }\n";
 
-/// Largest and smallest relative error of eight frequencies of two welded halves, each of this size and in so many cells, with these
+/// Largest and smallest relative error of eight frequencies of two welded halves, each of this size and number of cells, with these
 /// keys of the markers; and how many patches are proposed.
 fn errors(size: [f64; 3], cells: [usize; 3], keys: &str) -> ([f64; 2], Option<usize>) {
     let directory = tempfile::tempdir().unwrap();

@@ -1,7 +1,7 @@
 //! G Z⁻¹ Gᵀ over the rows of all joints, and its factor L D Lᵀ.
 //!
 //! The matrix is sparse in blocks of joints: two of them meet where they share a body. Joints are eliminated in an order of
-//! least degree, so a chain or a tree costs in proportion to its joints. Rows that others imply have pivots of nought; they
+//! least degree, so a chain or a tree costs in proportion to its joints. Rows that others imply have pivots of zero; they
 //! are left out, and their multipliers are zero.
 
 use nalgebra::Complex;
@@ -23,13 +23,13 @@ pub(crate) struct Pattern {
     first: Vec<usize>,
     /// Joints in the order of elimination.
     order: Vec<usize>,
-    /// Of each joint, those that are eliminated later and meet it, in order, and their blocks.
+    /// Later joints that meet each joint, in order, and their blocks.
     below: Vec<Vec<(usize, usize)>>,
     /// First entry of each block; the diagonal blocks come first, by joints.
     blocks: Vec<usize>,
     /// For a pair of joints that meet a third one: their block, by the third and the places among those below it.
     updates: Vec<Vec<usize>>,
-    /// Of each body, the rows that it has an end of, with what they meet there.
+    /// Rows with an end on each body, and those that they meet there.
     columns: Vec<Vec<Column>>,
     joint_of_row: Vec<usize>,
     entries: usize,
@@ -168,14 +168,14 @@ impl<T: Number> JointMatrix<T> {
     pub fn new(pattern: &Pattern, coordinates: usize) -> Self {
         let zero = T::from_real(0.0);
         let widest = (0..pattern.order.len()).map(|joint| pattern.rows(joint)).max().unwrap_or(0);
-        let most_below = pattern.below.iter().map(Vec::len).max().unwrap_or(0);
+        let max_below = pattern.below.iter().map(Vec::len).max().unwrap_or(0);
         Self {
             entries: vec![zero; pattern.entries],
             inverse_pivots: vec![zero; pattern.len()],
             diagonal: vec![0.0; pattern.len()],
             least: vec![0.0; pattern.len()],
             column: vec![zero; coordinates],
-            scratch: vec![zero; most_below * widest * widest],
+            scratch: vec![zero; max_below * widest * widest],
         }
     }
 

@@ -16,7 +16,7 @@ use crate::system::stage::Stage;
 pub(in crate::system) struct Matrices {
     /// The compliant rows of the Newton matrix.
     pub compliant: Vec<Compliant>,
-    /// Of each row: true if others imply it, or a compliant one has no stiffness.
+    /// True for each row that others imply, or that is compliant without stiffness.
     pub is_left_out: Vec<bool>,
     mass: Vec<Inverse<f64>>,
     pub of_mass: JointMatrix<f64>,

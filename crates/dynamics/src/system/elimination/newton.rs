@@ -40,7 +40,7 @@ impl<T: Number> Solution<T> {
     }
 }
 
-/// What both solutions of a Newton pass share.
+/// The part that both solutions of a Newton pass share.
 #[derive(Clone, Copy)]
 pub(in crate::system) struct Frozen<'a> {
     pub system: &'a System,

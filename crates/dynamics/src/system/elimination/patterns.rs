@@ -7,7 +7,7 @@ use crate::system::elimination::joint_matrix::Pattern;
 /// Patterns of the matrices of a system.
 #[derive(Debug, Clone)]
 pub(in crate::system) struct Patterns {
-    /// Of the rows of joints and couplings.
+    /// Pattern of the rows of joints and couplings.
     pub rows: Pattern,
     /// With the compliant rows.
     pub newton: Pattern,

@@ -54,9 +54,9 @@ pub struct Friction {
 /// A force, or its power, by what becomes of its work.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Forces {
-    /// Of springs, stops and the preload: a function of the coordinate.
+    /// Force of springs, stops and the preload: a function of the coordinate.
     pub spring: f64,
-    /// Of dampers and friction.
+    /// Force of dampers and friction.
     pub friction: f64,
     /// Part of a motor and of laws from outside.
     pub motor: f64,

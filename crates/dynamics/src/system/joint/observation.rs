@@ -12,7 +12,7 @@ use crate::system::radau::SystemMotion;
 pub struct JointObservation {
     /// Where its second marker is against the first.
     pub coordinates: JointCoordinates,
-    /// What its rows put on the second marker, drive included; on the first it is the opposite, about the same point.
+    /// Force and moment of its rows on the second marker, drive included; on the first they are the opposite, about the same point.
     pub reaction_global: MarkerWrench,
     /// The same force, in the axes of the first marker.
     pub force_marker: Vector3<f64>,

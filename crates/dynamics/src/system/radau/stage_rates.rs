@@ -20,7 +20,7 @@ pub(in crate::system) struct StageRates {
 }
 
 impl StageRates {
-    /// Room for bodies with these numbers of modes, and so many joints.
+    /// Room for bodies with these numbers of modes, and for the rows of joints.
     pub(super) fn new(flexible: &[usize], joints: usize) -> Self {
         Self {
             bodies: vec![[0.0; 20]; flexible.len()],

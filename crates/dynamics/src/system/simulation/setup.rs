@@ -114,7 +114,7 @@ pub(super) fn assemble(
     relaxed: bool,
     [size, end]: [f64; 2],
 ) -> Result<Vec<Assembled>, SetupError> {
-    let open = motion.most_open().map_err(|_| SINGULAR)?;
+    let open = motion.largest_gap().map_err(|_| SINGULAR)?;
     let done = if relaxed { motion.relax() } else { motion.assemble() };
     let [left, rates] = match (done, open) {
         (Ok(left), _) => left,
@@ -127,7 +127,7 @@ pub(super) fn assemble(
     let fastest = states.iter().map(|state| state.velocity_global.norm() + size * state.omega_body.norm());
     let is_open = |left: f64, scale: f64| left.is_nan() || left > CLOSED * scale;
     if is_open(left, size) || is_open(rates, size / end + fastest.fold(0.0, f64::max)) {
-        let open = motion.most_open().ok().flatten();
+        let open = motion.largest_gap().ok().flatten();
         let joint = open.map_or_else(Box::default, |(joint, _)| joint.into());
         return Err(SetupError::NotAssembled { joint, left, rate: rates });
     }

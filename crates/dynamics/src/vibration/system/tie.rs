@@ -41,7 +41,7 @@ pub(crate) struct Borne {
 }
 
 impl Borne {
-    /// Nothing, on a body with so many modes.
+    /// Nothing, on a body with this number of modes.
     pub fn nothing(modes: usize) -> Self {
         Self { force: 0.0, moment: 0.0, stiffening: Mat::zeros(modes, modes) }
     }

@@ -1,4 +1,4 @@
-//! What a price list has of each body.
+//! Entries of each body in a price list.
 
 use serde::Serialize;
 

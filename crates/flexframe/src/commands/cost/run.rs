@@ -70,7 +70,7 @@ impl Watch {
 /// A run, observed at equally spaced times.
 #[derive(Debug, Clone)]
 pub(super) struct Trajectory {
-    /// Of each body at the beginning and after each interval.
+    /// States of each body at the beginning and after each interval.
     pub bodies: Vec<Vec<Observation>>,
     /// Steps of all bodies.
     pub steps: u64,

@@ -20,7 +20,7 @@ const FIELDS: [PointField; 3] = [
     PointField { name: "von_mises_stress", components: 1, is_stress: true, values: |placed| &placed.von_mises },
 ];
 
-/// Those of a body with these shapes, and the words of a file about them.
+/// Fields of a body with these shapes, and the words of a file about them.
 pub(super) fn fields(shapes: &Shapes) -> (Vec<&'static PointField>, Vec<Field>) {
     let fields: Vec<_> = FIELDS.iter().filter(|field| !field.is_stress || shapes.stress.is_some()).collect();
     let described = fields.iter().map(|field| Field { name: field.name.to_owned(), components: field.components });

@@ -1,4 +1,4 @@
-//! What scenes need that modes are asked of.
+//! Needs of scenes that modes are asked of.
 
 use dynamics::Effect;
 use model::{Meshed, Model};

@@ -110,7 +110,7 @@ impl<'a> FollowedBody<'a> {
         Largest::watch(&mut self.peak_stress, self.of.model, now);
     }
 
-    /// What is told of it when it has come to its end, with the last row, the cost of its motion, the energy that came and
+    /// Its report when it has come to its end, with the last row, the cost of its motion, the energy that came and
     /// went, and its scheme; and warnings.
     pub fn report(
         mut self,

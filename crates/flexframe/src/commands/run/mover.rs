@@ -29,7 +29,7 @@ pub(super) enum Next {
 }
 
 impl Mover<'_> {
-    /// What is told of it where its bodies are tied together.
+    /// Its report where its bodies are tied together.
     pub fn tied_report(&self) -> Option<TiedReport> {
         let Motion::Tied(simulation) = &self.motion else { return None };
         Some(TiedReport::new(simulation, self.bodies.iter().map(|body| body.of.name().to_owned()).collect()))

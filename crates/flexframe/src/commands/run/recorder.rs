@@ -31,7 +31,7 @@ pub(super) struct Recorder<'a> {
     row: Row,
     writer: Writer<Row>,
     rows: u64,
-    /// Of several bodies and of tied ones; a single free one has its rows where it takes them.
+    /// Times of the rows of several bodies and of tied ones; a single free one has its rows where it takes them.
     times: Option<RowTimes>,
     estimate: Estimate,
 }
@@ -279,7 +279,7 @@ struct Finished<'a> {
     times: Times,
 }
 
-/// What is told of the bodies of a motion that has come to its end, of `count` in all.
+/// Reports of the bodies of a motion that has come to its end, of `count` in all.
 fn reports<'a>(Mover { motion, mut bodies, .. }: Mover<'a>, last: &Row, count: usize) -> Vec<Finished<'a>> {
     let scales = bodies.iter_mut().map(|body| body.monitor_mut().scales());
     if let Some(scales) = scales.reduce(|most, scales| most.or_larger(&scales)) {

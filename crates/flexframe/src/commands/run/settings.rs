@@ -37,6 +37,6 @@ pub struct RunSettings {
     pub check: bool,
     /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
     pub stop: Arc<AtomicBool>,
-    /// What builds the body.
+    /// The builder of the body.
     pub builder: Builder,
 }

@@ -64,7 +64,7 @@ export class LiveRun {
         return this.failure === null;
     }
 
-    /// After so many seconds of film.
+    /// After this number of seconds of film.
     advance(seconds: number) {
         const ahead = seconds * this.pace * this.clock.speed;
         const started = performance.now();

@@ -1,6 +1,6 @@
 // The spectrum of a signal: amplitudes over frequencies, and its peaks.
 
-/// A signal is continued by zeros to so many times its length or more, so that peaks are seen where they are.
+/// A signal is continued by zeros to this multiple of its length or more, so that peaks are seen where they are.
 const PADDING = 4;
 /// A peak has such a part of the largest amplitude at least: more than the side lobes of the window, which have 2.7 %.
 const LEAST_PEAK = 0.05;

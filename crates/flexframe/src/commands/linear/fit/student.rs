@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// The t that a number of so many degrees of freedom (≥ 1) has a probability to be within, on both sides.
+/// The t that a number of `freedom` degrees of freedom (≥ 1) has a probability to be within, on both sides.
 pub(super) fn quantile(probability: f64, freedom: usize) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     while within(high, freedom) < probability {

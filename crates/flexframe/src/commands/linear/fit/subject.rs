@@ -1,4 +1,4 @@
-//! What is fitted: numbers of a body, or stiffnesses of a system.
+//! The subject of a fit: numbers of a body, or stiffnesses of a system.
 
 use fem_tet10::BodyNumber;
 use model::{BuildError, BuildProgress, Builder, Parameter, RatesOf, VariedBody};
