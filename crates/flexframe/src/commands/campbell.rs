@@ -178,6 +178,7 @@ pub fn campbell(
     };
     let mut report = CampbellReport {
         bodies: Vec::new(),
+        rotor: None,
         title: scene.title.clone(),
         time_unit: scene.units.time.clone(),
         length_unit: scene.units.length.clone(),
