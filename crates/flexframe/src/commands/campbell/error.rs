@@ -38,6 +38,12 @@ pub enum CampbellError {
          help: leave `--about-rest` out", scene.display()
     )]
     NoFullBody { scene: PathBuf },
+    /// The full body has all effects of a spin.
+    #[error(
+        "{}: found an effect of the spin that is off, `coriolis`, `deformed_inertia` or `geometric_stiffening` in [effects]; expected all of \
+         them with `--about-rest always`, since the full body has them; help: leave them on, or give `--about-rest never`", scene.display()
+    )]
+    WithoutEffect { scene: PathBuf },
     /// The full body cannot be made.
     #[error("{}: {source}", scene.display())]
     Full { scene: PathBuf, source: Box<FullError> },

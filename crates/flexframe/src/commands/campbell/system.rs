@@ -61,7 +61,7 @@ pub fn campbell_of_system(
         Found::NoDirection(error) => error,
     })?;
     let rotor = match joint {
-        Some(joint) => rotor_of(of_motion, joint, (axis * speeds.end, point)).map_err(|source| {
+        Some(joint) => rotor_of(of_motion, joint, (axis * settings.speeds.end, point)).map_err(|source| {
             let joint = of_motion.system().joints()[joint].name.clone();
             CampbellError::Rotor { scene: scene.path.clone(), joint, source: Box::new(source) }
         })?,
