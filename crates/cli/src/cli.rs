@@ -688,19 +688,21 @@ fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Error>> {
 }
 
 fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<dyn Error>> {
-    let tell_doubts = |scene: &Scene| {
+    let tell_doubts = |system: &System| {
         if !json_errors {
-            output::doubts(plausible::doubts_of_scene(scene));
+            output::doubts(plausible::doubts_of_system(system));
         }
     };
     let read = |input: SceneInput| -> Result<Scene, Box<dyn Error>> {
         let scene = input.read()?;
-        tell_doubts(&scene);
+        if !json_errors {
+            output::doubts(plausible::doubts_of_scene(&scene));
+        }
         Ok(scene)
     };
     let read_system = |input: SceneInput| -> Result<System, Box<dyn Error>> {
         let system = input.read_system()?;
-        system.bodies.iter().for_each(tell_doubts);
+        tell_doubts(&system);
         Ok(system)
     };
     // A scene of one body, or of bodies in joints; of several that nothing ties one has to be named.
@@ -709,8 +711,8 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         if !system.has_connections() && system.bodies.len() > 1 {
             system = input.read()?.into();
         }
+        tell_doubts(&system);
         for scene in &mut system.bodies {
-            tell_doubts(scene);
             scene.modes.flexible = flexible.map_or(scene.modes.flexible, Flexible::Count);
         }
         Ok(system)
@@ -793,7 +795,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             output::require_file("--output", Some(&output))?;
             let system = scene.read_system_or_body()?;
             if !json {
-                output::doubts(system.bodies.iter().flat_map(plausible::doubts_of_scene));
+                output::doubts(plausible::doubts_of_system(&system));
             }
             let outputs = outputs_of_scenes(&system.bodies, &builder, files.overwrite);
             outputs.and_input(&fmu::library_path(library.as_deref())).claim_as(&Written::FMU, &output)?;
@@ -915,7 +917,7 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
             if system.bodies.len() > 1 && !system.has_connections() {
                 system = read(scene)?.into();
             } else {
-                system.bodies.iter().for_each(tell_doubts);
+                tell_doubts(&system);
             }
             if let Some(count) = flexible {
                 system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));

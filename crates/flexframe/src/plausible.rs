@@ -8,7 +8,7 @@ use dynamics::Effect;
 use fem_tet10::{Material, Materials};
 use modal::NoCycles;
 use model::{BodyMarker, Doubt, Meshed, Model};
-use scene::{Body, Choice, Load, Scene, Units};
+use scene::{Body, Choice, Load, Scene, System, Units};
 
 use crate::rows::units::UnitLabels;
 
@@ -37,6 +37,17 @@ pub fn doubts_of_scene(scene: &Scene) -> Vec<String> {
     }
     doubts.extend(scene.loads.iter().enumerate().filter_map(|(load, acts)| of_acceleration(load, acts, &scene.units)));
     doubts
+}
+
+/// The same of all bodies of a scene, each with the name of its body where there are several.
+pub fn doubts_of_system(system: &System) -> Vec<String> {
+    let of_body = |scene: &Scene| {
+        let name = scene.name.clone().filter(|_| system.bodies.len() > 1);
+        let named =
+            move |doubt| name.as_ref().map_or_else(|| String::clone(&doubt), |name| format!("body {name}: {doubt}"));
+        doubts_of_scene(scene).into_iter().map(named).collect::<Vec<_>>()
+    };
+    system.bodies.iter().flat_map(of_body).collect()
 }
 
 fn of_materials(materials: &Materials, units: &Units) -> Vec<String> {

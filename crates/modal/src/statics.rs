@@ -4,3 +4,4 @@ pub(crate) mod inertia_relief;
 pub(crate) mod large_shapes;
 pub(crate) mod mass_left_out;
 pub(crate) mod response;
+mod restricted;

@@ -174,6 +174,12 @@ impl Model {
         xi
     }
 
+    /// The rates of these coordinates, and after them of the products of large modes ([`Manifold::products`]), by the rates of the modal
+    /// displacements: a list for each. `None` where they are the modal displacements.
+    pub fn coordinate_slopes(&self, modal_displacement: &[f64]) -> Option<Vec<Vec<f64>>> {
+        Some(self.physics.large_deflection.as_ref()?.slopes(modal_displacement))
+    }
+
     /// From the origin to a point of the deformed body, body components.
     pub fn arm(&self, point: &PointShapes, modal_displacement: &[f64]) -> Vector3<f64> {
         point.position_body() + point.deformation(&self.coordinates(modal_displacement))

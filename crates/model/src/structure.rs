@@ -5,6 +5,7 @@
 
 pub(crate) mod kept;
 pub(crate) mod remainders;
+mod rigid_patch;
 pub(crate) mod statics;
 
 use std::cell::{Cell, OnceCell, RefCell};
@@ -35,6 +36,7 @@ use crate::mesh::given::{MatrixChecks, refuse_matrix};
 use crate::reference::Reference;
 use crate::stress::about::stress_about;
 use crate::structure::kept::{Basis, Extended, Found, OwnSecondOrder, SecondOrder, StaticResponses};
+use crate::structure::rigid_patch::rigid_rows;
 
 /// The finite-element side of a body.
 pub(crate) struct Structure<'a> {
@@ -371,6 +373,21 @@ impl Structure<'_> {
             })?;
             Ok(Basis { body: self.reduced(&modes)?, modes })
         })
+    }
+
+    /// The modes and static shapes in which each of these patches of nodes moves as a rigid body, and the body in them.
+    pub fn with_rigid_patches(&self, modes: &Modes, dofs: usize, patches: &[&[u32]]) -> Result<Basis, BuildError> {
+        let positions = self.positions()?;
+        let of_patches: Vec<Mat<f64>> = patches.iter().map(|nodes| rigid_rows(modes, dofs, positions, nodes)).collect();
+        let count = of_patches.iter().map(Mat::nrows).sum();
+        let mut rows = Mat::zeros(count, modes.shapes.ncols());
+        let mut first = 0;
+        for of_patch in &of_patches {
+            rows.as_mut().subrows_mut(first, of_patch.nrows()).copy_from(of_patch);
+            first += of_patch.nrows();
+        }
+        let modes = modes.restricted(rows.as_ref()).map_err(|error| self.modal(error))?;
+        Ok(Basis { body: self.reduced(&modes)?, modes })
     }
 
     /// The modes with motions of the support after them, which the rest of the body follows, and the body in these.

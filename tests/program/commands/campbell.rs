@@ -246,6 +246,8 @@ fn what_is_no_axis_no_range_of_speeds_and_no_order_is_refused() {
     refused("z", "0:inf:5", &[], &["0 ≤ start < end"]);
     refused("z", "0:200:1", &[], &["a count of 2"]);
     refused("z", "0:200:5", &["--orders", "1,-2"], &["--orders", "positive"]);
+    let set = ["--about-rest", "always", "--set", "effects.coriolis=false"];
+    refused("z", "0:200:5", &set, &["`coriolis`", "--about-rest always", "--about-rest never"]);
     refused("z", "0:200:5", &["-n", "0"], &["--flexible", "a whole number, 1 or more"]);
 }
 

@@ -222,26 +222,108 @@ tolerance = 1e-8
     assert!(!refused.status.success());
 }
 
-/// With large modes a body runs in joints, and its true error is found with their forces; linearised equations there are none.
+/// Conserved: about its rest without loads, a body with large modes has the frequencies of the same body without them, at rest and in spin. It
+/// runs, and its true error is found with its joints' forces.
 #[test]
 fn a_body_in_joints_may_have_large_modes() {
     let folder = tempfile::tempdir().unwrap();
     let scene = welded_bar(folder.path());
-    let text = std::fs::read_to_string(&scene).unwrap().replace("flexible = 10", "flexible = 10, large = 1");
-    std::fs::write(&scene, text.replace("formula = \"t\"", "formula = \"1e3*t^3\"")).unwrap();
+    let text = std::fs::read_to_string(&scene).unwrap().replace("formula = \"t\"", "formula = \"1e3*t^3\"");
     let out = folder.path().join("out");
+    let answers = |modes: &str, rest: &str| {
+        let text = text
+            .replace("flexible = 10", modes)
+            .replace("group = \"root\" } }", &format!("group = \"root\" }} }}{rest}"));
+        std::fs::write(&scene, text).unwrap();
+        let modes = json(&["modes", &scene]);
+        let speeds = format!("0:{}:2", 4.0 * unit());
+        let folder = out.to_str().unwrap();
+        let campbell = json(&["campbell", &scene, "--speeds", &speeds, "-o", folder, "--overwrite"]);
+        let linear = out.join("linear.mat");
+        let linear = json(&["linearize", &scene, "-o", linear.to_str().unwrap(), "--overwrite"]);
+        let all = modes["systems"][0]["modes"].as_array().unwrap();
+        let mut found: Vec<f64> = all.iter().take(4).map(|mode| number(&mode["frequency"])).collect();
+        found.extend(campbell["branches"].as_array().unwrap().iter().take(4).map(|of| number(&of["frequency"][1])));
+        found.extend(linear["poles"].as_array().unwrap().iter().take(4).map(|pole| number(&pole["frequency"])));
+        found
+    };
+    let load = format!(
+        "\nloads = [{{ kind = \"force\", at = [{LENGTH:?}, 0.0, 0.0], direction = [0, 0, -1], amplitude = 400.0 }}]\n\
+         points = {{ tip = [{LENGTH:?}, 0.0, 0.0] }}"
+    );
+    let [small, large] = ["flexible = 10", "flexible = 10, large = 1, following = 3"].map(|modes| answers(modes, ""));
+    for (small, large) in small.iter().zip(&large) {
+        println!("{small} {large}");
+        assert!((large / small - 1.0).abs() < 1e-3, "{large} {small}");
+    }
+    // A load that bends it by a tenth of its length changes them.
+    let bent = answers("flexible = 10, large = 1, following = 3", &load);
+    println!("{bent:?}");
+    let change = |k: usize| (bent[k] / large[k] - 1.0).abs();
+    assert!((0..4).map(change).fold(0.0, f64::max) > 3e-3 && (8..12).map(change).fold(0.0, f64::max) > 3e-3);
+    // Loads are no part of a diagram.
+    assert!((4..8).all(|k| change(k) < 1e-6));
+    std::fs::write(&scene, text.replace("flexible = 10", "flexible = 10, large = 1")).unwrap();
     let run = flexframe(&["run", &scene, "-o", out.to_str().unwrap()]);
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    let results = out.join("hub.h5");
-    let checked = json(&["check", results.to_str().unwrap()]);
+    let checked = json(&["check", out.join("hub.h5").to_str().unwrap()]);
     println!("{checked}");
-    for command in ["modes", "campbell", "linearize"] {
-        let mut words = vec![command, &scene];
-        if command == "campbell" {
-            words.extend(["--speeds", "0:10:3", "-o", out.to_str().unwrap()]);
+}
+
+/// Closed form: a disk at the center of its stand tilts as J φ̈ − i Ω J_p φ̇ + k φ = 0, so ω = √(a² + k/J) ± a, a = Ω J_p / 2J, and keeps
+/// its sway √(k/m).
+#[test]
+fn a_rotor_on_a_soft_stand_has_its_diagram() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("rotor.toml");
+    let text = |inertia: &str| {
+        format!(
+            r#"
+title = "Disk on a stand"
+units = {{ length = "m", mass = "kg", time = "s" }}
+[bodies.stand]
+rigid = {{ mass = 3.0, center_of_mass = [0, 0, 0], inertia = [[0.2, 0, 0], [0, 0.3, 0], [0, 0, 0.3]] }}
+markers = {{ bearing = {{ at = [0, 0, 0] }}, foot = {{ at = [0, 0, 0] }} }}
+[bodies.disk]
+rigid = {{ mass = 2.0, center_of_mass = [0, 0, 0], inertia = {inertia} }}
+markers = {{ hub = {{ at = [0, 0, 0] }} }}
+[[joints]]
+name = "shaft"
+kind = "revolute"
+between = ["stand.bearing", "disk.hub"]
+axis = [1, 0, 0]
+drive = {{ amplitude = 40.0, history = {{ kind = "expression", formula = "t" }} }}
+[[bushings]]
+name = "pad"
+between = ["ground", "stand.foot"]
+stiffness = {{ translation = [4e4, 3e4, 3e4], rotation = [90.0, 50.0, 50.0] }}
+[time]
+end = 0.1
+tolerance = 1e-5
+[output]
+interval = 0.01
+"#
+        )
+    };
+    std::fs::write(&scene, text("[[0.4, 0, 0], [0, 0.25, 0], [0, 0, 0.25]]")).unwrap();
+    let (scene_name, out) = (scene.to_str().unwrap(), folder.path().join("diagram"));
+    let given = ["campbell", scene_name, "--speeds", "0:40:3", "-o", out.to_str().unwrap(), "--overwrite"];
+    let report = json(&given);
+    assert_eq!(report["rotor"], "disk");
+    let branches = report["branches"].as_array().unwrap();
+    for (i, speed) in [0.0_f64, 20.0, 40.0].into_iter().enumerate() {
+        let (half, still): (f64, f64) = (0.5 * speed * 0.4 / 0.55, 50.0 / 0.55);
+        let root = (half * half + still).sqrt();
+        for expected in [root - half, root + half, (3e4_f64 / 5.0).sqrt()] {
+            let off = |branch: &Value| (number(&branch["frequency"][i]) * TAU / expected - 1.0).abs();
+            let least = branches.iter().map(off).fold(f64::INFINITY, f64::min);
+            assert!(least < 1e-8, "{speed}: {expected}: {least}");
         }
-        let refused = flexframe(&words);
-        let said = String::from_utf8_lossy(&refused.stderr);
-        assert!(!refused.status.success() && said.contains("has large modes"), "{command}: {said}");
     }
+    let told = flexframe(&given);
+    assert!(String::from_utf8_lossy(&told.stdout).contains("disk alone spins"), "{told:?}");
+    std::fs::write(&scene, text("[[0.4, 0, 0], [0, 0.25, 0], [0, 0, 0.35]]")).unwrap();
+    let refused = flexframe(&given);
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert!(!refused.status.success() && said.contains("\"shaft\"") && said.contains("across the axis"), "{said}");
 }

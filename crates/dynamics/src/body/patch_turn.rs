@@ -27,16 +27,35 @@ pub struct PatchTurn {
     normal: Option<Vector3<f64>>,
 }
 
-/// A patch where it is: R and (tr P − P)⁻¹.
+/// A patch where it is: R, (tr P − P)⁻¹ and G.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PatchFit {
     pub rotation: Matrix3<f64>,
     inverse: Matrix3<f64>,
+    /// G.
+    sum: Matrix3<f64>,
+}
+
+/// How a coordinate moves a patch, in the axes that R turns: Rᵀ ∂G/∂q, and its angular velocity.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PatchSlope {
+    slope: Matrix3<f64>,
+    pub spin: Vector3<f64>,
 }
 
 impl PatchFit {
+    /// The change of the angular velocity of one coordinate by another, in the axes that R turns, but for that by ∂²G/∂q∂q: of
+    /// (tr P − P) w = axial(Rᵀ ∂G), where R changes by R [w_j ×] and P with it.
+    pub(crate) fn spin_change(&self, of: &PatchSlope, by: &PatchSlope) -> Vector3<f64> {
+        let turned = by.spin.cross_matrix();
+        let p = self.rotation.tr_mul(&self.sum);
+        let p_change = by.slope - turned * p;
+        let stretched = Matrix3::from_diagonal_element(p_change.trace()) - p_change;
+        self.inverse * -(axial(&(turned * of.slope)) + stretched * of.spin)
+    }
+
     /// A patch that is torn flat: no number.
-    pub const NONE: Self = Self { rotation: NO_NUMBERS, inverse: NO_NUMBERS };
+    pub const NONE: Self = Self { rotation: NO_NUMBERS, inverse: NO_NUMBERS, sum: NO_NUMBERS };
 }
 
 const NO_NUMBERS: Matrix3<f64> =
@@ -98,7 +117,7 @@ impl PatchTurn {
         let rotation = self.polar(&g)?;
         let p = rotation.transpose() * g;
         let inverse = (Matrix3::from_diagonal_element(p.trace()) - p).try_inverse()?;
-        Some(PatchFit { rotation, inverse })
+        Some(PatchFit { rotation, inverse, sum: g })
     }
 
     /// Forces of a moment on the flexible modes where the patch is.
@@ -107,18 +126,23 @@ impl PatchTurn {
         fit: &PatchFit,
         moment: &Vector3<f64>,
     ) -> impl Iterator<Item = f64> + use<'a> {
-        let PatchFit { rotation, inverse } = fit;
+        let PatchFit { rotation, inverse, .. } = fit;
         let turned = rotation * (inverse.transpose() * rotation.tr_mul(moment)).cross_matrix();
         self.modes.iter().map(move |q| turned.dot(q))
     }
 
     /// Its angular velocity where it is, at the rates of ξ.
     pub(crate) fn spin_at(&self, fit: &PatchFit, rates: impl Iterator<Item = f64>) -> Vector3<f64> {
-        let PatchFit { rotation, inverse } = fit;
+        let PatchFit { rotation, inverse, .. } = fit;
         let g_rate = self.modes.iter().zip(rates).fold(Matrix3::zeros(), |sum, (q, rate)| sum + q * rate);
-        let a = rotation.tr_mul(&g_rate);
-        let axial = Vector3::new(a[(2, 1)] - a[(1, 2)], a[(0, 2)] - a[(2, 0)], a[(1, 0)] - a[(0, 1)]);
-        rotation * (inverse * axial)
+        rotation * (inverse * axial(&rotation.tr_mul(&g_rate)))
+    }
+
+    /// How a coordinate that moves ξ along this moves the patch where it is.
+    pub(crate) fn slope_at(&self, fit: &PatchFit, along: impl Iterator<Item = f64>) -> PatchSlope {
+        let slope = self.modes.iter().zip(along).fold(Matrix3::zeros(), |sum, (q, x)| sum + q * x);
+        let slope = fit.rotation.tr_mul(&slope);
+        PatchSlope { slope, spin: fit.inverse * axial(&slope) }
     }
 
     /// R of G, by the iteration of Newton: the mean of a matrix and its transposed inverse.
@@ -147,6 +171,11 @@ impl PatchTurn {
 
 /// Squared distance of the nodes from a plane, or from a line, over that from the middle: below this a patch is flat, or a line.
 const FLAT: f64 = 1e-9;
+
+/// The vector of the skew part of a matrix, twice.
+fn axial(a: &Matrix3<f64>) -> Vector3<f64> {
+    Vector3::new(a[(2, 1)] - a[(1, 2)], a[(0, 2)] - a[(2, 0)], a[(1, 0)] - a[(0, 1)])
+}
 
 /// Two unit vectors across a third one, right-handed before it.
 fn across(normal: &Vector3<f64>) -> [Vector3<f64>; 2] {

@@ -82,15 +82,15 @@ pub(crate) struct InertiaConstants {
 }
 
 impl ConservativeBody {
-    /// Its constants of inertia; it turns freely about three axes and has no large modes.
+    /// Its constants of inertia in z; it turns freely about three axes.
     pub(crate) fn inertia_constants(&self) -> InertiaConstants {
-        let nf = self.flexible();
-        let zeros = || Mat::zeros(nf, nf);
+        let size = self.coordinates();
+        let zeros = || Mat::zeros(size, size);
         let gyroscopic: [Mat<f64>; 3] =
             std::array::from_fn(|k| if k < self.g_count { self.matrices.matrix(k) } else { zeros() });
         let undeformed = Lists { groups: &self.undeformed, width: self.lists_of_undeformed(), first: self.s_count };
         let first = std::array::from_fn(|k| {
-            let mut list = Padded::zeros(nf);
+            let mut list = Padded::zeros(size);
             if k < self.pairs.len() {
                 undeformed.copy(k, list.groups_mut());
             }

@@ -20,9 +20,11 @@
 //! B has two or three entries in a row. A matrix A of the extended shapes, EᵀAE of these coordinates, is made once. M, the
 //! slopes of the manifold and the forces of V are polynomials of the large and following modes.
 
+mod bent_shape;
 pub(crate) mod in_joints;
 mod monomials;
 
+pub(crate) use bent_shape::BentShape;
 pub(crate) use in_joints::{BentPlace, BentTerms};
 
 use std::sync::Arc;
@@ -283,6 +285,19 @@ impl Manifold {
             let product = value(factors, &x);
             xi.iter_mut().zip(shape).for_each(|(xi, shape)| *xi += shape * product);
         }
+    }
+
+    /// The rates of ξ, then of the products, at q and a unit velocity of each mode: a list for each.
+    pub fn slopes(&self, q: &[f64]) -> Vec<Vec<f64>> {
+        let (mut place, mut z) = (self.place(), vec![0.0; self.size()]);
+        self.go_to(q, &mut place, &mut z);
+        let of_mode = |slope: Vec<f64>| {
+            let mut rates = vec![0.0; self.0.body.flexible()];
+            self.in_shapes(&slope, &mut rates);
+            rates.extend(&slope[self.0.modes..]);
+            rates
+        };
+        BentPlace { manifold: self, point: &place, z: &z }.slopes().into_iter().map(of_mode).collect()
     }
 
     /// Number of coordinates z.

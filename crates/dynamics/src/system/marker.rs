@@ -356,6 +356,33 @@ mod tests {
             let work = force.dot(&(ahead.position - back.position)) + moment.dot(&turn);
             assert!((work / (2.0 * delta) - found).abs() < 1e-9, "{direction}: {work} {found}");
         }
+        // The first order of both.
+        let mut change = faer::Mat::zeros(6 + q.len(), 6 + q.len());
+        at(0.0, 0, &mut |body| {
+            let tangent = marker.tangent(body, q.len(), [&Vector3::zeros(); 2]);
+            tangent.add_force_change([&force, &moment], &mut change);
+            let place = marker.place(Some(body));
+            let motion = marker.motion(&place, Some(body), &velocities);
+            let by_tangent = |row: usize| (0..velocities.len()).map(|k| tangent.motion[(row, k)] * velocities[k]).sum();
+            let [velocity, omega] = [0, 3].map(|first| Vector3::from_fn(|i, _| by_tangent(first + i)));
+            assert!((velocity - motion.velocity_global).norm() < 1e-13, "{velocity} {}", motion.velocity_global);
+            assert!((omega - motion.omega_global).norm() < 1e-13, "{omega} {}", motion.omega_global);
+        });
+        let forces = |delta: f64, direction: usize| {
+            let mut generalised = vec![0.0; 6 + q.len()];
+            at(delta, direction, &mut |body| {
+                marker.add_wrench(&marker.place(Some(body)), body, [&force, &moment], &mut generalised);
+            });
+            generalised
+        };
+        for direction in 0..6 + q.len() {
+            let [back, ahead] = [forces(-delta, direction), forces(delta, direction)];
+            for row in 0..6 + q.len() {
+                let expected = (ahead[row] - back[row]) / (2.0 * delta);
+                let found = change[(row, direction)];
+                assert!((expected - found).abs() < 1e-8, "{row} by {direction}: {found} {expected}");
+            }
+        }
     }
 
     #[test]

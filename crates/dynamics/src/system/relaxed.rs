@@ -7,7 +7,7 @@
 //! q = Λ⁻¹ (forces + G_qᵀ λ),        q̇ = 0
 //! ```
 //!
-//! Eqs. (J9) of `docs/method/systems.md`.
+//! Eqs. (J9) of `docs/method/systems.md`; with large modes (L7) and (L11).
 
 use crate::conservative::{get, part};
 use crate::system::elimination::inverse::{Inertia, Inverse};
@@ -27,12 +27,24 @@ impl SystemMotion {
     /// [`Failed`] where the inertia of a body is singular, or the joints do not fit.
     pub fn relax(&mut self) -> Result<[f64; 2], Failed> {
         let mut left = self.assemble()?;
+        let is_bent = self.system.bodies.iter().any(|body| body.manifold.is_some());
         for _ in 0..PASSES {
-            let (multipliers, _) = self.rigid_forces()?;
-            self.deform(&multipliers);
+            if is_bent {
+                self.bend()?;
+            } else {
+                let (multipliers, _) = self.rigid_forces()?;
+                self.deform(&multipliers);
+            }
             left = self.assemble()?;
         }
         Ok(left)
+    }
+
+    /// With large modes forces change as the bodies bend, so the shapes come from Newton's method with their tangent: (L7) with the
+    /// accelerations of (L11).
+    fn bend(&mut self) -> Result<(), Failed> {
+        let state = self.moving_state().map_err(|_| Failed::Newton)?;
+        self.set_states(&state.states()).map_err(|_| Failed::Newton)
     }
 
     /// V' and ω' of rigid bodies where the system is, in body axes, over the coordinates of all bodies.

@@ -10,6 +10,7 @@ mod hard;
 mod linear;
 mod mechanism;
 mod rigid;
+mod rotor;
 mod run;
 mod stiff;
 mod stiffening;

@@ -143,6 +143,9 @@ pub fn campbell(
         softening: effects[Effect::DeformedInertia],
         stiffening: effects[Effect::GeometricStiffening],
     };
+    if settings.about_rest == AboutRest::Always && !effects.all() {
+        return Err(CampbellError::WithoutEffect { scene: scene.path.clone() });
+    }
     let spin = SteadySpin::new(&model.body, &axis, &model.physics.effects);
     let total = speeds.len();
     let done = |done| progress(CampbellProgress::Speeds { done, total });
@@ -178,6 +181,7 @@ pub fn campbell(
     };
     let mut report = CampbellReport {
         bodies: Vec::new(),
+        rotor: None,
         title: scene.title.clone(),
         time_unit: scene.units.time.clone(),
         length_unit: scene.units.length.clone(),

@@ -492,7 +492,10 @@ impl Fault for CampbellError {
             Self::Build(_) | Self::System(_) | Self::Figure(_) | Self::Write(_) => Known::default(),
             Self::Eigen { scene, .. } | Self::Steady { scene, .. } => Kind::Run.of(scene),
             Self::Full { scene, .. } | Self::Bent { scene, .. } => Kind::Run.of(scene),
-            Self::NoAxis { scene, .. } | Self::NoFullBody { scene } => Kind::Usage.of(scene),
+            Self::Rotor { scene, .. } => Kind::Refused.of(scene),
+            Self::NoAxis { scene, .. } | Self::NoFullBody { scene } | Self::WithoutEffect { scene } => {
+                Kind::Usage.of(scene)
+            }
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),
         }
     }

@@ -4,6 +4,7 @@ use advice::{Advice, Backbone, Findings, advise};
 use dynamics::{Effect, ReferenceForces};
 use faer::{Mat, Scale};
 use modal::Modes;
+use scene::key_path;
 
 use crate::error::BuildError;
 use crate::reduction::decide::Decision;
@@ -14,7 +15,7 @@ use crate::reduction::physics;
 use crate::reduction::survey::Survey;
 use crate::stress::{Stress, beside, in_shapes};
 use crate::structure::kept::Basis;
-use crate::tie::mesh_marker::warps;
+use crate::tie::mesh_marker::{MeshMarker, warps};
 use crate::tie::warp::Warp;
 
 /// Sentence about effects that may matter but need elements.
@@ -55,17 +56,35 @@ impl Reduction {
         } else {
             let of_others = statics.responses().filter(|_| decision.has_static_shapes);
             let responses = of_markers.iter().chain(of_others).collect::<Vec<_>>();
-            let Basis { modes, body } = model.structure.basis(&modes.truncated(decision.keep), &responses)?;
+            let Basis { mut modes, mut body } = model.structure.basis(&modes.truncated(decision.keep), &responses)?;
+            let rigid: Vec<&[u32]> = model.markers.iter().filter_map(MeshMarker::rigid_nodes).collect();
+            let is_free = rigid.is_empty() || of_markers.is_none();
+            if !is_free {
+                Basis { modes, body } = model.structure.with_rigid_patches(&modes, model.dofs, &rigid)?;
+            }
             let modal = ModalModel::new(model, body, &modes)?;
             let deflection = advise(&modal.case(model), tolerance)?.deflection;
             let keep = decision.keep;
             let first = |spin: [Mat<f64>; 6]| spin.map(|k| k.get(..keep, ..keep).to_owned()).to_vec();
-            let known = spin.map_or_else(Vec::new, first);
+            // Modes of which something moves as a rigid body are others.
+            let known = spin.filter(|_| is_free).map_or_else(Vec::new, first);
             let spin = if stiffens { statics.stress_stiffness(model, &modes, &known)? } else { None };
             (modes, modal, spin, deflection)
         };
         let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
         let bent = decision.bent.clone().settled(model, &modes)?;
+        if let (false, Some(marker)) =
+            (bent.large.is_empty(), model.markers.iter().find(|of| of.rigid_nodes().is_some()))
+        {
+            let key = key_path(&key_path("body.markers", marker.name()), "tie");
+            let help =
+                "tie its `\"nodes\"` to a rigid body by a fixed joint, or give `large_deflection = false` in [effects]";
+            let found = "a rigid part of a body with large modes";
+            return Err(model
+                .scene
+                .refuse(&key, found, "`\"mean\"` or `\"nodes\"`, whose shapes large modes know", help)
+                .into());
+        }
         let (modal, stress, large, of_spin) = if !bent.large.is_empty() {
             let all = bent.all();
             let stressing = statics.without_parts(model, &modes, &all)?;

@@ -31,6 +31,8 @@ pub(crate) struct MeshMarker {
     parts: Vec<(f64, Place)>,
     /// Forces on the parts that are put on together (parts × patterns); none where each part has its own.
     patterns: Option<Mat<f64>>,
+    /// True if its parts move as one rigid body: joints then hold the whole.
+    is_rigid: bool,
     /// Its faces, where it is their mean.
     faces: Option<Vec<[u32; 6]>>,
     /// Degrees of freedom of a node.
@@ -99,7 +101,16 @@ impl MeshMarker {
     fn new(scene: &Scene, mesh: &Mesh, dofs: usize, marker: &Marker) -> Result<Self, BuildError> {
         let key = key_path("body.markers", &marker.name);
         let (name, axes) = (marker.name.clone(), axes(marker.axes.as_ref()));
-        let alone = |whole: Place| Self { name, axes, whole, parts: Vec::new(), patterns: None, faces: None, dofs };
+        let alone = |whole: Place| Self {
+            name,
+            axes,
+            whole,
+            parts: Vec::new(),
+            patterns: None,
+            is_rigid: false,
+            faces: None,
+            dofs,
+        };
         let region = match &marker.place {
             MarkerPlace::Point(at) => {
                 let key = key_path(&key, "at");
@@ -123,7 +134,7 @@ impl MeshMarker {
                 let parts = strips.into_iter().map(|strip| (strip.part, Place::of_patch(strip.patch, mesh))).collect();
                 Ok(Self { parts, ..alone(whole) })
             }
-            Tie::Nodes => {
+            Tie::Nodes | Tie::Rigid => {
                 let nodes = nodes(scene, mesh, region, &key)?;
                 let part = 1.0 / nodes.len() as f64;
                 let of_node = |node: &u32| (part, Place::of_point(vec![*node], vec![1.0], None, mesh));
@@ -131,7 +142,8 @@ impl MeshMarker {
                 let positions: Vec<_> = parts.iter().map(|(_, place)| place.position).collect();
                 let weights = vec![part; nodes.len()];
                 let whole = Place::of_patch(Patch::new(nodes, weights, mesh.positions()), mesh);
-                Ok(Self { parts, patterns: Some(patterns(&positions)), ..alone(whole) })
+                let is_rigid = marker.tie == Tie::Rigid;
+                Ok(Self { parts, patterns: Some(patterns(&positions)), is_rigid, ..alone(whole) })
             }
         }
     }
@@ -142,6 +154,16 @@ impl MeshMarker {
             None => Some(&self.whole),
             Some(part) => self.parts.get(part).map(|(_, place)| place),
         }
+    }
+
+    /// The nodes that move as one rigid body, if they do.
+    pub(crate) fn rigid_nodes(&self) -> Option<&[u32]> {
+        self.is_rigid.then_some(&self.whole.nodes)
+    }
+
+    /// Its name.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
     }
 
     /// The places that forces act on.
@@ -198,10 +220,13 @@ impl MeshMarker {
             let (point, turning) = place.shapes(scene, mesh, self.dofs, body, stiffness)?;
             Ok(MarkerPart { point, turning })
         };
-        let parts = self.parts.iter().zip(of_places).map(of_part).collect::<Result<_, BuildError>>()?;
+        let parts = match self.is_rigid {
+            true => Vec::new(),
+            false => self.parts.iter().zip(of_places).map(of_part).collect::<Result<_, BuildError>>()?,
+        };
         // What does not deform is turned as the body is.
         let unknown_turns = if body.body.flexible() == 0 { UnknownTurns::None } else { self.whole.unknown_turns };
-        let by_nodes = self.patterns.is_some();
+        let by_nodes = self.patterns.is_some() && !self.is_rigid;
         Ok(BodyMarker {
             name: self.name.clone(),
             point,

@@ -81,11 +81,19 @@ impl Check<'_> {
                 let help = "add `patches`, or remove `along`: it says how patches follow each other";
                 return refuse("along", "`along` without `patches`", "both or none", help);
             }
-            return Ok(if tie == Some(TieName::Nodes) { Tie::Nodes } else { Tie::Mean });
+            return Ok(match tie {
+                Some(TieName::Nodes) => Tie::Nodes,
+                Some(TieName::Rigid) => Tie::Rigid,
+                Some(TieName::Mean) | None => Tie::Mean,
+            });
         };
         if tie == Some(TieName::Nodes) {
             let help = "keep `patches`, or `tie = \"nodes\"`, which ties each node by itself";
             return refuse("tie", "`tie = \"nodes\"` beside `patches`", "one of them", help);
+        }
+        if tie == Some(TieName::Rigid) {
+            let help = "keep `patches`, which let the faces warp from one to the next, or `tie = \"rigid\"`, which lets nothing warp";
+            return refuse("tie", "`tie = \"rigid\"` beside `patches`", "one of them", help);
         }
         let help = "a patch adds six static shapes; remove `patches` for one, or tie `\"nodes\"`";
         let key_of = join(key, "patches");

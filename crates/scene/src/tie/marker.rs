@@ -29,6 +29,8 @@ pub enum Tie {
     },
     /// `tie = "nodes"`: each node by itself.
     Nodes,
+    /// `tie = "rigid"`: its nodes move as one rigid body.
+    Rigid,
 }
 
 /// The part of a body that carries a marker.

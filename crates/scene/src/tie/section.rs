@@ -66,6 +66,8 @@ pub(crate) enum TieName {
     Mean,
     /// Each node of the region is a place of its own.
     Nodes,
+    /// The region moves as a rigid body.
+    Rigid,
 }
 
 #[derive(Deserialize, JsonSchema)]

@@ -180,6 +180,12 @@ fn refusals_name_the_place_and_the_way_out() {
         ),
         (
             "group = 'tip face'",
+            "group = 'tip face'\npatches = 2\ntie = 'rigid'",
+            "bodies.arm.markers.tip.tie",
+            "`tie = \"rigid\"` beside `patches`",
+        ),
+        (
+            "group = 'tip face'",
             "group = 'tip face'\nalong = [0, 1, 0]",
             "bodies.arm.markers.tip.along",
             "without `patches`",

@@ -10,27 +10,27 @@ use verification::stability::meshes::box_mesh;
 use verification::systems::meshes::write;
 use verification::systems::run::{built, rows};
 
-const SIZE: [f64; 3] = [1.0, 0.03, 0.02];
-const CELLS: [usize; 3] = [10, 1, 1];
+pub const SIZE: [f64; 3] = [1.0, 0.03, 0.02];
+pub const CELLS: [usize; 3] = [10, 1, 1];
 /// Without Poisson's ratio: a clamp does not hinder it, nor does a mean leave it free.
-const MATERIAL: Material = Material { young_modulus: 1e9, poisson_ratio: 0.0, density: 1000.0 };
-const UNITS: &str = "title = 'bar'\nunits = { length = 'm', mass = 'kg', time = 's' }\n";
+pub const MATERIAL: Material = Material { young_modulus: 1e9, poisson_ratio: 0.0, density: 1000.0 };
+pub const UNITS: &str = "title = 'bar'\nunits = { length = 'm', mass = 'kg', time = 's' }\n";
 
-fn tip() -> Vector3<f64> {
+pub fn tip() -> Vector3<f64> {
     Vector3::new(SIZE[0], 0.5 * SIZE[1], 0.5 * SIZE[2])
 }
 
-fn at(solid: &Solid, place: &Vector3<f64>) -> usize {
+pub fn at(solid: &Solid, place: &Vector3<f64>) -> usize {
     solid.mesh().positions().iter().position(|x| (Vector3::from(*x) - place).norm() < 1e-9).unwrap()
 }
 
-fn solid(young_modulus: f64, is_held: impl Fn(&Vector3<f64>) -> bool) -> Solid {
+pub fn solid(young_modulus: f64, is_held: impl Fn(&Vector3<f64>) -> bool) -> Solid {
     let material = Material { young_modulus, ..MATERIAL };
     Solid::new(Mesh::new(box_mesh(SIZE, CELLS)).unwrap(), material, |x| is_held(&x)).unwrap()
 }
 
 /// The bar as a body of a system, named, with these modes and what else its table has.
-fn body(name: &str, young_modulus: f64, modes: &str, rest: &str) -> String {
+pub fn body(name: &str, young_modulus: f64, modes: &str, rest: &str) -> String {
     let large = modes.contains("large");
     format!(
         "[bodies.{name}]\nmesh = 'bar.msh'\n\
@@ -46,7 +46,7 @@ fn run(directory: &Path, text: &str, tolerance: f64, end: f64, interval: f64, bo
     rows(&mut simulation, bodies).unwrap()
 }
 
-fn with_bar() -> tempfile::TempDir {
+pub fn with_bar() -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     write(directory.path(), "bar", &box_mesh(SIZE, CELLS), &[]).unwrap();
     directory

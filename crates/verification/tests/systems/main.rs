@@ -1,6 +1,7 @@
 //! Systems of bodies in joints against joined meshes. One program, so that it is linked once.
 
 mod bent;
+mod bent_linear;
 mod four_bar;
 mod hinged;
 mod princeton;

@@ -8,7 +8,9 @@ use faer::{Mat, MatMut};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::cross_matrix;
 
+use crate::body::patch_turn::{PatchFit, PatchSlope, PatchTurn};
 use crate::body::second_order::SecondOrder;
+use crate::conservative::manifold::BentShape;
 use crate::system::marker::{BodyPlace, Marker};
 
 /// A marker where its body is, with its first order.
@@ -29,6 +31,27 @@ pub(crate) struct MarkerTangent {
     arm_slopes: Vec<Vector3<f64>>,
     turn_slopes: Vec<Vector3<f64>>,
     second_order: [Option<SecondOrder>; 2],
+    bent: Option<BentTangent>,
+}
+
+/// What large modes add to the first order of a marker.
+#[derive(Debug, Clone)]
+struct BentTangent {
+    shape: BentShape,
+    /// Columns of Ψ and Θ by z.
+    displacement: Vec<Vector3<f64>>,
+    rotation: Vec<Vector3<f64>>,
+    patch: Option<PatchTangent>,
+}
+
+/// What large modes do to a patch.
+#[derive(Debug, Clone)]
+struct PatchTangent {
+    turn: PatchTurn,
+    fit: PatchFit,
+    slopes: Vec<PatchSlope>,
+    /// By the small rotation θ after R.
+    turned: Matrix3<f64>,
 }
 
 impl Marker {
@@ -41,8 +64,12 @@ impl Marker {
     ) -> MarkerTangent {
         let BodyPlace { body_from_global, q, .. } = body;
         let place = self.place(Some(body));
+        let shape = body.bent.map(|bent| bent.slopes());
         let slopes = |columns: &[Vector3<f64>], second_order: Option<&SecondOrder>| {
-            let mut slopes = columns.to_vec();
+            let mut slopes = match &shape {
+                Some(shape) => shape.iter().map(|along| columns.iter().zip(along).map(|(c, x)| c * *x).sum()).collect(),
+                None => columns.to_vec(),
+            };
             slopes.resize(modes, Vector3::zeros());
             if let Some(second_order) = second_order {
                 second_order.add_slopes(q, &mut slopes);
@@ -51,8 +78,14 @@ impl Marker {
         };
         let [of_place, of_turn] = self.second_order.each_ref().map(Option::as_ref);
         let (arm_slopes, turn_slopes) = (slopes(&self.displacement, of_place), slopes(&self.rotation, of_turn));
-        let linear: Vector3<f64> = self.rotation.iter().zip(*q).map(|(turn, q)| turn * *q).sum();
+        let linear: Vector3<f64> = self.rotation.iter().zip(body.coordinates()).map(|(turn, x)| turn * *x).sum();
         let theta = linear + of_turn.map_or_else(Vector3::zeros, |of| of.displacement(q));
+        let patch = self.patch.as_ref().zip(place.patch).zip(shape.as_ref()).map(|((turn, of), shape)| PatchTangent {
+            slopes: shape.iter().map(|along| turn.slope_at(&of.fit, along.iter().copied())).collect(),
+            turn: turn.clone(),
+            fit: of.fit,
+            turned: of.turned,
+        });
         let global_from_body = body_from_global.transpose();
         let n = 6 + modes;
         let (mut motion, mut of_velocity) = (Mat::zeros(6, n), Mat::zeros(6, n));
@@ -70,7 +103,8 @@ impl Marker {
             set(&mut of_velocity, 3 + k, [unit.cross(&speed), unit.cross(omega)]);
         }
         for (k, (slope, turn)) in arm_slopes.iter().zip(&turn_slopes).enumerate() {
-            set(&mut motion, 6 + k, [*slope, place.tangent * turn]);
+            let of_patch = patch.as_ref().map_or_else(Vector3::zeros, |patch| patch.spin(k));
+            set(&mut motion, 6 + k, [*slope, place.tangent * turn + of_patch]);
             set(&mut of_velocity, 6 + k, [omega.cross(slope), Vector3::zeros()]);
         }
         MarkerTangent {
@@ -83,6 +117,12 @@ impl Marker {
             arm_slopes,
             turn_slopes,
             second_order: self.second_order.clone(),
+            bent: body.bent.map(|bent| BentTangent {
+                shape: bent.to_shape(),
+                displacement: self.displacement.clone(),
+                rotation: self.rotation.clone(),
+                patch,
+            }),
         }
     }
 }
@@ -102,7 +142,8 @@ impl MarkerTangent {
         let of_turn = turned_back_change(&self.theta, &t);
         for (k, (slope, turn)) in self.arm_slopes.iter().zip(&self.turn_slopes).enumerate() {
             let moved = slope.cross(&f);
-            let by_rotation = f_cross.tr_mul(slope) + t_cross.tr_mul(&(self.tangent * turn));
+            let of_patch = self.patch().map_or_else(Vector3::zeros, |patch| patch.spin(k));
+            let by_rotation = f_cross.tr_mul(slope) + t_cross.tr_mul(&(self.tangent * turn + of_patch));
             for i in 0..3 {
                 to[(3 + i, 6 + k)] += moved[i];
                 to[(6 + k, 3 + i)] += by_rotation[i];
@@ -115,7 +156,17 @@ impl MarkerTangent {
             }
         }
         let modes = to.nrows() - 6;
+        if let Some(bent) = &self.bent {
+            let change = bent.force_change([&f, &t], &turning, (&self.tangent, &self.turn_slopes));
+            for (i, j) in (0..modes).flat_map(|j| (0..modes).map(move |i| (i, j))) {
+                to[(6 + i, 6 + j)] += change[(i, j)];
+            }
+        }
         self.add_stress(-1.0, [&f, &turning], to.submatrix_mut(6, 6, modes, modes));
+    }
+
+    fn patch(&self) -> Option<&PatchTangent> {
+        self.bent.as_ref()?.patch.as_ref()
     }
 
     /// Adds the stiffness of the modes by a force and a moment (global, at the marker), that of their stress: f_i K_i + t_i K'_i
@@ -132,6 +183,42 @@ impl MarkerTangent {
                 second_order.add_stiffness(factor, vector, to.as_mut());
             }
         }
+    }
+}
+
+impl BentTangent {
+    /// The change by δq of the modal forces of a force and a moment in body axes, of the moment also as T(θ)ᵀ turns it: by the curvature of
+    /// the manifold, and by the turn of the patch (modes × modes).
+    fn force_change(
+        &self,
+        [force, moment]: [&Vector3<f64>; 2],
+        turning: &Vector3<f64>,
+        (tangent, turn_slopes): (&Matrix3<f64>, &[Vector3<f64>]),
+    ) -> Mat<f64> {
+        let shape = self.shape.place();
+        let on_coordinates =
+            self.displacement.iter().zip(&self.rotation).map(|(psi, turn)| psi.dot(force) + turn.dot(turning));
+        let mut change = shape.curvature(on_coordinates);
+        if let Some(patch) = &self.patch {
+            let back = patch.turned.tr_mul(moment);
+            change += shape.curvature(patch.turn.forces_at(&patch.fit, &back));
+            let in_patch = patch.fit.rotation.tr_mul(&back);
+            for (j, by) in patch.slopes.iter().enumerate() {
+                let turned_by = tangent * turn_slopes[j];
+                for (i, of) in patch.slopes.iter().enumerate() {
+                    let spin = by.spin.cross(&of.spin) + patch.fit.spin_change(of, by);
+                    change[(i, j)] += in_patch.dot(&spin) + moment.dot(&turned_by.cross(&patch.spin(i)));
+                }
+            }
+        }
+        change
+    }
+}
+
+impl PatchTangent {
+    /// Its angular velocity by that of a mode, body axes.
+    fn spin(&self, mode: usize) -> Vector3<f64> {
+        self.turned * (self.fit.rotation * self.slopes[mode].spin)
     }
 }
 

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::cross_matrix;
 
 use crate::conservative::ConservativeBody;
+use crate::conservative::manifold::BentShape;
 use crate::vibration::system::configuration::BodyConfiguration;
 use crate::vibration::system::load::load_forces;
 
@@ -16,7 +17,7 @@ pub(crate) struct BodyTerms {
     pub mass: Mat<f64>,
     /// C.
     pub damping: Mat<f64>,
-    /// K, without the stiffness Λ of the modes.
+    /// K, without the stiffness Λ of the modes, with ∂²V/∂q² − Λ of large ones.
     pub stiffness: Mat<f64>,
     /// L: δv = ξ̇ + L ξ.
     pub convection: Mat<f64>,
@@ -30,7 +31,7 @@ impl BodyTerms {
         let nf = at.q.len();
         let n = 6 + nf;
         let (q, omega) = (&at.q, &at.omega);
-        let inertia = body.inertia_where(q);
+        let inertia = body.inertia_where(at);
         let cross = cross_matrix(omega);
         let mass = Mat::from_fn(n, n, |i, j| match (i, j) {
             (0..3, _) | (_, 0..3) => {
@@ -43,7 +44,7 @@ impl BodyTerms {
             (3..6, 3..6) => inertia.whole[(i - 3, j - 3)],
             (3..6, _) => inertia.coupling[i - 3][j - 6],
             (_, 3..6) => inertia.coupling[j - 3][i - 6],
-            _ => f64::from(u8::from(i == j)),
+            _ => inertia.of_modes.as_ref().map_or(f64::from(u8::from(i == j)), |of_modes| of_modes[(i - 6, j - 6)]),
         });
         let by_modes = inertia.change_of_momenta(omega);
         let mut convection = Mat::zeros(n, n);
@@ -57,14 +58,14 @@ impl BodyTerms {
             let turned = 2.0 * inertia.slope(k) * omega;
             (0..3).for_each(|i| by_velocity[(6 + k, 3 + i)] = turned[i]);
             for j in 0..nf {
-                by_velocity[(6 + k, 6 + j)] = -by_modes[(6 + k, j)];
+                by_velocity[(6 + k, 6 + j)] = by_modes[(6 + j, k)];
                 by_q[(6 + k, j)] = omega.dot(&(inertia.curvature(k, j) * omega));
             }
             by_velocity[(6 + k, 6 + k)] -= damping;
         }
         // y' + ω×y = forces, with momenta y of the rigid motion.
         let momentum = at.velocity * body.mass();
-        let angular_momentum = inertia.whole * omega;
+        let angular_momentum = inertia.whole * omega + at.own_momentum;
         let turning = |x: &Mat<f64>| {
             let columns = x.ncols();
             let mut out = Mat::zeros(n, columns);
@@ -94,6 +95,13 @@ impl BodyTerms {
         for k in 0..nf {
             let strain = body.circular_frequencies[k] * body.circular_frequencies[k] * q[k];
             forces[6 + k] = omega.dot(&(inertia.slope(k) * omega)) - strain;
+        }
+        if let Some(bent) = at.bent.as_ref().map(BentShape::place) {
+            bent.subtract_force(&mut forces[6..]);
+            let terms = bent.terms();
+            for (row, i) in terms.stiffness.chunks_exact(terms.modes.len()).zip(&terms.modes) {
+                row.iter().zip(&terms.modes).for_each(|(k, j)| stiffness[(6 + i, 6 + j)] += k);
+            }
         }
         let mut terms = Self { mass, damping, stiffness, convection, forces };
         terms.add_acceleration(&inertia, at);
@@ -141,11 +149,13 @@ struct InertiaWhere {
     whole: Matrix3<f64>,
     /// S, a list (nf) for each axis.
     coupling: [Vec<f64>; 3],
-    /// G_i.
+    /// ∂S/∂q of each axis: G_i, but with large modes.
     gyroscopic: [Mat<f64>; 3],
-    /// c_ij + N_ij q of the pairs, and N_ij.
+    /// ½ ∂J_ij/∂q of the pairs and ½ ∂²J_ij/∂q²: c_ij + N_ij q and N_ij, but with large modes.
     first: [Vec<f64>; 6],
     second: [Mat<f64>; 6],
+    /// M of the modes; `None` where it is 1.
+    of_modes: Option<Mat<f64>>,
 }
 
 impl InertiaWhere {
@@ -180,22 +190,44 @@ fn symmetric(of_pair: impl Fn(usize) -> f64) -> Matrix3<f64> {
 }
 
 impl ConservativeBody {
-    fn inertia_where(&self, q: &[f64]) -> InertiaWhere {
+    fn inertia_where(&self, at: &BodyConfiguration) -> InertiaWhere {
         let constants = self.inertia_constants();
-        let product = |matrix: &Mat<f64>, i: usize| q.iter().enumerate().map(|(j, q)| matrix[(i, j)] * q).sum::<f64>();
-        let of_modes = |matrix: &Mat<f64>| (0..q.len()).map(|i| product(matrix, i)).collect::<Vec<f64>>();
+        let bent = at.bent.as_ref().map(BentShape::place);
+        let z = bent.map_or(&at.q[..], |bent| bent.z);
+        let product = |matrix: &Mat<f64>, i: usize| z.iter().enumerate().map(|(j, z)| matrix[(i, j)] * z).sum::<f64>();
+        let of_coordinates = |matrix: &Mat<f64>| (0..z.len()).map(|i| product(matrix, i)).collect::<Vec<f64>>();
         let mut whole = *self.undeformed_inertia();
         let mut first = constants.first;
         whole += symmetric(|pair| {
-            let bent = of_modes(&constants.second[pair]);
-            let terms = q.iter().zip(first[pair].iter().zip(&bent));
-            terms.map(|(q, (c, n_q))| q * (2.0 * c + n_q)).sum()
+            let bent = of_coordinates(&constants.second[pair]);
+            let terms = z.iter().zip(first[pair].iter().zip(&bent));
+            terms.map(|(z, (c, n_z))| z * (2.0 * c + n_z)).sum()
         });
         for (first, second) in first.iter_mut().zip(&constants.second) {
-            first.iter_mut().zip(of_modes(second)).for_each(|(c, n_q)| *c += n_q);
+            first.iter_mut().zip(of_coordinates(second)).for_each(|(c, n_z)| *c += n_z);
         }
-        let coupling = constants.gyroscopic.each_ref().map(of_modes);
-        InertiaWhere { whole, coupling, gyroscopic: constants.gyroscopic, first, second: constants.second }
+        let coupling = constants.gyroscopic.each_ref().map(of_coordinates);
+        let (gyroscopic, second) = (constants.gyroscopic, constants.second);
+        let Some(bent) = bent else {
+            return InertiaWhere { whole, coupling, gyroscopic, first, second, of_modes: None };
+        };
+        // Of lists y and matrices A over z, Bᵀy and BᵀA B + Σ y ∂²z/∂q².
+        let slopes = bent.slopes();
+        let slopes = Mat::from_fn(z.len(), slopes.len(), |i, k| slopes[k][i]);
+        let changed = |matrix: &Mat<f64>, list: &Vec<f64>| {
+            slopes.transpose() * (matrix * &slopes) + bent.curvature(list.iter().copied())
+        };
+        let on_modes = |list: &Vec<f64>| {
+            slopes.col_iter().map(|slope| slope.iter().zip(list).map(|(slope, y)| slope * y).sum()).collect()
+        };
+        InertiaWhere {
+            whole,
+            gyroscopic: std::array::from_fn(|axis| changed(&gyroscopic[axis], &coupling[axis])),
+            second: std::array::from_fn(|pair| changed(&second[pair], &first[pair])),
+            coupling: coupling.each_ref().map(on_modes),
+            first: first.each_ref().map(on_modes),
+            of_modes: Some(bent.mass()),
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
+use crate::conservative::manifold::BentShape;
 use crate::conservative::{get, part};
 use crate::system::description::System;
 use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
@@ -25,9 +26,13 @@ pub(crate) struct BodyConfiguration {
     pub attitude: Attitude,
     pub body_from_global: Matrix3<f64>,
     pub q: Vec<f64>,
+    /// Its shape with large modes.
+    pub bent: Option<BentShape>,
     /// V and ω in body axes.
     pub velocity: Vector3<f64>,
     pub omega: Vector3<f64>,
+    /// Angular momentum of a rotor about its axis, in axes that do not turn with it; zero of any other body.
+    pub own_momentum: Vector3<f64>,
     /// V' and ω', the rates of their components; zero in a common spin.
     pub velocity_rate: Vector3<f64>,
     pub omega_rate: Vector3<f64>,
@@ -76,12 +81,14 @@ impl Configuration {
         let of_body = |(body, state): (&crate::ConservativeBody, &crate::state::State)| {
             let list = body.list(state);
             BodyConfiguration {
+                bent: BentShape::of(body, list.q()),
                 origin: get(list.slow(), part::POSITION),
                 attitude: list.attitude(),
                 body_from_global: list.attitude().global_to_body(),
                 q: list.q().to_vec(),
                 velocity: Vector3::zeros(),
                 omega: Vector3::zeros(),
+                own_momentum: Vector3::zeros(),
                 velocity_rate: Vector3::zeros(),
                 omega_rate: Vector3::zeros(),
             }
@@ -109,6 +116,9 @@ impl Configuration {
             body.attitude = body.attitude.advanced_by(&turned);
             body.body_from_global = body.attitude.global_to_body();
             body.q.iter_mut().zip(&by[first + 6..]).for_each(|(q, change)| *q += change);
+            if let Some(bent) = &mut body.bent {
+                bent.go(&body.q);
+            }
         }
         if let Some(spin) = spin {
             self.spin(spin);
@@ -117,8 +127,9 @@ impl Configuration {
 
     /// The place of a body.
     pub fn place(&self, body: usize) -> BodyPlace<'_> {
-        let BodyConfiguration { origin, body_from_global, q, .. } = &self.bodies[body];
-        BodyPlace { origin: *origin, body_from_global: *body_from_global, q, bent: None }
+        let BodyConfiguration { origin, body_from_global, q, bent, .. } = &self.bodies[body];
+        let bent = bent.as_ref().map(BentShape::place);
+        BodyPlace { origin: *origin, body_from_global: *body_from_global, q, bent }
     }
 
     /// Where the two markers of a joint, or of a part of it, are.

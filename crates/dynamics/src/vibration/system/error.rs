@@ -22,14 +22,6 @@ pub enum SteadyError {
         /// Rate of its row.
         rate: f64,
     },
-    /// A body has large modes, about which these equations know nothing.
-    #[error(
-        "body {body} of the system (from 0) has large modes, about whose bent shapes there are no linearised equations; make its modes small"
-    )]
-    LargeModes {
-        /// Its number in the system, from 0.
-        body: usize,
-    },
     /// Newton's method does not converge.
     #[error(
         "the bodies find no shape in which they are at rest in this state after {passes} passes; forces or spin may bend them further than their modes hold: try less, and see what the bodies do by `flexframe check`"

@@ -10,6 +10,7 @@ use rigid_kin::cross_matrix;
 
 use crate::body::motion_state::MotionState;
 use crate::conservative::ConservativeBody;
+use crate::conservative::manifold::BentShape;
 use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 use crate::vibration::system::configuration::BodyConfiguration;
 
@@ -56,7 +57,7 @@ pub(crate) fn load_forces(body: &ConservativeBody, at: &BodyConfiguration, time:
         let at = |by: f64| {
             let mut seen = here.clone();
             change(&mut seen, by * step);
-            forces(body.loads(), &seen, time, false)
+            forces(body, &seen, time, body.loads(), false)
         };
         let ([far_back, back], [ahead, far_ahead]) = ([-2.0, -1.0].map(at), [1.0, 2.0].map(at));
         // (8 (f₁ − f₋₁) − (f₂ − f₋₂)) / 12 h
@@ -80,7 +81,7 @@ pub(crate) fn load_forces(body: &ConservativeBody, at: &BodyConfiguration, time:
         let columns: Vec<Vec<f64>> = (0..n).map(|k| column(k, of_velocity)).collect();
         Mat::from_fn(n, n, |i, k| columns[k][i])
     });
-    LoadForces { forces: forces(body.loads(), &here, time, false), by_place, by_velocity }
+    LoadForces { forces: forces(body, &here, time, body.loads(), false), by_place, by_velocity }
 }
 
 impl ConservativeBody {
@@ -95,14 +96,21 @@ impl ConservativeBody {
             q: at.modal_displacement.clone(),
             rate: at.modal_velocity.clone(),
         };
-        self.loads().iter().map(|load| forces(std::slice::from_ref(load), &seen, at.time, true)).collect()
+        self.loads().iter().map(|load| forces(self, &seen, at.time, std::slice::from_ref(load), true)).collect()
     }
 }
 
 /// `unit`: where histories are 1.
-fn forces(loads: &[SharedLoad], seen: &Seen, time: f64, unit: bool) -> Vec<f64> {
+fn forces(body: &ConservativeBody, seen: &Seen, time: f64, loads: &[SharedLoad], unit: bool) -> Vec<f64> {
     let mut forces = vec![0.0; 6 + seen.q.len()];
-    let coordinates = Coordinates { first: 6, displacement: &seen.q, velocity: &seen.rate, on_manifold: None };
+    let shape = BentShape::of(body, &seen.q);
+    let bent = shape.as_ref().map(BentShape::place);
+    let [displacement, velocity] = match bent {
+        Some(bent) => [bent.coordinates(), bent.rates_of_coordinates(&seen.rate)],
+        None => [seen.q.clone(), seen.rate.clone()],
+    };
+    let on_manifold = bent.map(|_| [&seen.q[..], &seen.rate[..]]);
+    let coordinates = Coordinates { first: 6, displacement: &displacement, velocity: &velocity, on_manifold };
     let motion = Kinematics {
         time,
         branch_time: time,
@@ -115,9 +123,16 @@ fn forces(loads: &[SharedLoad], seen: &Seen, time: f64, unit: bool) -> Vec<f64> 
         unit,
     };
     let (rigid, modal) = forces.split_at_mut(6);
-    let mut applied = Applied::new(coordinates, Vector3::zeros(), modal);
+    let mut in_shapes = vec![0.0; displacement.len()];
+    let mut applied = match bent {
+        Some(_) => Applied::new(coordinates, Vector3::zeros(), &mut in_shapes).on_manifold(modal),
+        None => Applied::new(coordinates, Vector3::zeros(), modal),
+    };
     loads.iter().for_each(|load| load.apply(&motion, &mut applied));
     rigid[..3].copy_from_slice(applied.force_body.as_slice());
     rigid[3..].copy_from_slice(applied.moment_body.as_slice());
+    if let Some(bent) = bent {
+        bent.add_from_shapes(&in_shapes, &mut forces[6..]);
+    }
     forces
 }

@@ -38,36 +38,42 @@ impl SystemMotion {
         speed: f64,
     ) -> Result<Vec<SpinMode>, SteadyError> {
         let linear = self.steady_state(&CommonSpin { omega_global: axis_global * speed, point_global })?.linear;
-        let (mut moving, mut still): (Vec<SystemMode>, Vec<SystemMode>) =
-            linear.vibrations()?.modes.into_iter().partition(|mode| mode.circular_frequency() > 0.0);
-        // Two that do not swing are in the place of one that does.
-        still.sort_by(|a, b| b.growth().total_cmp(&a.growth()));
-        still.truncate(linear.size().saturating_sub(moving.len()));
-        still.append(&mut moving);
-        let mut modes: Vec<SpinMode> = still.iter().map(|mode| linear.spin_mode(mode, speed)).collect();
-        // Those that nothing resists.
-        let none = SpinMode { circular_frequency: 0.0, growth: 0.0, whirl: 0.0, state: Vec::new() };
-        modes.resize(linear.size(), none);
-        modes.sort_by(|a, b| a.circular_frequency.total_cmp(&b.circular_frequency));
-        Ok(modes)
+        linear.all_modes(|mode| linear.spin_mode(mode, linear.whirl(mode, speed)))
     }
 }
 
 impl Linearization {
-    fn spin_mode(&self, mode: &SystemMode, speed: f64) -> SpinMode {
-        let eta = &mode.coordinates;
-        let size = self.size();
+    /// A vibration for each independent coordinate, slowest first.
+    pub(crate) fn all_modes(&self, of_mode: impl Fn(&SystemMode) -> SpinMode) -> Result<Vec<SpinMode>, SteadyError> {
+        let (mut moving, mut still): (Vec<SystemMode>, Vec<SystemMode>) =
+            self.vibrations()?.modes.into_iter().partition(|mode| mode.circular_frequency() > 0.0);
+        // Two that do not swing are in the place of one that does.
+        still.sort_by(|a, b| b.growth().total_cmp(&a.growth()));
+        still.truncate(self.size().saturating_sub(moving.len()));
+        still.append(&mut moving);
+        let mut modes: Vec<SpinMode> = still.iter().map(of_mode).collect();
+        // Those that nothing resists.
+        let none = SpinMode { circular_frequency: 0.0, growth: 0.0, whirl: 0.0, state: Vec::new() };
+        modes.resize(self.size(), none);
+        modes.sort_by(|a, b| a.circular_frequency.total_cmp(&b.circular_frequency));
+        Ok(modes)
+    }
+
+    /// Im(ηᴴ G η)/(ηᴴη), with the gyroscopic part 2Ω G of C.
+    fn whirl(&self, mode: &SystemMode, speed: f64) -> f64 {
+        if speed == 0.0 {
+            return 0.0;
+        }
+        let (eta, size) = (&mode.coordinates, self.size());
         let squares: f64 = eta.iter().map(|x| x.norm_sqr()).sum();
-        // Im(ηᴴ G η)/(ηᴴη), with the gyroscopic part 2Ω G of C.
-        let whirl = if speed == 0.0 {
-            0.0
-        } else {
-            let turned = |i: usize| {
-                let of = |j: usize| eta[j] * (0.25 * (self.damping[(i, j)] - self.damping[(j, i)]) / speed);
-                (0..size).map(of).sum::<c64>()
-            };
-            (0..size).map(|i| (eta[i].conj() * turned(i)).im).sum::<f64>() / squares
+        let turned = |i: usize| {
+            let of = |j: usize| eta[j] * (0.25 * (self.damping[(i, j)] - self.damping[(j, i)]) / speed);
+            (0..size).map(of).sum::<c64>()
         };
+        (0..size).map(|i| (eta[i].conj() * turned(i)).im).sum::<f64>() / squares
+    }
+
+    pub(crate) fn spin_mode(&self, mode: &SystemMode, whirl: f64) -> SpinMode {
         let mut masses = Vec::with_capacity(mode.motion.len());
         for mass in &self.masses {
             masses.extend((0..mass.nrows()).map(|k| mass[(k, k)].sqrt()));

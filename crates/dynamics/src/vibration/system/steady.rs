@@ -100,11 +100,12 @@ impl SteadyState {
         self.terms.is_implied.iter().filter(|is_implied| **is_implied).count()
     }
 
-    fn near(motion: &SystemMotion, mut at: Configuration, spin: Option<&CommonSpin>) -> Result<Self, SteadyError> {
+    pub(crate) fn near(
+        motion: &SystemMotion,
+        mut at: Configuration,
+        spin: Option<&CommonSpin>,
+    ) -> Result<Self, SteadyError> {
         let system = motion.system();
-        if let Some(body) = system.bodies.iter().position(|body| body.manifold.is_some()) {
-            return Err(SteadyError::LargeModes { body });
-        }
         let sizes: Vec<f64> = system.bodies.iter().map(crate::ConservativeBody::radius_of_gyration).collect();
         for pass in 0.. {
             let terms = Terms::new(system, &at)?;

@@ -2,13 +2,14 @@
 
 use faer::Mat;
 
+use crate::conservative::ConservativeBody;
 use crate::system::constraints::Constraints;
 use crate::system::description::System;
 use crate::system::elimination::inverse::{Inertia, Inverse};
 use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
 use crate::system::relaxed::rigid_inverses;
 use crate::vibration::system::body::BodyTerms;
-use crate::vibration::system::configuration::Configuration;
+use crate::vibration::system::configuration::{BodyConfiguration, Configuration};
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::tie::{Borne, Sums, Tie, add_block};
 
@@ -94,7 +95,7 @@ impl Terms {
             convections: Vec::new(),
         };
         let sources: Vec<Tie> = force_ties(system, at).collect();
-        terms.factor(system, &constraints, &bodies)?;
+        terms.factor((system, at), &constraints, &bodies)?;
         (terms.masses, terms.convections) = bodies.into_iter().map(|terms| (terms.mass, terms.convection)).unzip();
         sources.iter().for_each(|tie| terms.add(system, tie));
         sources.iter().for_each(|tie| tie.add_law(&mut terms.unloaded));
@@ -125,11 +126,18 @@ impl Terms {
     }
 
     /// Finds the factor of G M⁻¹ Gᵀ, the rows that others imply, and how many motions deform nothing.
-    fn factor(&mut self, system: &System, constraints: &Constraints, bodies: &[BodyTerms]) -> Result<(), SteadyError> {
-        let inertias: Vec<Inertia> = bodies.iter().map(|terms| inertia_of(&terms.mass)).collect();
-        for (b, inertia) in inertias.iter().enumerate() {
-            let flexible = system.first[b + 1] - system.first[b] - 6;
-            let mut inverse = Inverse::new(flexible);
+    fn factor(
+        &mut self,
+        (system, at): (&System, &Configuration),
+        constraints: &Constraints,
+        bodies: &[BodyTerms],
+    ) -> Result<(), SteadyError> {
+        let of_body = |((body, at), terms): ((&ConservativeBody, &BodyConfiguration), &BodyTerms)| {
+            inertia_of(body, at, &terms.mass)
+        };
+        let inertias: Vec<Inertia> = system.bodies.iter().zip(&at.bodies).zip(bodies).map(of_body).collect();
+        for (body, inertia) in system.bodies.iter().zip(&inertias) {
+            let mut inverse = Inverse::of(body);
             if !inverse.find_of_mass(inertia) {
                 return Err(SteadyError::Inertia);
             }
@@ -233,16 +241,21 @@ fn row_ties(system: &System, at: &Configuration, multipliers: &[f64]) -> Vec<Tie
 }
 
 /// The inertia of a body by its mass matrix.
-fn inertia_of(mass: &Mat<f64>) -> Inertia {
-    let nf = mass.nrows() - 6;
-    let mut inertia = Inertia::new(nf);
+fn inertia_of(body: &ConservativeBody, at: &BodyConfiguration, mass: &Mat<f64>) -> Inertia {
+    let mut inertia = Inertia::of(body);
     inertia.mass = mass[(0, 0)];
     for (axis, list) in inertia.coupling.iter_mut().enumerate() {
         list.iter_mut().enumerate().for_each(|(k, s)| *s = mass[(6 + k, 3 + axis)]);
     }
-    let of_modes = |i: usize, j: usize| (0..nf).map(|k| mass[(6 + k, 3 + i)] * mass[(6 + k, 3 + j)]).sum::<f64>();
-    inertia.locked = nalgebra::Matrix3::from_fn(|i, j| mass[(3 + i, 3 + j)] - of_modes(i, j));
-    inertia.locked_inverse = inertia.locked.try_inverse().unwrap_or_else(nalgebra::Matrix3::zeros);
+    if let (Some(bent), Some(shape)) = (&mut inertia.bent, &at.bent) {
+        bent.terms = shape.place().terms();
+        bent.solve_coupling(&inertia.coupling);
+    }
+    let solved = inertia.bent.as_ref().map_or(&inertia.coupling, |bent| &bent.solved);
+    let of_modes = |i: usize, j: usize| inertia.coupling[i].iter().zip(&solved[j]).map(|(a, b)| a * b).sum::<f64>();
+    let locked = nalgebra::Matrix3::from_fn(|i, j| mass[(3 + i, 3 + j)] - of_modes(i, j));
+    inertia.locked = locked;
+    inertia.locked_inverse = locked.try_inverse().unwrap_or_else(nalgebra::Matrix3::zeros);
     inertia
 }
 

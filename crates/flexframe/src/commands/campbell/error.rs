@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use dynamics::{EigenError, SteadyError};
+use dynamics::{EigenError, RotorError, SteadyError};
 use figures::FigureError;
 use model::{BuildError, FullError};
 use nonlinear::NonlinearError;
@@ -29,12 +29,21 @@ pub enum CampbellError {
     /// The system has no vibrations in this spin.
     #[error("{}: at {speed} rad per time: {source}", scene.display())]
     Steady { scene: PathBuf, speed: f64, source: SteadyError },
+    /// Bodies that cannot spin together, nor one of them alone.
+    #[error("{}: joint {joint:?}, whose other bodies are held: {source}", scene.display())]
+    Rotor { scene: PathBuf, joint: String, source: Box<RotorError> },
     /// A body without elements has no rest in a spin.
     #[error(
         "{}: found a body without elements or without flexible modes; expected one with a mesh, whose rest at each speed can be found; \
          help: leave `--about-rest` out", scene.display()
     )]
     NoFullBody { scene: PathBuf },
+    /// The full body has all effects of a spin.
+    #[error(
+        "{}: found an effect of the spin that is off, `coriolis`, `deformed_inertia` or `geometric_stiffening` in [effects]; expected all of \
+         them with `--about-rest always`, since the full body has them; help: leave them on, or give `--about-rest never`", scene.display()
+    )]
+    WithoutEffect { scene: PathBuf },
     /// The full body cannot be made.
     #[error("{}: {source}", scene.display())]
     Full { scene: PathBuf, source: Box<FullError> },

@@ -25,6 +25,9 @@ pub struct CampbellReport {
     /// Names of the bodies of a system; none of one body alone.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<String>,
+    /// The body of a system that spins, where the others are its support; none where all spin.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotor: Option<String>,
     /// The spin axis: unit vector, axes of the mesh; of a system global.
     pub axis: [f64; 3],
     /// The point that the axis goes through, mesh axes; of a system global.

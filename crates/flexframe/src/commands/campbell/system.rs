@@ -1,8 +1,8 @@
-//! The diagram of bodies that joints tie together: all of them spin about one axis.
+//! The diagram of bodies that joints tie together: all of them spin about one axis, or a rotor on a support.
 
 use std::path::Path;
 
-use dynamics::{Effect, SteadyError};
+use dynamics::{CommonSpin, Effect, Rotor, RotorError, SteadyError, SystemMotion};
 use model::Builder;
 use nalgebra::Vector3;
 use scene::System;
@@ -30,7 +30,7 @@ pub struct SystemCampbellSettings {
 /// Computes the diagram of the first system of a scene, and writes the files of [`campbell`](super::campbell) to `folder`.
 ///
 /// At each speed the bodies are deformed as the spin asks, and drives hold still what they turn. Loads are left out; dampers and the
-/// damping of modes count.
+/// damping of modes count. Where other joints keep the bodies from that spin, the body beyond the joint spins alone: a rotor on a support.
 ///
 /// # Errors
 /// [`CampbellError`].
@@ -52,7 +52,7 @@ pub fn campbell_of_system(
         return Err(CampbellError::NoAxis { scene: scene.path.clone(), found, joints: Vec::new() });
     };
     let of_motion = motion.simulation.motion();
-    let (axis, point) = axis_of(motion, settings).map_err(|found| match found {
+    let (axis, point, joint) = axis_of(motion, settings).map_err(|found| match found {
         Found::Nothing(found) => CampbellError::NoAxis {
             scene: scene.path.clone(),
             found,
@@ -60,15 +60,27 @@ pub fn campbell_of_system(
         },
         Found::NoDirection(error) => error,
     })?;
+    let rotor = match joint {
+        Some(joint) => rotor_of(of_motion, joint, (axis * settings.speeds.end, point)).map_err(|source| {
+            let joint = of_motion.system().joints()[joint].name.clone();
+            CampbellError::Rotor { scene: scene.path.clone(), joint, source: Box::new(source) }
+        })?,
+        None => None,
+    };
     let find = |speed: f64| {
         let failed = |source: SteadyError| CampbellError::Steady { scene: scene.path.clone(), speed, source };
-        of_motion.spin_modes(&axis, point, speed).map_err(failed)
+        let modes = match &rotor {
+            Some(rotor) => of_motion.rotor_modes(rotor, speed),
+            None => of_motion.spin_modes(&axis, point, speed),
+        };
+        modes.map_err(failed)
     };
     let total = speeds.len();
     let branches = Branches::follow(&find, speeds, |done| progress(CampbellProgress::Speeds { done, total }))?;
     let is_on = |effect: Effect| {
         let mut flexible = motion.bodies.iter().map(|body| &models[*body]).filter(|model| model.body.flexible() > 0);
-        flexible.all(|model| model.physics.effects[effect])
+        // The spin of a rotor does nothing to the bodies of its support.
+        rotor.is_some() || flexible.all(|model| model.physics.effects[effect])
     };
     let static_shapes: usize = motion.bodies.iter().map(|body| models[*body].static_shapes()).sum();
     let grows = |here: &Vec<dynamics::SpinMode>| here.iter().any(|mode| mode.growth > 0.0);
@@ -80,6 +92,7 @@ pub fn campbell_of_system(
         frequency_unit: frequency_unit(&scene.units.time),
         mesh: None,
         bodies: body_names(&system, &motion.bodies),
+        rotor: rotor.map(|rotor| body_names(&system, &motion.bodies).swap_remove(rotor.body)),
         axis: axis.into(),
         origin: point.into(),
         effects: SpinEffects {
@@ -104,8 +117,24 @@ enum Found {
     NoDirection(CampbellError),
 }
 
-/// The axis of the spin and a point on it, global.
-fn axis_of(motion: &TiedMotion, settings: &SystemCampbellSettings) -> Result<(Vector3<f64>, Vector3<f64>), Found> {
+/// The body that a joint spins alone, where other joints keep the bodies from a common spin about its axis.
+fn rotor_of(
+    motion: &SystemMotion,
+    joint: usize,
+    (omega_global, point_global): (Vector3<f64>, Vector3<f64>),
+) -> Result<Option<Rotor>, RotorError> {
+    match motion.steady_state(&CommonSpin { omega_global, point_global }) {
+        Err(SteadyError::Against { .. }) => motion.rotor(joint).map(Some),
+        // What else there is to say of it is said at each speed.
+        _ => Ok(None),
+    }
+}
+
+/// The axis of the spin and a point on it, global, and the joint whose axis it is.
+fn axis_of(
+    motion: &TiedMotion,
+    settings: &SystemCampbellSettings,
+) -> Result<(Vector3<f64>, Vector3<f64>, Option<usize>), Found> {
     let of_motion = motion.simulation.motion();
     let joints = of_motion.system().joints();
     let is_meant = |joint: &dynamics::Joint| match &settings.joint {
@@ -114,10 +143,10 @@ fn axis_of(motion: &TiedMotion, settings: &SystemCampbellSettings) -> Result<(Ve
     };
     let meant: Vec<usize> = (0..joints.len()).filter(|number| is_meant(&joints[*number])).collect();
     match (&settings.axis, &settings.joint, &meant[..]) {
-        (Some(axis), None, _) => Ok((unit(*axis).map_err(Found::NoDirection)?, of_motion.center_of_mass())),
+        (Some(axis), None, _) => Ok((unit(*axis).map_err(Found::NoDirection)?, of_motion.center_of_mass(), None)),
         (_, _, [joint]) => {
             let (position, axis) = of_motion.joint_axis(*joint);
-            Ok((axis, position))
+            Ok((axis, position, Some(*joint)))
         }
         (_, Some(name), _) => Err(Found::Nothing(format!("there is no joint {name:?}"))),
         (_, None, []) => Err(Found::Nothing("no joint is turned by a drive".to_owned())),

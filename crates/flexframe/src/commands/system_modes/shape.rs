@@ -1,5 +1,6 @@
 //! The shapes of the vibrations of a system on the surfaces of its bodies, for pictures.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use dynamics::MotionState;
@@ -28,6 +29,10 @@ struct Part<'a> {
     /// Origin of the body frame, mesh axes.
     origin: Vector3<f64>,
     state: &'a MotionState,
+    /// Displacements of its points in that state, body axes.
+    bent: Vec<Vector3<f64>>,
+    /// Coordinates of its shapes by its modes, where these are not the same.
+    slopes: Option<Vec<Vec<f64>>>,
     /// Its place in the motion of a vibration.
     range: Range<usize>,
 }
@@ -58,9 +63,10 @@ impl<'a> SystemSurface<'a> {
             let offset = u32::try_from(made.points.len()).unwrap_or(u32::MAX);
             made.triangles.extend(surface.triangles.iter().map(|corners| corners.map(|corner| corner + offset)));
             made.edges.extend(surface.edges.iter().map(|ends| ends.map(|end| end + offset)));
-            let bent = surface.displacements(&state.modal_displacement);
+            let bent = surface.displacements(&model.coordinates(&state.modal_displacement));
             made.points.extend(surface.placed(&origin, &state.origin_global, &state.attitude, &bent));
-            made.parts.push(Part { number: *number, surface, origin, state, range });
+            let slopes = model.coordinate_slopes(&state.modal_displacement);
+            made.parts.push(Part { number: *number, surface, origin, state, bent, slopes, range });
         }
         Ok(made)
     }
@@ -86,9 +92,10 @@ impl<'a> SystemSurface<'a> {
         let of_part = |part: &Part<'_>| {
             let own = part.motion(motion, phase);
             let [moved, turned] = [0, 3].map(|at| Vector3::new(own[at], own[at + 1], own[at + 2]));
-            let bent = part.surface.displacements(&own[6..]);
-            let points = part.surface.shapes.positions.iter().zip(bent);
-            let displaced = points.map(|(x, u)| moved + turned.cross(&(Vector3::from(*x) - part.origin)) + u);
+            let flexible = part.surface.displacements(&part.of_shapes(&own[6..]));
+            let points = part.surface.shapes.positions.iter().zip(&part.bent).zip(flexible);
+            let displaced =
+                points.map(|((x, bent), u)| moved + turned.cross(&(Vector3::from(*x) - part.origin + bent)) + u);
             displaced.map(|u| part.state.attitude.to_global(&u)).collect::<Vec<_>>()
         };
         self.parts.iter().flat_map(of_part).collect()
@@ -96,12 +103,20 @@ impl<'a> SystemSurface<'a> {
 
     /// Von Mises stress of the vibration alone at the points.
     pub(crate) fn stress(&self, motion: &[c64], phase: f64) -> Vec<f64> {
-        let of_part = |part: &Part<'_>| part.surface.von_mises(&part.motion(motion, phase)[6..]);
+        let of_part = |part: &Part<'_>| part.surface.von_mises(&part.of_shapes(&part.motion(motion, phase)[6..]));
         self.parts.iter().flat_map(of_part).collect()
     }
 }
 
 impl Part<'_> {
+    /// The coordinates of all shapes, and of the products of large modes, by those of the modes.
+    fn of_shapes<'m>(&self, modes: &'m [f64]) -> Cow<'m, [f64]> {
+        let Some(slopes) = &self.slopes else { return Cow::Borrowed(modes) };
+        let count = slopes.first().map_or(0, Vec::len);
+        let of_shape = |i: usize| slopes.iter().zip(modes).map(|(slope, q)| slope[i] * q).sum();
+        Cow::Owned((0..count).map(of_shape).collect())
+    }
+
     /// Displacement and rotation of its frame in body axes, then its modal coordinates.
     fn motion(&self, motion: &[c64], phase: f64) -> Vec<f64> {
         let (sin, cos) = phase.sin_cos();

@@ -64,7 +64,11 @@ pub(super) fn stiffened(
     let of_body = |(body, (number, found)): (String, (&usize, BodyStiffening))| {
         let model = &models[*number];
         let largest = |surface: Surface| {
-            surface.displacements(&found.modal_displacement).iter().map(nalgebra::Vector3::norm).fold(0.0, f64::max)
+            surface
+                .displacements(&model.coordinates(&found.modal_displacement))
+                .iter()
+                .map(nalgebra::Vector3::norm)
+                .fold(0.0, f64::max)
         };
         (model.body.flexible() > 0).then(|| StiffenedBody {
             body,

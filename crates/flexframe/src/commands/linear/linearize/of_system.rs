@@ -75,6 +75,7 @@ pub(super) fn of_system(
             columns.push(column);
         }
         inputs.extend(input_channels(scene, model, &prefix));
+        let slopes = model.coordinate_slopes(&state.modal_displacement);
         for (name, point) in &model.points {
             let arm = model.arm(point, &state.modal_displacement);
             // ρ + φ×x + Ψ δq, then over the independent coordinates.
@@ -82,7 +83,9 @@ pub(super) fn of_system(
                 .map(|k| match k {
                     0..3 => Vector3::ith(k, 1.0),
                     3..6 => Vector3::ith(k - 3, 1.0).cross(&arm),
-                    _ => point.columns()[k],
+                    _ => slopes.as_ref().map_or(point.columns()[k], |slopes| {
+                        point.columns()[6..].iter().zip(&slopes[k - 6]).map(|(shape, slope)| *shape * *slope).sum()
+                    }),
                 })
                 .collect();
             let of_coordinate = |j: usize| -> Vector3<f64> {
@@ -95,7 +98,11 @@ pub(super) fn of_system(
         for ((name, _), materials) in model.points.iter().zip(of_stress) {
             let of_body = |row: &[f64]| {
                 let mut whole = vec![0.0; all];
-                (6..own.len()).for_each(|k| whole[own.start + k] = row[k - 6]);
+                (6..own.len()).for_each(|k| {
+                    whole[own.start + k] = slopes.as_ref().map_or(row[k - 6], |slopes| {
+                        row.iter().zip(&slopes[k - 6]).map(|(stress, slope)| stress * slope).sum()
+                    });
+                });
                 over(&whole)
             };
             stresses.extend(stress_outputs(scene, &format!("{prefix}{name}"), materials, of_body));

@@ -1,0 +1,198 @@
+//! A rotor on a support that does not turn: a rigid body that a joint turns about its axis of symmetry.
+//!
+//! In axes that do not turn with it, it moves as a body with an angular momentum h of its own,
+//!
+//! ```text
+//! J φ̈ + φ̇ × h = moment,    h = J_p Ω e        e the axis, J_p the moment of inertia about it
+//! ```
+//!
+//! since its inertia looks the same however far it has turned. Eq. (L12) of `docs/method/systems.md`.
+
+use faer::c64;
+use nalgebra::{Matrix3, Vector3};
+
+use crate::system::radau::SystemMotion;
+use crate::system::stage::vector;
+use crate::vibration::steady_spin::SpinMode;
+use crate::vibration::system::configuration::{CommonSpin, Configuration};
+use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::mode::SystemMode;
+use crate::vibration::system::steady::SteadyState;
+use crate::vibration::system::terms::Terms;
+
+/// Parts of the radius of gyration and of the inertia that a rotor may be off its axis, and off symmetry.
+const SYMMETRIC: f64 = 1e-3;
+/// Rate of a row, relative to that of the rotor's rim, and part of a stiffness that are rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// A rigid body that spins about the axis of a joint, on a support that does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rotor {
+    /// Its number in the system, from 0.
+    pub body: usize,
+    /// The axis, in its axes.
+    pub axis_body: Vector3<f64>,
+    /// Its moment of inertia about the axis.
+    pub polar_inertia: f64,
+}
+
+/// Reasons that no body spins alone about the axis of a joint.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RotorError {
+    /// A rotor that bends.
+    #[error(
+        "found a flexible body beyond it; expected a rigid one; help: make the rotor rigid (`mass` and `inertia` in its table), and give its shaft to the support"
+    )]
+    Flexible,
+    /// Something else holds the turn.
+    #[error(
+        "found that {by:?} holds the turn of the body beyond it; expected one that spins freely or by the drive of the joint; help: leave {by:?} out of the scene that is asked"
+    )]
+    Held {
+        /// Name of the joint or coupling.
+        by: String,
+    },
+    /// Something is tied to a place of the rotor.
+    #[error(
+        "found a spring, bushing or law on the body beyond it, or a spring along its turn; expected joints alone; help: tie it to the support"
+    )]
+    Sprung,
+    /// A center of mass beside the axis.
+    #[error(
+        "found the center of mass of the body beyond it {distance:.3e} of its radius of gyration off the axis; expected it on the axis; help: balance it"
+    )]
+    Unbalanced {
+        /// Distance from the axis over the radius of gyration.
+        distance: f64,
+    },
+    /// An inertia that turns with the rotor.
+    #[error(
+        "found a body beyond it whose inertia across the axis differs by {part:.3e} of it from one direction to another; expected it the same in all; help: run it, since its equations change with its turn"
+    )]
+    Asymmetric {
+        /// The difference over the inertia.
+        part: f64,
+    },
+    /// No body is beyond the joint.
+    #[error("found the ground on both sides; expected a body")]
+    Nothing,
+    /// The equations have no answer.
+    #[error("{0}")]
+    Steady(#[from] SteadyError),
+}
+
+impl SystemMotion {
+    /// The body that the turn of a joint spins alone: that of its second marker, or of its first where that one is none.
+    ///
+    /// # Errors
+    /// [`RotorError`], that of the second marker's body.
+    pub fn rotor(&self, joint: usize) -> Result<Rotor, RotorError> {
+        let [first, second] = self.system().joints()[joint].markers.each_ref().map(crate::Marker::body);
+        let found = second.ok_or(RotorError::Nothing).and_then(|body| self.rotor_of(joint, body));
+        match first.map(|body| self.rotor_of(joint, body)) {
+            Some(Ok(rotor)) if found.is_err() => Ok(rotor),
+            Some(Err(error)) if second.is_none() => Err(error),
+            _ => found,
+        }
+    }
+
+    fn rotor_of(&self, joint: usize, body: usize) -> Result<Rotor, RotorError> {
+        let system = self.system();
+        let of = &system.bodies[body];
+        if of.flexible() > 0 {
+            return Err(RotorError::Flexible);
+        }
+        let at = Configuration::of(self, &CommonSpin::REST);
+        let here = &at.bodies[body];
+        let (point, axis) = self.joint_axis(joint);
+        let axis_body = here.body_from_global * axis;
+        let radius = of.radius_of_gyration();
+        let distance = (here.body_from_global * (point - here.origin)).cross(&axis_body).norm() / radius;
+        if distance.is_nan() || distance > SYMMETRIC {
+            return Err(RotorError::Unbalanced { distance });
+        }
+        let inertia = of.undeformed_inertia();
+        let polar_inertia = axis_body.dot(&(inertia * axis_body));
+        let across = Matrix3::identity() - axis_body * axis_body.transpose();
+        let mean = 0.5 * (inertia.trace() - polar_inertia);
+        let symmetric = axis_body * axis_body.transpose() * polar_inertia + across * mean;
+        let part = (inertia - symmetric).norm() / inertia.norm();
+        if part.is_nan() || part > SYMMETRIC {
+            return Err(RotorError::Asymmetric { part });
+        }
+        self.check_turn(joint, &at, (body, &axis_body))?;
+        Ok(Rotor { body, axis_body, polar_inertia })
+    }
+
+    /// Refuses a body whose turn about an axis something resists.
+    fn check_turn(
+        &self,
+        joint: usize,
+        at: &Configuration,
+        (body, axis_body): (usize, &Vector3<f64>),
+    ) -> Result<(), RotorError> {
+        let system = self.system();
+        if system.elements().iter().any(|element| element.markers().iter().any(|marker| marker.body() == Some(body))) {
+            return Err(RotorError::Sprung);
+        }
+        let terms = Terms::new(system, at)?;
+        let first = system.first[body] + 3;
+        let turn = |row: &dyn Fn(usize) -> f64| (0..3).map(|k| row(first + k) * axis_body[k]).sum::<f64>();
+        let name = &system.joints()[joint].name;
+        let rows = system.connections.names().zip(system.connections.is_driven()).enumerate();
+        for (row, (by, is_driven)) in rows {
+            let size = (0..system.coordinates()).map(|k| terms.rows[(row, k)].abs()).fold(0.0, f64::max);
+            let is_own = is_driven && by == name;
+            if !is_own && turn(&|k| terms.rows[(row, k)]).abs() > ROUNDING * size {
+                return Err(RotorError::Held { by: by.to_owned() });
+            }
+        }
+        let n = system.coordinates();
+        let largest = |of: &dyn Fn(usize) -> f64| (0..n).map(|i| of(i).abs()).fold(0.0, f64::max);
+        let by_turn = largest(&|i| turn(&|k| terms.unloaded[(i, k)]));
+        let whole = (0..3).map(|k| largest(&|i| terms.unloaded[(i, first + k)])).fold(0.0, f64::max);
+        if by_turn > ROUNDING * whole { Err(RotorError::Sprung) } else { Ok(()) }
+    }
+
+    /// The steady state at rest while a rotor spins at a speed, with its linearised equations: coordinates of the rotor are along axes that
+    /// do not turn with it.
+    ///
+    /// # Errors
+    /// [`SteadyError`].
+    pub fn rotor_state(&self, rotor: &Rotor, speed: f64) -> Result<SteadyState, SteadyError> {
+        let mut at = Configuration::of(self, &CommonSpin::REST);
+        at.bodies[rotor.body].own_momentum = rotor.axis_body * (rotor.polar_inertia * speed);
+        SteadyState::near(self, at, Some(&CommonSpin::REST))
+    }
+
+    /// The vibrations while a rotor spins at a speed in rad per time, slowest first: one for each independent coordinate. Their `whirl` is
+    /// that of the rotor: 1 where it circles about its axis forwards, −1 backwards.
+    ///
+    /// # Errors
+    /// [`SteadyError`].
+    pub fn rotor_modes(&self, rotor: &Rotor, speed: f64) -> Result<Vec<SpinMode>, SteadyError> {
+        let linear = self.rotor_state(rotor, speed)?.linear;
+        let whirl = |mode: &SystemMode| if speed == 0.0 { 0.0 } else { self.circling(rotor, &mode.motion) };
+        linear.all_modes(|mode| linear.spin_mode(mode, whirl(mode)))
+    }
+
+    /// How far a rotor circles forwards in a vibration.
+    fn circling(&self, rotor: &Rotor, motion: &[c64]) -> f64 {
+        let of = &self.system().bodies[rotor.body];
+        let [mut forwards, mut all] = [0.0; 2];
+        let across = 0.5 * (of.undeformed_inertia().trace() - rotor.polar_inertia);
+        for (part, weight) in [(0, of.mass()), (3, across)] {
+            let first = self.system().first[rotor.body] + part;
+            let [real, imaginary]: [Vec<f64>; 2] =
+                [motion.iter().map(|x| x.re).collect(), motion.iter().map(|x| x.im).collect()];
+            let [real, imaginary] = [&real, &imaginary].map(|list| {
+                let of_rotor = vector(list, first);
+                of_rotor - rotor.axis_body * rotor.axis_body.dot(&of_rotor)
+            });
+            // x = Re((a + ib) e^iωt) = a cos ωt − b sin ωt turns as −a×b.
+            forwards -= weight * 2.0 * real.cross(&imaginary).dot(&rotor.axis_body);
+            all += weight * (real.norm_squared() + imaginary.norm_squared());
+        }
+        if all > 0.0 { forwards / all } else { 0.0 }
+    }
+}
