@@ -364,13 +364,14 @@ enum Command {
     /// Find the rates of frequencies, effective masses and static displacements with the numbers that a body is made with.
     ///
     /// They are exact, not differences (docs/method/gradients.md). Static displacements are those of the points of [output] under each load
-    /// of a body that is held. Of bodies in joints, the parameters are the stiffnesses of springs, bushings and joints.
+    /// of a body that is held. Of bodies in joints, the parameters are the stiffnesses of springs, bushings and joints, and the materials and
+    /// point masses of bodies with a mesh; only frequencies have rates.
     Gradient {
         #[command(flatten)]
         scene: SceneArgs,
         /// Parameters: paths of keys, such as body.material.young_modulus or body.point_masses[0].mass, and thickness.AXIS or
         /// thickness.GROUP.AXIS for a factor that stretches the mesh or a physical volume along x, y or z; of bodies in joints such as
-        /// springs[0].stiffness [default: all keys of materials and point masses, or all stiffnesses].
+        /// springs[0].stiffness or bodies.arm.material.density [default: all keys of materials and point masses, and all stiffnesses].
         #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
         parameters: Vec<String>,
         /// Frequencies, cycles per time, at which the responses of points to the loads have rates, too: from start to end, both included,
@@ -396,8 +397,9 @@ enum Command {
         /// CSV file with a column `frequency`, and if wanted `deviation` and POINT.x, POINT.y, POINT.z [default: `measured` in [modes]].
         #[arg(long, value_name = "TABLE")]
         measured: Option<PathBuf>,
-        /// Parameters: paths of keys of materials and point masses, such as body.material.young_modulus, or of bodies in joints of
-        /// stiffnesses, such as bushings[0].stiffness.rotation[2].
+        /// Parameters: paths of keys of materials and point masses, such as body.material.young_modulus, thickness.AXIS or
+        /// thickness.GROUP.AXIS, or of bodies in joints stiffnesses, such as bushings[0].stiffness.rotation[2], and
+        /// bodies.arm.material.density.
         #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
         parameters: Vec<String>,
         /// Standard deviation of the measured frequencies, relative to each, such as 0.01, of those that have none in the table.

@@ -35,7 +35,7 @@ pub use assembly::matrices::{Matrices, assemble};
 pub use assembly::mean_rotation::MeanRotation;
 pub use assembly::patch::Patch;
 pub use assembly::point_mass::PointMass;
-pub use assembly::rates::{BodyNumber, MatrixRates};
+pub use assembly::rates::{BodyNumber, MatrixRates, stretch};
 pub use assembly::strips::Strip;
 pub use element::quadrature;
 pub use element::shape::{shape_functions, shape_gradients};

@@ -45,7 +45,7 @@ pub use multigrid::NoCycles;
 pub use progress::{EnginePhase, Progress};
 pub use rates::{ModeRates, repeated};
 pub use reduction::body::{BodyPoint, Constants, ReducedBody};
-pub use reduction::fields::{acceleration_fields, centrifugal_fields, turning_field};
+pub use reduction::fields::{acceleration_fields, centrifugal_accelerations, centrifugal_fields, turning_field};
 pub use reduction::participation::{OfBase, Participation};
 pub use solve::{Modes, SolveStats, Solver};
 pub use statics::large_shapes::{LargeShapes, Products};

@@ -22,5 +22,5 @@ mod sum;
 
 pub use base_motion::BaseMotion;
 pub use error::ShockError;
-pub use spectrum::{Peaks, Spectrum};
+pub use spectrum::{Following, Peaks, Spectrum};
 pub use sum::{ModalPeak, Sum, correlation};

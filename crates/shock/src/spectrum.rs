@@ -34,6 +34,17 @@ impl Peaks {
     }
 }
 
+/// An oscillator beside the base that it follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Following {
+    /// Correlation α of the acceleration of the mass with that of the base during the motion, from 0 to 1.
+    pub correlation: f64,
+    /// The part β of the base motion that is in that of the mass, from 0 to 1.
+    pub part: f64,
+    /// Peaks of the rest: of z + β a/ω² and w − β a.
+    pub rest: Peaks,
+}
+
 /// The peaks of oscillators of one damping ratio against their frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
@@ -51,6 +62,29 @@ impl BaseMotion {
     /// # Errors
     /// [`ShockError::Value`], [`ShockError::Cycles`].
     pub fn peaks(&self, frequency: f64, damping_ratio: f64) -> Result<Peaks, ShockError> {
+        let mut watch = Watch::new(self.oscillator(frequency, damping_ratio)?, 0.0);
+        self.lead(&mut watch);
+        Ok(watch.peaks())
+    }
+
+    /// How an oscillator follows the base motion, Eq. (R8).
+    ///
+    /// # Errors
+    /// As [`Self::peaks`].
+    pub fn following(&self, frequency: f64, damping_ratio: f64) -> Result<Following, ShockError> {
+        let oscillator = self.oscillator(frequency, damping_ratio)?;
+        let mut first = Watch::new(oscillator, 0.0);
+        self.lead(&mut first);
+        let [along, of_mass, of_base] = first.work;
+        let ratio = |of: f64| if of > 0.0 { (along / of).clamp(0.0, 1.0) } else { 0.0 };
+        let (part, correlation) = (ratio(of_base), ratio((of_mass * of_base).sqrt()));
+        let mut watch = Watch::new(oscillator, part);
+        self.lead(&mut watch);
+        Ok(Following { correlation, part, rest: watch.peaks() })
+    }
+
+    /// The oscillator of a frequency, cycles per time.
+    fn oscillator(&self, frequency: f64, damping_ratio: f64) -> Result<Oscillator, ShockError> {
         if !(frequency.is_finite() && frequency > 0.0) {
             let expected = "a positive number of cycles per time";
             return Err(ShockError::Value { what: "a frequency", found: frequency, expected });
@@ -63,18 +97,19 @@ impl BaseMotion {
         if cycles > MAX_CYCLES {
             return Err(ShockError::Cycles { frequency, cycles, most: MAX_CYCLES });
         }
-        let mut watch = Watch::new(Oscillator { omega: TAU * frequency, zeta: damping_ratio });
+        Ok(Oscillator { omega: TAU * frequency, zeta: damping_ratio })
+    }
+
+    /// Leads an oscillator through the motion and a period after it.
+    fn lead(&self, watch: &mut Watch) {
         for (duration, base) in self.pieces() {
             watch.pass(duration, base);
         }
         // Free: an extreme of each sign comes within a period.
         let Oscillator { omega, .. } = watch.oscillator;
+        let work = watch.work;
         watch.pass((TAU / watch.oscillator.damped()).min(STILL / omega), [0.0; 2]);
-        Ok(Peaks {
-            displacement: watch.displacement.magnitude(),
-            acceleration_largest: watch.acceleration.largest,
-            acceleration_least: watch.acceleration.least,
-        })
+        watch.work = work;
     }
 
     /// The spectrum at rising frequencies, cycles per time.
@@ -119,17 +154,30 @@ impl Spectrum {
 /// An oscillator on its way, with its extremes.
 struct Watch {
     oscillator: Oscillator,
+    /// β, what is not looked at.
+    part: f64,
     swing: Swing,
     displacement: Extremes,
     acceleration: Extremes,
+    /// ∫ w a dt, ∫ w² dt and ∫ a² dt during the motion.
+    work: [f64; 3],
     /// The last step and its length: tables mostly have equal ones.
     step: Option<(f64, Step)>,
 }
 
 impl Watch {
-    fn new(oscillator: Oscillator) -> Self {
+    fn new(oscillator: Oscillator, part: f64) -> Self {
         let [displacement, acceleration] = [Extremes::default(); 2];
-        Self { oscillator, swing: Swing::default(), displacement, acceleration, step: None }
+        let (swing, work) = (Swing::default(), [0.0; 3]);
+        Self { oscillator, part, swing, displacement, acceleration, work, step: None }
+    }
+
+    fn peaks(&self) -> Peaks {
+        Peaks {
+            displacement: self.displacement.magnitude(),
+            acceleration_largest: self.acceleration.largest,
+            acceleration_least: self.acceleration.least,
+        }
     }
 
     /// A piece of the base motion.
@@ -146,10 +194,20 @@ impl Watch {
             let base = [at(k as f64), at((k + 1) as f64)];
             let before = self.swing;
             let after = step.after(before, base);
-            self.displacement.see_step(h, [[before.z, before.v], [after.z, after.v]]);
-            let accelerations = [(before, base[0]), (after, base[1])]
-                .map(|(swing, base)| self.oscillator.mass_acceleration(swing, base));
-            self.acceleration.see_step(h, accelerations);
+            let follows = [base[0], base[1]].map(|base| self.part * base);
+            let (slope, stiffness) = ((follows[1] - follows[0]) / h, self.oscillator.omega.powi(2));
+            let ends = [(before, 0), (after, 1)];
+            let displacements = ends.map(|(swing, i)| [swing.z + follows[i] / stiffness, swing.v + slope / stiffness]);
+            self.displacement.see_step(h, displacements);
+            let accelerations = ends.map(|(swing, i)| self.oscillator.mass_acceleration(swing, base[i]));
+            let beside = |i: usize| [accelerations[i][0] - follows[i], accelerations[i][1] - slope];
+            self.acceleration.see_step(h, [beside(0), beside(1)]);
+            for i in [0, 1] {
+                let [w, a] = [accelerations[i][0], base[i]];
+                for (sum, product) in self.work.iter_mut().zip([w * a, w * w, a * a]) {
+                    *sum += 0.5 * h * product;
+                }
+            }
             self.swing = after;
         }
     }

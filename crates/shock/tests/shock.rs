@@ -2,10 +2,23 @@
 
 use std::f64::consts::{PI, TAU};
 
-use shock::{BaseMotion, ModalPeak, ShockError, Sum, correlation};
+use shock::{BaseMotion, Following, ModalPeak, ShockError, Sum, correlation};
 
 fn close(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance * expected.abs(), "{found} instead of {expected}");
+}
+
+/// Closed form: an oscillator of 50 cycles in one of a half sine follows all of it; what is left is largest after it, where a wave of 2β/(1 − β²) goes
+/// on, β = 1/100. One of 1e-3 cycles follows nothing.
+#[test]
+fn a_fast_oscillator_follows_the_base_and_a_slow_one_does_not() {
+    let half_sine = pulse(|t| (PI * t).sin());
+    let Following { correlation, part, rest } = half_sine.following(50.0, 0.0).unwrap();
+    close(part, 1.0, 1e-3);
+    close(correlation, 1.0, 1e-3);
+    close(rest.acceleration(), 2.0 * 0.01 / (1.0 - 1e-4), 1e-4);
+    close(rest.displacement * (50.0 * TAU).powi(2), rest.acceleration(), 1e-4);
+    assert!(half_sine.following(1e-3, 0.0).unwrap().part < 1e-3);
 }
 
 /// A pulse of duration 1 as a table of straight pieces.

@@ -83,6 +83,43 @@ fn shapes_tell_modes_that_are_not_in_order() {
     assert_eq!((&fitted["modes"][0]["mode"], &fitted["modes"][1]["mode"]), (&2.into(), &1.into()));
 }
 
+/// Writes the mesh of the bar with other heights of its nodes.
+fn write_mesh(folder: &Path, name: &str, factor: f64) {
+    let text =
+        std::fs::read_to_string(format!("{}/../../meshes/rotating_bar.msh", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let (before, rest) = text.split_once("$Nodes\n").unwrap();
+    let (nodes, after) = rest.split_once("$EndNodes").unwrap();
+    let line = |line: &str| match line.split(' ').collect::<Vec<_>>()[..] {
+        [x, y, z] => format!("{x} {y} {:e}\n", factor * z.parse::<f64>().unwrap()),
+        _ => format!("{line}\n"),
+    };
+    let nodes: String = nodes.lines().map(line).collect();
+    std::fs::write(folder.join(name), format!("{before}$Nodes\n{nodes}$EndNodes{after}")).unwrap();
+}
+
+/// Independent reference: frequencies of a mesh of another thickness, made from the file. Conserved: they give it back, with the modulus.
+#[test]
+fn exact_frequencies_give_back_a_thickness() {
+    let folder = tempfile::tempdir().unwrap();
+    write_mesh(folder.path(), "bar.msh", 1.3);
+    write_mesh(folder.path(), "thick.msh", 1.3 * 1.1);
+    let text = "title = \"Bar\"\nunits = { length = \"mm\", mass = \"Mg\", time = \"s\" }\n[body]\nmesh = \"bar.msh\"\n\
+                material = { young_modulus = 70000.0, poisson_ratio = 0.3, density = 2.7e-9 }\n\
+                point_masses = [{ at = [202.07, 0.0, 0.0], mass = 1e-5 }]\n[modes]\nflexible = 5\n\
+                [[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n[time]\nend = 0.1\ntolerance = 1e-6\n";
+    std::fs::write(folder.path().join("bar.toml"), text).unwrap();
+    measure(folder.path(), &[&format!("{E}=65000.0"), "body.mesh=\"thick.msh\""], &[1.0; 5]);
+    let parameters = format!("{E},thickness.z");
+    let asked = ["fit", "bar.toml", "--measured", "test.csv", "--parameters", &parameters];
+    let found = report(folder.path(), &[&asked[..], &["--json"]].concat());
+    for (i, expected) in [65000.0, 1.1].into_iter().enumerate() {
+        assert!((value(&found, i) / expected - 1.0).abs() < 1e-7, "{}", value(&found, i));
+    }
+    assert_eq!(found["parameters"][1]["start"], 1.0);
+    let told = String::from_utf8(run(folder.path(), &asked).stdout).unwrap();
+    assert!(told.contains("a mesh with thickness.z = 1.1"), "{told}");
+}
+
 #[test]
 fn what_the_frequencies_do_not_tell_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
@@ -101,7 +138,8 @@ fn what_the_frequencies_do_not_tell_is_refused_by_name() {
     refused(&[&table[..], &["--parameters", &four]].concat(), 3, &["3 measured frequencies for 4 parameters"]);
     refused(&table, 2, &["no parameters", E]);
     refused(&["--parameters", E], 2, &["--measured"]);
-    refused(&[&table[..], &["--parameters", "thickness.z"]].concat(), 2, &["thickness.z", "flexframe gradient"]);
+    let thickness = [&table[..], &["--parameters", "thickness.z", "-o", "other.toml"]].concat();
+    refused(&thickness, 2, &["thickness.z", "leave -o out"]);
     refused(&[&table[..], &["--parameters", E, "-o", "../other.toml"]].concat(), 2, &["in another folder"]);
     // Nothing of the first modes reaches a mass that rests on the support.
     let resting = "body.point_masses=[{at=[0.0,0.0,0.0],mass=1e-5}]";
@@ -113,25 +151,27 @@ fn what_the_frequencies_do_not_tell_is_refused_by_name() {
     refused(&["--measured", "nowhere.csv", "--parameters", E], 3, &["nowhere.csv", "cannot be read"]);
 }
 
-/// Conserved: exact frequencies of bodies in joints give back the stiffnesses that they were computed with.
+/// Conserved: exact frequencies of bodies in joints give back the stiffnesses and the modulus that they were computed with.
 #[test]
-fn exact_frequencies_give_back_the_stiffnesses_of_a_bushing() {
+fn exact_frequencies_give_back_the_numbers_of_bodies_in_joints() {
     let folder = tempfile::tempdir().unwrap();
     write_system(folder.path(), "");
-    let (turn, slide) = ("bushings[0].stiffness.rotation[2]", "bushings[0].stiffness.translation[1]");
-    let set = [format!("{turn}=1.5e5"), format!("{slide}=700.0")];
-    let found = report(folder.path(), &["modes", "system.toml", "--json", "--set", &set[0], "--set", &set[1]]);
+    let (turn, modulus) = ("bushings[0].stiffness.rotation[2]", "bodies.bar.material.young_modulus");
+    let slide = "bushings[0].stiffness.translation[1]";
+    let set = [format!("{turn}=1.5e5"), format!("{slide}=700.0"), format!("{modulus}=65000.0")];
+    let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+    let found = report(folder.path(), &[&["modes", "system.toml", "--json"][..], &set].concat());
     let modes = found["systems"][0]["modes"].as_array().unwrap();
     let frequencies = modes.iter().map(|mode| mode["frequency"].as_f64().unwrap()).filter(|f| *f > 0.0).take(8);
     let lines: String = frequencies.map(|frequency| format!("{frequency:e}\n")).collect();
     std::fs::write(folder.path().join("test.csv"), format!("frequency\n{lines}")).unwrap();
-    let parameters = format!("{turn},{slide}");
+    let parameters = format!("{turn},{slide},{modulus}");
     let asked = ["fit", "system.toml", "--measured", "test.csv", "--parameters", &parameters, "--json"];
     let found = report(folder.path(), &asked);
-    for (i, expected) in [1.5e5, 700.0].into_iter().enumerate() {
+    for (i, expected) in [1.5e5, 700.0, 65000.0].into_iter().enumerate() {
         assert!((value(&found, i) / expected - 1.0).abs() < 1e-7, "{}", value(&found, i));
     }
-    std::fs::write(folder.path().join("test.csv"), "frequency,tip.x\n100,1\n200,1\n").unwrap();
+    std::fs::write(folder.path().join("test.csv"), "frequency,tip.x\n100,1\n200,1\n300,1\n").unwrap();
     let refused = run(folder.path(), &asked);
     assert!(String::from_utf8_lossy(&refused.stderr).contains("matched by their order"));
 }

@@ -124,6 +124,7 @@ pub(crate) fn write_system(folder: &Path, rest: &str) {
         "title = \"Bar in a bushing\"\nunits = {{ length = \"mm\", mass = \"Mg\", time = \"s\" }}\n\
          [bodies.bar]\nmesh = \"{}/../../meshes/rotating_bar.msh\"\n\
          material = {{ young_modulus = 70000.0, poisson_ratio = 0.3, density = 2.7e-9 }}\n\
+         point_masses = [{{ at = [100.0, 2.0, 0.0], mass = 5e-6 }}]\n\
          modes = {{ flexible = 6, damping_ratio = 0.01 }}\n\
          markers = {{ root = {{ group = \"root\" }}, tip = {{ at = [202.07, 0.0, 0.0] }} }}\n\
          [bodies.stone]\n\
@@ -141,18 +142,19 @@ pub(crate) fn write_system(folder: &Path, rest: &str) {
     std::fs::write(folder.join("system.toml"), text).unwrap();
 }
 
-/// Independent reference: central differences of fourth order of the frequencies that `flexframe modes` finds anew. Conserved: all stiffnesses
-/// grown by one factor, with the moduli of the body, whose part is left out here, would raise all frequencies by its root, so that their
-/// relative rates sum to less than a half, and to most of it in the first mode, where the bar hardly bends.
+/// Independent reference: central differences of fourth order of the frequencies that `flexframe modes` finds anew, with modes and static
+/// shapes found anew of each material. Conserved: all stiffnesses grown by one factor, the modulus of the body with them, raise all
+/// frequencies by its root but for the damping of the bushing, which stays: their relative rates sum to a half.
 #[test]
-fn stiffnesses_of_a_system_have_the_rates_of_central_differences() {
+fn numbers_of_a_system_have_the_rates_of_central_differences() {
     const STEP: f64 = 1e-3;
     let folder = tempfile::tempdir().unwrap();
     write_system(folder.path(), "");
     let found = report(folder.path(), &["gradient", "system.toml", "--json"]);
     let parameters = found["parameters"].as_array().unwrap();
     let frequencies = numbers(&found["frequencies"]);
-    assert_eq!(parameters.len(), 7, "{found}");
+    // Seven stiffnesses, three numbers of the material and a mass.
+    assert_eq!(parameters.len(), 7 + 4, "{found}");
     let modes = |set: &str| -> Vec<f64> {
         let found = report(folder.path(), &["modes", "system.toml", "--json", "--set", set]);
         let modes = found["systems"][0]["modes"].as_array().unwrap();
@@ -163,14 +165,18 @@ fn stiffnesses_of_a_system_have_the_rates_of_central_differences() {
         let (name, value) = (parameter["name"].as_str().unwrap(), parameter["value"].as_f64().unwrap());
         let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|k| modes(&format!("{name}={:e}", value * (1.0 + k * STEP))));
         let rates = numbers(&parameter["frequencies"]);
+        let mut worst: f64 = 0.0;
         for (k, rate) in rates.iter().enumerate() {
             let difference = (a[k] - d[k] + 8.0 * (c[k] - b[k])) / (12.0 * STEP);
-            let off = (value * rate - difference).abs();
-            assert!(off < 1e-6 * frequencies[k], "{name} {k}: {} {difference}", value * rate);
-            sums[k] += value * rate / frequencies[k];
+            worst = worst.max((value * rate - difference).abs() / frequencies[k]);
+            if name.contains("stiffness") || name.contains("young") {
+                sums[k] += value * rate / frequencies[k];
+            }
         }
+        println!("{name}: {worst:.1e}");
+        assert!(worst < 1e-6, "{name} {worst} {rates:?}");
     }
-    assert!(sums.iter().all(|sum| *sum < 0.5 + 1e-3) && sums[0] > 0.4, "{sums:?}");
+    assert!(sums.iter().all(|sum| (sum - 0.5).abs() < 5e-3), "{sums:?}");
 }
 
 #[test]

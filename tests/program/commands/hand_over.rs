@@ -81,6 +81,79 @@ fn op4_is_a_model_of_craig_and_bampton() {
     assert!((recovery[(7, 5)] - 202.07).abs() < 1e-9 && recovery.nrows() == 12 && recovery[(9, 3)] == 1.0);
 }
 
+/// Independent reference: `flexframe modes` of the bar that is clamped at the nodes of the interface, whose first three frequencies the inner modes
+/// have to 1e-3, since free modes and static shapes span them nearly. Conserved: the frequencies of the free bar to 1e-9; nodes of the
+/// interface have its coordinates as their displacements; rigid motions of it strain nothing, and have the mass.
+#[test]
+fn an_interface_of_nodes_is_one_of_craig_and_bampton() {
+    let folder = tempfile::tempdir().unwrap();
+    let clamped = scene(folder.path());
+    let at_root = json(&["modes", clamped.to_str().unwrap()]);
+    let text = std::fs::read_to_string(&clamped).unwrap().replace("flexible = 6", "flexible = 20");
+    let free = text
+        .replace("[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n", "")
+        .replace("static_correction = false\n", "");
+    let markers =
+        "[body.markers]\nroot = { group = \"root\", tie = \"nodes\" }\ntip = { at = [202.07, 0.0, 0.0] }\n[output]";
+    std::fs::write(&clamped, free.replace("[output]", markers)).unwrap();
+    let file = folder.path().join("free.op4");
+    done(&["reduce", clamped.to_str().unwrap(), "-o", file.to_str().unwrap()]);
+    let python = std::env::var_os(READERS).expect("FLEXFRAME_READERS names no Python with pyYeti; use ./dev test");
+    let read = Command::new(python).arg(root().join("tests/read_hand_over.py")).arg(&file).output().unwrap();
+    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
+    let found: Value = serde_json::from_slice(&read.stdout).unwrap();
+    let [mass, stiffness, recovery] = ["MXX", "KXX", "TREC"].map(|name| matrix(&found[name]));
+    let report = json(&["modes", clamped.to_str().unwrap()]);
+
+    // The interface: nodes of the root, then the six of the tip, which is the last node of the file.
+    let size = mass.nrows();
+    let inner = (0..size)
+        .rev()
+        .take_while(|k| (mass[(*k, *k)] - 1.0).abs() < 1e-9 && stiffness[(0, *k)].abs() < 1e-9 * stiffness[(0, 0)])
+        .count();
+    let count = size - inner;
+    assert!(count > 6 + 3 * 8 && (count - 6) % 3 == 0, "{count} of {size}");
+    let largest = stiffness.amax();
+    for k in 0..inner {
+        let rows = stiffness.view((0, count + k), (count, 1));
+        assert!(rows.amax() < 1e-9 * largest, "{k}");
+    }
+    let last = recovery.nrows() - 6;
+    for i in 0..6 {
+        for j in 0..size {
+            let expected = if j + 6 == count + i { 1.0 } else { 0.0 };
+            assert!((recovery[(last + i, j)] - expected).abs() < 1e-8, "{i} {j}");
+        }
+    }
+    let generalised = |mass: DMatrix<f64>, stiffness: DMatrix<f64>| -> Vec<f64> {
+        let inverse = mass.cholesky().unwrap().l().try_inverse().unwrap();
+        let mut squares: Vec<f64> =
+            (&inverse * stiffness * inverse.transpose()).symmetric_eigenvalues().iter().copied().collect();
+        squares.sort_by(f64::total_cmp);
+        squares.into_iter().map(|square| square.max(0.0).sqrt() / std::f64::consts::TAU).collect()
+    };
+    let free = numbers(&report["body"]["natural_frequencies"]);
+    let all = generalised(mass.clone(), stiffness.clone());
+    for (found, expected) in all[6..].iter().zip(&free[..8]) {
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+    }
+    // With the root held, and the tip free.
+    let kept: Vec<usize> = (count - 6..size).collect();
+    let held = |of: &DMatrix<f64>| DMatrix::from_fn(kept.len(), kept.len(), |i, j| of[(kept[i], kept[j])]);
+    let inner = generalised(held(&mass), held(&stiffness));
+    for (found, expected) in inner.iter().zip(&numbers(&at_root["body"]["natural_frequencies"])[..3]) {
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+    }
+    // A translation of all of it.
+    let along = |axis: usize| DMatrix::from_fn(size, 1, |i, _| f64::from(u8::from(i < count - 3 && i % 3 == axis)));
+    for axis in 0..3 {
+        let moved = along(axis);
+        assert!((&stiffness * &moved).amax() < 1e-8 * largest);
+        let whole = report["body"]["mass"].as_f64().unwrap();
+        assert!(((moved.transpose() * &mass * &moved)[(0, 0)] / whole - 1.0).abs() < 1e-9);
+    }
+}
+
 /// Conserved: the same numbers in both files, bit for bit.
 #[test]
 fn op2_has_the_matrices_of_op4() {

@@ -198,7 +198,7 @@ fn a_disk_on_an_overhung_shaft_has_the_frequencies_of_stodola_and_green() {
     }
 }
 
-/// Those that do not spin alone are named.
+/// Bodies that do not spin alone are named.
 #[test]
 fn what_is_no_rotor_is_refused() {
     let pad = || ([4e4, 3e4, 3e4], [90.0, 50.0, 50.0], 0.0);

@@ -87,16 +87,24 @@ impl MatrixRates {
                 Ok(Self { elements: Vec::new(), velocities: None, carried })
             }
             BodyNumber::Stretch(group, axis) => {
-                let velocities = stretch(mesh, group.as_deref(), *axis)?;
-                let moves = |e: &usize| mesh.elements()[*e].iter().any(|node| velocities[*node as usize] != [0.0; 3]);
-                let constants = |e: usize| {
-                    let (lambda, mu) = of_elements[e].lame();
-                    (e, ElementRate { lambda, mu, density: of_elements[e].density })
-                };
-                let elements = (0..mesh.elements().len()).filter(moves).map(constants).collect();
-                Ok(Self { elements, velocities: Some(velocities), carried: None })
+                Self::of_velocities(mesh, materials, stretch(mesh, group.as_deref(), *axis)?)
             }
         }
+    }
+
+    /// The rates where the nodes move with given velocities, such as those of [`stretch`] before it began.
+    ///
+    /// # Errors
+    /// Materials that do not fit the mesh.
+    pub fn of_velocities(mesh: &Mesh, materials: &Materials, velocities: Vec<[f64; 3]>) -> Result<Self, AssemblyError> {
+        let of_elements = materials.of_elements(mesh)?;
+        let moves = |e: &usize| mesh.elements()[*e].iter().any(|node| velocities[*node as usize] != [0.0; 3]);
+        let constants = |e: usize| {
+            let (lambda, mu) = of_elements[e].lame();
+            (e, ElementRate { lambda, mu, density: of_elements[e].density })
+        };
+        let elements = (0..mesh.elements().len()).filter(moves).map(constants).collect();
+        Ok(Self { elements, velocities: Some(velocities), carried: None })
     }
 
     /// Velocities of the nodes; none of a number that moves none.
@@ -239,9 +247,12 @@ fn number_of(mesh: &Mesh, name: &str) -> Result<usize, AssemblyError> {
     })
 }
 
-/// Velocities of the nodes where a group is stretched along an axis from its middle. A node in the middle of an edge of another element
-/// goes with its ends, so that straight edges stay straight.
-fn stretch(mesh: &Mesh, group: Option<&str>, axis: usize) -> Result<Vec<[f64; 3]>, AssemblyError> {
+/// Velocities of the nodes where a group, or the whole mesh, is stretched along an axis (0 to 2) from its middle. A node in the middle of an
+/// edge of another element goes with its ends, so that straight edges stay straight.
+///
+/// # Errors
+/// A group that the mesh does not have.
+pub fn stretch(mesh: &Mesh, group: Option<&str>, axis: usize) -> Result<Vec<[f64; 3]>, AssemblyError> {
     let number = group.map(|name| number_of(mesh, name)).transpose()?;
     let is_member = |e: usize| number.is_none_or(|number| mesh.element_groups(e).contains(&number));
     let mut of_group = vec![false; mesh.positions().len()];

@@ -4,6 +4,7 @@ mod craig_bampton;
 mod error;
 mod flex42;
 mod gltf;
+mod interface;
 mod mbdyn;
 mod op2;
 mod op4;
@@ -26,7 +27,8 @@ use crate::files::write_error::WriteError;
 /// Forms of other programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// OP4 of Nastran: mass, stiffness and damping matrices of the base and the modes, as Craig–Bampton has them.
+    /// OP4 of Nastran: mass, stiffness and damping matrices of the base, or of the markers of a free body, and the modes, as Craig–Bampton has
+    /// them.
     Op4,
     /// The same in OP2 of Nastran.
     Op2,

@@ -37,6 +37,11 @@ pub fn centrifugal_fields(
             -0.5 * (forces[j][(row, i)] + forces[i][(row, j)])
         }));
     }
+    Ok(mass.product(centrifugal_accelerations(positions, origin).as_ref()))
+}
+
+/// `−(I⊗sym([e_i×][e_j×])) X` (3n×6), X from `origin`: [`centrifugal_fields`] of a mass that is a scalar for each pair of nodes is M times it.
+pub fn centrifugal_accelerations(positions: &[[f64; 3]], origin: &Vector3<f64>) -> Mat<f64> {
     let mut fields = Mat::zeros(3 * positions.len(), ReducedBody::PAIRS.len());
     for (node, position) in positions.iter().enumerate() {
         let x = Vector3::from(*position) - origin;
@@ -50,7 +55,7 @@ pub fn centrifugal_fields(
             }
         }
     }
-    Ok(mass.product(fields.as_ref()))
+    fields
 }
 
 /// `M (1⊗e_i)` (N×3): the weight of a unit acceleration of gravity along each axis of the mesh.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use faer::{Col, Mat, MatRef};
-use fem_tet10::{Location, MatrixRates, Mesh};
+use fem_tet10::{BodyNumber, Location, MatrixRates, Mesh, stretch};
 use modal::{ModeRates, Modes, Solver, StaticAccuracy};
 use nalgebra::Vector3;
 use scene::{Load, MeshedBody, Scene};
@@ -33,6 +33,8 @@ pub(super) struct Acted {
 /// A body with its numbers.
 pub(super) struct At<'a> {
     pub assembled: &'a AssembledMesh,
+    /// The mesh as it is now.
+    pub mesh: &'a Mesh,
     /// Points of the output.
     pub points: &'a [Location],
     pub body: &'a MeshedBody,
@@ -51,7 +53,7 @@ impl At<'_> {
     }
 
     fn mesh(&self) -> &Mesh {
-        &self.assembled.mesh
+        self.mesh
     }
 
     /// Displacements (N×k) at the points, by column.
@@ -71,7 +73,14 @@ impl At<'_> {
     pub fn with(&self, parameter: &Parameter, of: RatesOf, acted: &Acted) -> Result<ParameterRates, BuildError> {
         let (mesh, modes) = (self.mesh(), self.modes);
         let MeshedBody { materials, point_masses, .. } = self.body;
-        let rates = MatrixRates::new(mesh, materials, point_masses, &parameter.number)?;
+        let rates = match &parameter.number {
+            // A unit of it moves the nodes of a stretched mesh as it moves those of the mesh of the scene.
+            BodyNumber::Stretch(group, axis) => {
+                let velocities = stretch(&self.assembled.mesh, group.as_deref(), *axis)?;
+                MatrixRates::of_velocities(mesh, materials, velocities)?
+            }
+            number => MatrixRates::new(mesh, materials, point_masses, number)?,
+        };
         self.refuse_turning_support(parameter, &rates)?;
         let natural = match of {
             RatesOf::Frequencies => self.count,

@@ -1,6 +1,8 @@
 //! A body whose materials and masses vary on a mesh that stays.
 
-use fem_tet10::Location;
+use std::sync::Arc;
+
+use fem_tet10::{BodyNumber, Location, Mesh, stretch};
 use modal::ModalError;
 use scene::{Measured, MeshedBody, Scene};
 
@@ -18,11 +20,13 @@ use crate::reduction::measured::{Seen, matched};
 use crate::reduction::modal_model::peak;
 
 /// Modes beyond those that are asked for: a group of modes of one frequency is not cut, and the rates of shapes come sooner.
-const BEYOND: usize = 4;
+pub(super) const BEYOND: usize = 4;
 
 /// A body of a scene whose numbers may vary.
 pub struct VariedBody {
-    assembled: Box<AssembledMesh>,
+    assembled: Arc<AssembledMesh>,
+    /// The mesh, which may be stretched.
+    mesh: Arc<Mesh>,
     body: MeshedBody,
     points: Vec<Location>,
     modes: usize,
@@ -54,7 +58,9 @@ impl Builder {
             assembled.mesh.locate(*at).map_err(|error| refuse(scene, &key, error))
         };
         let points = scene.output.points.iter().map(locate).collect::<Result<_, _>>()?;
-        Ok(VariedBody { assembled, body, points, modes })
+        let assembled_mesh = Arc::clone(&assembled.mesh);
+        let (assembled, mesh) = (Arc::from(assembled), assembled_mesh);
+        Ok(VariedBody { assembled, mesh, body, points, modes })
     }
 }
 
@@ -62,6 +68,43 @@ impl VariedBody {
     /// The body as the scene has it.
     pub fn body(&self) -> &MeshedBody {
         &self.body
+    }
+
+    pub(super) fn assembled(&self) -> &AssembledMesh {
+        &self.assembled
+    }
+
+    /// The same body with the mesh stretched by a factor for each of some parameters, which are stretches: its nodes moved by the sum of what each
+    /// does to the mesh of the scene. Points and point masses, with the numbers of `body`, stay on their material.
+    ///
+    /// # Errors
+    /// [`BuildError`] of elements that do not survive it, and of point masses that are spread over a radius.
+    pub fn stretched(&self, body: &MeshedBody, factors: &[(&Parameter, f64)]) -> Result<Self, BuildError> {
+        let (scene, first) = (self.scene(), &self.assembled.mesh);
+        let mut parts = first.parts();
+        for (parameter, factor) in factors {
+            let BodyNumber::Stretch(group, axis) = &parameter.number else { continue };
+            let velocities = stretch(first, group.as_deref(), *axis)?;
+            for (x, v) in parts.positions.iter_mut().zip(velocities) {
+                x.iter_mut().zip(v).for_each(|(x, v)| *x += (factor - 1.0) * v);
+            }
+        }
+        let mut body = body.clone();
+        for (i, mass) in body.point_masses.iter_mut().enumerate() {
+            let key = format!("body.point_masses[{i}]");
+            if mass.spread.is_some() {
+                let found = "a mass that nodes within a radius carry, in a mesh that is stretched";
+                let help = "leave `spread` out, or the thickness";
+                return Err(scene.refuse(&key, found, "masses at points", help).into());
+            }
+            let Location { nodes, weights } =
+                first.locate(mass.at).map_err(|error| refuse(scene, &format!("{key}.at"), error))?;
+            let carriers = || nodes.iter().zip(&weights);
+            mass.at = std::array::from_fn(|k| carriers().map(|(node, w)| w * parts.positions[*node as usize][k]).sum());
+        }
+        let mesh = Arc::new(Mesh::new(parts)?);
+        let (assembled, points, modes) = (Arc::clone(&self.assembled), self.points.clone(), self.modes);
+        Ok(Self { assembled, mesh, body, points, modes })
     }
 
     /// The scene.
@@ -79,7 +122,7 @@ impl VariedBody {
     /// # Errors
     /// [`BuildError`] of numbers out of their range, and of the modes.
     pub fn rates(&self, body: &MeshedBody, parameters: &[Parameter], of: RatesOf) -> Result<BodyRates, BuildError> {
-        let AssembledMesh { mesh, support, scene, .. } = &*self.assembled;
+        let (AssembledMesh { support, scene, .. }, mesh) = (&*self.assembled, &*self.mesh);
         let matrices = FeMatrices::Assembled(matrices(scene, body, mesh)?);
         let solver = self.assembled.solver(&matrices, mesh.positions()).map_err(modal(scene))?;
         if self.modes > solver.available() {
@@ -92,6 +135,7 @@ impl VariedBody {
         let repeated = modes.repeated(count);
         let at = At {
             assembled: &self.assembled,
+            mesh,
             points: &self.points,
             body,
             matrices: &matrices,

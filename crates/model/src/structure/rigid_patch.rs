@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, Vector3};
 /// A motion of nodes below this part of the largest is rounding: that about a line which they are on.
 const LINE: f64 = 1e-9;
 
-/// What the modes move the nodes of a patch by beside its best rigid motion: displacements (3n×nf).
+/// Displacements of the nodes of a patch in the modes, beside its best rigid motion (3n×nf).
 pub(super) fn rigid_rows(modes: &Modes, dofs: usize, positions: &[[f64; 3]], nodes: &[u32]) -> Mat<f64> {
     let at = |node: &u32| Vector3::from(positions[*node as usize]);
     let center = nodes.iter().map(at).sum::<Vector3<f64>>() / nodes.len() as f64;

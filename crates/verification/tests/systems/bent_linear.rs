@@ -108,7 +108,7 @@ fn the_static_answer_about_a_bent_rest_is_the_change_of_the_rest() {
     assert!((found - expected).norm() < 1e-5 * expected.norm(), "{found} {expected}");
 }
 
-/// Of each body V̇, ω̇ in its axes, and q̈.
+/// Accelerations V̇, ω̇ of each body in its axes, and q̈.
 fn accelerations(system: &System, states: &[MotionState]) -> Vec<f64> {
     let mut motion = SystemMotion::new(system.clone(), states).unwrap();
     motion.find_reactions().unwrap();

@@ -18,7 +18,7 @@ pub(crate) struct BentShape {
 }
 
 impl BentShape {
-    /// That of a body at some modal displacements; `None` without large modes.
+    /// The shape of a body at some modal displacements; `None` without large modes.
     pub fn of(body: &ConservativeBody, q: &[f64]) -> Option<Self> {
         let manifold = body.manifold.clone()?;
         let mut shape = Self { point: manifold.place(), z: vec![0.0; manifold.size()], manifold };

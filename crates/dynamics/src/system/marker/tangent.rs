@@ -34,7 +34,7 @@ pub(crate) struct MarkerTangent {
     bent: Option<BentTangent>,
 }
 
-/// What large modes add to the first order of a marker.
+/// The part of large modes in the first order of a marker.
 #[derive(Debug, Clone)]
 struct BentTangent {
     shape: BentShape,
@@ -44,7 +44,7 @@ struct BentTangent {
     patch: Option<PatchTangent>,
 }
 
-/// What large modes do to a patch.
+/// Effects of large modes on a patch.
 #[derive(Debug, Clone)]
 struct PatchTangent {
     turn: PatchTurn,

@@ -1,11 +1,13 @@
 //! Matrices of a body in the coordinates of Craig and Bampton, as Nastran names them.
 //!
 //! Coordinates are the six motions of the base (translations along and rotations about the axes of the mesh, through the origin), then the
-//! modes: the interface of a body that one rigid support holds, and its internal coordinates. `TREC` takes them to the
-//! displacements and rotations of the nodes, six rows for each.
+//! modes: the interface of a body that one rigid support holds, and its internal coordinates. Of a free body whose markers could hold it the
+//! interface are their displacements and rotations. `TREC` takes the coordinates to the displacements and rotations of the nodes, six
+//! rows for each.
 
 use faer::Mat;
 
+use super::interface;
 use super::reduced::Reduced;
 
 /// Motions of the base.
@@ -57,6 +59,13 @@ pub fn matrices(body: &Reduced<'_>) -> Vec<Named> {
                 recovery[(6 * n + 3 + i, BASE + k)] = node.turns[k][i];
             }
         }
+    }
+    if let Some(change) = interface::coordinates(&interface::rows(&body.interface), &mass, &stiffness) {
+        for matrix in [&mut mass, &mut stiffness, &mut damping] {
+            let changed = change.transpose() * (&*matrix * &change);
+            *matrix = Mat::from_fn(size, size, |i, j| 0.5 * (changed[(i, j)] + changed[(j, i)]));
+        }
+        recovery = recovery * change;
     }
     let all = [
         ("MXX", mass, SYMMETRIC),

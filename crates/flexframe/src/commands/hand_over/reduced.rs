@@ -1,11 +1,13 @@
 //! The numbers of a reduced body that other programs ask for, Eq. (M17) of `docs/method/modes.md`.
 
+use dynamics::{PointShapes, RotationShapes};
 use faer::Mat;
-use model::{BodyMarker, Model};
+use model::{BodyMarker, MarkerPart, Model, UnknownTurns};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use scene::Scene;
 
 use super::error::HandOverError;
+use super::interface::Place;
 use crate::commands::modes::require_flexible;
 
 /// Rigid shapes before the flexible ones.
@@ -37,6 +39,8 @@ pub struct Reduced<'a> {
     /// Stiffness by spins of rate 1 about 11, 22, 33, 23, 13, 12; none where the body is not stiffened.
     pub spin_stiffness: Option<&'a [Mat<f64>; 6]>,
     pub nodes: Vec<Node>,
+    /// Places of the markers of a free body, whose turns are known: the interface.
+    pub interface: Vec<Place>,
 }
 
 /// A place of the body.
@@ -73,6 +77,10 @@ impl<'a> Reduced<'a> {
         let markers = model.markers.iter().map(|BodyMarker { name, point, turning, .. }| {
             node(name, point.position_body(), point.columns(), turning.columns())
         });
+        let is_known = |marker: &&BodyMarker| marker.unknown_turns == UnknownTurns::None || marker.by_nodes;
+        let free = model.markers.iter().filter(|_| body.motion.is_free());
+        let interface =
+            if free.clone().all(|marker| is_known(&marker)) { free.flat_map(places).collect() } else { Vec::new() };
         let of = |parts: &'a [Vec<f64>; 3]| -> Vec<Vector3<f64>> {
             (0..count).map(|k| Vector3::from_fn(|i, _| parts[i][k])).collect()
         };
@@ -92,6 +100,7 @@ impl<'a> Reduced<'a> {
             products: &body.rotation_products,
             spin_stiffness: body.stress_stiffness.as_ref(),
             nodes: points.chain(markers).collect(),
+            interface,
         })
     }
 
@@ -132,5 +141,19 @@ impl<'a> Reduced<'a> {
     pub fn central_inertia(&self) -> Matrix3<f64> {
         let c = &self.center;
         self.inertia - (Matrix3::identity() * c.norm_squared() - c * c.transpose()) * self.mass
+    }
+}
+
+/// The places of a marker.
+fn places(marker: &BodyMarker) -> Vec<Place> {
+    let BodyMarker { point, turning, parts, by_nodes, .. } = marker;
+    let place = |point: &PointShapes, turning: &RotationShapes| Place {
+        position: point.position_body(),
+        shapes: point.columns()[RIGID..].to_vec(),
+        turns: (!by_nodes).then(|| turning.columns()[RIGID..].to_vec()),
+    };
+    match parts.is_empty() {
+        true => vec![place(point, turning)],
+        false => parts.iter().map(|MarkerPart { point, turning }| place(point, turning)).collect(),
     }
 }

@@ -104,6 +104,7 @@ impl Fit {
             let at = |sign: f64, deviation: f64| self.subject.value(i, x[i] + sign * quantile * deviation);
             FittedParameter {
                 name,
+                is_key: self.subject.is_key(i),
                 start: self.subject.value(i, 0.0),
                 value: self.subject.value(i, x[i]),
                 interval: deviation.map(|deviation| [at(-1.0, deviation), at(1.0, deviation)]),

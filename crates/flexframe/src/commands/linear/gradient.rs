@@ -1,10 +1,13 @@
 //! `flexframe gradient`: rates of frequencies, effective masses and static answers with the numbers that a body is made with.
 
+mod damping;
 mod error;
+pub(crate) mod number;
 mod report;
 mod responses;
-pub(crate) mod stiffness;
+pub(crate) mod system;
 mod table;
+mod varying;
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +23,8 @@ use crate::commands::linear::frequencies::Frequencies;
 use crate::commands::modes::unloaded_body;
 use crate::files::write_error::WriteError;
 use error::MAX_FREQUENCIES;
-use stiffness::{Stiffness, VariedSystem};
+use number::Number;
+use system::VariedSystem;
 
 const NAME: &str = "gradient.csv";
 const RESPONSES: &str = "gradient_frf.csv";
@@ -82,7 +86,7 @@ pub fn rates(
         if settings.frequencies.is_some() {
             return Err(GradientError::Responses { scene: scene.path.clone() });
         }
-        let parameters = Stiffness::named(system, &settings.parameters)?;
+        let parameters = Number::named(system, &settings.parameters)?;
         let varied = VariedSystem::new(system, builder, progress)?;
         let found = varied.rates(system, &parameters)?;
         return Ok(GradientReport::of_system(system, &parameters, found));

@@ -42,7 +42,7 @@ pub enum FitError {
     NoParameters { names: Vec<String> },
     /// A number that does not stand in the scene.
     #[error(
-        "{name} is no key of the scene: found a factor on the shape of the mesh, expected a number of a material or a point mass\n = `flexframe gradient` has its rates; mesh the body with another thickness"
+        "{name} is no key of the scene, which cannot be written with it: found a factor on the shape of the mesh, expected numbers of materials and point masses\n = leave -o out, and mesh the body with the thickness that was found"
     )]
     NoKey { name: String },
     /// More parameters than frequencies.

@@ -59,8 +59,10 @@ pub struct FitReport {
 /// A parameter that was fitted.
 #[derive(Debug, Clone, Serialize)]
 pub struct FittedParameter {
-    /// The path of its key.
+    /// The path of its key, or `thickness.GROUP.AXIS`.
     pub name: String,
+    /// True if it stands in the scene; false of a factor on the shape of the mesh.
+    pub is_key: bool,
     /// Its value in the scene.
     pub start: f64,
     /// Its value by the measured frequencies.
@@ -145,8 +147,11 @@ impl FitReport {
     /// The text of the scene with the parameters in it.
     ///
     /// # Errors
-    /// [`FitError::NoKey`] of a key that cannot be set.
+    /// [`FitError::NoKey`] of a factor on the shape, and of a key that cannot be set.
     pub fn scene_text(&self) -> Result<String, FitError> {
+        if let Some(parameter) = self.parameters.iter().find(|parameter| !parameter.is_key) {
+            return Err(FitError::NoKey { name: parameter.name.clone() });
+        }
         let values: Vec<(String, Value)> =
             self.parameters.iter().map(|parameter| (parameter.name.clone(), Value::Float(parameter.value))).collect();
         assign(&self.text, &values).map_err(|error| FitError::NoKey { name: error.key })
@@ -175,7 +180,7 @@ impl fmt::Display for FitReport {
             writeln!(f, "  {mode:>4}  {measured:>16.6} {before:>12.6} {after:>12.6}  {off}")?;
         }
         writeln!(f)?;
-        for FittedParameter { name, start, value, interval } in &self.parameters {
+        for FittedParameter { name, start, value, interval, .. } in &self.parameters {
             write!(f, "  {name} = {}", quantity(*value))?;
             if let Some([low, high]) = interval {
                 let percent = 100.0 * self.confidence;
@@ -200,7 +205,10 @@ impl fmt::Display for FitReport {
         match &self.file {
             Some(file) => write!(f, "\n  wrote    {}", file.display())?,
             None => {
-                let set = |parameter: &FittedParameter| format!("--set '{}={}'", parameter.name, parameter.value);
+                let set = |parameter: &FittedParameter| match parameter.is_key {
+                    true => format!("--set '{}={}'", parameter.name, parameter.value),
+                    false => format!("a mesh with {} = {}", parameter.name, quantity(parameter.value)),
+                };
                 write!(f, "\n  to use   {}", self.parameters.iter().map(set).collect::<Vec<_>>().join(" "))?;
             }
         }

@@ -1,11 +1,12 @@
-//! The subject of a fit: numbers of a body, or stiffnesses of a system.
+//! The subject of a fit: numbers of a body, or of a system.
 
 use fem_tet10::BodyNumber;
 use model::{BuildError, BuildProgress, Builder, Parameter, RatesOf, VariedBody};
 use scene::{Measured, Scene, System};
 
 use super::error::FitError;
-use crate::commands::linear::gradient::stiffness::{Stiffness, VariedSystem};
+use crate::commands::linear::gradient::number::Number;
+use crate::commands::linear::gradient::system::VariedSystem;
 use crate::commands::modes::unloaded_body;
 
 /// The limits within which Poisson's ratio is searched.
@@ -16,7 +17,7 @@ const FAR: f64 = 20.0;
 /// A body or a system with its parameters.
 pub(super) enum Subject {
     Body(Box<VariedBody>, Vec<Parameter>),
-    System(Box<VariedSystem>, Vec<Stiffness>),
+    System(Box<VariedSystem>, Vec<Number>),
 }
 
 /// Frequencies of the modes that were measured, their rates with the coordinates by parameter, and their numbers from 0.
@@ -35,21 +36,18 @@ impl Subject {
         progress: impl FnMut(BuildProgress),
     ) -> Result<Self, FitError> {
         if system.has_connections() {
-            let all = || Stiffness::all(system).into_iter().map(|stiffness| stiffness.name).collect();
+            let all = || Number::all(system).into_iter().map(|number| number.name).collect();
             check(names, all, measured)?;
             if !measured.places.is_empty() {
                 return Err(FitError::Shapes { file: measured.file.clone() });
             }
-            let parameters = Stiffness::named(system, names)?;
+            let parameters = Number::named(system, names)?;
             return Ok(Self::System(Box::new(VariedSystem::new(system, builder, progress)?), parameters));
         }
         let scene = &unloaded_body(&system.bodies[0]).map_err(BuildError::from)?;
         let known = Parameter::all(scene).map_err(BuildError::from)?;
         check(names, || known.iter().map(|parameter| parameter.name.clone()).collect(), measured)?;
         let parameters = Parameter::named(scene, names).map_err(BuildError::from)?;
-        if let Some(parameter) = parameters.iter().find(|parameter| !parameter.is_key()) {
-            return Err(FitError::NoKey { name: parameter.name.clone() });
-        }
         Ok(Self::Body(Box::new(builder.varied(scene, progress)?), parameters))
     }
 
@@ -57,6 +55,14 @@ impl Subject {
         match self {
             Self::Body(_, parameters) => parameters.iter().map(|parameter| parameter.name.clone()).collect(),
             Self::System(_, parameters) => parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+        }
+    }
+
+    /// True of a parameter that stands in the scene; not of a stretch.
+    pub fn is_key(&self, i: usize) -> bool {
+        match self {
+            Self::Body(_, parameters) => parameters[i].is_key(),
+            Self::System(..) => true,
         }
     }
 
@@ -74,7 +80,10 @@ impl Subject {
                 let first = parameters[i].value(body.body());
                 if self.is_plain(i) { first + x } else { first * x.exp() }
             }
-            Self::System(varied, parameters) => parameters[i].value(&varied.system) * x.exp(),
+            Self::System(varied, parameters) => {
+                let first = parameters[i].value(&varied.system);
+                if self.is_plain(i) { first + x } else { first * x.exp() }
+            }
         }
     }
 
@@ -84,7 +93,10 @@ impl Subject {
     }
 
     fn is_plain(&self, i: usize) -> bool {
-        matches!(self, Self::Body(_, parameters) if matches!(parameters[i].number, BodyNumber::PoissonRatio(_)))
+        match self {
+            Self::Body(_, parameters) => matches!(parameters[i].number, BodyNumber::PoissonRatio(_)),
+            Self::System(_, parameters) => parameters[i].is_poisson_ratio(),
+        }
     }
 
     /// The frequencies at coordinates.
@@ -94,7 +106,15 @@ impl Subject {
             Self::Body(varied, parameters) => {
                 let mut body = varied.body().clone();
                 parameters.iter().zip(&values).for_each(|(parameter, value)| parameter.set(&mut body, *value));
-                let found = varied.rates(&body, parameters, RatesOf::Frequencies)?;
+                let factors = parameters.iter().zip(&values).filter(|(parameter, _)| !parameter.is_key());
+                let factors: Vec<(&Parameter, f64)> = factors.map(|(parameter, value)| (parameter, *value)).collect();
+                let found = match factors.is_empty() {
+                    true => varied.rates(&body, parameters, RatesOf::Frequencies)?,
+                    false => {
+                        let stretched = varied.stretched(&body, &factors)?;
+                        stretched.rates(stretched.body(), parameters, RatesOf::Frequencies)?
+                    }
+                };
                 let modes = varied.matched(measured, &found)?;
                 let rates: Vec<Vec<f64>> = found.rates.into_iter().map(|rates| rates.frequencies).collect();
                 (found.frequencies, rates, modes)

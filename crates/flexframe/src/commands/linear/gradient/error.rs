@@ -20,15 +20,15 @@ pub enum GradientError {
     /// The system of its bodies cannot be put together.
     #[error("{0}")]
     System(#[from] SystemModesError),
-    /// A name that is none of a stiffness, or is named twice.
+    /// A name that is none of a number, or is named twice.
     #[error(
-        "found {name}, expected {expected}\n = name each once; of bodies in joints the stiffnesses are the parameters that frequencies have \
+        "found {name}, expected {expected}\n = name each once; of bodies in joints, stiffnesses and the materials and point masses of bodies with a mesh are the parameters that frequencies have \
          rates with"
     )]
-    Stiffness { name: String, expected: String },
+    Number { name: String, expected: String },
     /// A system whose place depends on its stiffnesses.
     #[error(
-        "{}: found bodies that forces deform at the start, whose vibrations follow the stiffness in two ways\n = take the loads and \
+        "{}: found bodies that forces deform at the start, whose vibrations follow stiffnesses and materials in two ways\n = take the loads and \
          preloads out, and place the bodies so that springs have no force",
         scene.display()
     )]

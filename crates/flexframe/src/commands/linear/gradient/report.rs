@@ -9,8 +9,9 @@ use serde::Serialize;
 
 use scene::System;
 
+use super::number::Number;
 use super::responses::{self, ResponseReport};
-use super::stiffness::{Stiffness, SystemRates};
+use super::system::SystemRates;
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 use crate::report::quantity;
@@ -134,10 +135,10 @@ impl GradientReport {
     }
 
     /// Rates of the frequencies of bodies in joints.
-    pub(super) fn of_system(system: &System, parameters: &[Stiffness], found: SystemRates) -> Self {
+    pub(super) fn of_system(system: &System, parameters: &[Number], found: SystemRates) -> Self {
         let scene = &system.bodies[0];
         let SystemRates { frequencies, repeated, rates } = found;
-        let of_parameter = |(parameter, rates): (&Stiffness, Vec<f64>)| {
+        let of_parameter = |(parameter, rates): (&Number, Vec<f64>)| {
             let value = parameter.value(system);
             ParameterReport {
                 name: parameter.name.clone(),

@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 use scene::Damping;
 use serde::Serialize;
 
-/// Relative step within a straight piece of a table of damping ratios.
-const WITHIN: f64 = 1e-6;
+use super::damping::Damped;
+
 /// Names of the axes.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -24,14 +24,6 @@ pub struct ResponseReport {
     pub values: Vec<[f64; 2]>,
 }
 
-/// Modes as a response has them.
-struct Mode {
-    omega: f64,
-    /// 2ζω, and its slope with ω.
-    damping: f64,
-    slope: f64,
-}
-
 /// The responses of a body, by load, then point, then axis.
 pub(super) fn responses(
     found: &BodyRates,
@@ -39,7 +31,7 @@ pub(super) fn responses(
     damping: &Damping,
     frequencies: &[f64],
 ) -> Vec<ResponseReport> {
-    let modes = modes(&found.frequencies, damping);
+    let modes = Damped::modes(&found.frequencies, damping);
     let mut reports = Vec::new();
     for (load, forces) in loads.iter().zip(&found.modal_forces) {
         for (p, point) in points.iter().enumerate() {
@@ -69,7 +61,7 @@ pub(super) fn rates(
     damping: &Damping,
     frequencies: &[f64],
 ) -> Vec<Option<Vec<[f64; 2]>>> {
-    let modes = modes(&found.frequencies, damping);
+    let modes = Damped::modes(&found.frequencies, damping);
     let of_output = |residues: &Residues, p: usize, axis: usize| {
         let at = |frequency: &f64| -> c64 {
             let terms = modes.iter().enumerate().map(|(k, mode)| {
@@ -89,25 +81,7 @@ pub(super) fn rates(
     of.residues.iter().flat_map(of_load).collect()
 }
 
-fn modes(frequencies: &[f64], damping: &Damping) -> Vec<Mode> {
-    let mode = |(k, frequency): (usize, &f64)| {
-        let omega = TAU * frequency;
-        let ratio = |omega: f64| damping.ratio(k, omega);
-        let slope = match damping {
-            Damping::Uniform(_) | Damping::List(_) => 2.0 * ratio(omega),
-            Damping::Rayleigh(rayleigh) => 2.0 * rayleigh.beta * omega,
-            // Pieces are straight: their differences are exact.
-            Damping::Table(_) => {
-                let [after, before] = [1.0 + WITHIN, 1.0 - WITHIN].map(|part| ratio(part * omega));
-                2.0 * ratio(omega) + (after - before) / WITHIN
-            }
-        };
-        Mode { omega, damping: 2.0 * ratio(omega) * omega, slope }
-    };
-    frequencies.iter().enumerate().map(mode).collect()
-}
-
-impl Mode {
+impl Damped {
     /// λ − ω² + iω·2ζ√λ.
     fn stiffness(&self, frequency: f64) -> c64 {
         let omega = TAU * frequency;

@@ -10,6 +10,9 @@ use scene::Scene;
 use super::channels::{along_axes, wrench_channels};
 use crate::rows::units::UnitLabels;
 
+/// The number of translations of a base.
+pub(super) const TRANSLATIONS: usize = 3;
+
 /// The motions of a base: translations along the axes of the body, then turns about them through its origin.
 pub(super) fn base_channels(scene: &Scene) -> Vec<Channel> {
     let UnitLabels { length, time, .. } = (&scene.units).into();
@@ -48,7 +51,7 @@ impl Held<'_> {
     /// The acceleration that a motion of the base gives a point.
     pub fn at_point(&self, arm: &Vector3<f64>, motion: usize) -> Vector3<f64> {
         let axis = Vector3::ith(motion % 3, 1.0);
-        if motion < 3 { axis } else { axis.cross(arm) }
+        if motion < TRANSLATIONS { axis } else { axis.cross(arm) }
     }
 
     /// The reaction: rows over `before` other coordinates, the modes and `after` others; `direct` by input.

@@ -23,6 +23,11 @@ impl Driven {
         Some(Self { motion: drive.motion, speed: drive.speed.amplitude * drive.speed.history.at(time, time) })
     }
 
+    /// True where the body turns.
+    pub fn is_spin(&self) -> bool {
+        matches!(self.motion, DrivenMotion::Turn { .. }) && self.speed != 0.0
+    }
+
     /// The input, and the coordinate that it accelerates.
     pub fn channels(&self, scene: &Scene) -> [Channel; 2] {
         let UnitLabels { length, time, .. } = (&scene.units).into();
@@ -37,8 +42,8 @@ impl Driven {
     pub fn at_point(&self, arm: &Vector3<f64>) -> Vector3<f64> {
         match self.motion {
             DrivenMotion::Slide { direction } => direction,
-            DrivenMotion::Turn { axis } if self.speed == 0.0 => axis.cross(arm),
-            DrivenMotion::Turn { .. } => Vector3::zeros(),
+            DrivenMotion::Turn { .. } if self.is_spin() => Vector3::zeros(),
+            DrivenMotion::Turn { axis } => axis.cross(arm),
         }
     }
 }

@@ -7,7 +7,7 @@ use model::{AtRest, Model};
 use nalgebra::Vector3;
 use scene::Scene;
 
-use super::base::{Held, base_channels};
+use super::base::{Held, TRANSLATIONS, base_channels};
 use super::channels::{Channels, input_channels, point_outputs, stress_outputs, unit_of_coordinate};
 use super::driven::Driven;
 use super::error::LinearizeError;
@@ -110,15 +110,18 @@ pub(super) fn of_held(
         }
         // The motion of the base that an input is.
         let mut accelerations: Vec<Option<usize>> = vec![None; direct.len()];
-        if drive.is_none() {
-            for (motion, channel) in base_channels(scene).into_iter().enumerate() {
-                let column: Vec<f64> = momenta.iter().map(|momentum| -momentum[motion]).collect();
-                let whole = held.rigid(motion);
-                direct.push(std::array::from_fn(|i| whole[i] + by_modes(&column, i)));
-                accelerations.push(Some(motion));
-                columns.push(column);
-                inputs.push(channel);
-            }
+        let (in_spin, base) = (drive.is_some_and(|driven| driven.is_spin()), base_channels(scene));
+        // A base that tilts a spin changes more than accelerations.
+        let known = if in_spin { TRANSLATIONS } else { base.len() };
+        for (motion, channel) in base.into_iter().enumerate().take(known) {
+            let mut column = vec![0.0; n];
+            column[r..r + nf].iter_mut().zip(&momenta).for_each(|(force, momentum)| *force = -momentum[motion]);
+            let whole = held.rigid(motion);
+            direct.push(std::array::from_fn(|i| whole[i] + by_modes(&column, i)));
+            // Outputs in a spin are as seen from the body.
+            accelerations.push((!in_spin).then_some(motion));
+            columns.push(column);
+            inputs.push(channel);
         }
         if let (Some(driven), Some([by_speed, by_rate])) = (&asked_drive, &slopes.by_drive) {
             (0..nf).for_each(|k| damping[(r + k, r + nf)] = -by_speed.0[k]);

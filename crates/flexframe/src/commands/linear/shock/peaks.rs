@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use linear::{Output, RealModes, SecondOrder};
 use rayon::prelude::*;
 use serde::Serialize;
-use shock::{BaseMotion, ModalPeak, Peaks, ShockError, Sum};
+use shock::{BaseMotion, Following, ModalPeak, Peaks, ShockError, Sum};
 
 /// The largest value of an output, in three sums.
 #[derive(Debug, Clone, Serialize)]
@@ -20,7 +20,7 @@ pub struct ShockOutput {
     pub srss: f64,
     /// Complete quadratic combination.
     pub cqc: f64,
-    /// The part that no mode of the model has, at the largest magnitude of the table: it is in all three sums.
+    /// The part that goes with the input: that which no mode of the model has, and of each mode the part that follows. It is in SRSS and CQC.
     pub rigid: f64,
     /// Number of the mode with the largest peak, from 1; none where the rigid part is larger.
     pub largest_mode: Option<usize>,
@@ -36,6 +36,8 @@ pub(super) struct ModePeaks {
     pub factors: Vec<f64>,
     /// Peaks of an oscillator of that frequency and damping on a base that follows the table.
     pub peaks: Vec<Peaks>,
+    /// How each follows the table.
+    pub following: Vec<Following>,
     /// Shapes over the coordinates, a list a mode.
     shapes: Vec<Vec<f64>>,
 }
@@ -46,12 +48,14 @@ impl ModePeaks {
         let factor = |shape: &Vec<f64>| (0..shape.len()).map(|i| shape[i] * equations.forces[(i, 0)]).sum();
         let frequencies: Vec<f64> = modes.circular_frequencies.iter().map(|omega| omega / TAU).collect();
         let damping_ratios = modes.damping_ratios.clone();
-        let each = frequencies.par_iter().zip(&damping_ratios);
-        let peaks = each.map(|(frequency, ratio)| motion.peaks(*frequency, *ratio)).collect::<Result<_, _>>()?;
-        Ok(Self { frequencies, damping_ratios, factors: shapes.iter().map(factor).collect(), peaks, shapes })
+        let each = || frequencies.par_iter().zip(&damping_ratios);
+        let peaks = each().map(|(frequency, ratio)| motion.peaks(*frequency, *ratio)).collect::<Result<_, _>>()?;
+        let following = each().map(|(frequency, ratio)| motion.following(*frequency, *ratio));
+        let following = following.collect::<Result<_, _>>()?;
+        Ok(Self { frequencies, damping_ratios, factors: shapes.iter().map(factor).collect(), peaks, following, shapes })
     }
 
-    /// The sums of each output that sees places or accelerations, Eqs. (R6) and (R7); velocities have no spectrum. `largest`: the
+    /// The sums of each output that sees places or accelerations, Eqs. (R6) to (R9); velocities have no spectrum. `largest`: the
     /// largest magnitude of the table.
     pub fn outputs(&self, equations: &SecondOrder, largest: f64) -> Result<Vec<ShockOutput>, ShockError> {
         let is_seen = |output: &&Output| {
@@ -65,24 +69,37 @@ impl ModePeaks {
         let [of_place, _, of_acceleration] = &output.rows;
         let along = |row: &[f64], shape: &[f64]| -> f64 { row.iter().zip(shape).map(|(r, v)| r * v).sum() };
         let direct = output.direct.first().copied().unwrap_or(0.0);
-        // η = −b z and η̈ = −b (w − a): with the modes goes what they have of the input itself, and the rest is rigid.
+        // η = −b z and η̈ = −b (w − a): with the modes goes what they have of the input itself, and the rest is rigid. In phase with the
+        // input are z = −Z and w = W.
         let mut rigid = direct;
+        let mut in_phase = 0.0;
+        let (mut followed, mut beside) = (direct, 0.0);
         let mut peaks = Vec::with_capacity(self.peaks.len());
+        let mut periodic = Vec::with_capacity(self.peaks.len());
         for (k, shape) in self.shapes.iter().enumerate() {
             let [r, s] = [of_place, of_acceleration].map(|row| along(row, shape));
-            rigid += s * self.factors[k];
-            // z and w have opposite signs.
-            let value = -self.factors[k] * (r * self.peaks[k].displacement - s * self.peaks[k].acceleration());
-            peaks.push(ModalPeak { frequency: self.frequencies[k], damping_ratio: self.damping_ratios[k], value });
+            let (b, following) = (self.factors[k], &self.following[k]);
+            rigid += s * b;
+            let of = |peaks: &Peaks| -b * (r * peaks.displacement - s * peaks.acceleration());
+            let peak =
+                |value: f64| ModalPeak { frequency: self.frequencies[k], damping_ratio: self.damping_ratios[k], value };
+            let (value, alpha) = (of(&self.peaks[k]), following.correlation);
+            in_phase -= alpha * value;
+            peaks.push(peak(value));
+            periodic.push(peak((1.0 - alpha * alpha).sqrt() * value));
+            let stiffness = (TAU * self.frequencies[k]).powi(2);
+            followed += b * (r * following.part / stiffness + s * (1.0 - following.part));
+            beside += of(&following.rest).abs();
         }
-        let rigid = (rigid * largest).abs();
+        let bound = (rigid * largest).abs() + Sum::Absolute.of(&peaks)?;
+        let rigid = (rigid * largest + in_phase).abs();
         let most = peaks.iter().enumerate().max_by(|a, b| a.1.value.abs().total_cmp(&b.1.value.abs()));
         let largest_mode = most.filter(|(_, peak)| peak.value.abs() > rigid).map(|(k, _)| k + 1);
-        let of_modes = |sum: Sum| sum.of(&peaks);
+        let of_modes = |sum: Sum| sum.of(&periodic);
         Ok(ShockOutput {
             output: output.channel.name.clone(),
             unit: output.channel.unit.clone(),
-            absolute: of_modes(Sum::Absolute)? + rigid,
+            absolute: bound.min((followed * largest).abs() + beside),
             srss: of_modes(Sum::Srss)?.hypot(rigid),
             cqc: of_modes(Sum::Cqc)?.hypot(rigid),
             rigid,

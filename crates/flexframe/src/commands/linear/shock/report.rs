@@ -46,6 +46,8 @@ pub struct ShockMode {
     pub displacement: f64,
     /// Largest acceleration of its mass.
     pub acceleration: f64,
+    /// Its correlation with the table: 1 of a mode that is fast beside it.
+    pub follows: f64,
 }
 
 impl ShockReport {
@@ -63,6 +65,7 @@ impl ShockReport {
             factor: peaks.factors[k],
             displacement: peaks.peaks[k].displacement,
             acceleration: peaks.peaks[k].acceleration(),
+            follows: peaks.following[k].correlation,
         };
         Self {
             title: scene.title.clone(),
@@ -84,15 +87,15 @@ impl fmt::Display for ShockReport {
         writeln!(f, "  shock    {input} for {duration:.6}, at most {peak:.6e}")?;
         write!(
             f,
-            "  {:>4}  {:>16}  {:>8}  {:>12}  {:>12}  {:>12}",
-            "mode", unit, "damping", "factor", "displacement", "acceleration"
+            "  {:>4}  {:>16}  {:>8}  {:>12}  {:>12}  {:>12}  {:>7}",
+            "mode", unit, "damping", "factor", "displacement", "acceleration", "follows"
         )?;
         for (k, mode) in modes.iter().take(SHOWN).enumerate() {
-            let ShockMode { frequency, damping_ratio, factor, displacement, acceleration } = mode;
+            let ShockMode { frequency, damping_ratio, factor, displacement, acceleration, follows } = mode;
             let number = k + 1;
             write!(
                 f,
-                "\n  {number:>4}  {frequency:>16.6}  {damping_ratio:>8.4}  {factor:>12.4e}  {displacement:>12.4e}  {acceleration:>12.4e}"
+                "\n  {number:>4}  {frequency:>16.6}  {damping_ratio:>8.4}  {factor:>12.4e}  {displacement:>12.4e}  {acceleration:>12.4e}  {follows:>7.4}"
             )?;
         }
         if modes.len() > SHOWN {

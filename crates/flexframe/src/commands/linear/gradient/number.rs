@@ -1,0 +1,130 @@
+//! Numbers of a scene of bodies in joints that its vibrations follow.
+
+use fem_tet10::BodyNumber;
+use model::Parameter;
+use scene::{AlongAndAbout, Body, MeshedBody, Scene, System, one_of};
+
+use super::error::GradientError;
+
+/// A number of a scene, with the path of its key.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Number {
+    pub name: String,
+    pub place: Place,
+}
+
+/// Where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Place {
+    Spring(usize),
+    /// Number, true about an axis, axis.
+    Bushing(usize, bool, usize),
+    Joint(usize),
+    /// Number of the body in the scene.
+    Body(usize, Parameter),
+}
+
+impl Number {
+    /// All of a scene: stiffnesses that are not zero, then the materials and point masses of bodies in joints.
+    pub fn all(system: &System) -> Vec<Self> {
+        let springs = system
+            .springs
+            .iter()
+            .enumerate()
+            .map(|(i, _)| Self { name: format!("springs[{i}].stiffness"), place: Place::Spring(i) });
+        let of_bushing = |i: usize| {
+            let of = move |(kind, about): (&'static str, bool)| {
+                (0..3).map(move |axis| Self {
+                    name: format!("bushings[{i}].stiffness.{kind}[{axis}]"),
+                    place: Place::Bushing(i, about, axis),
+                })
+            };
+            [("translation", false), ("rotation", true)].into_iter().flat_map(of)
+        };
+        let joints = system
+            .joints
+            .iter()
+            .enumerate()
+            .filter(|(_, joint)| joint.spring.is_some())
+            .map(|(i, _)| Self { name: format!("joints[{i}].spring.stiffness"), place: Place::Joint(i) });
+        let stiffnesses = springs.chain((0..system.bushings.len()).flat_map(of_bushing)).chain(joints);
+        let of_bodies = system.bodies.iter().enumerate().flat_map(|(body, scene)| {
+            let numbers = if varies(scene) { Parameter::all(scene).unwrap_or_default() } else { Vec::new() };
+            numbers.into_iter().map(move |number| Self { name: number.name.clone(), place: Place::Body(body, number) })
+        });
+        stiffnesses.filter(|stiffness| stiffness.value(system) > 0.0).chain(of_bodies).collect()
+    }
+
+    /// The numbers of some names; all without any.
+    pub fn named(system: &System, names: &[String]) -> Result<Vec<Self>, GradientError> {
+        let all = Self::all(system);
+        if names.is_empty() && !all.is_empty() {
+            return Ok(all);
+        }
+        let of_name = |(i, name): (usize, &String)| {
+            let known = all.iter().find(|number| number.name == *name).filter(|_| !names[..i].contains(name));
+            known.cloned().ok_or_else(|| {
+                let names: Vec<String> = all.iter().map(|number| number.name.clone()).collect();
+                GradientError::Number { name: name.clone(), expected: one_of(&names) }
+            })
+        };
+        if names.is_empty() {
+            let expected = "a spring, a bushing, a joint with a spring or a body with a mesh".to_owned();
+            return Err(GradientError::Number { name: "nothing that is stiff".to_owned(), expected });
+        }
+        names.iter().enumerate().map(of_name).collect()
+    }
+
+    /// Its value in a scene.
+    pub fn value(&self, system: &System) -> f64 {
+        match &self.place {
+            Place::Spring(i) => system.springs[*i].stiffness,
+            Place::Bushing(i, about, axis) => {
+                let AlongAndAbout { translation, rotation } = system.bushings[*i].stiffness;
+                if *about { rotation[*axis] } else { translation[*axis] }
+            }
+            Place::Joint(i) => system.joints[*i].spring.map_or(0.0, |spring| spring.stiffness),
+            Place::Body(i, parameter) => meshed(&system.bodies[*i]).map_or(f64::NAN, |body| parameter.value(body)),
+        }
+    }
+
+    /// Gives it a value in a scene.
+    pub fn set(&self, system: &mut System, value: f64) {
+        match &self.place {
+            Place::Spring(i) => system.springs[*i].stiffness = value,
+            Place::Bushing(i, about, axis) => {
+                let AlongAndAbout { translation, rotation } = &mut system.bushings[*i].stiffness;
+                let list = if *about { rotation } else { translation };
+                list[*axis] = value;
+            }
+            Place::Joint(i) => {
+                if let Some(spring) = &mut system.joints[*i].spring {
+                    spring.stiffness = value;
+                }
+            }
+            Place::Body(i, parameter) => {
+                if let Body::Meshed(body) = &mut system.bodies[*i].body {
+                    parameter.set(body, value);
+                }
+            }
+        }
+    }
+
+    /// True of a Poisson's ratio.
+    pub fn is_poisson_ratio(&self) -> bool {
+        matches!(&self.place, Place::Body(_, parameter) if matches!(parameter.number, BodyNumber::PoissonRatio(_)))
+    }
+}
+
+/// True of a body in joints whose modes follow from its mesh and its materials alone.
+fn varies(scene: &Scene) -> bool {
+    let Some(_) = meshed(scene) else { return false };
+    scene.tied && scene.modes.flexible.most() > 0 && scene.modes.about.is_none() && scene.modes.measured.is_none()
+}
+
+fn meshed(scene: &Scene) -> Option<&MeshedBody> {
+    match &scene.body {
+        Body::Meshed(body) => Some(body),
+        _ => None,
+    }
+}
