@@ -35,7 +35,7 @@ sites = np.flatnonzero(np.isin(body["stress/nodes"], nodes))
 assert np.array_equal(nodes[run["stress/nodes"][:]], body["stress/nodes"][:][sites])
 for name in ("stress/shapes", "stress/products"):
     assert np.array_equal(run[name], body[name][:][:, sites]), name
-for name in ("pairs", "products"):
+for name in ("factors", "products"):
     assert np.array_equal(run["large_deflection"][name], body["large_deflection"][name]), name
 exported = h5py.File(sys.argv[5])["VTKHDF"]
 points = exported["Points"][:]

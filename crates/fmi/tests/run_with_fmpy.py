@@ -38,7 +38,10 @@ def pack(scene, folder):
                 library = packed.read(name)
                 # An FMU is to run where there is no HDF5, and to be sent by mail: its library is stripped.
                 assert b"libhdf5" not in library, name
-                assert b".debug_info" not in library, f"{name}, {len(library) / 1e6:.0f} MB, has debugging information"
+                alone = folder / "library.so"
+                alone.write_bytes(library)
+                sections = subprocess.run(["readelf", "--sections", "--wide", alone], check=True, capture_output=True).stdout
+                assert b".debug_info" not in sections, f"{name}, {len(library) / 1e6:.0f} MB, has debugging information"
     return str(fmu)
 
 
@@ -49,10 +52,12 @@ def own_rows(scene, folder):
     with h5py.File(folder / scene.stem / f"{scene.stem}.h5") as file:
         names = file["points/names"][()] if "points/names" in file else []
         points = [name.decode() if isinstance(name, bytes) else name for name in names]
+        only = f"bodies/{next(iter(file['bodies']))}/"
 
         def take(path, item):
             if not isinstance(item, h5py.Dataset) or item.ndim == 0 or item.shape[0] != file["time"].shape[0]:
                 return
+            path = path.removeprefix(only)
             rows, name = item[()], path.replace("/", ".")
             if path.startswith("points/"):
                 if rows.ndim < 2:
