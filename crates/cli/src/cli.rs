@@ -216,7 +216,8 @@ enum Command {
         /// through their center of mass.
         #[arg(long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
         axis: Option<[f64; 3]>,
-        /// A joint about whose axis the bodies of a system spin [default: the one that a drive turns].
+        /// A joint about whose axis the bodies of a system spin, or the rigid rotor beyond it alone where other joints hold the others [default: the
+        /// one that a drive turns].
         #[arg(long, value_name = "NAME", conflicts_with = "axis")]
         joint: Option<String>,
         /// Spin speeds in radians per time: from start to end, both included, count in all.
