@@ -362,7 +362,7 @@ enum Command {
     ///
     /// They are exact, not differences (docs/method/gradients.md). Static displacements are those of the points of [output] under each load
     /// of a body that is held. Of bodies in joints, the parameters are the stiffnesses of springs, bushings and joints, and the materials and
-    /// point masses of bodies with a mesh; only frequencies have rates.
+    /// point masses of bodies with a mesh; frequencies and responses have rates.
     Gradient {
         #[command(flatten)]
         scene: SceneArgs,
@@ -372,7 +372,7 @@ enum Command {
         #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
         parameters: Vec<String>,
         /// Frequencies, cycles per time, at which the responses of points to the loads have rates, too: from start to end, both included,
-        /// count in all. They are sums over the modes that are kept, with the damping of the scene.
+        /// count in all. Of one body they are sums over the modes that are kept, with the damping of the scene.
         #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies)]
         frequencies: Option<Frequencies>,
         /// Number of flexible modes, instead of the scene's.

@@ -49,7 +49,7 @@ pub use full::check::{Checker, FrequencyCheck, PointCheck, StateCheck};
 pub use full::mends::{ErrorDirection, ErrorPart, Mend};
 pub use full::stress::{BodyStressCheck, PointStress, StressCheck};
 pub use full::{FullError, FullModel};
-pub use gradient::in_joints::{BodyInJoints, RatesInJoints};
+pub use gradient::in_joints::{BodyInJoints, LoadRates, RatesInJoints};
 pub use gradient::parameter::Parameter;
 pub use gradient::rates::{BodyRates, ParameterRates, RatesOf, Residues};
 pub use gradient::varied::VariedBody;

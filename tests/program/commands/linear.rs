@@ -238,6 +238,40 @@ fn what_has_no_linear_model_is_refused_in_words() {
 }
 
 #[test]
+fn what_does_nothing_and_what_grows_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = bar(folder.path(), CLAMP, "\"constant\"", "end = 0.01\ntolerance = 1e-6");
+    let file = folder.path().join("x.mat").to_str().unwrap().to_owned();
+    let held = [
+        "linearize",
+        &scene,
+        "-o",
+        &file,
+        "--set",
+        "output.points={ root = [0.0, 0.0, 0.0], tip = [202.07, 0.0, 0.0] }",
+    ];
+    let told = json(&held)["warnings"].to_string();
+    assert!(
+        told.contains("see nothing") && told.contains("root.velocity.y") && !told.contains("tip.velocity.y"),
+        "{told}"
+    );
+    let text = "title = \"Stick\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n\
+                [bodies.stick]\nrigid = { mass = 1.0, center_of_mass = [0.0, 0.0, 0.0], inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }\n\
+                initial = { position = [0.0, 0.0, 1.0] }\nmarkers = { foot = { at = [0.0, 0.0, -1.0] } }\n\
+                loads = [{ kind = \"gravity\", direction = [0.0, 0.0, -1.0], amplitude = 8.0 }]\n\
+                [[joints]]\nname = \"foot\"\nkind = \"revolute\"\nbetween = [\"ground\", \"stick.foot\"]\naxis = [0.0, 1.0, 0.0]\n\
+                [time]\nend = 1.0\ntolerance = 1e-6\n";
+    let stick = folder.path().join("stick.toml");
+    std::fs::write(&stick, text).unwrap();
+    let found = json(&["linearize", stick.to_str().unwrap(), "-o", &file, "--overwrite"]);
+    let told = found["warnings"].to_string();
+    // Closed form: √(m g l/(J + m l²)) = √(8/2).
+    assert!(told.contains("unstable: 1 motions grow, the fastest at 2.000e0"), "{told}");
+    // The weight has no moment about the foot.
+    assert!(told.contains("move nothing: loads[0].gravity"), "{told}");
+}
+
+#[test]
 fn spectra_that_are_none_are_refused_in_words() {
     let folder = tempfile::tempdir().unwrap();
     let scene = bar(folder.path(), CLAMP, "\"constant\"", "end = 0.01\ntolerance = 1e-6");
