@@ -256,3 +256,23 @@ fn a_stone_on_a_spring_has_a_relative_rate_of_a_half() {
     let told = String::from_utf8(refused.stderr).unwrap();
     assert!(refused.status.code() == Some(2) && told.contains("joints[0].spring.stiffness"), "{told}");
 }
+
+/// Closed form: a stone in a bushing that is alike along all axes has three modes of √(k/m)/2π, of which a stiffness along one axis moves
+/// one, by f/2k, and three of √(c/J)/2π, which it leaves.
+#[test]
+fn modes_of_one_frequency_part_with_a_stiffness() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "title = \"Stone\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n\
+                [bodies.stone]\nrigid = { mass = 2.0, center_of_mass = [0.0, 0.0, 0.0], inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }\n\
+                markers = { middle = { at = [0.0, 0.0, 0.0] } }\n\
+                [[bushings]]\nname = \"seat\"\nbetween = [\"ground\", \"stone.middle\"]\n\
+                stiffness = { translation = [50.0, 50.0, 50.0], rotation = [20.0, 20.0, 20.0] }\n[time]\nend = 1.0\ntolerance = 1e-6\n";
+    std::fs::write(folder.path().join("stone.toml"), text).unwrap();
+    let along = "bushings[0].stiffness.translation[1]";
+    let found = report(folder.path(), &["gradient", "stone.toml", "--json", "--parameters", along]);
+    let rates = numbers(&found["parameters"][0]["frequencies"]);
+    let expected = [0.0, 0.0, 0.0, 0.0, 0.0, 5.0 / std::f64::consts::TAU / 100.0];
+    assert_eq!(rates.len(), 6);
+    assert!(rates.iter().zip(expected).all(|(rate, expected)| (rate - expected).abs() < 1e-10), "{rates:?}");
+    assert_eq!(found["repeated"].as_array().unwrap().len(), 2);
+}
