@@ -7,7 +7,6 @@
 //! ```
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Location, MatrixRates, Mesh};
@@ -17,10 +16,9 @@ use scene::Scene;
 
 use crate::building::assembly::AssembledMesh;
 use crate::error::{BuildError, modal};
+use crate::gradient::load_rates::{LoadRates, Numbered, load_forces};
 use crate::gradient::parameter::Parameter;
 use crate::gradient::varied::{BEYOND, VariedBody};
-use crate::load::mesh_load::{self, Action, UnitWeight};
-use crate::load::turning;
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::read::matrices;
 use crate::model::{Meshed, Model};
@@ -55,30 +53,6 @@ pub struct RatesInJoints {
     pub points: Vec<Mat<f64>>,
     /// Rates of the forces of loads on the modes, by their numbers in the scene; weights, which follow the mass, are not among them.
     pub loads: BTreeMap<usize, LoadRates>,
-}
-
-/// Rates of the forces of a load on the modes.
-#[derive(Debug, Clone)]
-pub enum LoadRates {
-    /// By its force, body axes (3×nf).
-    Force(Mat<f64>),
-    /// By its moment, body axes (3×nf).
-    Moment(Mat<f64>),
-    /// Whole (1×nf), of forces that are fixed in the body.
-    Field(Mat<f64>),
-}
-
-impl LoadRates {
-    /// The rates (nf) of a load with these forces on all coordinates of the body (6+nf).
-    pub fn on_modes(&self, forces: &[f64]) -> Vec<f64> {
-        let (by, first) = match self {
-            Self::Force(by) => (by, Some(0)),
-            Self::Moment(by) => (by, Some(3)),
-            Self::Field(by) => (by, None),
-        };
-        let factor = |i: usize| first.map_or(1.0, |first| forces[first + i]);
-        (0..by.ncols()).map(|k| (0..by.nrows()).map(|i| factor(i) * by[(i, k)]).sum()).collect()
-    }
 }
 
 impl VariedBody {
@@ -147,7 +121,7 @@ struct Basis<'a> {
     /// Forces of the markers (N×k).
     on_markers: Mat<f64>,
     /// Forces of loads whose displacements the rates of the shapes change: their numbers, and forces of unit vectors or the whole.
-    loads: Vec<(usize, LoadForces)>,
+    loads: Vec<Numbered>,
     /// Weights of the points (N×3 each).
     points: Vec<Mat<f64>>,
     /// Static responses that the static shapes are made of, in their scale, their accelerations RᵀF, and of those to a spin the accelerations that its forces
@@ -303,14 +277,7 @@ impl<'a> Basis<'a> {
         let stiffness = shapes.transpose() * k_rates.subcols(6, flexible)
             + symmetric(self.forces.subcols(6, flexible).transpose() * &shape_rates);
         let of = |forces: &Mat<f64>| forces.transpose() * &shape_rates;
-        let load = |(number, forces): &(usize, LoadForces)| {
-            let rates = match forces {
-                LoadForces::Force(forces) => LoadRates::Force(of(forces)),
-                LoadForces::Moment(forces) => LoadRates::Moment(of(forces)),
-                LoadForces::Field(forces) => LoadRates::Field(of(forces)),
-            };
-            (*number, rates)
-        };
+        let load = |(number, forces): &Numbered| (*number, forces.rates(&shape_rates));
         Ok(RatesInJoints {
             mass,
             stiffness,
@@ -319,58 +286,6 @@ impl<'a> Basis<'a> {
             loads: self.loads.iter().map(load).collect(),
         })
     }
-}
-
-/// Forces on the nodes of a load: of unit vectors (N×3), or the whole (N×1).
-enum LoadForces {
-    Force(Mat<f64>),
-    Moment(Mat<f64>),
-    Field(Mat<f64>),
-}
-
-/// Forces on the nodes of each load but weights, which have no static response in a free body, by its number, and of those that static shapes
-/// are made for (N×k), in all directions that they may come to have.
-fn load_forces(varied: &VariedBody, matrices: &FeMatrices) -> Result<(Vec<(usize, LoadForces)>, Mat<f64>), BuildError> {
-    let (scene, AssembledMesh { mesh, support, .. }) = (varied.scene(), varied.assembled());
-    let FeMatrices::Assembled(matrices) = matrices else { return Ok((Vec::new(), Mat::new())) };
-    let weight = UnitWeight::of_elements(matrices).map_err(modal(scene))?;
-    let turning = turning::turning(scene, support.motion, None);
-    let loads = mesh_load::on_mesh(scene, mesh, 3, &Arc::new(weight))?;
-    let mut columns = Vec::new();
-    let mut found = Vec::new();
-    let rows = 3 * mesh.positions().len();
-    let numbers = mesh_load::acting(scene).map(|(i, _)| i);
-    for (number, load) in numbers.zip(&loads).filter(|(_, load)| load.size() > 0.0) {
-        let of_units = || {
-            let mut forces = Mat::zeros(rows, 3);
-            for (axis, column) in forces.as_mut().col_iter_mut().enumerate() {
-                load.add_unit_nodal_forces(Some(Vector3::ith(axis, 1.0)), column);
-            }
-            forces
-        };
-        found.push((
-            number,
-            match load.action {
-                Action::Weight { .. } => continue,
-                Action::Force { .. } => LoadForces::Force(of_units()),
-                Action::Moment { .. } => LoadForces::Moment(of_units()),
-                Action::Field { .. } => {
-                    let mut forces = vec![0.0; rows];
-                    load.add_nodal_forces(&mut forces);
-                    LoadForces::Field(Mat::from_fn(rows, 1, |row, _| forces[row]))
-                }
-            },
-        ));
-        let turned = load.turned(turning);
-        for k in 0..turned.len().max(1) {
-            columns.push((load, turned.get(k).copied()));
-        }
-    }
-    let mut forces = Mat::zeros(rows, columns.len());
-    for ((load, along), column) in columns.into_iter().zip(forces.as_mut().col_iter_mut()) {
-        load.add_unit_nodal_forces(along, column);
-    }
-    Ok((found, forces))
 }
 
 fn side_by_side(parts: &[MatRef<'_, f64>]) -> Mat<f64> {
