@@ -219,7 +219,8 @@ enum Command {
         /// through their center of mass.
         #[arg(long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
         axis: Option<[f64; 3]>,
-        /// A joint about whose axis the bodies of a system spin [default: the one that a drive turns].
+        /// A joint about whose axis the bodies of a system spin, or the rigid rotor beyond it alone where other joints hold the others [default: the
+        /// one that a drive turns].
         #[arg(long, value_name = "NAME", conflicts_with = "axis")]
         joint: Option<String>,
         /// Spin speeds in radians per time: from start to end, both included, count in all.
@@ -365,7 +366,7 @@ enum Command {
     ///
     /// They are exact, not differences (docs/method/gradients.md). Static displacements are those of the points of [output] under each load
     /// of a body that is held. Of bodies in joints, the parameters are the stiffnesses of springs, bushings and joints, and the materials and
-    /// point masses of bodies with a mesh; only frequencies have rates.
+    /// point masses of bodies with a mesh; frequencies and responses have rates.
     Gradient {
         #[command(flatten)]
         scene: SceneArgs,
@@ -375,7 +376,7 @@ enum Command {
         #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
         parameters: Vec<String>,
         /// Frequencies, cycles per time, at which the responses of points to the loads have rates, too: from start to end, both included,
-        /// count in all. They are sums over the modes that are kept, with the damping of the scene.
+        /// count in all. Of one body they are sums over the modes that are kept, with the damping of the scene.
         #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies)]
         frequencies: Option<Frequencies>,
         /// Number of flexible modes, instead of the scene's.

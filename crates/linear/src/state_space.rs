@@ -6,6 +6,10 @@ use faer::{Mat, c64};
 use crate::channel::Channel;
 use crate::error::LinearError;
 
+/// Distance of the shift of an inverse iteration from its pole, relative to it, and the number of iterations.
+const BESIDE: f64 = 1e-9;
+const ITERATIONS: usize = 3;
+
 /// x' = A x + B u, y = C x + D u.
 #[derive(Debug, Clone)]
 pub struct StateSpace {
@@ -47,6 +51,24 @@ impl StateSpace {
         }
         poles.sort_by(|a, b| a.norm().total_cmp(&b.norm()).then(a.im.total_cmp(&b.im)));
         Ok(poles)
+    }
+
+    /// The outputs (p) in the complex mode of a pole s: C v with (A − s) v = 0, by inverse iteration. Of poles that are one it is one of their
+    /// modes. Their scale is any.
+    pub fn complex_mode(&self, pole: c64) -> Vec<c64> {
+        let n = self.a.nrows();
+        let fastest = self.a.norm_max();
+        let shift = pole + BESIDE * if pole.norm() > 0.0 { pole.norm() } else { fastest };
+        let shifted = Mat::from_fn(n, n, |i, j| c64::new(self.a[(i, j)], 0.0) - if i == j { shift } else { c64::ZERO });
+        let factor = shifted.partial_piv_lu();
+        // No mode is at right angles to all of these.
+        let mut v = Mat::from_fn(n, 1, |i, _| c64::new(1.0, (1.0 + i as f64).sin()));
+        for _ in 0..ITERATIONS {
+            v = factor.solve(&v);
+            let size = v.norm_max();
+            v = Mat::from_fn(n, 1, |i, _| v[(i, 0)] / size);
+        }
+        (0..self.c.nrows()).map(|i| (0..n).map(|j| v[(j, 0)] * self.c[(i, j)]).sum()).collect()
     }
 
     /// States that A couples, directly or by others.

@@ -54,6 +54,29 @@ fn random_model(n: usize, m: usize, p: usize, seed: &mut u64) -> SecondOrder {
     model
 }
 
+/// Conserved: the coordinates η in a complex mode of a pole s obey (s² + sC + K) η = 0.
+#[test]
+fn complex_modes_obey_the_equations() {
+    let mut seed = 5;
+    let mut model = random_model(6, 1, 1, &mut seed);
+    let row = |k: usize| (0..6).map(|j| f64::from(u8::from(j == k))).collect::<Vec<f64>>();
+    model.outputs = (0..6).map(|k| Output::new(Channel::new("y", ""), Rate::Place, row(k))).collect();
+    let space = model.state_space().unwrap();
+    for pole in space.poles().unwrap() {
+        let eta = space.complex_mode(pole);
+        let size = eta.iter().map(|x| x.norm()).fold(0.0, f64::max);
+        for i in 0..6 {
+            let entry = |j: usize| {
+                let own = if i == j { pole * pole } else { c64::ZERO };
+                own + pole * model.damping[(i, j)] + model.stiffness[(i, j)]
+            };
+            let terms: Vec<c64> = (0..6).map(|j| entry(j) * eta[j]).collect();
+            let (sum, scale) = (terms.iter().sum::<c64>().norm(), (pole * pole).norm() * size);
+            assert!(size > 0.0 && sum < 1e-7 * scale, "{pole} {i}: {sum:e} of {scale:e}");
+        }
+    }
+}
+
 /// Closed form: 1/(ω₀² − ω² + 2iζω₀ω), times iω and −ω²; and K(1 + ig) of structural damping.
 #[test]
 fn an_oscillator_responds_as_its_closed_form() {

@@ -2,6 +2,7 @@
 
 mod at;
 pub(crate) mod in_joints;
+pub(crate) mod load_rates;
 pub(crate) mod parameter;
 pub(crate) mod rates;
 pub(crate) mod varied;

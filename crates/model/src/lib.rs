@@ -50,6 +50,7 @@ pub use full::mends::{ErrorDirection, ErrorPart, Mend};
 pub use full::stress::{BodyStressCheck, PointStress, StressCheck};
 pub use full::{FullError, FullModel};
 pub use gradient::in_joints::{BodyInJoints, RatesInJoints};
+pub use gradient::load_rates::LoadRates;
 pub use gradient::parameter::Parameter;
 pub use gradient::rates::{BodyRates, ParameterRates, RatesOf, Residues};
 pub use gradient::varied::VariedBody;

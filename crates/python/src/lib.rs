@@ -3,7 +3,7 @@
 //! The package is in `python/flexframe`; the types of everything here are in `_flexframe.pyi` there.
 //! `scene`, `body`, `system` and `motion::simulation` are the classes of these names; `builder` has the cache of the user;
 //! `motion` lets Python functions act on a body; `rows` gives rows under the names of the columns of a results file;
-//! `linear` gives the matrices of linear models to `linear.py`;
+//! `linear` gives the matrices of linear models to `linear.py`, `parameters` the reports on rates and fits to `parameters.py`;
 //! `values` takes numbers and dicts and gives arrays and tables: the only unsafe code is in `arrays`, which look into a body without a
 //! copy; `interrupt` lets Ctrl-C stop long work; `threads` lets it be done in a forked process; `errors` turns errors into exceptions
 //! with the same words.
@@ -19,6 +19,7 @@ mod errors;
 mod interrupt;
 mod linear;
 mod motion;
+mod parameters;
 mod rows;
 mod scene;
 mod system;
@@ -44,6 +45,8 @@ mod _flexframe {
     use super::motion::seen::Motion;
     #[pymodule_export]
     use super::motion::simulation::{Reached, Simulation};
+    #[pymodule_export]
+    use super::parameters::{fitted, gradients};
     #[pymodule_export]
     use super::rows::results::read_results;
     #[pymodule_export]

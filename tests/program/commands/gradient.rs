@@ -126,6 +126,11 @@ pub(crate) fn write_system(folder: &Path, rest: &str) {
          material = {{ young_modulus = 70000.0, poisson_ratio = 0.3, density = 2.7e-9 }}\n\
          point_masses = [{{ at = [100.0, 2.0, 0.0], mass = 5e-6 }}]\n\
          modes = {{ flexible = 6, damping_ratio = 0.01 }}\n\
+         points = {{ tip = [202.07, 0.0, 0.0], middle = [100.0, 5.0, 5.0] }}\n\
+         loads = [{{ kind = \"force\", at = [150.0, 5.0, 0.0], direction = [0.0, 1.0, 0.5], amplitude = 2.0, \
+         history = {{ kind = \"half-sine\", duration = 0.002 }} }}, \
+         {{ kind = \"moment\", at = [60.0, 0.0, 0.0], radius = 12.0, direction = [0.0, 0.0, 1.0], amplitude = 3.0, \
+         history = {{ kind = \"half-sine\", duration = 0.002 }} }}]\n\
          markers = {{ root = {{ group = \"root\" }}, tip = {{ at = [202.07, 0.0, 0.0] }} }}\n\
          [bodies.stone]\n\
          rigid = {{ mass = 1e-5, center_of_mass = [0.0, 0.0, 0.0], inertia = [[1e-3, 0.0, 0.0], [0.0, 1e-3, 0.0], [0.0, 0.0, 1e-3]] }}\n\
@@ -142,41 +147,79 @@ pub(crate) fn write_system(folder: &Path, rest: &str) {
     std::fs::write(folder.join("system.toml"), text).unwrap();
 }
 
-/// Independent reference: central differences of fourth order of the frequencies that `flexframe modes` finds anew, with modes and static
-/// shapes found anew of each material. Conserved: all stiffnesses grown by one factor, the modulus of the body with them, raise all
-/// frequencies by its root but for the damping of the bushing, which stays: their relative rates sum to a half.
+/// Independent reference: central differences of fourth order of the frequencies and responses of bodies that are reduced anew of each
+/// material, with modes and static shapes of their own; `flexframe frf` for the responses. Conserved: all stiffnesses grown by one factor, the
+/// modulus of the body with them, raise all frequencies by its root but for the damping of the bushing, which stays: their relative rates
+/// sum to a half, seen in the lowest ones, which it damps little. At frequency 0 they lower all answers by their ratio, so that the rates sum to −1.
 #[test]
 fn numbers_of_a_system_have_the_rates_of_central_differences() {
     const STEP: f64 = 1e-3;
     let folder = tempfile::tempdir().unwrap();
     write_system(folder.path(), "");
-    let found = report(folder.path(), &["gradient", "system.toml", "--json"]);
+    let asked = ["gradient", "system.toml", "--frequencies", "0:600:3", "--overwrite", "--json"];
+    let found = report(folder.path(), &asked);
     let parameters = found["parameters"].as_array().unwrap();
-    let frequencies = numbers(&found["frequencies"]);
     // Seven stiffnesses, three numbers of the material and a mass.
     assert_eq!(parameters.len(), 7 + 4, "{found}");
-    let modes = |set: &str| -> Vec<f64> {
-        let found = report(folder.path(), &["modes", "system.toml", "--json", "--set", set]);
-        let modes = found["systems"][0]["modes"].as_array().unwrap();
-        modes.iter().map(|mode| mode["frequency"].as_f64().unwrap()).filter(|f| *f > 0.0).collect()
+    let of = |report: &Value| -> [Vec<f64>; 2] {
+        let responses = report["responses"].as_array().unwrap();
+        let responses = responses.iter().flat_map(|response| numbers(&response["values"])).collect();
+        [numbers(&report["frequencies"]), responses]
     };
-    let mut sums = vec![0.0; frequencies.len()];
+    let here = of(&found);
+    // Two loads and a slide, two points and the slide, three frequencies of two numbers.
+    assert_eq!(here[1].len(), 3 * (2 * 3 + 1) * 3 * 2);
+    let mut sums = here.each_ref().map(|list| vec![0.0; list.len()]);
     for parameter in parameters {
         let (name, value) = (parameter["name"].as_str().unwrap(), parameter["value"].as_f64().unwrap());
-        let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|k| modes(&format!("{name}={:e}", value * (1.0 + k * STEP))));
-        let rates = numbers(&parameter["frequencies"]);
-        let mut worst: f64 = 0.0;
-        for (k, rate) in rates.iter().enumerate() {
-            let difference = (a[k] - d[k] + 8.0 * (c[k] - b[k])) / (12.0 * STEP);
-            worst = worst.max((value * rate - difference).abs() / frequencies[k]);
-            if name.contains("stiffness") || name.contains("young") {
-                sums[k] += value * rate / frequencies[k];
+        let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|k| {
+            let set = format!("{name}={:e}", value * (1.0 + k * STEP));
+            of(&report(folder.path(), &[&asked[..], &["--parameters", name, "--set", &set]].concat()))
+        });
+        for (part, what) in ["frequencies", "responses"].into_iter().enumerate() {
+            let rates = numbers(&parameter[what]);
+            assert_eq!(rates.len(), here[part].len(), "{name} {what}");
+            for (k, rate) in rates.iter().enumerate() {
+                // A response is measured by the largest of its input at all outputs.
+                let size = match part {
+                    0 => here[0][k],
+                    _ => here[1][k / 42 * 42..k / 42 * 42 + 42].iter().map(|x| x.abs()).fold(0.0, f64::max),
+                };
+                let difference = (a[part][k] - d[part][k] + 8.0 * (c[part][k] - b[part][k])) / (12.0 * STEP);
+                let off = (value * rate - difference).abs();
+                assert!(off < 1e-6 * size, "{name} {what} {k}: {} {difference} of {size}", value * rate);
+                if name.contains("stiffness") || name.contains("young") {
+                    sums[part][k] += value * rate;
+                }
             }
         }
-        println!("{name}: {worst:.1e}");
-        assert!(worst < 1e-6, "{name} {worst} {rates:?}");
     }
-    assert!(sums.iter().all(|sum| (sum - 0.5).abs() < 5e-3), "{sums:?}");
+    for (sum, frequency) in sums[0].iter().zip(&here[0]).take(6) {
+        assert!((sum / frequency - 0.5).abs() < 1e-3, "{sum} {frequency}");
+    }
+    let largest = here[1].iter().map(|x| x.abs()).fold(0.0, f64::max);
+    for k in (0..here[1].len()).step_by(6) {
+        assert!((sums[1][k] + here[1][k]).abs() < 1e-6 * largest, "{k} {} {}", sums[1][k], here[1][k]);
+    }
+    let frf = [
+        "frf",
+        "system.toml",
+        "--frequencies",
+        "0:600:3",
+        "--inputs",
+        "bar.loads[0]",
+        "--outputs",
+        "bar.tip.displacement.y",
+    ];
+    report(folder.path(), &[&frf[..], &["-o", "frf", "--json"]].concat());
+    let table = std::fs::read_to_string(folder.path().join("frf/frf.csv")).unwrap();
+    let is_it =
+        |response: &&Value| response["input"] == "bar.loads[0].force" && response["output"] == "bar.tip.displacement.y";
+    let ours = numbers(&found["responses"].as_array().unwrap().iter().find(is_it).unwrap()["values"]);
+    for (line, ours) in table.lines().skip(1).zip(ours.chunks(2)) {
+        let magnitude: f64 = line.split(',').nth(1).unwrap().parse().unwrap();
+        assert!((magnitude / ours[0].hypot(ours[1]) - 1.0).abs() < 1e-9, "{line} {ours:?}");
+    }
 }
 
 #[test]
@@ -212,4 +255,24 @@ fn a_stone_on_a_spring_has_a_relative_rate_of_a_half() {
         run(folder.path(), &["gradient", "stone.toml", "--parameters", "bodies.stone.rigid.mass", "-o", "other"]);
     let told = String::from_utf8(refused.stderr).unwrap();
     assert!(refused.status.code() == Some(2) && told.contains("joints[0].spring.stiffness"), "{told}");
+}
+
+/// Closed form: a stone in a bushing that is alike along all axes has three modes of √(k/m)/2π, of which a stiffness along one axis moves
+/// one, by f/2k, and three of √(c/J)/2π, which it leaves.
+#[test]
+fn modes_of_one_frequency_part_with_a_stiffness() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "title = \"Stone\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n\
+                [bodies.stone]\nrigid = { mass = 2.0, center_of_mass = [0.0, 0.0, 0.0], inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }\n\
+                markers = { middle = { at = [0.0, 0.0, 0.0] } }\n\
+                [[bushings]]\nname = \"seat\"\nbetween = [\"ground\", \"stone.middle\"]\n\
+                stiffness = { translation = [50.0, 50.0, 50.0], rotation = [20.0, 20.0, 20.0] }\n[time]\nend = 1.0\ntolerance = 1e-6\n";
+    std::fs::write(folder.path().join("stone.toml"), text).unwrap();
+    let along = "bushings[0].stiffness.translation[1]";
+    let found = report(folder.path(), &["gradient", "stone.toml", "--json", "--parameters", along]);
+    let rates = numbers(&found["parameters"][0]["frequencies"]);
+    let expected = [0.0, 0.0, 0.0, 0.0, 0.0, 5.0 / std::f64::consts::TAU / 100.0];
+    assert_eq!(rates.len(), 6);
+    assert!(rates.iter().zip(expected).all(|(rate, expected)| (rate - expected).abs() < 1e-10), "{rates:?}");
+    assert_eq!(found["repeated"].as_array().unwrap().len(), 2);
 }

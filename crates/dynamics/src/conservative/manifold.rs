@@ -287,19 +287,6 @@ impl Manifold {
         }
     }
 
-    /// The rates of ξ, then of the products, at q and a unit velocity of each mode: a list for each.
-    pub fn slopes(&self, q: &[f64]) -> Vec<Vec<f64>> {
-        let (mut place, mut z) = (self.place(), vec![0.0; self.size()]);
-        self.go_to(q, &mut place, &mut z);
-        let of_mode = |slope: Vec<f64>| {
-            let mut rates = vec![0.0; self.0.body.flexible()];
-            self.in_shapes(&slope, &mut rates);
-            rates.extend(&slope[self.0.modes..]);
-            rates
-        };
-        BentPlace { manifold: self, point: &place, z: &z }.slopes().into_iter().map(of_mode).collect()
-    }
-
     /// Number of coordinates z.
     pub(crate) fn size(&self) -> usize {
         self.0.modes + self.0.factors.len()

@@ -70,6 +70,10 @@ fn a_disk_on_a_soft_stand_whirls_forwards_and_backwards() {
     let (_, motion) = stand([0.4, 0.25, 0.25], 0.0, pad, 0.0);
     let rotor = motion.rotor(0).unwrap();
     assert_eq!((rotor.body, rotor.axis_body), (1, Vector3::x()));
+    // The pad holds the turn of the stand.
+    assert_eq!(motion.spins_together(0), Ok(false));
+    let (_, loose) = stand([0.4, 0.25, 0.25], 0.0, ([4e4, 3e4, 3e4], [0.0, 50.0, 50.0], 0.0), 0.0);
+    assert_eq!(loose.spins_together(0), Ok(true));
     for speed in [0.0, 5.0, 40.0, 300.0] {
         let (half, still): (f64, f64) = (0.5 * speed * 0.4 / 0.55, 50.0 / 0.55);
         let root = (half * half + still).sqrt();

@@ -505,7 +505,8 @@ impl Fault for GradientError {
     fn known(&self) -> Known {
         match self {
             Self::Build(_) | Self::System(_) | Self::Write(_) => Known::default(),
-            Self::Frequencies { .. } | Self::Number { .. } | Self::Responses { .. } => Kind::Usage.alone(),
+            Self::Frequencies { .. } | Self::Number { .. } => Kind::Usage.alone(),
+            Self::Resonance { scene, .. } => Kind::Run.of(scene),
             Self::Loaded { scene } => Kind::Refused.of(scene),
             Self::Systems { scene, .. } => Kind::Input.of(scene),
         }

@@ -1,4 +1,4 @@
-//! Modes of a body some of whose motions are forbidden.
+//! Modes of a body some of whose motions are forbidden: Eq. (J20) of `docs/method/systems.md`.
 
 use faer::{Mat, MatRef, Side};
 

@@ -6,20 +6,19 @@
 //! (XᵀMX)' = XᵀM'X + X'ᵀMX + XᵀMX',   (XᵀKX)' alike,   (FᵀX)' = FᵀX'
 //! ```
 
-use std::sync::Arc;
+use std::collections::BTreeMap;
 
 use faer::{Mat, MatRef, Scale};
-use fem_tet10::{MatrixRates, Mesh};
+use fem_tet10::{Location, MatrixRates, Mesh};
 use modal::{ModalError, Modes, Solver, StaticAccuracy, centrifugal_accelerations};
 use nalgebra::Vector3;
 use scene::Scene;
 
 use crate::building::assembly::AssembledMesh;
 use crate::error::{BuildError, modal};
+use crate::gradient::load_rates::{LoadRates, Numbered, load_forces};
 use crate::gradient::parameter::Parameter;
 use crate::gradient::varied::{BEYOND, VariedBody};
-use crate::load::mesh_load::{self, Action, UnitWeight};
-use crate::load::turning;
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::read::matrices;
 use crate::model::{Meshed, Model};
@@ -50,6 +49,10 @@ pub struct RatesInJoints {
     pub stiffness: Mat<f64>,
     /// Rates of the displacements of the markers (k × nf).
     pub markers: Mat<f64>,
+    /// Rates of the displacements of each point of the output (3×nf).
+    pub points: Vec<Mat<f64>>,
+    /// Rates of the forces of loads on the modes, by their numbers in the scene; weights, which follow the mass, are not among them.
+    pub loads: BTreeMap<usize, LoadRates>,
 }
 
 impl VariedBody {
@@ -117,6 +120,10 @@ struct Basis<'a> {
     forces: Mat<f64>,
     /// Forces of the markers (N×k).
     on_markers: Mat<f64>,
+    /// Forces of loads whose displacements the rates of the shapes change: their numbers, and forces of unit vectors or the whole.
+    loads: Vec<Numbered>,
+    /// Weights of the points (N×3 each).
+    points: Vec<Mat<f64>>,
     /// Static responses that the static shapes are made of, in their scale, their accelerations RᵀF, and of those to a spin the accelerations that its forces
     /// are M times.
     responses: Mat<f64>,
@@ -164,7 +171,14 @@ impl<'a> Basis<'a> {
         let markers = mesh_marker::on_mesh(scene, mesh, 3)?;
         let on_markers = unit_forces(&markers, rows);
         let of_spin = centrifugal_accelerations(mesh.positions(), &origin);
-        let of_loads = load_forces(varied, matrices)?;
+        let (loads, of_loads) = load_forces(varied, matrices)?;
+        let point = |location: &Location| {
+            let mut weights = Mat::zeros(rows, 3);
+            for (node, weight) in location.nodes.iter().zip(&location.weights) {
+                (0..3).for_each(|axis| weights[(3 * *node as usize + axis, axis)] += weight);
+            }
+            weights
+        };
         let spin = solver.mass().product(of_spin.as_ref());
         let all = [on_markers.as_ref(), spin.as_ref(), of_loads.as_ref()];
         let all = side_by_side(&all);
@@ -208,6 +222,8 @@ impl<'a> Basis<'a> {
             of_spin: scaled(&Mat::from_fn(rows, all.ncols(), spins)),
             of_responses,
             known,
+            loads,
+            points: varied.points().iter().map(point).collect(),
             fields,
             momenta,
             forces,
@@ -260,30 +276,16 @@ impl<'a> Basis<'a> {
         }
         let stiffness = shapes.transpose() * k_rates.subcols(6, flexible)
             + symmetric(self.forces.subcols(6, flexible).transpose() * &shape_rates);
-        Ok(RatesInJoints { mass, stiffness, markers: self.on_markers.transpose() * &shape_rates })
+        let of = |forces: &Mat<f64>| forces.transpose() * &shape_rates;
+        let load = |(number, forces): &Numbered| (*number, forces.rates(&shape_rates));
+        Ok(RatesInJoints {
+            mass,
+            stiffness,
+            markers: of(&self.on_markers),
+            points: self.points.iter().map(of).collect(),
+            loads: self.loads.iter().map(load).collect(),
+        })
     }
-}
-
-/// Forces on the nodes of the loads that static shapes are made for (N×k), in all directions that they may come to have. Weights have no
-/// static response in a free body.
-fn load_forces(varied: &VariedBody, matrices: &FeMatrices) -> Result<Mat<f64>, BuildError> {
-    let (scene, AssembledMesh { mesh, support, .. }) = (varied.scene(), varied.assembled());
-    let FeMatrices::Assembled(matrices) = matrices else { return Ok(Mat::new()) };
-    let weight = UnitWeight::of_elements(matrices).map_err(modal(scene))?;
-    let turning = turning::turning(scene, support.motion, None);
-    let loads = mesh_load::on_mesh(scene, mesh, 3, &Arc::new(weight))?;
-    let mut columns = Vec::new();
-    for load in loads.iter().filter(|load| load.size() > 0.0 && !matches!(load.action, Action::Weight { .. })) {
-        let turned = load.turned(turning);
-        for k in 0..turned.len().max(1) {
-            columns.push((load, turned.get(k).copied()));
-        }
-    }
-    let mut forces = Mat::zeros(3 * mesh.positions().len(), columns.len());
-    for ((load, along), column) in columns.into_iter().zip(forces.as_mut().col_iter_mut()) {
-        load.add_unit_nodal_forces(along, column);
-    }
-    Ok(forces)
 }
 
 fn side_by_side(parts: &[MatRef<'_, f64>]) -> Mat<f64> {

@@ -70,6 +70,10 @@ impl VariedBody {
         &self.body
     }
 
+    pub(super) fn points(&self) -> &[Location] {
+        &self.points
+    }
+
     pub(super) fn assembled(&self) -> &AssembledMesh {
         &self.assembled
     }

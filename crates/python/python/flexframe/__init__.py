@@ -30,6 +30,7 @@ from flexframe._flexframe import (
 from flexframe.errors import Error, FileError, InputError, RefusedError, RunError
 from flexframe.linear import Channel, LinearModel, linearize
 from flexframe.mesh import write_mesh
+from flexframe.parameters import Fit, FittedParameter, Gradient, Rates, fit, gradient
 from flexframe.results import BodyResults, Column, Results
 
 __version__ = _flexframe.VERSION
@@ -41,7 +42,10 @@ __all__ = [
     "Column",
     "Error",
     "FileError",
+    "Fit",
+    "FittedParameter",
     "Force",
+    "Gradient",
     "InputError",
     "JointForce",
     "LinearModel",
@@ -49,6 +53,7 @@ __all__ = [
     "ModalForce",
     "Motion",
     "Reached",
+    "Rates",
     "RefusedError",
     "RelativeMotion",
     "Results",
@@ -57,6 +62,8 @@ __all__ = [
     "Scene",
     "Simulation",
     "System",
+    "fit",
+    "gradient",
     "linearize",
     "read_results",
     "resume",

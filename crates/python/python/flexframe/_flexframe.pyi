@@ -24,6 +24,8 @@ __all__ = [
     "Simulation",
     "System",
     "_scene",
+    "fitted",
+    "gradients",
     "linearized",
     "read_results",
     "resume",
@@ -409,3 +411,16 @@ def linearized(
     reduce: str | None,
 ) -> dict[str, Any]:
     """The state space of small motions of a scene: A, B, C, D, and names and units."""
+
+def gradients(scene: Scene, *, parameters: list[str], frequencies: tuple[float, float, int] | None) -> str:
+    """The report of `flexframe gradient`, in JSON."""
+
+def fitted(
+    scene: Scene,
+    *,
+    parameters: list[str],
+    file: _Path | None,
+    measured: list[float] | None,
+    deviation: float | None,
+) -> str:
+    """The report of `flexframe fit`, in JSON, by the table in a file or by frequencies in the order of the modes."""

@@ -1,5 +1,7 @@
 //! The manifold about a place on it, as linearised equations know it.
 //!
+//! Eq. (L12) of `docs/method/systems.md`.
+//!
 //! ```text
 //! δz = B δq + ½ Σ_ij z_ij δq_i δq_j        B = ∂z/∂q,  z_ij = ∂²z/∂q_i∂q_j
 //! ```
@@ -33,6 +35,21 @@ impl BentShape {
 
     pub fn place(&self) -> BentPlace<'_> {
         BentPlace { manifold: &self.manifold, point: &self.point, z: &self.z }
+    }
+}
+
+impl Manifold {
+    /// The rates of ξ, then of the products, at q and a unit velocity of each mode: a list for each.
+    pub fn slopes(&self, q: &[f64]) -> Vec<Vec<f64>> {
+        let (mut point, mut z) = (self.place(), vec![0.0; self.size()]);
+        self.go_to(q, &mut point, &mut z);
+        let of_mode = |slope: Vec<f64>| {
+            let mut rates = vec![0.0; self.0.body.flexible()];
+            self.in_shapes(&slope, &mut rates);
+            rates.extend(&slope[self.0.modes..]);
+            rates
+        };
+        BentPlace { manifold: self, point: &point, z: &z }.slopes().into_iter().map(of_mode).collect()
     }
 }
 
@@ -147,9 +164,9 @@ mod tests {
         for k in 0..modes {
             let [ahead, back] = [at(k, step), at(k, -step)];
             let slope = &here.place().slopes()[k];
-            for i in 0..manifold.size() {
-                let expected = (ahead.z[i] - back.z[i]) / (2.0 * step);
-                assert!((slope[i] - expected).abs() < 1e-7, "{k} {i}: {} {expected}", slope[i]);
+            for (slope, (ahead, back)) in slope.iter().zip(ahead.z.iter().zip(&back.z)) {
+                let expected = (ahead - back) / (2.0 * step);
+                assert!((slope - expected).abs() < 1e-7, "{k}: {slope} {expected}");
             }
             for j in 0..modes {
                 let along = |shape: &BentShape| -> f64 {

@@ -6,13 +6,13 @@
 //! J φ̈ + φ̇ × h = moment,    h = J_p Ω e        e the axis, J_p the moment of inertia about it
 //! ```
 //!
-//! since its inertia looks the same however far it has turned. Eq. (L12) of `docs/method/systems.md`.
+//! since its inertia looks the same however far it has turned. Eq. (L13) of `docs/method/systems.md`.
 
 use faer::c64;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::system::radau::SystemMotion;
-use crate::system::stage::vector;
+use crate::system::stage::{put, vector};
 use crate::vibration::steady_spin::SpinMode;
 use crate::vibration::system::configuration::{CommonSpin, Configuration};
 use crate::vibration::system::error::SteadyError;
@@ -82,6 +82,33 @@ pub enum RotorError {
 }
 
 impl SystemMotion {
+    /// True if all bodies can spin together about the axis of a joint: no other joint and no spring to the ground holds them.
+    ///
+    /// # Errors
+    /// [`SteadyError`].
+    pub fn spins_together(&self, joint: usize) -> Result<bool, SteadyError> {
+        let system = self.system();
+        let (point_global, omega_global) = self.joint_axis(joint);
+        let at = Configuration::of(self, &CommonSpin { omega_global, point_global });
+        let terms = Terms::new(system, &at)?;
+        let speed = |body: usize| at.bodies[body].velocity.norm() + system.bodies[body].radius_of_gyration();
+        let scale = (0..system.bodies.len()).map(speed).fold(0.0, f64::max);
+        let is_free = |(rate, is_driven): (&f64, bool)| is_driven || rate.abs() <= ROUNDING * scale;
+        if !terms.row_rates.iter().zip(system.connections.is_driven()).all(is_free) {
+            return Ok(false);
+        }
+        let mut velocities = vec![0.0; system.coordinates()];
+        for (body, first) in at.bodies.iter().zip(&system.first) {
+            put(&mut velocities, *first, &body.velocity);
+            put(&mut velocities, first + 3, &body.omega);
+        }
+        let holds = |i: usize| {
+            let parts = || velocities.iter().enumerate().map(|(k, velocity)| terms.unloaded[(i, k)] * velocity);
+            parts().sum::<f64>().abs() > ROUNDING * parts().map(f64::abs).sum::<f64>()
+        };
+        Ok(!(0..system.coordinates()).any(holds))
+    }
+
     /// The body that the turn of a joint spins alone: that of its second marker, or of its first where that one is none.
     ///
     /// # Errors

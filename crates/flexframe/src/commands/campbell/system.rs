@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dynamics::{CommonSpin, Effect, Rotor, RotorError, SteadyError, SystemMotion};
+use dynamics::{Effect, Rotor, RotorError, SteadyError, SystemMotion};
 use model::Builder;
 use nalgebra::Vector3;
 use scene::System;
@@ -52,7 +52,7 @@ pub fn campbell_of_system(
         return Err(CampbellError::NoAxis { scene: scene.path.clone(), found, joints: Vec::new() });
     };
     let of_motion = motion.simulation.motion();
-    let (axis, point, joint) = axis_of(motion, settings).map_err(|found| match found {
+    let Axis { direction: axis, point, joint } = axis_of(motion, settings).map_err(|found| match found {
         Found::Nothing(found) => CampbellError::NoAxis {
             scene: scene.path.clone(),
             found,
@@ -60,13 +60,11 @@ pub fn campbell_of_system(
         },
         Found::NoDirection(error) => error,
     })?;
-    let rotor = match joint {
-        Some(joint) => rotor_of(of_motion, joint, (axis * settings.speeds.end, point)).map_err(|source| {
-            let joint = of_motion.system().joints()[joint].name.clone();
-            CampbellError::Rotor { scene: scene.path.clone(), joint, source: Box::new(source) }
-        })?,
-        None => None,
-    };
+    let rotor = joint.map(|joint| rotor_of(of_motion, joint)).transpose().map_err(|source| {
+        let joint = joint.map_or_else(String::new, |joint| of_motion.system().joints()[joint].name.clone());
+        CampbellError::Rotor { scene: scene.path.clone(), joint, source: Box::new(source) }
+    })?;
+    let rotor = rotor.flatten();
     let find = |speed: f64| {
         let failed = |source: SteadyError| CampbellError::Steady { scene: scene.path.clone(), speed, source };
         let modes = match &rotor {
@@ -117,24 +115,22 @@ enum Found {
     NoDirection(CampbellError),
 }
 
-/// The body that a joint spins alone, where other joints keep the bodies from a common spin about its axis.
-fn rotor_of(
-    motion: &SystemMotion,
-    joint: usize,
-    (omega_global, point_global): (Vector3<f64>, Vector3<f64>),
-) -> Result<Option<Rotor>, RotorError> {
-    match motion.steady_state(&CommonSpin { omega_global, point_global }) {
-        Err(SteadyError::Against { .. }) => motion.rotor(joint).map(Some),
-        // What else there is to say of it is said at each speed.
-        _ => Ok(None),
-    }
+/// The body that a joint spins alone, where something keeps the bodies from a common spin about its axis.
+fn rotor_of(motion: &SystemMotion, joint: usize) -> Result<Option<Rotor>, RotorError> {
+    if motion.spins_together(joint)? { Ok(None) } else { motion.rotor(joint).map(Some) }
 }
 
-/// The axis of the spin and a point on it, global, and the joint whose axis it is.
-fn axis_of(
-    motion: &TiedMotion,
-    settings: &SystemCampbellSettings,
-) -> Result<(Vector3<f64>, Vector3<f64>, Option<usize>), Found> {
+/// An axis of a spin.
+struct Axis {
+    /// Unit vector and a point, global.
+    direction: Vector3<f64>,
+    point: Vector3<f64>,
+    /// The joint whose axis it is.
+    joint: Option<usize>,
+}
+
+/// The axis of the spin.
+fn axis_of(motion: &TiedMotion, settings: &SystemCampbellSettings) -> Result<Axis, Found> {
     let of_motion = motion.simulation.motion();
     let joints = of_motion.system().joints();
     let is_meant = |joint: &dynamics::Joint| match &settings.joint {
@@ -143,10 +139,14 @@ fn axis_of(
     };
     let meant: Vec<usize> = (0..joints.len()).filter(|number| is_meant(&joints[*number])).collect();
     match (&settings.axis, &settings.joint, &meant[..]) {
-        (Some(axis), None, _) => Ok((unit(*axis).map_err(Found::NoDirection)?, of_motion.center_of_mass(), None)),
+        (Some(axis), None, _) => Ok(Axis {
+            direction: unit(*axis).map_err(Found::NoDirection)?,
+            point: of_motion.center_of_mass(),
+            joint: None,
+        }),
         (_, _, [joint]) => {
-            let (position, axis) = of_motion.joint_axis(*joint);
-            Ok((axis, position, Some(*joint)))
+            let (point, direction) = of_motion.joint_axis(*joint);
+            Ok(Axis { direction, point, joint: Some(*joint) })
         }
         (_, Some(name), _) => Err(Found::Nothing(format!("there is no joint {name:?}"))),
         (_, None, []) => Err(Found::Nothing("no joint is turned by a drive".to_owned())),

@@ -2,10 +2,12 @@
 
 mod damping;
 mod error;
+mod here;
 pub(crate) mod number;
 mod report;
 mod responses;
 pub(crate) mod system;
+mod system_responses;
 mod table;
 mod varying;
 
@@ -83,13 +85,10 @@ pub fn rates(
     };
     let scene = &system.bodies[0];
     if system.has_connections() {
-        if settings.frequencies.is_some() {
-            return Err(GradientError::Responses { scene: scene.path.clone() });
-        }
         let parameters = Number::named(system, &settings.parameters)?;
         let varied = VariedSystem::new(system, builder, progress)?;
-        let found = varied.rates(system, &parameters)?;
-        return Ok(GradientReport::of_system(system, &parameters, found));
+        let found = varied.rates(system, &parameters, &frequencies)?;
+        return Ok(GradientReport::of_system(system, &parameters, found, frequencies));
     }
     let scene = &unloaded_body(scene).map_err(BuildError::from)?;
     let parameters = Parameter::named(scene, &settings.parameters).map_err(BuildError::from)?;

@@ -15,6 +15,7 @@ mod settings;
 mod space;
 mod state;
 mod system_spin;
+mod unseen;
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -26,12 +27,14 @@ use nalgebra::Vector3;
 use scene::{Scene, System};
 
 use at_time::{moving_modes, states_at};
+pub(super) use channels::input_channels;
 pub use error::LinearizeError;
 pub use reduction::{Reduced, Reduction};
 pub use report::LinearReport;
 pub use settings::LinearSettings;
 pub use space::LinearSpace;
 pub use state::State;
+use unseen::{growing, unseen};
 
 /// The linearised equations of a scene.
 #[derive(Debug, Clone)]
@@ -107,6 +110,7 @@ pub fn linear_model(
         state.warnings.extend(moving_modes(&models, states));
     }
     let equations = channels.chosen(settings, &system.bodies[0])?;
+    state.warnings.extend(unseen(&equations));
     let equations = match settings.without_rigid {
         true => equations.without(&(0..state.rigid).collect::<Vec<_>>()),
         false => equations,
@@ -150,5 +154,7 @@ pub fn linearize(
     let failed = |source| LinearizeError::Linear { scene: scene.path.clone(), source: Box::new(source) };
     let poles = space.model().poles().map_err(failed)?;
     files::write(space.model(), output)?;
-    Ok(LinearReport::new(scene, &space, &poles, output))
+    let mut report = LinearReport::new(scene, &space, &poles, output);
+    report.warnings.extend(growing(&poles));
+    Ok(report)
 }

@@ -10,6 +10,8 @@ use super::error::SystemModesError;
 pub(crate) struct TiedMotion {
     /// Numbers of the bodies in the scene.
     pub bodies: Vec<usize>,
+    /// Numbers of their joints in the scene.
+    pub joints: Vec<usize>,
     /// Names of force elements.
     pub elements: Vec<String>,
     /// The bodies, put together.
@@ -42,7 +44,7 @@ pub(crate) fn tied_motions_at(
 
 impl TiedMotion {
     fn new(system: &System, tied: Tied, control: StepControl, relaxed: bool) -> Result<Self, SystemModesError> {
-        let Tied { bodies, elements, system: of_bodies, states, .. } = tied;
+        let Tied { bodies, joints, elements, system: of_bodies, states, .. } = tied;
         let scene = &system.bodies[bodies[0]];
         let setup = SystemSetup {
             points: bodies.iter().map(|_| Vec::new()).collect(),
@@ -57,6 +59,6 @@ impl TiedMotion {
         let refused =
             |source| SystemModesError::Setup { scene: scene.path.clone(), source: Box::new(StartError::from(source)) };
         let simulation = SystemSimulation::new(setup).map_err(refused)?;
-        Ok(Self { bodies, elements, simulation })
+        Ok(Self { bodies, joints, elements, simulation })
     }
 }

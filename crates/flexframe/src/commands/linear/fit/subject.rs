@@ -122,7 +122,7 @@ impl Subject {
             Self::System(varied, parameters) => {
                 let mut system = varied.system.clone();
                 parameters.iter().zip(&values).for_each(|(parameter, value)| parameter.set(&mut system, *value));
-                let found = varied.rates(&system, parameters)?;
+                let found = varied.rates(&system, parameters, &[])?;
                 let (count, there) = (measured.modes.len(), found.frequencies.len());
                 if count > there {
                     return Err(FitError::FewModes { file: measured.file.clone(), count, there });

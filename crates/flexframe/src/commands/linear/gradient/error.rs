@@ -36,9 +36,13 @@ pub enum GradientError {
     /// Several systems.
     #[error("{}: found {count} systems that nothing ties together, expected one\n = make a scene of each", scene.display())]
     Systems { scene: PathBuf, count: usize },
-    /// Responses of a system.
-    #[error("{}: found bodies in joints, whose responses have no rates\n = leave --frequencies out", scene.display())]
-    Responses { scene: PathBuf },
+    /// A response without an end.
+    #[error(
+        "{}: the response at {frequency} cycles per time has no end: an undamped vibration or a motion as a whole is there\n = take other \
+         --frequencies, or give the bodies damping",
+        scene.display()
+    )]
+    Resonance { scene: PathBuf, frequency: f64 },
     /// The frequencies are no range.
     #[error(
         "frequencies {start}:{end}:{count}: expected start:end:count, cycles per time, with 0 ≤ start < end and a count of 2 to \

@@ -134,11 +134,17 @@ impl GradientReport {
         }
     }
 
-    /// Rates of the frequencies of bodies in joints.
-    pub(super) fn of_system(system: &System, parameters: &[Number], found: SystemRates) -> Self {
+    /// Rates of the frequencies and responses of bodies in joints.
+    pub(super) fn of_system(
+        system: &System,
+        parameters: &[Number],
+        found: SystemRates,
+        response_frequencies: Vec<f64>,
+    ) -> Self {
         let scene = &system.bodies[0];
-        let SystemRates { frequencies, repeated, rates } = found;
-        let of_parameter = |(parameter, rates): (&Number, Vec<f64>)| {
+        let SystemRates { frequencies, repeated, rates, responses } = found;
+        let has_responses = !response_frequencies.is_empty();
+        let of_parameter = |((parameter, rates), of_responses): ((&Number, Vec<f64>), Vec<_>)| {
             let value = parameter.value(system);
             ParameterReport {
                 name: parameter.name.clone(),
@@ -147,7 +153,7 @@ impl GradientReport {
                 frequencies: rates,
                 effective_masses: Vec::new(),
                 statics: Vec::new(),
-                responses: Vec::new(),
+                responses: if has_responses { of_responses } else { Vec::new() },
             }
         };
         Self {
@@ -156,9 +162,9 @@ impl GradientReport {
             repeated: repeated.into_iter().map(|group| [group.start + 1, group.end]).collect(),
             effective_masses: Vec::new(),
             statics: Vec::new(),
-            responses: Vec::new(),
-            response_frequencies: Vec::new(),
-            parameters: parameters.iter().zip(rates).map(of_parameter).collect(),
+            responses: if has_responses { responses.responses } else { Vec::new() },
+            response_frequencies,
+            parameters: parameters.iter().zip(rates).zip(responses.rates).map(of_parameter).collect(),
             frequencies,
             files: Vec::new(),
         }

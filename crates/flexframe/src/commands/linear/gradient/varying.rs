@@ -25,7 +25,7 @@ impl Varying<'_> {
 
     /// xᵀ(s²M' + sC' + K')y − wᵀ(FᵀX)'y − vᵀ(FᵀX)'x of two motions x and y as exp(st), with the forces w and v that its markers bear in them beside
     /// forces on its coordinates.
-    pub fn change(&self, s: c64, [x, y]: [&[c64]; 2], forces: [&[c64]; 2], rates: &RatesInJoints) -> c64 {
+    pub fn change(&self, s: c64, [x, y]: [&[c64]; 2], forces: [&[f64]; 2], rates: &RatesInJoints) -> c64 {
         let [x, y] = [x, y].map(|motion| self.own(motion));
         let [x_bent, y_bent] = [&x[6..], &y[6..]];
         let by_damping = match self.damping.is_empty() {
@@ -38,7 +38,7 @@ impl Varying<'_> {
     }
 
     /// Forces of the markers in a motion x as exp(st): (s²M + sC + K) x by them and by other forces, of which an empty list is none.
-    fn borne(&self, s: c64, x: &[c64], others: &[c64]) -> Vec<c64> {
+    fn borne(&self, s: c64, x: &[c64], others: &[f64]) -> Vec<c64> {
         let BodyInJoints { mass, bearing, .. } = &self.body;
         let mut force = times(mass, x);
         force.iter_mut().for_each(|force| *force *= s * s);

@@ -65,7 +65,7 @@ pub(super) fn unit_of_coordinate(scene: &Scene) -> String {
 }
 
 /// An input for each load that acts: its factor, so that 1 is the load as the scene has it where its history is 1.
-pub(super) fn input_channels(scene: &Scene, model: &Model, prefix: &str) -> Vec<Channel> {
+pub(in crate::commands::linear) fn input_channels(scene: &Scene, model: &Model, prefix: &str) -> Vec<Channel> {
     // Gravity that the scene does not call for is not among the loads of the model.
     let all = scene.loads.len() == model.loads().len();
     let acting = scene.loads.iter().enumerate().filter(|(_, load)| all || !matches!(load, Load::Gravity(_)));

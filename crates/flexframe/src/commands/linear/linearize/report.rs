@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use faer::c64;
+use linear::StateSpace;
 use scene::Scene;
 use serde::Serialize;
 
@@ -49,7 +50,7 @@ pub struct LinearReport {
 }
 
 /// A pole.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Pole {
     /// Growth per time.
     pub growth: f64,
@@ -57,17 +58,20 @@ pub struct Pole {
     pub frequency: f64,
     /// −growth over the magnitude; 0 of a pole of zero.
     pub damping_ratio: f64,
+    /// Its complex mode: real and imaginary part of each output, the largest of the unit of the first output 1.
+    pub shape: Vec<[f64; 2]>,
 }
 
 impl LinearReport {
     pub(super) fn new(scene: &Scene, space: &LinearSpace, poles: &[c64], file: &Path) -> Self {
+        let LinearSpace { whole, state, .. } = space;
+        let (written, balanced) = (space.model(), space.balanced());
         let pole = |pole: &c64| Pole {
             growth: pole.re,
             frequency: pole.im / TAU,
             damping_ratio: if pole.norm() > 0.0 { -pole.re / pole.norm() } else { 0.0 },
+            shape: shape(written, *pole),
         };
-        let LinearSpace { whole, state, .. } = space;
-        let (written, balanced) = (space.model(), space.balanced());
         Self {
             title: scene.title.clone(),
             time: state.time,
@@ -84,6 +88,16 @@ impl LinearReport {
             warnings: state.warnings.clone(),
         }
     }
+}
+
+/// The outputs in the complex mode of a pole, in the scale of the largest of one unit.
+fn shape(model: &StateSpace, pole: c64) -> Vec<[f64; 2]> {
+    let outputs = model.complex_mode(pole);
+    let unit = model.outputs.first().map(|channel| &channel.unit);
+    let of_unit = outputs.iter().zip(&model.outputs).filter(|(_, channel)| Some(&channel.unit) == unit);
+    let largest = of_unit.map(|(output, _)| *output).max_by(|a, b| a.norm().total_cmp(&b.norm()));
+    let scale = largest.filter(|largest| largest.norm() > 0.0).unwrap_or(c64::ONE);
+    outputs.into_iter().map(|output| output / scale).map(|output| [output.re, output.im]).collect()
 }
 
 impl fmt::Display for LinearReport {

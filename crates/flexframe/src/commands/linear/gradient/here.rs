@@ -1,0 +1,106 @@
+//! A system where it stands at the start, with its vibrations.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use dynamics::{CommonSpin, SteadyState, SystemMode, Vibrations};
+use faer::Mat;
+use model::Model;
+use scene::System;
+
+use super::error::GradientError;
+use super::number::Number;
+use super::varying::{REPEATED, Varying};
+use crate::commands::system_modes::{SystemModesError, TiedMotion, tied_motions};
+
+/// A part of an entry that is rounding.
+const ROUNDING: f64 = 1e-8;
+
+/// A system where it stands at the start.
+pub(super) struct Here<'a> {
+    pub system: &'a System,
+    pub models: &'a [Model],
+    pub motion: TiedMotion,
+    pub steady: SteadyState,
+    /// True where a motion as a whole is left that nothing resists.
+    pub is_loose: bool,
+    pub modes: Vec<SystemMode>,
+}
+
+/// A body of which numbers vary, with their places among all numbers.
+pub(super) struct Varied<'a> {
+    pub body: Varying<'a>,
+    pub places: Vec<usize>,
+}
+
+impl<'a> Varied<'a> {
+    /// The body, and the place among its numbers of one of all.
+    pub fn of(&self, number: usize) -> Option<(&Varying<'a>, usize)> {
+        Some((&self.body, self.places.iter().position(|place| *place == number)?))
+    }
+}
+
+impl<'a> Here<'a> {
+    pub fn new(system: &'a System, models: &'a [Model]) -> Result<Self, GradientError> {
+        let (motion, steady) = steady(system, models)?;
+        let linear = &steady.linear;
+        let failed = |source| SystemModesError::Steady { scene: system.bodies[0].path.clone(), source };
+        let Vibrations { rigid, zeros, modes } = linear.vibrations().map_err(failed)?;
+        let modes = modes.into_iter().filter(|mode| mode.circular_frequency() > 0.0).collect();
+        for matrix in [&linear.stiffness, &linear.damping] {
+            if (matrix - matrix.transpose()).norm_max() > ROUNDING * matrix.norm_max() {
+                return Err(GradientError::Loaded { scene: system.bodies[0].path.clone() });
+            }
+        }
+        let is_loose = rigid.ncols() > 0 || zeros > 0;
+        Ok(Self { system, models, motion, steady, is_loose, modes })
+    }
+
+    pub fn path(&self) -> PathBuf {
+        self.system.bodies[0].path.clone()
+    }
+
+    pub fn loaded(&self) -> GradientError {
+        GradientError::Loaded { scene: self.path() }
+    }
+
+    /// Refuses bodies that stand deformed, and so elsewhere with other numbers.
+    pub fn refuse_deformed(&self) -> Result<(), GradientError> {
+        let is_still = |(place, body): (usize, &usize)| {
+            let size = self.models[*body].body.inertia.trace().sqrt();
+            self.steady.modal_displacement(place).iter().all(|q| q.abs() <= ROUNDING * size)
+        };
+        if self.motion.bodies.iter().enumerate().all(is_still) { Ok(()) } else { Err(self.loaded()) }
+    }
+
+    pub fn repeated(&self) -> Vec<Range<usize>> {
+        let is_one = |before: &SystemMode, after: &SystemMode| {
+            (after.eigenvalue - before.eigenvalue).norm() <= REPEATED * after.eigenvalue.norm()
+        };
+        modal::repeated(&self.modes, is_one)
+    }
+
+    /// The rate of K with a stiffness.
+    pub fn stiffness_rate(&self, number: &Number) -> Result<Mat<f64>, GradientError> {
+        let (mut changed, value) = (self.system.clone(), number.value(self.system));
+        number.set(&mut changed, 2.0 * value);
+        let (there, linear) = (steady(&changed, self.models)?.1, &self.steady.linear);
+        // A body that the stiffness deforms stands elsewhere, with other coordinates.
+        if (&there.linear.basis - &linear.basis).norm_max() > ROUNDING * linear.basis.norm_max() {
+            return Err(self.loaded());
+        }
+        Ok((&there.linear.stiffness - &linear.stiffness) * faer::Scale(1.0 / value))
+    }
+}
+
+/// The one system of a scene where it stands at the start.
+fn steady(system: &System, models: &[Model]) -> Result<(TiedMotion, SteadyState), GradientError> {
+    let mut motions = tied_motions(system, models)?;
+    let (Some(motion), true) = (motions.pop(), motions.is_empty()) else {
+        let (scene, count) = (system.bodies[0].path.clone(), motions.len() + 1);
+        return Err(GradientError::Systems { scene, count });
+    };
+    let failed = |source| SystemModesError::Steady { scene: system.bodies[0].path.clone(), source };
+    let steady = motion.simulation.motion().steady_state(&CommonSpin::REST).map_err(failed)?;
+    Ok((motion, steady))
+}

@@ -1,0 +1,224 @@
+//! Responses of bodies in joints with their rates: Eq. (D21) of `docs/method/gradients.md`.
+
+use std::f64::consts::TAU;
+
+use dynamics::Coordinate;
+use faer::linalg::solvers::Solve;
+use faer::{Mat, c64};
+use model::Model;
+use nalgebra::Vector3;
+
+use super::error::GradientError;
+use super::here::{Here, Varied};
+use super::number::{Number, Place};
+use super::responses::{AXES, ResponseReport};
+use super::varying::{Varying, product, times};
+use crate::commands::linear::linearize::input_channels;
+
+/// Real and imaginary parts at each frequency.
+type Values = Vec<[f64; 2]>;
+
+/// Responses, by input, then output, with their rates by number; none of a load that follows the number in a way that is not known.
+pub(crate) struct SystemResponses {
+    pub responses: Vec<ResponseReport>,
+    pub rates: Vec<Vec<Option<Values>>>,
+}
+
+/// An input or an output: forces, or a displacement, over the coordinates of all bodies.
+struct Port {
+    name: String,
+    row: Vec<f64>,
+    of: Of,
+}
+
+/// The place that it acts on or sees.
+enum Of {
+    /// A load, by its number in the scene of a body.
+    Load { body: usize, load: usize },
+    /// A displacement of a point of a body along an axis.
+    Point { body: usize, point: usize, axis: usize },
+    /// A coordinate of a joint, which markers have.
+    Joint,
+}
+
+/// Rates of a port with a number of a body.
+struct Followed {
+    /// Forces of the port on the coordinates of the body that are none of its markers.
+    direct: Vec<f64>,
+    /// Their rates, on the modes.
+    rates: Vec<f64>,
+}
+
+impl Here<'_> {
+    /// The responses at some frequencies, cycles per time.
+    pub fn responses(
+        &self,
+        numbers: &[Number],
+        varied: &[Option<Varied<'_>>],
+        frequencies: &[f64],
+    ) -> Result<SystemResponses, GradientError> {
+        let [inputs, outputs] = self.ports();
+        let (first, count) = (inputs.len(), outputs.len());
+        let pairs: Vec<(usize, usize)> = (0..first).flat_map(|i| (first..first + count).map(move |o| (i, o))).collect();
+        let ports: Vec<&Port> = inputs.iter().chain(&outputs).collect();
+        let changes = numbers.iter().enumerate().map(|(i, number)| self.change_with(i, number, varied, &ports));
+        let changes: Vec<Change<'_>> = changes.collect::<Result<_, _>>()?;
+        let linear = &self.steady.linear;
+        let size = linear.size();
+        let along =
+            |j: usize, row: &[f64]| -> f64 { row.iter().enumerate().map(|(k, r)| r * linear.basis[(k, j)]).sum() };
+        let right = Mat::from_fn(size, ports.len(), |j, port| c64::new(along(j, &ports[port].row), 0.0));
+        let mut responses = vec![Values::new(); pairs.len()];
+        let mut rates = vec![vec![Some(Values::new()); pairs.len()]; numbers.len()];
+        for frequency in frequencies {
+            let omega = TAU * frequency;
+            let dynamic = Mat::from_fn(size, size, |i, j| {
+                let own = if i == j { omega * omega } else { 0.0 };
+                c64::new(linear.stiffness[(i, j)] - own, omega * linear.damping[(i, j)])
+            });
+            let moved = dynamic.partial_piv_lu().solve(&right);
+            let is_known = |value: c64| value.re.is_finite() && value.im.is_finite();
+            if (*frequency == 0.0 && self.is_loose) || !moved.col_iter().all(|x| x.iter().all(|x| is_known(*x))) {
+                return Err(GradientError::Resonance { scene: self.path(), frequency: *frequency });
+            }
+            let coordinates: Vec<Vec<c64>> = moved.col_iter().map(|x| x.iter().copied().collect()).collect();
+            let motions: Vec<Vec<c64>> = coordinates.iter().map(|x| times(&linear.basis, x)).collect();
+            for (k, (i, o)) in pairs.iter().enumerate() {
+                let value: c64 = (0..size).map(|j| right[(j, *o)] * coordinates[*i][j]).sum();
+                responses[k].push([value.re, value.im]);
+                for (change, rates) in changes.iter().zip(&mut rates) {
+                    let rate = change.rate(c64::new(0.0, omega), [*i, *o], &coordinates, &motions);
+                    match (rate, &mut rates[k]) {
+                        (Some(rate), Some(values)) => values.push([rate.re, rate.im]),
+                        (_, rates) => *rates = None,
+                    }
+                }
+            }
+        }
+        let report = |((i, o), values): (&(usize, usize), Values)| ResponseReport {
+            input: ports[*i].name.clone(),
+            output: ports[*o].name.clone(),
+            values,
+        };
+        Ok(SystemResponses { responses: pairs.iter().zip(responses).map(report).collect(), rates })
+    }
+
+    /// Loads and forces along joints; displacements of points and coordinates of joints.
+    fn ports(&self) -> [Vec<Port>; 2] {
+        let (motion, linear) = (self.motion.simulation.motion(), &self.steady.linear);
+        let all = linear.basis.nrows();
+        let [mut inputs, mut outputs] = [(); 2].map(|()| Vec::new());
+        for (place, (body, state)) in self.motion.bodies.iter().zip(self.steady.states()).enumerate() {
+            let (scene, model, own) = (&self.system.bodies[*body], &self.models[*body], linear.coordinates_of(place));
+            let name = scene.name.as_ref().filter(|_| self.models.len() > 1);
+            let prefix = name.map_or_else(String::new, |name| format!("{name}."));
+            let over = |row: &[f64]| {
+                let mut whole = vec![0.0; all];
+                whole[own.clone()].copy_from_slice(row);
+                whole
+            };
+            let units = motion.system().bodies()[place].unit_forces(&state);
+            let channels = input_channels(scene, model, &prefix);
+            for ((unit, channel), load) in units.iter().zip(channels).zip(numbers_of_loads(scene, model)) {
+                inputs.push(Port { name: channel.name, row: over(unit), of: Of::Load { body: *body, load } });
+            }
+            for (point, (name, shapes)) in model.points.iter().enumerate() {
+                let arm = model.arm(shapes, &state.modal_displacement);
+                let column = |k: usize| match k {
+                    0..3 => Vector3::ith(k, 1.0),
+                    3..6 => Vector3::ith(k - 3, 1.0).cross(&arm),
+                    _ => shapes.columns()[k],
+                };
+                for (axis, letter) in AXES.iter().enumerate() {
+                    let row: Vec<f64> = (0..own.len()).map(|k| column(k)[axis]).collect();
+                    let name = format!("{prefix}{name}.displacement.{letter}");
+                    outputs.push(Port { name, row: over(&row), of: Of::Point { body: *body, point, axis } });
+                }
+            }
+        }
+        for (number, joint) in self.motion.joints.iter().enumerate() {
+            let of = &self.system.joints[*joint];
+            for coordinate in of.kind.coordinates() {
+                let (coordinate, quantity) = match coordinate {
+                    scene::Coordinate::Turn => (Coordinate::Turn, "turn"),
+                    scene::Coordinate::Slide => (Coordinate::Slide, "slide"),
+                };
+                let row = motion.coordinate_row(&self.steady, number, coordinate);
+                for list in [&mut inputs, &mut outputs] {
+                    list.push(Port { name: format!("{}.{quantity}", of.name), row: row.clone(), of: Of::Joint });
+                }
+            }
+        }
+        [inputs, outputs]
+    }
+
+    fn change_with<'a>(
+        &self,
+        i: usize,
+        number: &Number,
+        varied: &'a [Option<Varied<'a>>],
+        ports: &[&Port],
+    ) -> Result<Change<'a>, GradientError> {
+        let Place::Body(body, _) = number.place else {
+            return Ok(Change::Stiffness(self.stiffness_rate(number)?));
+        };
+        let (of_body, k) = varied[body].as_ref().and_then(|varied| varied.of(i)).ok_or_else(|| self.loaded())?;
+        let rates = &of_body.body.rates[k];
+        let followed = |port: &&Port| {
+            let direct = || port.row[of_body.first..of_body.first + rates.mass.nrows()].to_vec();
+            match port.of {
+                Of::Load { body: of, load } if of == body => {
+                    let direct = direct();
+                    let rates = rates.loads.get(&load)?.on_modes(&direct);
+                    Some(Followed { direct, rates })
+                }
+                Of::Point { body: of, point, axis } if of == body => {
+                    let rates = rates.points[point].row(axis).iter().copied().collect();
+                    Some(Followed { direct: direct(), rates })
+                }
+                _ => Some(Followed { direct: Vec::new(), rates: Vec::new() }),
+            }
+        };
+        Ok(Change::Body { of_body, number: k, ports: ports.iter().map(followed).collect() })
+    }
+}
+
+/// The change by a number.
+enum Change<'a> {
+    /// K of the independent coordinates, by this.
+    Stiffness(Mat<f64>),
+    /// A body by one of its numbers, and the ports; none of a load that it changes in a way that is not known.
+    Body { of_body: &'a Varying<'a>, number: usize, ports: Vec<Option<Followed>> },
+}
+
+impl Change<'_> {
+    /// The rate of the response of an output to an input, in the coordinates and the motions that each of the ports makes.
+    fn rate(&self, s: c64, ports: [usize; 2], coordinates: &[Vec<c64>], motions: &[Vec<c64>]) -> Option<c64> {
+        match self {
+            Self::Stiffness(rate) => {
+                let [x, y] = ports.map(|port| &coordinates[port]);
+                Some(-product(rate, x, y))
+            }
+            Self::Body { of_body, number, ports: followed } => {
+                let [first, second] = ports.map(|port| followed[port].as_ref());
+                let (first, second) = (first?, second?);
+                let [x, y] = ports.map(|port| &motions[port][..]);
+                let forces = [&first.direct[..], &second.direct[..]];
+                let change = of_body.change(s, [x, y], forces, &of_body.body.rates[*number]);
+                let bent = |motion| of_body.own(motion)[6..].iter();
+                let along = |followed: &Followed, motion| -> c64 {
+                    followed.rates.iter().zip(bent(motion)).map(|(rate, x)| *x * *rate).sum()
+                };
+                Some(along(first, y) + along(second, x) - change)
+            }
+        }
+    }
+}
+
+/// Numbers in the scene of the loads of a model.
+fn numbers_of_loads(scene: &scene::Scene, model: &Model) -> Vec<usize> {
+    // Gravity that the scene does not call for is not among them.
+    let all = scene.loads.len() == model.loads().len();
+    let acting = scene.loads.iter().enumerate().filter(|(_, load)| all || !matches!(load, scene::Load::Gravity(_)));
+    acting.map(|(i, _)| i).collect()
+}
