@@ -769,6 +769,9 @@ fn command(cli: Cli, json_errors: bool, mut builder: Builder) -> Result<(), Box<
         }
         Command::Check { file, rows, write, json } => {
             GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
+            if write {
+                check::expect_finished(&file)?;
+            }
             let rows = if rows.is_empty() { CheckRows::Worst } else { CheckRows::Given(rows) };
             let report = check::check(&file, &builder, &rows, |p| bar.check(p))?;
             drop(bar);

@@ -53,6 +53,17 @@ pub fn check(
     Ok(report)
 }
 
+/// Refuses a file that no card can be written into, before the work of a check.
+///
+/// # Errors
+/// [`FileError::NotComplete`] for an unfinished file; those of [`Results::open`].
+pub fn expect_finished(file: &Path) -> Result<(), FileError> {
+    match Results::open(file, &COLUMNS)?.complete {
+        true => Ok(()),
+        false => Err(FileError::NotComplete { path: file.to_owned() }),
+    }
+}
+
 /// Writes the trust card of a report into its results file, whose run has come to its end. All else in the file stays.
 ///
 /// # Errors

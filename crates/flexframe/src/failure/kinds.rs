@@ -63,7 +63,7 @@ impl FailureReport {
     }
 }
 
-/// Knowledge of an error besides its source.
+/// Kind, place and details of an error, besides those of its source.
 #[derive(Default)]
 struct Known(Option<Kind>, Details);
 
@@ -138,7 +138,7 @@ const FAULTS: [fn(&(dyn Error + 'static)) -> Option<Known>; 40] = [
     known_by::<GradientError>,
 ];
 
-/// Knowledge of an error of this type, in a box or not.
+/// Kind, place and details of an error of this type, in a box or not.
 fn known_by<E: Fault + 'static>(error: &(dyn Error + 'static)) -> Option<Known> {
     let boxed = || error.downcast_ref::<Box<E>>().map(|error| &**error);
     error.downcast_ref::<E>().or_else(boxed).map(Fault::known)

@@ -1,4 +1,4 @@
-//! Means against an error that a check has found.
+//! Changes to a model that would mend an error that a check has found.
 
 use serde::Serialize;
 
