@@ -327,3 +327,15 @@ interval = 0.01
     let said = String::from_utf8_lossy(&refused.stderr);
     assert!(!refused.status.success() && said.contains("\"shaft\"") && said.contains("across the axis"), "{said}");
 }
+
+/// Doubts about one of several bodies name it, once.
+#[test]
+fn doubts_name_their_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = welded_bar(folder.path());
+    let text = std::fs::read_to_string(&scene).unwrap().replace("young_modulus = 70000.0", "young_modulus = 0.07");
+    std::fs::write(&scene, text).unwrap();
+    let told = flexframe(&["modes", &scene]);
+    let said = String::from_utf8_lossy(&told.stderr);
+    assert_eq!(said.matches("warning: body bar: ").count(), 1, "{said}");
+}

@@ -13,6 +13,7 @@ use rigid_kin::Attitude;
 
 use crate::flexible::Jointed;
 use crate::linear::{changed_by, rigid};
+use crate::vibrations::blade;
 
 /// Axes whose z is along x.
 fn along_x() -> Matrix3<f64> {
@@ -74,6 +75,12 @@ fn a_disk_on_a_soft_stand_whirls_forwards_and_backwards() {
     assert_eq!(motion.spins_together(0), Ok(false));
     let (_, loose) = stand([0.4, 0.25, 0.25], 0.0, ([4e4, 3e4, 3e4], [0.0, 50.0, 50.0], 0.0), 0.0);
     assert_eq!(loose.spins_together(0), Ok(true));
+    // A spring and a damper between bodies that spin hold no spin.
+    let (system, states) = blade(21.0);
+    let mut motion = SystemMotion::new(system, &states).unwrap();
+    motion.assemble().unwrap();
+    assert_eq!(motion.spins_together(0), Ok(true));
+    assert_eq!(motion.spins_together(1), Ok(false));
     for speed in [0.0, 5.0, 40.0, 300.0] {
         let (half, still): (f64, f64) = (0.5 * speed * 0.4 / 0.55, 50.0 / 0.55);
         let root = (half * half + still).sqrt();

@@ -156,7 +156,7 @@ fn two_welded_halves_have_the_frequencies_of_the_whole() {
 }
 
 /// A hub that is turned about z, with a blade on a flap hinge with a spring and a damper.
-fn blade(speed: f64) -> (System, Vec<MotionState>) {
+pub fn blade(speed: f64) -> (System, Vec<MotionState>) {
     let (offset, length) = (0.08, 0.92);
     let along_y = Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0);
     let bodies = vec![

@@ -149,7 +149,14 @@ impl<'a> Basis<'a> {
         if known.whole(natural) != natural {
             let found = format!("{natural} modes of a body in joints, which part modes of one frequency");
             let expected = format!("{} of them", known.whole(natural));
-            return Err(scene.refuse("modes.flexible", found, expected, "keep all of a group of like modes").into());
+            return Err(scene
+                .refuse(
+                    "modes.flexible",
+                    found,
+                    expected,
+                    "keep all of a group of like modes, or name other parameters",
+                )
+                .into());
         }
         known.shapes.as_mut().subcols_mut(0, natural).copy_from(shapes.subcols(0, natural));
         known.eigenvalues[..natural].copy_from_slice(&meshed.modes.eigenvalues[..natural]);

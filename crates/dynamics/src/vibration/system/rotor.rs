@@ -89,24 +89,27 @@ impl SystemMotion {
     pub fn spins_together(&self, joint: usize) -> Result<bool, SteadyError> {
         let system = self.system();
         let (point_global, omega_global) = self.joint_axis(joint);
+        // Springs as they hold bodies at rest: dampers do not count.
+        let terms = Terms::new(system, &Configuration::of(self, &CommonSpin::REST))?;
         let at = Configuration::of(self, &CommonSpin { omega_global, point_global });
-        let terms = Terms::new(system, &at)?;
-        let speed = |body: usize| at.bodies[body].velocity.norm() + system.bodies[body].radius_of_gyration();
-        let scale = (0..system.bodies.len()).map(speed).fold(0.0, f64::max);
-        let is_free = |(rate, is_driven): (&f64, bool)| is_driven || rate.abs() <= ROUNDING * scale;
-        if !terms.row_rates.iter().zip(system.connections.is_driven()).all(is_free) {
-            return Ok(false);
-        }
         let mut velocities = vec![0.0; system.coordinates()];
         for (body, first) in at.bodies.iter().zip(&system.first) {
             put(&mut velocities, *first, &body.velocity);
             put(&mut velocities, first + 3, &body.omega);
         }
-        let holds = |i: usize| {
-            let parts = || velocities.iter().enumerate().map(|(k, velocity)| terms.unloaded[(i, k)] * velocity);
-            parts().sum::<f64>().abs() > ROUNDING * parts().map(f64::abs).sum::<f64>()
-        };
-        Ok(!(0..system.coordinates()).any(holds))
+        let speed = |body: usize| at.bodies[body].velocity.norm() + system.bodies[body].radius_of_gyration();
+        let scale = (0..system.bodies.len()).map(speed).fold(0.0, f64::max);
+        let sum = |of: &dyn Fn(usize) -> f64| velocities.iter().enumerate().map(|(k, v)| of(k) * v).sum::<f64>();
+        for (row, is_driven) in system.connections.is_driven().enumerate() {
+            if !is_driven && sum(&|k| terms.rows[(row, k)]).abs() > ROUNDING * scale {
+                return Ok(false);
+            }
+        }
+        let rows = || 0..system.coordinates();
+        let force = |i: usize| sum(&|k| terms.unloaded[(i, k)]).abs();
+        let size = |i: usize| rows().map(|k| (terms.unloaded[(i, k)] * velocities[k]).abs()).sum::<f64>();
+        let largest = rows().map(size).fold(0.0, f64::max);
+        Ok(rows().all(|i| force(i) <= ROUNDING * largest))
     }
 
     /// The body that the turn of a joint spins alone: that of its second marker, or of its first where that one is none.
