@@ -77,10 +77,10 @@ fn a_disk_on_a_soft_stand_whirls_forwards_and_backwards() {
     assert_eq!(loose.spins_together(0), Ok(true));
     // A spring and a damper between bodies that spin hold no spin.
     let (system, states) = blade(21.0);
-    let mut motion = SystemMotion::new(system, &states).unwrap();
-    motion.assemble().unwrap();
-    assert_eq!(motion.spins_together(0), Ok(true));
-    assert_eq!(motion.spins_together(1), Ok(false));
+    let mut spinning = SystemMotion::new(system, &states).unwrap();
+    spinning.assemble().unwrap();
+    assert_eq!(spinning.spins_together(0), Ok(true));
+    assert_eq!(spinning.spins_together(1), Ok(false));
     for speed in [0.0, 5.0, 40.0, 300.0] {
         let (half, still): (f64, f64) = (0.5 * speed * 0.4 / 0.55, 50.0 / 0.55);
         let root = (half * half + still).sqrt();
