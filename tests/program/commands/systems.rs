@@ -140,6 +140,59 @@ fn a_blade_flaps_in_its_closed_form() {
 }
 
 /// Closed form: the first shape of a clamped beam has 0.3395 of its displacement at the end in its middle.
+/// Conserved: a wheel that is free to turn about the axis of a clamped bar has the same part in what bends the bar as one that is welded to it:
+/// the turn that nothing resists is in none of the vibrations.
+#[test]
+fn a_free_turn_is_in_no_vibration() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = root().join("meshes/rotating_bar.msh");
+    let of_kind = |kind: &str| {
+        let text = format!(
+            r#"
+title = "Wheel on a bar"
+units = {{ length = "mm", mass = "Mg", time = "s" }}
+[bodies.bar]
+mesh = "{}"
+material = {{ young_modulus = {YOUNG:?}, poisson_ratio = 0.0, density = {DENSITY:e} }}
+modes = {{ flexible = 6 }}
+markers = {{ root = {{ group = "root" }}, tip = {{ box = [[202, -10, -10], [203, 10, 10]], z = [1, 0, 0] }} }}
+[bodies.wheel]
+rigid = {{ mass = 1e-4, center_of_mass = [0, 0, 0], inertia = [[0.04, 0, 0], [0, 0.021, 0], [0, 0, 0.021]] }}
+initial = {{ position = [{LENGTH:?}, 0, 0] }}
+markers = {{ hub = {{ at = [0, 0, 0], z = [1, 0, 0] }} }}
+[[joints]]
+name = "foot"
+kind = "fixed"
+between = ["ground", "bar.root"]
+[[joints]]
+name = "axle"
+kind = "{kind}"
+between = ["bar.tip", "wheel.hub"]
+[time]
+end = 0.1
+tolerance = 1e-5
+"#,
+            mesh.display()
+        );
+        let scene = folder.path().join(format!("{kind}.toml"));
+        std::fs::write(&scene, text).unwrap();
+        json(&["modes", scene.to_str().unwrap()])["systems"][0]["modes"].clone()
+    };
+    let parts = |modes: &Value| -> Vec<(f64, f64)> {
+        let of_wheel = |mode: &Value| {
+            let moves = mode["moves"].as_array().unwrap();
+            moves.iter().find(|share| share["name"] == "wheel").map_or(0.0, |share| number(&share["part"]))
+        };
+        modes.as_array().unwrap().iter().map(|mode| (number(&mode["frequency"]), of_wheel(mode))).collect()
+    };
+    let (free, welded) = (parts(&of_kind("revolute")), parts(&of_kind("fixed")));
+    assert!(free.len() > 6 && free[0].1 < 0.999, "{free:?}");
+    for (frequency, part) in &free[..2] {
+        let same = welded.iter().min_by(|a, b| (a.0 - frequency).abs().total_cmp(&(b.0 - frequency).abs())).unwrap();
+        assert!((same.0 / frequency - 1.0).abs() < 1e-6 && (same.1 - part).abs() < 1e-6, "{frequency} {part} {same:?}");
+    }
+}
+
 #[test]
 fn shapes_of_a_system_are_in_a_file_for_paraview() {
     let folder = tempfile::tempdir().unwrap();

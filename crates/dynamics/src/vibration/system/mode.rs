@@ -146,7 +146,13 @@ impl Linearization {
             return Ok((Mat::identity(size, size), Mat::zeros(size, 0)));
         }
         let all = [&self.stiffness, &self.damping];
-        let weights = self.magnitudes.map(|magnitude| if magnitude > 0.0 { 1.0 / magnitude } else { 0.0 });
+        // Where no force acts, all terms of a motion as a whole are rounding: those are judged by the slowest vibration of the bodies.
+        let slowest = self.strain.iter().copied().filter(|strain| *strain > 0.0).fold(f64::INFINITY, f64::min);
+        let floors = if slowest.is_finite() { [slowest, slowest.sqrt()] } else { [0.0; 2] };
+        let weights: [f64; 2] = std::array::from_fn(|which| {
+            let magnitude = self.magnitudes[which].max(f64::EPSILON / ROUNDING * floors[which]);
+            if magnitude > 0.0 { 1.0 / magnitude } else { 0.0 }
+        });
         let forces = Mat::from_fn(4 * size, count, |row, k| {
             let (which, i) = (row / (2 * size), row % (2 * size));
             let matrix = all[which];
