@@ -1,4 +1,4 @@
-//! Rates of what a body does with the numbers that it is made with: Eqs. (D1)–(D11) and (D17)–(D20) of `docs/method/gradients.md`.
+//! Rates of what a body does with the numbers that it is made with: Eqs. (D1)–(D10), (D17) and (D18) of `docs/method/gradients.md`.
 
 mod at;
 pub(crate) mod in_joints;

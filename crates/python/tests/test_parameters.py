@@ -83,11 +83,22 @@ def test_a_fit_gives_back_what_made_the_frequencies(scene, tmp_path):
     assert not again.deviations_stated
 
 
+def test_a_fitted_stretch_is_no_value_of_the_scene(scene, found):
+    # Conserved: the frequencies of the mesh as it is leave it as it is.
+    fit = flexframe.fit(scene, [E, "thickness.z"], found.frequencies)
+    assert fit.parameters[E].is_key and not fit.parameters["thickness.z"].is_key
+    np.testing.assert_allclose(fit.parameters["thickness.z"].value, 1.0, rtol=1e-6)
+    assert list(fit.values) == [E] and scene.with_values(fit.values)
+
+
 def test_what_is_not_there_is_refused(scene):
     with pytest.raises(flexframe.InputError, match="body.material.young_modulus"):
         flexframe.gradient(scene, ["body.material.colour"])
     with pytest.raises(flexframe.InputError, match="positive"):
         flexframe.fit(scene, [E], [100.0, -1.0])
+    with pytest.raises(flexframe.InputError, match=r"shape \(2, 2\)") as refused:
+        flexframe.fit(scene, [E], np.array([[100.0, 1.0], [200.0, 2.0]]))
+    assert refused.value.key == "measured"
     with pytest.raises(flexframe.InputError, match="start:end:count"):
         flexframe.gradient(scene, [E], frequencies=(5.0, 1.0, 3))
     with pytest.raises(flexframe.RefusedError, match="apart"):

@@ -237,6 +237,23 @@ fn a_system_that_forces_deform_has_no_rates() {
     }
 }
 
+/// The modes of a body whose marker is rigid are no eigenvectors, of which rates would be wrong; stiffnesses beside it have theirs.
+#[test]
+fn numbers_of_a_body_with_a_rigid_marker_are_refused_at_its_key() {
+    let folder = tempfile::tempdir().unwrap();
+    write_system(folder.path(), "");
+    let rigid = "bodies.bar.markers.root={ group = \"root\", tie = \"rigid\" }";
+    let of =
+        |parameter| ["gradient", "system.toml", "--set", rigid, "-o", "other", "--json", "--parameters", parameter];
+    let refused = run(folder.path(), &of("bodies.bar.material.density"));
+    let told = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(3), "{told}");
+    for word in ["bodies.bar.markers.root.tie", "nodes", "mean"] {
+        assert!(told.contains(word), "{word}: {told}");
+    }
+    assert_eq!(report(folder.path(), &of("springs[0].stiffness"))["parameters"].as_array().unwrap().len(), 1);
+}
+
 /// Closed form: a stone on a spring along a rail swings with √(k/m)/2π, whose relative rate is a half.
 #[test]
 fn a_stone_on_a_spring_has_a_relative_rate_of_a_half() {

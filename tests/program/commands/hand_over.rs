@@ -82,7 +82,7 @@ fn op4_is_a_model_of_craig_and_bampton() {
 }
 
 /// Independent reference: `flexframe modes` of the bar that is clamped at the nodes of the interface, whose first three frequencies the inner modes
-/// have to 1e-3, since free modes and static shapes span them nearly. Conserved: the frequencies of the free bar to 1e-9; nodes of the
+/// have to 1e-3, since free modes and static shapes span them nearly. Conserved: the frequencies of the free bar to 1e-6; nodes of the
 /// interface have its coordinates as their displacements; rigid motions of it strain nothing, and have the mass.
 #[test]
 fn an_interface_of_nodes_is_one_of_craig_and_bampton() {
@@ -152,6 +152,65 @@ fn an_interface_of_nodes_is_one_of_craig_and_bampton() {
         let whole = report["body"]["mass"].as_f64().unwrap();
         assert!(((moved.transpose() * &mass * &moved)[(0, 0)] / whole - 1.0).abs() < 1e-9);
     }
+    // Turns about the tip, with all else at ease: they strain nothing and turn the root by the same.
+    let others: Vec<usize> = (0..count - 6).chain(count..size).collect();
+    let of_others = DMatrix::from_fn(others.len(), others.len(), |i, j| stiffness[(others[i], others[j])]).lu();
+    for axis in 0..3 {
+        let tip = count - 3 + axis;
+        let pulled = DMatrix::from_fn(others.len(), 1, |i, _| -stiffness[(others[i], tip)]);
+        let at_ease = of_others.solve(&pulled).unwrap();
+        let mut turned = DMatrix::zeros(size, 1);
+        turned[(tip, 0)] = 1.0;
+        others.iter().zip(at_ease.iter()).for_each(|(i, x)| turned[(*i, 0)] = *x);
+        let energy = (turned.transpose() * &stiffness * &turned)[(0, 0)];
+        assert!(energy.abs() < 1e-6 * stiffness[(tip, tip)], "{axis}: {energy} {}", stiffness[(tip, tip)]);
+        let seen = &recovery * &turned;
+        let arm = Vector3::new(-202.07, 0.0, 0.0);
+        let expected = Vector3::ith(axis, 1.0).cross(&arm);
+        // The root is the node before the tip.
+        for i in 0..3 {
+            let turn = if i == axis { 1.0 } else { 0.0 };
+            let (at, of) = (seen[(last - 6 + i, 0)], seen[(last - 3 + i, 0)]);
+            assert!((at - expected[i]).abs() < 1e-4 * 202.07 && (of - turn).abs() < 1e-4, "{axis} {i}: {at} {of}");
+        }
+    }
+}
+
+/// Conserved: the mass of the body in the first three coordinates, which nothing strains: one node, or two, which are on a line, hold no
+/// body. Three nodes hold it: the nine displacements are coordinates.
+#[test]
+fn markers_that_do_not_hold_a_body_are_told_and_leave_its_rigid_motions() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene(folder.path());
+    let text = std::fs::read_to_string(&path).unwrap().replace("flexible = 6", "flexible = 12");
+    let free = text
+        .replace("[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n", "")
+        .replace("static_correction = false\n", "");
+    let node = |name: &str, at: [f64; 3]| format!("{name} = {{ at = {at:?}, radius = 1e-3, tie = \"nodes\" }}");
+    let (a, b, c) = (node("a", [0.0, 5.0, 5.0]), node("b", [0.0, -5.0, 5.0]), node("c", [0.0, 5.0, -5.0]));
+    let file = folder.path().join("free.op4");
+    let reduced = |markers: &[&str]| -> (String, [DMatrix<f64>; 2]) {
+        let with = format!("[body.markers]\n{}\n[output]", markers.join("\n"));
+        std::fs::write(&path, free.replace("[output]", &with)).unwrap();
+        let asked = ["reduce", path.to_str().unwrap(), "-o", file.to_str().unwrap(), "--overwrite"];
+        let told = json(&asked)["warnings"].to_string();
+        let python = std::env::var_os(READERS).expect("FLEXFRAME_READERS names no Python with pyYeti; use ./dev test");
+        let read = Command::new(python).arg(root().join("tests/read_hand_over.py")).arg(&file).output().unwrap();
+        assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
+        let found: Value = serde_json::from_slice(&read.stdout).unwrap();
+        (told, ["MXX", "KXX"].map(|name| matrix(&found[name])))
+    };
+    for (markers, words) in [
+        (vec![&a[..]], ["a do not hold", "six rigid motions"]),
+        (vec![&a, &b], ["a, b do not hold", "six rigid motions"]),
+    ] {
+        let (told, [mass, stiffness]) = reduced(&markers);
+        assert!(words.iter().all(|word| told.contains(word)), "{told}");
+        assert!(stiffness.rows(0, 6).amax() == 0.0 && (mass[(0, 0)] / mass[(1, 1)] - 1.0).abs() < 1e-12);
+        assert!(mass[(0, 1)].abs() < 1e-12 * mass[(0, 0)]);
+    }
+    let (told, [_, stiffness]) = reduced(&[&a, &b, &c]);
+    assert!(!told.contains("no interface") && (0..9).all(|i| stiffness[(i, i)] > 0.0), "{told}");
 }
 
 /// Conserved: the same numbers in both files, bit for bit.

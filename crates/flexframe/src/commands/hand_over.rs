@@ -77,19 +77,28 @@ pub fn hand_over(
     progress: impl FnMut(BuildProgress),
 ) -> Result<ModesReport, HandOverError> {
     let model = builder.build(scene, progress)?;
-    write(scene, &model, form, path)?;
-    Ok(ModesReport::new(scene, &model))
+    let note = write(scene, &model, form, path)?;
+    let mut report = ModesReport::new(scene, &model);
+    report.warnings.extend(note);
+    Ok(report)
 }
 
-fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<(), HandOverError> {
+/// Writes the file; a note where its coordinates are others than markers ask for.
+fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<Option<String>, HandOverError> {
+    let mut note = None;
+    let mut named = |body: &Reduced<'_>| {
+        let (matrices, of_markers) = matrices(body);
+        note = of_markers;
+        matrices
+    };
     let bytes = match form {
         Form::Gltf => gltf::bytes(scene, model)?,
-        Form::Op4 => op4::text(&matrices(&Reduced::new(scene, model)?)).into_bytes(),
-        Form::Op2 => op2::bytes(&matrices(&Reduced::new(scene, model)?)),
+        Form::Op4 => op4::text(&named(&Reduced::new(scene, model)?)).into_bytes(),
+        Form::Op2 => op2::bytes(&named(&Reduced::new(scene, model)?)),
         Form::Mbdyn => mbdyn::text(&Reduced::new(scene, model)?).into_bytes(),
         Form::Flex42 => flex42::text(&Reduced::new(scene, model)?).into_bytes(),
         Form::Sid => sid::text(&Reduced::new(scene, model)?).into_bytes(),
     };
     write_whole(path, bytes).map_err(WriteError::of(path))?;
-    Ok(())
+    Ok(note)
 }

@@ -507,7 +507,10 @@ impl Fault for GradientError {
             Self::Build(_) | Self::System(_) | Self::Write(_) => Known::default(),
             Self::Frequencies { .. } | Self::Number { .. } => Kind::Usage.alone(),
             Self::Resonance { scene, .. } => Kind::Run.of(scene),
-            Self::Loaded { scene } => Kind::Refused.of(scene),
+            Self::Loaded { scene } | Self::Critical { scene, .. } | Self::Outside { scene, .. } => {
+                Kind::Refused.of(scene)
+            }
+            Self::NotFinite { scene, .. } => Kind::Run.of(scene),
             Self::Systems { scene, .. } => Kind::Input.of(scene),
         }
     }

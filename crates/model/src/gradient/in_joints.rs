@@ -1,7 +1,8 @@
-//! Rates of a body in joints, whose modes and static shapes turn with its numbers: Eqs. (D17)–(D20) of `docs/method/gradients.md`.
+//! Rates of a body in joints, whose modes and static shapes turn with its numbers: Eqs. (D17) and (D18) of `docs/method/gradients.md`.
 //!
 //! ```text
-//! X = [R B],  X' = [0 B'],  B' = Φ' a + S' c − R (…)      B = Φ a + S c + R (…),  K S = F − M R Rᵀ F
+//! X = [R B],  X' = [0 B'],  B = Φ a + S c + R (…),  K S = F − M R Rᵀ F
+//! U = Φ' a + S' c,  B' = U − R (RᵀM U + RᵀM' B)
 //! K S' = F' − K'S − M'R RᵀF
 //! (XᵀMX)' = XᵀM'X + X'ᵀMX + XᵀMX',   (XᵀKX)' alike,   (FᵀX)' = FᵀX'
 //! ```
@@ -12,7 +13,7 @@ use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Location, MatrixRates, Mesh};
 use modal::{ModalError, Modes, Solver, StaticAccuracy, centrifugal_accelerations};
 use nalgebra::Vector3;
-use scene::Scene;
+use scene::{Scene, Tie, key_path};
 
 use crate::building::assembly::AssembledMesh;
 use crate::error::{BuildError, modal};
@@ -59,7 +60,7 @@ impl VariedBody {
     /// The rates of a body that is tied to others with some of its numbers: not with stretches, which move its markers.
     ///
     /// # Errors
-    /// [`BuildError`]; a number that moves nodes; a basis that cuts modes of one frequency.
+    /// [`BuildError`]; a number that moves nodes; a marker whose nodes move as one rigid body; a basis that cuts modes of one frequency.
     pub fn in_joints(&self, model: &Model, parameters: &[Parameter]) -> Result<BodyInJoints, BuildError> {
         let scene = self.scene();
         let AssembledMesh { mesh, .. } = self.assembled();
@@ -68,6 +69,13 @@ impl VariedBody {
             let help = "leave it out, or take its rates of the body alone";
             let found = format!("{}, which moves the markers of a body in joints", parameter.name);
             return Err(scene.refuse("body", found, "numbers of materials and point masses", help).into());
+        }
+        // The modes of such a body are combinations that keep its patches rigid: none is an eigenvector, so that (D7) is not its rate.
+        if let Some(marker) = scene.markers.iter().find(|marker| marker.tie == Tie::Rigid) {
+            let key = key_path(&key_path("body.markers", &marker.name), "tie");
+            let help = "give it `tie = \"nodes\"` or `tie = \"mean\"`, or name parameters of other bodies";
+            let expected = "a tie that leaves the modes of the body as they are";
+            return Err(scene.refuse(&key, "\"rigid\", which mixes the modes of the body", expected, help).into());
         }
         let matrices = FeMatrices::Assembled(matrices(scene, self.body(), mesh)?);
         let solver = self.assembled().solver(&matrices, mesh.positions()).map_err(modal(scene))?;

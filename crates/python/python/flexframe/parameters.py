@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexframe import _flexframe
+from flexframe.errors import InputError
 
 if TYPE_CHECKING:
     from flexframe._flexframe import Scene
@@ -53,11 +54,15 @@ class Gradient:
 
 @dataclass(frozen=True)
 class FittedParameter:
-    """A number of the scene as it was and as measured frequencies have it, with the interval that has the true one in it."""
+    """A number of the scene as it was and as measured frequencies have it, with the interval that has the true one in it.
+
+    `is_key` is False of a stretch of the mesh, such as "thickness.z", which is a factor and no key of the scene.
+    """
 
     start: float
     value: float
     interval: tuple[float, float] | None
+    is_key: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +87,8 @@ class Fit:
 
     @property
     def values(self) -> dict[str, float]:
-        """The values by their keys, as `Scene.with_values` takes them."""
-        return {name: parameter.value for name, parameter in self.parameters.items()}
+        """The values of the keys, as `Scene.with_values` takes them; a stretch of the mesh, which has no key, is in `parameters` alone."""
+        return {name: parameter.value for name, parameter in self.parameters.items() if parameter.is_key}
 
 
 def gradient(
@@ -135,7 +140,7 @@ def fit(
     them in [modes]. `deviation` is the standard deviation relative to each frequency.
     """
     file = measured if isinstance(measured, (str, os.PathLike)) else None
-    frequencies = None if file is not None or measured is None else [float(x) for x in np.asarray(measured).ravel()]
+    frequencies = None if file is not None or measured is None else _list_of_frequencies(measured)
     found = json.loads(
         _flexframe.fitted(
             scene,
@@ -151,6 +156,7 @@ def fit(
             start=parameter["start"],
             value=parameter["value"],
             interval=None if parameter["interval"] is None else (parameter["interval"][0], parameter["interval"][1]),
+            is_key=parameter["is_key"],
         )
         for parameter in found["parameters"]
     }
@@ -166,6 +172,17 @@ def fit(
             for key in ("confidence", "degrees_of_freedom", "deviations_stated", "scatter", "warnings")
         },
     )
+
+
+def _list_of_frequencies(measured: Any) -> list[float]:
+    numbers = np.asarray(measured, dtype=float)
+    if numbers.ndim != 1:
+        key, found, expected = "measured", f"an array of the shape {numbers.shape}", "a list of frequencies, of one axis"
+        help = "give one column, such as measured[:, 0]; deviations beside the frequencies stand in a CSV file"
+        raise InputError(
+            f"{key}: found {found}, expected {expected}\n = {help}", key=key, found=found, expected=expected, help=help
+        )
+    return [float(x) for x in numbers]
 
 
 def _array(numbers: Sequence[Any]) -> NDArray[np.float64]:

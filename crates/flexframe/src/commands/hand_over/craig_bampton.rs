@@ -7,7 +7,7 @@
 
 use faer::Mat;
 
-use super::interface;
+use super::interface::{self, NoInterface};
 use super::reduced::Reduced;
 
 /// Motions of the base.
@@ -26,8 +26,8 @@ const OTHER: i32 = 2;
 /// Type of a matrix of real numbers in double precision.
 pub const DOUBLE: i32 = 2;
 
-/// Mass, stiffness, damping and recovery; those without rows are left out.
-pub fn matrices(body: &Reduced<'_>) -> Vec<Named> {
+/// Mass, stiffness, damping and recovery; those without rows are left out. With them a note where markers are no interface.
+pub fn matrices(body: &Reduced<'_>) -> (Vec<Named>, Option<String>) {
     let size = BASE + body.count();
     let [mut mass, mut stiffness, mut damping] = [(); 3].map(|()| Mat::<f64>::zeros(size, size));
     for (i, j) in (0..BASE).flat_map(|i| (0..BASE).map(move |j| (i, j))) {
@@ -60,7 +60,9 @@ pub fn matrices(body: &Reduced<'_>) -> Vec<Named> {
             }
         }
     }
-    if let Some(change) = interface::coordinates(&interface::rows(&body.interface), &mass, &stiffness) {
+    let change = interface::coordinates(&interface::rows(&body.interface), &mass, &stiffness);
+    let note = change.as_ref().err().and_then(|reason| no_interface(body, *reason));
+    if let Ok(change) = change {
         for matrix in [&mut mass, &mut stiffness, &mut damping] {
             let changed = change.transpose() * (&*matrix * &change);
             *matrix = Mat::from_fn(size, size, |i, j| 0.5 * (changed[(i, j)] + changed[(j, i)]));
@@ -74,7 +76,35 @@ pub fn matrices(body: &Reduced<'_>) -> Vec<Named> {
         ("TREC", recovery, OTHER),
     ];
     let all = all.into_iter().filter(|(_, matrix, _)| matrix.nrows() > 0);
-    all.map(|(name, matrix, form)| Named { name, matrix, form }).collect()
+    (all.map(|(name, matrix, form)| Named { name, matrix, form }).collect(), note)
+}
+
+/// A sentence about the markers of a free body that are no interface, with the coordinates that are there; none of a body without markers.
+fn no_interface(body: &Reduced<'_>, reason: NoInterface) -> Option<String> {
+    let Reduced { markers, without_turns, .. } = body;
+    let why = match (markers.is_empty(), without_turns.is_empty(), reason) {
+        (true, ..) => return None,
+        (_, false, _) => format!(
+            "the nodes of {} do not tell its turns (give it a region with faces, or `tie = \"nodes\"`)",
+            without_turns.join(", ")
+        ),
+        (.., NoInterface::NoPlaces) => format!("{} have no places", markers.join(", ")),
+        (.., NoInterface::Many { rows, coordinates }) => format!(
+            "{} have {rows} displacements and rotations, more than the {coordinates} coordinates of the body (ask for more \
+             modes, or tie fewer nodes)",
+            markers.join(", ")
+        ),
+        (.., NoInterface::Free) => {
+            format!("{} do not hold the body, which could move as a whole (hold it in more places)", markers.join(", "))
+        }
+        (.., NoInterface::Together) => {
+            format!("places of {} move only together in these modes (ask for more, or tie fewer)", markers.join(", "))
+        }
+        (.., NoInterface::Numbers) => format!("the modes with {} held were not found", markers.join(", ")),
+    };
+    Some(format!(
+        "the markers are no interface: {why}; the coordinates are the six rigid motions about the center of mass and the modes of the free body"
+    ))
 }
 
 impl Named {

@@ -6,8 +6,23 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Singular values of the motions of an interface, in parts of the largest, that are none.
 const DEPENDENT: f64 = 1e-9;
-/// Stiffness of a motion with the interface held, in parts of the largest, below which it is a rigid motion.
-const RIGID: f64 = 1e-14;
+/// Motions of the base.
+const BASE: usize = 6;
+
+/// A reason why markers are no interface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NoInterface {
+    /// They have no places.
+    NoPlaces,
+    /// More displacements and rotations than the body has coordinates.
+    Many { rows: usize, coordinates: usize },
+    /// They leave the body motions as a whole.
+    Free,
+    /// They move only together.
+    Together,
+    /// A matrix that has no factors, or no eigenvalues.
+    Numbers,
+}
 
 /// A place of the interface: its three displacements, and its rotations where it knows them.
 pub struct Place {
@@ -38,11 +53,17 @@ pub fn rows(places: &[Place]) -> Mat<f64> {
 }
 
 /// The motions of the base and the modes (n×n) in the displacements of the interface, whose `rows` these are, and the amplitudes of inner
-/// modes of mass 1, which rise: none where places move only together, or leave the body free.
-pub fn coordinates(rows: &Mat<f64>, mass: &Mat<f64>, stiffness: &Mat<f64>) -> Option<Mat<f64>> {
+/// modes of mass 1, which rise.
+///
+/// # Errors
+/// [`NoInterface`].
+pub fn coordinates(rows: &Mat<f64>, mass: &Mat<f64>, stiffness: &Mat<f64>) -> Result<Mat<f64>, NoInterface> {
     let (count, size) = (rows.nrows(), mass.nrows());
-    if count == 0 || count > size {
-        return None;
+    if count == 0 {
+        return Err(NoInterface::NoPlaces);
+    }
+    if count > size {
+        return Err(NoInterface::Many { rows: count, coordinates: size });
     }
     // In coordinates of unit mass, and rows of unit length.
     let unit: Vec<f64> = (0..size).map(|i| 1.0 / mass[(i, i)].sqrt()).collect();
@@ -51,20 +72,24 @@ pub fn coordinates(rows: &Mat<f64>, mass: &Mat<f64>, stiffness: &Mat<f64>) -> Op
     let alike = Mat::from_fn(count, size, |i, j| of_unit[(i, j)] / lengths[i]);
     let scaled = |matrix: &Mat<f64>| Mat::from_fn(size, size, |i, j| matrix[(i, j)] * unit[i] * unit[j]);
     let (mass, stiffness) = (scaled(mass), scaled(stiffness));
-    let svd = alike.svd().ok()?;
-    let values: Vec<f64> = svd.S().column_vector().iter().copied().collect();
-    if values.last()? <= &(DEPENDENT * values.first()?) {
-        return None;
+    // A motion that holds all places strains the body unless it is one of the base alone.
+    if rank(&alike.get(.., ..BASE).to_owned())? < BASE {
+        return Err(NoInterface::Free);
     }
+    if rank(&alike)? < count {
+        return Err(NoInterface::Together);
+    }
+    let svd = alike.svd().map_err(|_| NoInterface::Numbers)?;
+    let values: Vec<f64> = svd.S().column_vector().iter().copied().collect();
     let along = |i: usize, j: usize| -> f64 { (0..count).map(|k| svd.V()[(i, k)] * svd.U()[(j, k)] / values[k]).sum() };
     let moved = Mat::from_fn(size, count, |i, j| along(i, j) / lengths[j]);
     let held = svd.V().get(.., count..).to_owned();
     let within = |matrix: &Mat<f64>| held.transpose() * (matrix * &held);
     let (inner_mass, inner) = (within(&mass), within(&stiffness));
     if held.ncols() == 0 {
-        return Some(Mat::from_fn(size, count, |i, j| unit[i] * moved[(i, j)]));
+        return Ok(Mat::from_fn(size, count, |i, j| unit[i] * moved[(i, j)]));
     }
-    let factor = inner_mass.llt(Side::Lower).ok()?.L().to_owned();
+    let factor = inner_mass.llt(Side::Lower).map_err(|_| NoInterface::Numbers)?.L().to_owned();
     let mut of_unit_mass = inner.clone();
     let lower = |matrix: &mut Mat<f64>| {
         faer::linalg::triangular_solve::solve_lower_triangular_in_place(
@@ -78,16 +103,20 @@ pub fn coordinates(rows: &Mat<f64>, mass: &Mat<f64>, stiffness: &Mat<f64>) -> Op
     lower(&mut of_unit_mass);
     let symmetric =
         Mat::from_fn(held.ncols(), held.ncols(), |i, j| 0.5 * (of_unit_mass[(i, j)] + of_unit_mass[(j, i)]));
-    let eigen = symmetric.self_adjoint_eigen(Side::Lower).ok()?;
-    let squares = eigen.S().column_vector();
-    if squares[0] <= RIGID * squares[held.ncols() - 1] {
-        return None;
-    }
+    let eigen = symmetric.self_adjoint_eigen(Side::Lower).map_err(|_| NoInterface::Numbers)?;
     let mut modes = eigen.U().to_owned();
     faer::linalg::triangular_solve::solve_upper_triangular_in_place(factor.transpose(), modes.as_mut(), faer::Par::Seq);
     let modes = &held * modes;
     // What the interface moves strains the body least.
-    let relaxed = &held * inner.llt(Side::Lower).ok()?.solve(held.transpose() * (&stiffness * &moved));
+    let strained = inner.llt(Side::Lower).map_err(|_| NoInterface::Numbers)?;
+    let relaxed = &held * strained.solve(held.transpose() * (&stiffness * &moved));
     let constrained = moved - relaxed;
-    Some(Mat::from_fn(size, size, |i, j| unit[i] * if j < count { constrained[(i, j)] } else { modes[(i, j - count)] }))
+    Ok(Mat::from_fn(size, size, |i, j| unit[i] * if j < count { constrained[(i, j)] } else { modes[(i, j - count)] }))
+}
+
+/// Number of singular values that are more than rounding.
+fn rank(of: &Mat<f64>) -> Result<usize, NoInterface> {
+    let values = of.singular_values().map_err(|_| NoInterface::Numbers)?;
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    Ok(values.into_iter().filter(|value| *value > DEPENDENT * largest).count())
 }

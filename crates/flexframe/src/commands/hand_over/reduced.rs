@@ -39,8 +39,12 @@ pub struct Reduced<'a> {
     /// Stiffness by spins of rate 1 about 11, 22, 33, 23, 13, 12; none where the body is not stiffened.
     pub spin_stiffness: Option<&'a [Mat<f64>; 6]>,
     pub nodes: Vec<Node>,
-    /// Places of the markers of a free body, whose turns are known: the interface.
+    /// Places of the markers of a free body: the interface. None where turns of a marker are unknown.
     pub interface: Vec<Place>,
+    /// Names of the markers of a free body.
+    pub markers: Vec<&'a str>,
+    /// Names of those of them whose turns the nodes do not tell.
+    pub without_turns: Vec<&'a str>,
 }
 
 /// A place of the body.
@@ -79,8 +83,9 @@ impl<'a> Reduced<'a> {
         });
         let is_known = |marker: &&BodyMarker| marker.unknown_turns == UnknownTurns::None || marker.by_nodes;
         let free = model.markers.iter().filter(|_| body.motion.is_free());
-        let interface =
-            if free.clone().all(|marker| is_known(&marker)) { free.flat_map(places).collect() } else { Vec::new() };
+        let name = |marker: &'a BodyMarker| &marker.name[..];
+        let without_turns: Vec<&str> = free.clone().filter(|marker| !is_known(marker)).map(name).collect();
+        let interface = if without_turns.is_empty() { free.clone().flat_map(places).collect() } else { Vec::new() };
         let of = |parts: &'a [Vec<f64>; 3]| -> Vec<Vector3<f64>> {
             (0..count).map(|k| Vector3::from_fn(|i, _| parts[i][k])).collect()
         };
@@ -101,6 +106,8 @@ impl<'a> Reduced<'a> {
             spin_stiffness: body.stress_stiffness.as_ref(),
             nodes: points.chain(markers).collect(),
             interface,
+            markers: free.map(name).collect(),
+            without_turns,
         })
     }
 

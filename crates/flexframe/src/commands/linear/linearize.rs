@@ -1,16 +1,14 @@
 //! `flexframe linearize`: the state space of small motions about rest or a steady spin, for control and for other programs.
 
 mod at_time;
-mod base;
 mod channels;
-mod driven;
 mod error;
 mod files;
+mod growth;
 mod held;
 mod of_system;
 mod reduction;
 mod report;
-mod rigid;
 mod settings;
 mod space;
 mod state;
@@ -29,12 +27,13 @@ use scene::{Scene, System};
 use at_time::{moving_modes, states_at};
 pub(super) use channels::input_channels;
 pub use error::LinearizeError;
+use growth::growing;
 pub use reduction::{Reduced, Reduction};
 pub use report::LinearReport;
 pub use settings::LinearSettings;
 pub use space::LinearSpace;
 pub use state::State;
-use unseen::{growing, unseen};
+use unseen::unseen;
 
 /// The linearised equations of a scene.
 #[derive(Debug, Clone)]
@@ -109,12 +108,12 @@ pub fn linear_model(
     if let Some(states) = &states {
         state.warnings.extend(moving_modes(&models, states));
     }
-    let equations = channels.chosen(settings, &system.bodies[0])?;
-    state.warnings.extend(unseen(&equations));
+    let whole = channels.chosen(settings, &system.bodies[0])?;
     let equations = match settings.without_rigid {
-        true => equations.without(&(0..state.rigid).collect::<Vec<_>>()),
-        false => equations,
+        true => whole.without(&(0..state.rigid).collect::<Vec<_>>()),
+        false => whole.clone(),
     };
+    state.warnings.extend(unseen(&whole, &equations));
     Ok(LinearModel { equations, state })
 }
 
@@ -129,9 +128,11 @@ pub fn linear_space(
     reduction: Option<Reduction>,
     progress: impl FnMut(BuildProgress),
 ) -> Result<LinearSpace, LinearizeError> {
-    let LinearModel { equations, state } = linear_model(system, builder, settings, progress)?;
+    let LinearModel { equations, mut state } = linear_model(system, builder, settings, progress)?;
     let failed = |source| LinearizeError::Linear { scene: system.bodies[0].path.clone(), source: Box::new(source) };
     let whole = equations.state_space().map_err(failed)?;
+    let rigid = if settings.without_rigid { 0 } else { state.rigid };
+    state.warnings.extend(growing(&equations, rigid).map_err(failed)?);
     let reduced = reduction.map(|reduction| reduction.of(&whole)).transpose().map_err(failed)?;
     Ok(LinearSpace { whole, reduced, state })
 }
@@ -154,7 +155,5 @@ pub fn linearize(
     let failed = |source| LinearizeError::Linear { scene: scene.path.clone(), source: Box::new(source) };
     let poles = space.model().poles().map_err(failed)?;
     files::write(space.model(), output)?;
-    let mut report = LinearReport::new(scene, &space, &poles, output);
-    report.warnings.extend(growing(&poles));
-    Ok(report)
+    Ok(LinearReport::new(scene, &space, &poles, output))
 }

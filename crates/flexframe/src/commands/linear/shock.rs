@@ -1,4 +1,4 @@
-//! `flexframe shock`: the largest answers of a scene to a shock of its base or of a load, summed over its modes, Eqs. (R4) to (R7) of
+//! `flexframe shock`: the largest answers of a scene to a shock of its base or of a load, summed over its modes, Eqs. (R4) to (R7), (R8) and (R9) of
 //! `docs/method/shock.md`.
 
 mod error;

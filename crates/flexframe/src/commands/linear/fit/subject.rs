@@ -36,8 +36,8 @@ impl Subject {
         progress: impl FnMut(BuildProgress),
     ) -> Result<Self, FitError> {
         if system.has_connections() {
-            let all = || Number::all(system).into_iter().map(|number| number.name).collect();
-            check(names, all, measured)?;
+            let all = Number::all(system)?;
+            check(names, || all.iter().map(|number| number.name.clone()).collect(), measured)?;
             if !measured.places.is_empty() {
                 return Err(FitError::Shapes { file: measured.file.clone() });
             }

@@ -33,6 +33,26 @@ pub enum GradientError {
         scene.display()
     )]
     Loaded { scene: PathBuf },
+    /// A number of a body that nothing ties to the others.
+    #[error(
+        "{}: found {parameter} of a body outside the system, expected one of a body that joints, springs or bushings tie to it\n = leave it out",
+        scene.display()
+    )]
+    Outside { scene: PathBuf, parameter: String },
+    /// Modes whose eigenvalue has no rate.
+    #[error(
+        "{}: found a vibration at {frequency} cycles per time that is damped critically (Yᵀ(2s + C)Y is singular), expected one with rates\n = \
+         change the damping of joints, bushings or bodies a little",
+        scene.display()
+    )]
+    Critical { scene: PathBuf, frequency: f64 },
+    /// Rates that are no numbers.
+    #[error(
+        "{}: found rates of the vibration at {frequency} cycles per time with {parameter} that are not finite\n = look for values in the scene \
+         that are many powers of ten apart",
+        scene.display()
+    )]
+    NotFinite { scene: PathBuf, frequency: f64, parameter: String },
     /// Several systems.
     #[error("{}: found {count} systems that nothing ties together, expected one\n = make a scene of each", scene.display())]
     Systems { scene: PathBuf, count: usize },

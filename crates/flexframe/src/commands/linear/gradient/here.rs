@@ -1,4 +1,4 @@
-//! A system where it stands at the start, with its vibrations.
+//! A system where it stands at the start, with its vibrations and the rates of its stiffness: Eq. (D15) of `docs/method/gradients.md`.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -62,6 +62,11 @@ impl<'a> Here<'a> {
 
     pub fn loaded(&self) -> GradientError {
         GradientError::Loaded { scene: self.path() }
+    }
+
+    /// The error of a number of a body that is not in the system.
+    pub fn outside(&self, number: &Number) -> GradientError {
+        GradientError::Outside { scene: self.path(), parameter: number.name.clone() }
     }
 
     /// Refuses bodies that stand deformed, and so elsewhere with other numbers.

@@ -1,7 +1,7 @@
 //! Numbers of a scene of bodies in joints that its vibrations follow.
 
 use fem_tet10::BodyNumber;
-use model::Parameter;
+use model::{BuildError, Parameter};
 use scene::{AlongAndAbout, Body, MeshedBody, Scene, System, one_of};
 
 use super::error::GradientError;
@@ -26,7 +26,10 @@ pub(crate) enum Place {
 
 impl Number {
     /// All of a scene: stiffnesses that are not zero, then the materials and point masses of bodies in joints.
-    pub fn all(system: &System) -> Vec<Self> {
+    ///
+    /// # Errors
+    /// [`GradientError::Build`] of a body whose numbers cannot be listed.
+    pub fn all(system: &System) -> Result<Vec<Self>, GradientError> {
         let springs = system
             .springs
             .iter()
@@ -48,16 +51,17 @@ impl Number {
             .filter(|(_, joint)| joint.spring.is_some())
             .map(|(i, _)| Self { name: format!("joints[{i}].spring.stiffness"), place: Place::Joint(i) });
         let stiffnesses = springs.chain((0..system.bushings.len()).flat_map(of_bushing)).chain(joints);
-        let of_bodies = system.bodies.iter().enumerate().flat_map(|(body, scene)| {
-            let numbers = if varies(scene) { Parameter::all(scene).unwrap_or_default() } else { Vec::new() };
-            numbers.into_iter().map(move |number| Self { name: number.name.clone(), place: Place::Body(body, number) })
-        });
-        stiffnesses.filter(|stiffness| stiffness.value(system) > 0.0).chain(of_bodies).collect()
+        let mut all: Vec<Self> = stiffnesses.filter(|stiffness| stiffness.value(system) > 0.0).collect();
+        for (body, scene) in system.bodies.iter().enumerate().filter(|(_, scene)| varies(scene)) {
+            let numbers = Parameter::all(scene).map_err(BuildError::from)?;
+            all.extend(numbers.into_iter().map(|of| Self { name: of.name.clone(), place: Place::Body(body, of) }));
+        }
+        Ok(all)
     }
 
     /// The numbers of some names; all without any.
     pub fn named(system: &System, names: &[String]) -> Result<Vec<Self>, GradientError> {
-        let all = Self::all(system);
+        let all = Self::all(system)?;
         if names.is_empty() && !all.is_empty() {
             return Ok(all);
         }

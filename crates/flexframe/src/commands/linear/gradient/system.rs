@@ -1,4 +1,4 @@
-//! Rates of the vibrations of a system with its numbers: Eqs. (D15)–(D20) of `docs/method/gradients.md`.
+//! Rates of the vibrations of a system with its numbers: Eq. (D16) of `docs/method/gradients.md`.
 //!
 //! The equations of small motions are linear in each stiffness of springs, bushings and joints, in coordinates that do not depend on it: the
 //! rate of K is the difference of two K, exact but for rounding. Of the numbers of a body, its rates in fixed coordinates and those
@@ -20,6 +20,9 @@ use super::number::{Number, Place};
 use super::system_responses::SystemResponses;
 use super::varying::{Varying, product};
 use crate::commands::system_modes::build;
+
+/// A pair of eigenvalues that is one parts by the root of rounding: G below this part of 2s YᵀY is singular.
+const CRITICAL: f64 = 1e-7;
 
 /// A system whose numbers vary.
 pub(crate) struct VariedSystem {
@@ -59,16 +62,16 @@ impl VariedSystem {
         let varied = self.varied(&here, numbers)?;
         let rates = numbers.iter().enumerate().map(|(i, number)| match &number.place {
             Place::Body(body, _) => {
-                let (of_body, k) =
-                    varied[*body].as_ref().and_then(|varied| varied.of(i)).ok_or_else(|| here.loaded())?;
-                frequency_rates(&here, &repeated, |a, b| {
+                let found = varied[*body].as_ref().and_then(|varied| varied.of(i));
+                let (of_body, k) = found.ok_or_else(|| here.outside(number))?;
+                frequency_rates(&here, &repeated, number, |a, b| {
                     let motions = [&a.motion[..], &b.motion[..]];
                     of_body.change(a.eigenvalue, motions, [&[], &[]], &of_body.body.rates[k])
                 })
             }
             _ => {
                 let rate = here.stiffness_rate(number)?;
-                frequency_rates(&here, &repeated, |a, b| product(&rate, &a.coordinates, &b.coordinates))
+                frequency_rates(&here, &repeated, number, |a, b| product(&rate, &a.coordinates, &b.coordinates))
             }
         });
         let rates = rates.collect::<Result<_, _>>()?;
@@ -88,11 +91,10 @@ impl VariedSystem {
                 _ => None,
             };
             let (places, parameters): (Vec<usize>, Vec<Parameter>) = numbers.iter().enumerate().filter_map(of).unzip();
-            if parameters.is_empty() {
-                return Ok(None);
-            }
+            let Some(first) = places.first() else { return Ok(None) };
             here.refuse_deformed()?;
-            let place = here.motion.bodies.iter().position(|of| *of == body).ok_or_else(|| here.loaded())?;
+            let place = here.motion.bodies.iter().position(|of| *of == body);
+            let place = place.ok_or_else(|| here.outside(&numbers[*first]))?;
             let (scene, model) = (&here.system.bodies[body], &here.models[body]);
             let rates = self.builder.varied(scene, |_| ())?.in_joints(model, &parameters)?;
             let is_damped = model.damping_ratios().iter().any(|ratio| *ratio != 0.0);
@@ -109,32 +111,59 @@ impl VariedSystem {
 fn frequency_rates(
     here: &Here<'_>,
     repeated: &[Range<usize>],
+    number: &Number,
     change: impl Fn(&SystemMode, &SystemMode) -> c64,
 ) -> Result<Vec<f64>, GradientError> {
     let modes = &here.modes;
     let mut rates = vec![0.0; modes.len()];
     let apart = (0..modes.len()).filter(|k| !repeated.iter().any(|group| group.contains(k))).map(|k| k..k + 1);
     for group in repeated.iter().cloned().chain(apart) {
-        let found = of_group(&modes[group.clone()], &change, &here.steady.linear.damping);
-        rates[group].copy_from_slice(&found.ok_or_else(|| here.loaded())?);
+        let frequency = modes[group.start].circular_frequency() / TAU;
+        let not_finite = || GradientError::NotFinite { scene: here.path(), frequency, parameter: number.name.clone() };
+        let group_modes = &modes[group.clone()];
+        let moved = moved(group_modes, &here.steady.linear.damping);
+        if is_critical(&moved, group_modes).ok_or_else(not_finite)? {
+            return Err(GradientError::Critical { scene: here.path(), frequency });
+        }
+        rates[group].copy_from_slice(&of_group(group_modes, &change, &moved).ok_or_else(not_finite)?);
     }
     Ok(rates)
 }
 
-/// Rates of the frequencies of modes of one eigenvalue s: those of s are the eigenvalues of −G⁻¹S with S the change of the equations and
-/// G = Yᵀ(2s + C)Y. None where the numbers are not finite.
-fn of_group(
-    modes: &[SystemMode],
-    change: &impl Fn(&SystemMode, &SystemMode) -> c64,
-    damping: &Mat<f64>,
-) -> Option<Vec<f64>> {
+/// G = Yᵀ(2s + C)Y of modes of one eigenvalue s.
+fn moved(modes: &[SystemMode], damping: &Mat<f64>) -> Mat<c64> {
     let size = modes.len();
     let eigenvalue = modes.iter().map(|mode| mode.eigenvalue).sum::<c64>() * (1.0 / size as f64);
-    let moved = Mat::from_fn(size, size, |i, j| {
+    Mat::from_fn(size, size, |i, j| {
         let (a, b) = (&modes[i].coordinates, &modes[j].coordinates);
         let along: c64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
         along * eigenvalue * 2.0 + product(damping, a, b)
-    });
+    })
+}
+
+/// True where G is singular beside 2s YᵀY; none where it is not finite.
+fn is_critical(moved: &Mat<c64>, modes: &[SystemMode]) -> Option<bool> {
+    let size = |mode: &SystemMode| {
+        let length: f64 = mode.coordinates.iter().map(|x| x.norm_sqr()).sum();
+        2.0 * mode.eigenvalue.norm() * length
+    };
+    let sizes: Vec<f64> = modes.iter().map(size).collect();
+    let alike = Mat::from_fn(moved.nrows(), moved.ncols(), |i, j| moved[(i, j)] * (1.0 / (sizes[i] * sizes[j]).sqrt()));
+    if !alike.norm_max().is_finite() {
+        return None;
+    }
+    let least = alike.singular_values().ok()?.into_iter().fold(f64::INFINITY, f64::min);
+    Some(least <= CRITICAL)
+}
+
+/// Rates of the frequencies of modes of one eigenvalue s: those of s are the eigenvalues of −G⁻¹S with S the change of the equations and
+/// G = Yᵀ(2s + C)Y, `moved`. None where the numbers are not finite.
+fn of_group(
+    modes: &[SystemMode],
+    change: &impl Fn(&SystemMode, &SystemMode) -> c64,
+    moved: &Mat<c64>,
+) -> Option<Vec<f64>> {
+    let size = modes.len();
     let strained = Mat::from_fn(size, size, |i, j| -change(&modes[i], &modes[j]));
     let rates: Mat<c64> = moved.partial_piv_lu().solve(&strained);
     let found: Vec<c64> = if size == 1 { vec![rates[(0, 0)]] } else { rates.eigenvalues().ok()? };

@@ -162,7 +162,7 @@ impl Here<'_> {
         let Place::Body(body, _) = number.place else {
             return Ok(Change::Stiffness(self.stiffness_rate(number)?));
         };
-        let (of_body, k) = varied[body].as_ref().and_then(|varied| varied.of(i)).ok_or_else(|| self.loaded())?;
+        let (of_body, k) = varied[body].as_ref().and_then(|varied| varied.of(i)).ok_or_else(|| self.outside(number))?;
         let rates = &of_body.body.rates[k];
         let followed = |port: &&Port| {
             let direct = || port.row[of_body.first..of_body.first + rates.mass.nrows()].to_vec();

@@ -1,4 +1,4 @@
-//! A body of a system whose numbers vary: Eqs. (D18)–(D20) of `docs/method/gradients.md`.
+//! A body of a system whose numbers vary: Eqs. (D19) and (D20) of `docs/method/gradients.md`.
 
 use faer::{Mat, c64};
 use model::{BodyInJoints, Model, RatesInJoints};

@@ -1,5 +1,9 @@
 //! Small motions of a body that is held, or held in a driven spin.
 
+mod base;
+mod driven;
+mod rigid;
+
 use dynamics::{DrivenMotion, Initial, SteadySpin};
 use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
@@ -7,14 +11,14 @@ use model::{AtRest, Model};
 use nalgebra::Vector3;
 use scene::Scene;
 
-use super::base::{Held, TRANSLATIONS, base_channels};
 use super::channels::{Channels, input_channels, point_outputs, stress_outputs, unit_of_coordinate};
-use super::driven::Driven;
 use super::error::LinearizeError;
-use super::rigid::{acts_on, rigid_motions};
 use super::settings::LinearSettings;
 use super::state::State;
 use crate::commands::linear::names::is_asked;
+use base::{Held, TRANSLATIONS, base_channels};
+use driven::Driven;
+use rigid::{acts_on, rigid_motions};
 
 /// The equations about rest under the loads of a time, or about the spin of a drive then.
 pub(super) fn of_held(

@@ -7,7 +7,7 @@ use model::{HeldSlopes, Model};
 use nalgebra::Vector3;
 use scene::Scene;
 
-use super::channels::{along_axes, wrench_channels};
+use crate::commands::linear::linearize::channels::{along_axes, wrench_channels};
 use crate::rows::units::UnitLabels;
 
 /// The number of translations of a base.
