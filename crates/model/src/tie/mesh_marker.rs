@@ -138,7 +138,7 @@ impl MeshMarker {
             Tie::Rigid if dofs == 6 => {
                 let found = "a rigid part of a body whose nodes have rotations";
                 let help = "give the nodes rigid elements where the matrices are made, or leave `tie` out";
-                return Err(scene.refuse(&key_path(&key, "tie"), found, "`\"mean\"` or `\"nodes\"`", help).into());
+                Err(scene.refuse(&key_path(&key, "tie"), found, "`\"mean\"` or `\"nodes\"`", help).into())
             }
             Tie::Nodes | Tie::Rigid => {
                 let nodes = nodes(scene, mesh, region, &key)?;
