@@ -4,6 +4,8 @@ use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
 
+use crate::vibration::system::error::SteadyError;
+
 /// A motion that cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -80,6 +82,9 @@ pub enum SetupError {
         "the joints cannot be closed at the beginning: \"{joint}\" stays open by {left:.3e} and its rate by {rate:.3e}; put its bodies so that its markers meet, give velocities that the joints allow, or remove a joint that contradicts the others"
     )]
     NotAssembled { joint: Box<str>, left: f64, rate: f64 },
+    /// Bodies that find no shape for a start without ringing.
+    #[error("at the relaxed start: {0}; or take `relaxed = false`")]
+    NotRelaxed(#[from] SteadyError),
     /// An error of a method or a load from outside.
     #[error(transparent)]
     Custom(#[from] CustomError),

@@ -363,6 +363,8 @@ interval = 0.01
     let given = ["campbell", scene_name, "--speeds", "0:40:3", "-o", out.to_str().unwrap(), "--overwrite"];
     let report = json(&given);
     assert_eq!(report["rotor"], "disk");
+    // Its spin does nothing to the bodies of its support.
+    assert!(report.get("effects").is_none(), "{}", report["effects"]);
     let branches = report["branches"].as_array().unwrap();
     for (i, speed) in [0.0_f64, 20.0, 40.0].into_iter().enumerate() {
         let (half, still): (f64, f64) = (0.5 * speed * 0.4 / 0.55, 50.0 / 0.55);

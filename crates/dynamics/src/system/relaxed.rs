@@ -15,6 +15,7 @@ use crate::system::elimination::joint_matrix::JointMatrix;
 use crate::system::radau::{Failed, SystemMotion};
 use crate::system::reactions::{Passing, find_row_accelerations, short_time};
 use crate::system::stage::{put, vector};
+use crate::vibration::system::error::SteadyError;
 
 /// Passes: the deformation changes the forces a little.
 const PASSES: usize = 6;
@@ -24,7 +25,7 @@ impl SystemMotion {
     /// the largest rate that are left.
     ///
     /// # Errors
-    /// [`Failed`] where the inertia of a body is singular, or the joints do not fit.
+    /// [`Failed`] where the inertia of a body is singular, the joints do not fit, or bodies with large modes find no shape.
     pub fn relax(&mut self) -> Result<[f64; 2], Failed> {
         let mut left = self.assemble()?;
         let is_bent = self.system.bodies.iter().any(|body| body.manifold.is_some());
@@ -43,8 +44,9 @@ impl SystemMotion {
     /// With large modes forces change as the bodies bend, so the shapes come from Newton's method with their tangent: (L7) with the
     /// accelerations of (L11).
     fn bend(&mut self) -> Result<(), Failed> {
-        let state = self.moving_state().map_err(|_| Failed::Newton)?;
-        self.set_states(&state.states()).map_err(|_| Failed::Newton)
+        let state = self.moving_state()?;
+        // They are of the right length; numbers alone can be wrong.
+        self.set_states(&state.states()).map_err(|_| SteadyError::Numbers.into())
     }
 
     /// V' and ω' of rigid bodies where the system is, in body axes, over the coordinates of all bodies.

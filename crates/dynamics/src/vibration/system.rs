@@ -11,7 +11,7 @@
 
 mod body;
 pub(crate) mod configuration;
-mod error;
+pub(crate) mod error;
 mod linearization;
 mod load;
 mod mode;

@@ -98,6 +98,23 @@ fn a_disk_on_a_soft_stand_whirls_forwards_and_backwards() {
     }
 }
 
+/// A soft spring to the ground holds the turn, whatever stiff spring is between the bodies that it turns.
+#[test]
+fn a_soft_spring_to_the_ground_beside_a_stiff_one_between_bodies_holds_the_spin() {
+    let stiff = 500.0;
+    let of = |soft: f64| {
+        let (system, _) = stand([0.4, 0.25, 0.25], 0.0, ([4e4, 3e4, 3e4], [soft, 50.0, 50.0], 0.0), 0.0);
+        let axis = |body: usize| Marker::on_rigid(body, Vector3::zeros(), along_x());
+        let spring = JointForce { stiffness: stiff, ..JointForce::default() };
+        let shaft = Joint::revolute("shaft", [axis(0), axis(1)]).with_force(Coordinate::Turn, spring);
+        let bodies = vec![rigid(3.0, [0.2, 0.3, 0.3]), rigid(2.0, [0.4, 0.25, 0.25])];
+        let system = System::new(bodies, vec![shaft]).unwrap().with_elements(system.elements().to_vec()).unwrap();
+        SystemMotion::new(system, &[at(0.0), at(0.0)]).unwrap()
+    };
+    assert_eq!(of(1e-7 * stiff).spins_together(0), Ok(false));
+    assert_eq!(of(0.0).spins_together(0), Ok(true));
+}
+
 /// Conserved: a run that begins in a mode with a small amplitude, its disk spinning, goes on as exp(λt).
 #[test]
 fn a_run_of_a_spinning_disk_rings_down_as_its_mode_says() {

@@ -189,7 +189,7 @@ pub fn campbell(
         mesh: MeshReport::new(&model),
         axis: axis.into(),
         origin: model.body.origin.into(),
-        effects,
+        effects: Some(effects),
         stable_below,
         critical_speeds,
         deflection: bent.iter().flat_map(|bent| branches.speeds.iter().map(|speed| bent.deflection(*speed))).collect(),

@@ -134,6 +134,12 @@ impl MeshMarker {
                 let parts = strips.into_iter().map(|strip| (strip.part, Place::of_patch(strip.patch, mesh))).collect();
                 Ok(Self { parts, ..alone(whole) })
             }
+            // Nodes with rotations would keep those free.
+            Tie::Rigid if dofs == 6 => {
+                let found = "a rigid part of a body whose nodes have rotations";
+                let help = "give the nodes rigid elements where the matrices are made, or leave `tie` out";
+                Err(scene.refuse(&key_path(&key, "tie"), found, "`\"mean\"` or `\"nodes\"`", help).into())
+            }
             Tie::Nodes | Tie::Rigid => {
                 let nodes = nodes(scene, mesh, region, &key)?;
                 let part = 1.0 / nodes.len() as f64;

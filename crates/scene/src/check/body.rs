@@ -43,7 +43,7 @@ impl Check<'_> {
             let mesh = mesh.map(|mesh| self.document.folder().join(mesh));
             self.mesh_size(mesh_size)?;
             let Some(file) = file else {
-                let Some(mesh) = mesh else { return Err(self.missing("body", "mesh")) };
+                let Some(mesh) = mesh else { return Err(self.nothing()) };
                 let materials = self.materials(material, materials)?;
                 self.point_masses(&point_masses)?;
                 return Ok(Body::Meshed(MeshedBody { mesh, mesh_size, raise_order, materials, point_masses }));
@@ -68,6 +68,17 @@ impl Check<'_> {
             }
         }
         self.rigid(&rigid).map(Body::Rigid)
+    }
+
+    /// The refusal of a body that is not said.
+    fn nothing(&self) -> SceneError {
+        let help = "give `mesh` and its material, `rigid` (mass properties) for a body that does not deform, `file` for one that \
+                    `flexframe reduce` has written, or `matrices` for those of another program";
+        self.document.place("body.mesh").refuse(
+            "a body with nothing of its own",
+            "one of `mesh`, `rigid`, `file` and `matrices`",
+            help,
+        )
     }
 
     /// Matrices say all of a body but its shape.

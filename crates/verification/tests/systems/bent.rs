@@ -180,6 +180,24 @@ fn a_soft_pendulum_swings_as_the_whole_mesh_does() {
     assert!(offs[0] < 2e-3 && offs[0] < 0.4 * offs[2], "{offs:?}");
 }
 
+#[test]
+fn a_rigid_region_of_a_body_with_large_modes_is_refused() {
+    let directory = with_bar();
+    let of = |tie: &str| {
+        let rest = format!("markers = {{ root = {{ box = [[-1e-6, -1, -1], [1e-6, 1, 1]], tie = '{tie}' }} }}\n");
+        let text = body("bar", MATERIAL.young_modulus, "flexible = 3, large = 1", &rest)
+            + "[[joints]]\nkind = 'fixed'\nbetween = ['ground', 'bar.root']\n";
+        built(directory.path(), &format!("{UNITS}{text}[time]\nend = 1.0\ntolerance = 1e-6\n"))
+    };
+    assert!(of("mean").is_ok());
+    let message = of("rigid").err().unwrap().to_string();
+    for words in
+        ["`bodies.bar.markers.root.tie`: found a rigid part of a body with large modes", "large_deflection = false"]
+    {
+        assert!(message.contains(words), "{words:?} is not in: {message}");
+    }
+}
+
 /// Conserved: momenta to rounding, and energy by the tolerance, of two bars that tumble freely, bent far, on a hinge.
 #[test]
 fn a_free_pair_of_bent_bars_keeps_its_momenta_and_energy() {

@@ -3,6 +3,7 @@
 use dynamics::{CommonSpin, MotionState, Observation, SteadyState, StepControl, System, SystemMotion};
 use flexframe::linearize::{LinearSettings, linear_model};
 use nalgebra::Vector3;
+use rigid_kin::Attitude;
 use verification::systems::run::{Built, built, rows};
 
 use crate::bent::{MATERIAL, SIZE, UNITS, at, body, solid, tip, with_bar};
@@ -52,24 +53,20 @@ fn a_bent_bar_in_a_joint_vibrates_as_the_clamped_mesh() {
             clamped.mesh().positions().iter().flat_map(of_node).collect()
         })
         .collect();
-    let mut worst = [[0.0_f64; 2]; 2];
-    for (case, deflection) in [0.1, 0.2].into_iter().enumerate() {
+    for (deflection, within) in [(0.1, 6e-3), (0.2, 2e-2)] {
         let mut load = vec![0.0; clamped.dofs()];
         load[3 * node + 2] = -force(deflection);
         let u = clamped.at_rest(8, 0.0, |_| load.clone()).unwrap();
         let expected = clamped.frequencies_at_rest(&u, &shapes).unwrap();
-        for (kind, modes) in [LARGE, "flexible = 16"].into_iter().enumerate() {
-            let built = built(directory.path(), &whole(&cantilever(modes, force(deflection)))).unwrap();
-            let linear = motion(&built).steady_state(&CommonSpin::REST).unwrap().linear;
-            let found = linear.vibrations().unwrap().modes;
-            for (mode, expected) in found.iter().zip(&expected).take(4) {
-                let off = mode.circular_frequency() / expected - 1.0;
-                println!("{deflection}, {modes}: {:.4}, {expected:.4} rad/s: {off:+.2e}", mode.circular_frequency());
-                worst[case][kind] = worst[case][kind].max(off.abs());
-            }
+        let built = built(directory.path(), &whole(&cantilever(LARGE, force(deflection)))).unwrap();
+        let linear = motion(&built).steady_state(&CommonSpin::REST).unwrap().linear;
+        let found = linear.vibrations().unwrap().modes;
+        for (mode, expected) in found.iter().zip(&expected).take(4) {
+            let off = mode.circular_frequency() / expected - 1.0;
+            println!("{deflection}: {:.4}, {expected:.4} rad/s: {off:+.2e}", mode.circular_frequency());
+            assert!(off.abs() < within, "{off:e}");
         }
     }
-    assert!(worst[0][0] < 6e-3 && worst[1][0] < 2e-2, "{worst:?}");
 }
 
 /// Conserved: the static answer of the linear model is the change of the rest by the load, at a point of the bent body.
@@ -188,6 +185,10 @@ fn bent_pair() -> String {
            [[joints]]\nname = 'weld'\nkind = 'fixed'\nbetween = ['a.end', 'b.root']\n"
 }
 
+/// Accelerations below these are not looked at in part, since the differences have rounding of the run's forces: by a unit velocity in a
+/// coordinate, 1/s, and by a unit place, 1/s². The slowest and least damped motions, and those that nothing resists, are below them.
+const LEAST_RATES: [f64; 2] = [1.0, 100.0];
+
 /// Independent reference: central differences of the accelerations that the equations of the run give.
 #[test]
 fn linear_equations_of_bent_bars_are_those_of_differences_of_the_run() {
@@ -200,7 +201,9 @@ fn linear_equations_of_bent_bars_are_those_of_differences_of_the_run() {
         let spin = CommonSpin { omega_global: Vector3::z() * speed, point_global: root };
         let steady = motion.steady_state(&spin).unwrap();
         let linear = &steady.linear;
-        let bent = steady.modal_displacement(0).iter().fold(0.0_f64, |most, q| most.max(q.abs()));
+        // The first shaft holds all turns of its root: the mean axes of a bar turn as the bars before it bend, and half of it.
+        let bent: Vec<f64> =
+            steady.states().iter().map(|state| state.attitude.angle_to(&Attitude::identity())).collect();
         let (n, size) = (linear.basis.nrows(), linear.size());
         let norm = |list: &[f64]| list.iter().map(|x| x * x).sum::<f64>().sqrt();
         let mut worst = 0.0_f64;
@@ -226,14 +229,15 @@ fn linear_equations_of_bent_bars_are_those_of_differences_of_the_run() {
                 expected.iter_mut().zip(convected(&steady, &direction)).for_each(|(a, more)| *a += more);
             }
             let off: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
-            let relative = norm(&off) / (norm(&expected) + if of_velocity { 1.0 } else { 100.0 });
-            if relative > 1e-5 {
+            let relative = norm(&off) / (norm(&expected) + LEAST_RATES[usize::from(!of_velocity)]);
+            if relative > 1e-7 {
                 println!("velocity {of_velocity}, coordinate {k}: {relative:e} of {:e}", norm(&expected));
             }
             worst = worst.max(relative);
         }
-        println!("at {speed} rad/s: off by {worst:e}; {size} coordinates, bent by {bent}");
-        assert!(worst < 1e-5, "{worst:e}");
+        assert!(bent.iter().all(|turn| *turn > 0.1), "{bent:?}");
+        println!("at {speed} rad/s: off by {worst:e}; {size} coordinates, bars turned by bending by {bent:.3?} rad");
+        assert!(worst < 1e-7, "{worst:e}");
     }
 }
 
@@ -292,4 +296,13 @@ fn a_relaxed_start_of_a_bent_bar_stays_at_rest() {
     println!("at {rest}: moves by {relaxed:e}, unrelaxed by {rough}");
     assert!(rest.z < -0.17 && rest.x < -0.01, "{rest}");
     assert!(relaxed < 1e-7 && rough > 0.2, "{relaxed:e} {rough}");
+}
+
+#[test]
+fn a_relaxed_start_that_finds_no_rest_says_so() {
+    let directory = with_bar();
+    let text = whole(&cantilever("flexible = 6, large = 1, following = 3", force(100.0)));
+    let built = built(directory.path(), &text).unwrap();
+    let error = built.start(StepControl::Tolerance(1e-6), 0.3, 0.02, true).err().unwrap().to_string();
+    assert!(error.contains("find no shape in which they are at rest") && error.contains("relaxed = false"), "{error}");
 }

@@ -11,7 +11,7 @@ use crate::scheme::mode_limit::stable_step_of_modes;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
-use crate::system::radau::SystemMotion;
+use crate::system::radau::{Failed, SystemMotion};
 
 /// Residuals of positions beyond this part of the size of the system are not closed.
 const CLOSED: f64 = 1e-9;
@@ -118,6 +118,7 @@ pub(super) fn assemble(
     let done = if relaxed { motion.relax() } else { motion.assemble() };
     let [left, rates] = match (done, open) {
         (Ok(left), _) => left,
+        (Err(Failed::Rest(error)), _) => return Err(error.into()),
         // Bodies that are too far from where they have to be.
         (Err(_), Some((joint, [left, rate]))) => {
             return Err(SetupError::NotAssembled { joint: joint.into(), left, rate });

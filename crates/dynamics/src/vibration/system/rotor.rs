@@ -17,12 +17,12 @@ use crate::vibration::steady_spin::SpinMode;
 use crate::vibration::system::configuration::{CommonSpin, Configuration};
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::mode::SystemMode;
-use crate::vibration::system::steady::SteadyState;
-use crate::vibration::system::terms::Terms;
+use crate::vibration::system::steady::{SteadyState, check_spin};
+use crate::vibration::system::terms::{Terms, springs};
 
 /// Parts of the radius of gyration and of the inertia that a rotor may be off its axis, and off symmetry.
 const SYMMETRIC: f64 = 1e-3;
-/// Rate of a row, relative to that of the rotor's rim, and part of a stiffness that are rounding.
+/// Part of a row that is rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// A rigid body that spins about the axis of a joint, on a support that does not.
@@ -89,27 +89,23 @@ impl SystemMotion {
     pub fn spins_together(&self, joint: usize) -> Result<bool, SteadyError> {
         let system = self.system();
         let (point_global, omega_global) = self.joint_axis(joint);
-        // Springs as they hold bodies at rest: dampers do not count.
-        let terms = Terms::new(system, &Configuration::of(self, &CommonSpin::REST))?;
         let at = Configuration::of(self, &CommonSpin { omega_global, point_global });
+        match check_spin(self, &Terms::new(system, &at)?, &at) {
+            Err(SteadyError::Against { .. }) => return Ok(false),
+            checked => checked?,
+        }
         let mut velocities = vec![0.0; system.coordinates()];
         for (body, first) in at.bodies.iter().zip(&system.first) {
             put(&mut velocities, *first, &body.velocity);
             put(&mut velocities, first + 3, &body.omega);
         }
-        let speed = |body: usize| at.bodies[body].velocity.norm() + system.bodies[body].radius_of_gyration();
-        let scale = (0..system.bodies.len()).map(speed).fold(0.0, f64::max);
-        let sum = |of: &dyn Fn(usize) -> f64| velocities.iter().enumerate().map(|(k, v)| of(k) * v).sum::<f64>();
-        for (row, is_driven) in system.connections.is_driven().enumerate() {
-            if !is_driven && sum(&|k| terms.rows[(row, k)]).abs() > ROUNDING * scale {
-                return Ok(false);
-            }
-        }
-        let rows = || 0..system.coordinates();
-        let force = |i: usize| sum(&|k| terms.unloaded[(i, k)]).abs();
-        let size = |i: usize| rows().map(|k| (terms.unloaded[(i, k)] * velocities[k]).abs()).sum::<f64>();
-        let largest = rows().map(size).fold(0.0, f64::max);
-        Ok(rows().all(|i| force(i) <= ROUNDING * largest))
+        Ok(!self.is_sprung(&velocities))
+    }
+
+    /// True if a spring or a force element resists a motion of the bodies from where they are at rest: dampers do not count.
+    fn is_sprung(&self, velocities: &[f64]) -> bool {
+        let at = Configuration::of(self, &CommonSpin::REST);
+        springs(self.system(), &at).iter().any(|(_, tie)| tie.resists(velocities))
     }
 
     /// The body that the turn of a joint spins alone: that of its second marker, or of its first where that one is none.
@@ -177,11 +173,9 @@ impl SystemMotion {
                 return Err(RotorError::Held { by: by.to_owned() });
             }
         }
-        let n = system.coordinates();
-        let largest = |of: &dyn Fn(usize) -> f64| (0..n).map(|i| of(i).abs()).fold(0.0, f64::max);
-        let by_turn = largest(&|i| turn(&|k| terms.unloaded[(i, k)]));
-        let whole = (0..3).map(|k| largest(&|i| terms.unloaded[(i, first + k)])).fold(0.0, f64::max);
-        if by_turn > ROUNDING * whole { Err(RotorError::Sprung) } else { Ok(()) }
+        let mut velocities = vec![0.0; system.coordinates()];
+        put(&mut velocities, first, axis_body);
+        if self.is_sprung(&velocities) { Err(RotorError::Sprung) } else { Ok(()) }
     }
 
     /// The steady state at rest while a rotor spins at a speed, with its linearised equations: coordinates of the rotor are along axes that

@@ -110,7 +110,7 @@ impl SteadyState {
         for pass in 0.. {
             let terms = Terms::new(system, &at)?;
             if spin.is_some() {
-                check_spin(motion, &terms, &at, &sizes)?;
+                check_spin(motion, &terms, &at)?;
             }
             let linear = Linearization::new(system, &terms, Vec::new())?;
             let mut change = terms.closing(system, &terms.residuals);
@@ -161,9 +161,12 @@ fn size_of(motion: &SystemMotion, change: &[f64], sizes: &[f64]) -> f64 {
 }
 
 /// Refuses a spin that a row forbids.
-fn check_spin(motion: &SystemMotion, terms: &Terms, at: &Configuration, sizes: &[f64]) -> Result<(), SteadyError> {
+pub(super) fn check_spin(motion: &SystemMotion, terms: &Terms, at: &Configuration) -> Result<(), SteadyError> {
     let system = motion.system();
-    let speeds = at.bodies.iter().zip(sizes).map(|(body, size)| body.velocity.norm() + body.omega.norm() * size);
+    let rim = |(of, body): (&BodyConfiguration, &crate::ConservativeBody)| {
+        of.velocity.norm() + of.omega.norm() * body.radius_of_gyration()
+    };
+    let speeds = at.bodies.iter().zip(&system.bodies).map(rim);
     let scale = speeds.fold(0.0, f64::max);
     let is_driven = system.connections.is_driven();
     for ((rate, name), driven) in terms.row_rates.iter().zip(system.connections.names()).zip(is_driven) {

@@ -16,6 +16,9 @@ use crate::system::marker::tangent::MarkerTangent;
 use crate::system::marker::{Marker, MarkerPlace};
 use crate::vibration::system::configuration::Configuration;
 
+/// Part of a change of a wrench that is rounding.
+const ROUNDING: f64 = 1e-6;
+
 /// Some markers with the forces between them, to first order. Entries of lists and matrices are those of the markers one after
 /// another, six each: displacement and turn, or force and moment, global.
 #[derive(Debug, Clone)]
@@ -293,6 +296,23 @@ impl Tie {
         let z = self.motions(changes);
         let row = |i: usize| z.iter().enumerate().map(|(j, z)| self.by_motion[(6 * marker + i, j)] * z).sum::<f64>();
         [Vector3::from_fn(|i, _| row(i)), Vector3::from_fn(|i, _| row(3 + i))]
+    }
+
+    /// True if its springs resist a motion of all bodies: a wrench on one of them then changes otherwise than by turning with its marker.
+    pub fn resists(&self, velocities: &[f64]) -> bool {
+        let z = self.motions(velocities);
+        let [mut most, mut largest] = [0.0_f64; 2];
+        for (k, _) in self.on_bodies() {
+            let turn = Vector3::from_fn(|i, _| z[6 * k + 3 + i]);
+            let turned = self.wrenches[k].map(|wrench| turn.cross(&wrench));
+            for i in 0..6 {
+                let parts = || z.iter().enumerate().map(|(j, z)| self.by_motion[(6 * k + i, j)] * z);
+                let with_marker = turned[i / 3][i % 3];
+                most = most.max((parts().sum::<f64>() - with_marker).abs());
+                largest = largest.max(parts().map(f64::abs).sum::<f64>() + with_marker.abs());
+            }
+        }
+        most > ROUNDING * largest
     }
 
     /// Twice the energy that small changes of place put into it: −zᵀ (change of the wrenches by z), z the motions of the markers.

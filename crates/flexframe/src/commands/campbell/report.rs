@@ -32,8 +32,9 @@ pub struct CampbellReport {
     pub axis: [f64; 3],
     /// The point that the axis goes through, mesh axes; of a system global.
     pub origin: [f64; 3],
-    /// The effects of the spin that are computed.
-    pub effects: SpinEffects,
+    /// The effects of the spin that are computed; none of a rotor, whose spin does nothing to the bodies of its support.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effects: Option<SpinEffects>,
     /// Spin speeds, radians per time.
     pub speeds: Vec<f64>,
     /// Largest displacement of a node by deformation at each speed, where the vibrations are about the rest of the full body; none where

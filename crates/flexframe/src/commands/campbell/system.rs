@@ -77,8 +77,7 @@ pub fn campbell_of_system(
     let branches = Branches::follow(&find, speeds, |done| progress(CampbellProgress::Speeds { done, total }))?;
     let is_on = |effect: Effect| {
         let mut flexible = motion.bodies.iter().map(|body| &models[*body]).filter(|model| model.body.flexible() > 0);
-        // The spin of a rotor does nothing to the bodies of its support.
-        rotor.is_some() || flexible.all(|model| model.physics.effects[effect])
+        flexible.all(|model| model.physics.effects[effect])
     };
     let static_shapes: usize = motion.bodies.iter().map(|body| models[*body].static_shapes()).sum();
     let grows = |here: &Vec<dynamics::SpinMode>| here.iter().any(|mode| mode.growth > 0.0);
@@ -93,11 +92,11 @@ pub fn campbell_of_system(
         rotor: rotor.map(|rotor| body_names(&system, &motion.bodies).swap_remove(rotor.body)),
         axis: axis.into(),
         origin: point.into(),
-        effects: SpinEffects {
+        effects: rotor.is_none().then(|| SpinEffects {
             coriolis: is_on(Effect::Coriolis),
             softening: is_on(Effect::DeformedInertia),
             stiffening: is_on(Effect::GeometricStiffening),
-        },
+        }),
         stable_below: unstable.map(|at| branches.speeds[at]),
         critical_speeds: critical::find_between(&find, &branches, &settings.orders)?,
         deflection: Vec::new(),

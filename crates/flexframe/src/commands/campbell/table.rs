@@ -27,9 +27,11 @@ impl fmt::Display for CampbellReport {
             v.map(|x| quantity(if x.abs() < dust { 0.0 } else { x })).join(", ")
         };
         writeln!(f, "  spin     about ({}) through ({})", vector(&self.axis), vector(&self.origin))?;
-        match &self.rotor {
-            Some(rotor) => writeln!(f, "  rotor    {rotor} alone spins; the others are its support")?,
-            None => writeln!(f, "  effects  {}", self.effects)?,
+        if let Some(rotor) = &self.rotor {
+            writeln!(f, "  rotor    {rotor} alone spins; the others are its support")?;
+        }
+        if let Some(effects) = self.effects {
+            writeln!(f, "  effects  {effects}")?;
         }
         let time = &self.time_unit;
         if let Some(most) = self.deflection.iter().copied().reduce(f64::max) {

@@ -92,6 +92,26 @@ fn a_moment_at_a_node_with_rotations() {
     }
 }
 
+#[test]
+fn a_rigid_region_of_nodes_with_rotations_is_refused() {
+    let files = beam(8);
+    let of = |tie: &str| {
+        let body =
+            format!("{MARKET}\nmarkers = {{ tip = {{ box = [[1700, -1, -1], [2001, 1, 1]], tie = \"{tie}\" }} }}");
+        files.scene(&body, "flexible = 4", "", "end = 1e-3\nstep = 1e-5")
+    };
+    build(&of("mean"));
+    let message = crate::refusal(&of("rigid")).to_string();
+    let expected = [
+        "`body.markers.tip.tie`: found a rigid part of a body whose nodes have rotations",
+        "`\"mean\"` or `\"nodes\"`",
+        "rigid elements",
+    ];
+    for words in expected {
+        assert!(message.contains(words), "{words:?} is not in: {message}");
+    }
+}
+
 /// Conserved: a body in free fall does not begin to turn, wherever its masses are on their nodes.
 #[test]
 fn gravity_acts_at_the_centre_of_mass_of_a_mass_beside_its_node() {

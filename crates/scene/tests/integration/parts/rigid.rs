@@ -121,5 +121,11 @@ fn mesh_or_rigid() {
         let words = format!("`body.{key}`: found both `rigid` and `{key}`, expected mass properties, or a mesh");
         assert!(message.contains(&words), "{message}");
     }
-    crate::common::refused(MESH, "#", "[body]", "body.mesh", &["`mesh` is missing"]);
+    crate::common::refused(
+        MESH,
+        "#",
+        "[body]",
+        "body.mesh",
+        &["a body with nothing of its own", "one of `mesh`, `rigid`, `file` and `matrices`", "`flexframe reduce`"],
+    );
 }
