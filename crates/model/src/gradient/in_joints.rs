@@ -87,8 +87,8 @@ impl VariedBody {
     }
 }
 
-/// The forces of markers whose forces on the coordinates, `of_markers` (6+nf × k), are given ones, which they can be: by coordinates of unit
-/// mass, and markers of unit influence.
+/// Pseudo-inverse of `of_markers` (6+nf × k): the marker forces that give known forces on the coordinates. Coordinates are taken with unit mass,
+/// markers with unit influence.
 fn bearing(of_markers: &Mat<f64>, mass: &Mat<f64>) -> Result<Mat<f64>, ModalError> {
     let unit = |i: usize| 1.0 / mass[(i, i)].sqrt();
     let of_unit = Mat::from_fn(of_markers.nrows(), of_markers.ncols(), |i, k| unit(i) * of_markers[(i, k)]);
@@ -132,8 +132,8 @@ struct Basis<'a> {
     loads: Vec<Numbered>,
     /// Weights of the points (N×3 each).
     points: Vec<Mat<f64>>,
-    /// Static responses that the static shapes are made of, in their scale, their accelerations RᵀF, and of those to a spin the accelerations that its forces
-    /// are M times.
+    /// Static responses that the static shapes are made of, in their scale; `balanced`: their accelerations RᵀF; `of_spin`: of those to a spin,
+    /// the accelerations x of the forces M x.
     responses: Mat<f64>,
     balanced: Mat<f64>,
     of_spin: Mat<f64>,

@@ -46,8 +46,8 @@ pub(super) enum LoadForces {
     Field(Mat<f64>),
 }
 
-/// Forces on the nodes of each load but weights, which have no static response in a free body, by its number, and of those that static shapes
-/// are made for (N×k), in all directions that they may come to have.
+/// Forces on the nodes, in all directions that they may come to have: of each load by its number, and of all loads that static shapes are made for
+/// (N×k). Weights are left out: they have no static response in a free body.
 pub(super) fn load_forces(varied: &VariedBody, matrices: &FeMatrices) -> Result<(Vec<Numbered>, Mat<f64>), BuildError> {
     let (scene, AssembledMesh { mesh, support, .. }) = (varied.scene(), varied.assembled());
     let FeMatrices::Assembled(matrices) = matrices else { return Ok((Vec::new(), Mat::new())) };

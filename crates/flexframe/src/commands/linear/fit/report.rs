@@ -205,11 +205,15 @@ impl fmt::Display for FitReport {
         match &self.file {
             Some(file) => write!(f, "\n  wrote    {}", file.display())?,
             None => {
-                let set = |parameter: &FittedParameter| match parameter.is_key {
-                    true => format!("--set '{}={}'", parameter.name, parameter.value),
-                    false => format!("a mesh with {} = {}", parameter.name, quantity(parameter.value)),
+                let (keys, stretches): (Vec<_>, Vec<_>) =
+                    self.parameters.iter().partition(|parameter| parameter.is_key);
+                let set = |parameter: &&FittedParameter| format!("--set '{}={}'", parameter.name, parameter.value);
+                let mesh = |parameter: &&FittedParameter| {
+                    format!("a mesh with {} = {}", parameter.name, quantity(parameter.value))
                 };
-                write!(f, "\n  to use   {}", self.parameters.iter().map(set).collect::<Vec<_>>().join(" "))?;
+                let keys = keys.iter().map(set).collect::<Vec<_>>().join(" ");
+                let all = (!keys.is_empty()).then_some(keys).into_iter().chain(stretches.iter().map(mesh));
+                write!(f, "\n  to use   {}", all.collect::<Vec<_>>().join(" and "))?;
             }
         }
         self.warnings.iter().try_for_each(|warning| write!(f, "\n  warning  {warning}"))
