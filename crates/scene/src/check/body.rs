@@ -43,7 +43,10 @@ impl Check<'_> {
             let mesh = mesh.map(|mesh| self.document.folder().join(mesh));
             self.mesh_size(mesh_size)?;
             let Some(file) = file else {
-                let Some(mesh) = mesh else { return Err(self.nothing()) };
+                let Some(mesh) = mesh else {
+                    let is_meshed = material.is_some() || materials.is_some();
+                    return Err(if is_meshed { self.missing("body", "mesh") } else { self.nothing() });
+                };
                 let materials = self.materials(material, materials)?;
                 self.point_masses(&point_masses)?;
                 return Ok(Body::Meshed(MeshedBody { mesh, mesh_size, raise_order, materials, point_masses }));

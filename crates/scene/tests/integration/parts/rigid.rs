@@ -121,11 +121,13 @@ fn mesh_or_rigid() {
         let words = format!("`body.{key}`: found both `rigid` and `{key}`, expected mass properties, or a mesh");
         assert!(message.contains(&words), "{message}");
     }
-    crate::common::refused(
-        MESH,
-        "#",
-        "[body]",
-        "body.mesh",
-        &["a body with nothing of its own", "one of `mesh`, `rigid`, `file` and `matrices`", "`flexframe reduce`"],
-    );
+    // A material is one of a mesh; without it the body has nothing of its own.
+    crate::common::refused(MESH, "#", "[body]", "body.mesh", &["`mesh` is missing"]);
+    let text = EXAMPLE.replace(MESH, "# ").replace(MATERIAL, "# ");
+    let message = Scene::parse(&text, "a.toml").unwrap_err().to_string();
+    for words in
+        ["a body with nothing of its own", "one of `mesh`, `rigid`, `file` and `matrices`", "`flexframe reduce`"]
+    {
+        assert!(message.contains(words), "{message}");
+    }
 }
