@@ -83,9 +83,9 @@ picture: build
     mkdir -p out/picture
     {{flexframe}} run examples/mechanisms/deployment.toml -o out/picture --overwrite > out/picture/deployment.txt
     {{flexframe}} animate out/picture/deployment.h5 -o docs/start/deployment.gif --to 4 --frames 60 --overwrite
-    for scene in hinge double_pendulum four_bar; do
-        {{flexframe}} run examples/mechanisms/$scene.toml -o out/picture --no-check --overwrite > out/picture/$scene.txt
-        {{flexframe}} animate out/picture/$scene.h5 -o docs/systems/$scene.gif --view xz --frames 36 --overwrite
+    for scene in hinge double_pendulum four_bar; do \
+        {{flexframe}} run examples/mechanisms/$scene.toml -o out/picture --no-check --overwrite > out/picture/$scene.txt; \
+        {{flexframe}} animate out/picture/$scene.h5 -o docs/systems/$scene.gif --view xz --frames 36 --overwrite; \
     done
     if {{flexframe}} run examples/thrown_plate.toml -o out/picture --overwrite | grep '^  warning'; then exit 1; fi
     {{flexframe}} animate examples/thrown_plate.toml -o docs/start/thrown_plate.gif --frames 80 --overwrite
