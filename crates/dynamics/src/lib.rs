@@ -91,8 +91,8 @@ pub use system::simulation::setup::{Assembled, ShapeLimit, SystemSetup};
 pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 pub use vibration::system::{
-    BodyStiffening, CommonSpin, Linearization, ReactionRows, Rotor, RotorError, Spring, SteadyError, SteadyState,
-    StiffenedMode, SystemMode, Unbalance, Vibrations,
+    BodyStiffening, CommonSpin, Linearization, ReactionRows, Rotor, RotorError, ScaledEquations, Spring, SteadyError,
+    SteadyState, StiffenedMode, SystemMode, Unbalance, Vibrations,
 };
 
 /// Crates whose types are in the interface.

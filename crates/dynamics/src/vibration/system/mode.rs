@@ -4,6 +4,7 @@ use faer::{Mat, c64};
 
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::linearization::Linearization;
+use crate::vibration::system::scaled::ScaledEquations;
 
 /// A part of the terms of an equation that is more than their rounding.
 const ROUNDING: f64 = 1e-10;
@@ -61,27 +62,15 @@ impl Linearization {
         let (rest, rigid) = kept;
         let size = rest.ncols();
         let [stiffness, damping] = [&self.stiffness, &self.damping].map(|matrix| rest.transpose() * (matrix * &rest));
-        // With x = s η and y = η̇ all entries are frequencies.
-        let scales: Vec<f64> = (0..size).map(|k| scale(&stiffness, &damping, k)).collect();
-        let matrix = Mat::from_fn(2 * size, 2 * size, |row, column| match (row < size, column < size) {
-            (true, true) => 0.0,
-            (true, false) => {
-                if row == column - size {
-                    scales[row]
-                } else {
-                    0.0
-                }
-            }
-            (false, true) => -stiffness[(row - size, column)] / scales[column],
-            (false, false) => -damping[(row - size, column - size)],
-        });
         if size == 0 {
             return Ok(Vibrations { rigid, zeros: 0, modes: Vec::new() });
         }
+        let scaled = ScaledEquations::new(&stiffness, &damping);
+        let ScaledEquations { matrix, scales } = &scaled;
         let eigen = matrix.eigen().map_err(|_| SteadyError::Numbers)?;
-        let largest = scales.iter().copied().fold(0.0, f64::max);
+        let largest = scaled.fastest();
         let slow = scales[..self.rigid.saturating_sub(rigid.ncols())].iter().copied().fold(0.0, f64::max);
-        let zero = (10.0 * (f64::EPSILON * largest * slow).sqrt()).max(1e-13 * largest);
+        let zero = scaled.zero(slow, 1e-13);
         let (mut modes, mut zeros) = (Vec::new(), 0);
         for (k, eigenvalue) in eigen.S().column_vector().iter().enumerate() {
             let mut eigenvalue = *eigenvalue;
@@ -200,16 +189,4 @@ impl Linearization {
         }
         SystemMode { eigenvalue, motion, coordinates, kinetic, elastic }
     }
-}
-
-/// A frequency that a coordinate is measured by.
-fn scale(stiffness: &Mat<f64>, damping: &Mat<f64>, k: usize) -> f64 {
-    let own = stiffness[(k, k)].abs().sqrt().max(damping[(k, k)].abs());
-    if own > 0.0 {
-        return own;
-    }
-    let n = stiffness.nrows();
-    let of = |j: usize| stiffness[(j, k)].abs().sqrt().max(damping[(j, k)].abs()).max(damping[(k, j)].abs());
-    let largest = (0..n).map(of).fold(0.0, f64::max);
-    if largest > 0.0 { largest } else { 1.0 }
 }

@@ -1,6 +1,7 @@
 //! Motions that grow.
 
-use faer::{Mat, c64};
+use dynamics::ScaledEquations;
+use faer::Mat;
 use linear::{LinearError, SecondOrder};
 
 /// Parts of the fastest frequency that rounding gives a pole, of one that stands alone.
@@ -17,12 +18,12 @@ pub(super) fn growing(equations: &SecondOrder, rigid: usize) -> Result<Option<St
     if kept.is_empty() {
         return Ok(None);
     }
-    let scales: Vec<f64> = kept.iter().map(|k| scale(equations, &kept, *k)).collect();
-    let poles = poles(equations, &kept, &scales)?;
-    let largest = scales.iter().copied().fold(0.0, f64::max);
-    // Two poles at zero part by the root of rounding.
-    let slow = kept.iter().zip(&scales).filter(|(k, _)| **k < rigid).map(|(_, scale)| *scale).fold(0.0, f64::max);
-    let least = (10.0 * (f64::EPSILON * largest * slow).sqrt()).max(ROUNDING * largest);
+    let of_kept = |matrix: &Mat<f64>| Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[i], kept[j])]);
+    let scaled = ScaledEquations::new(&of_kept(&equations.stiffness), &of_kept(&equations.damping));
+    let poles = scaled.matrix.eigenvalues().map_err(|_| LinearError::Eigen { size: scaled.matrix.nrows() })?;
+    let slow =
+        kept.iter().zip(&scaled.scales).filter(|(k, _)| **k < rigid).map(|(_, scale)| *scale).fold(0.0, f64::max);
+    let least = scaled.zero(slow, ROUNDING);
     let growing = poles.iter().filter(|pole| pole.im >= 0.0 && pole.re > least.max(OWN * pole.norm()));
     let (count, most) = growing.fold((0, 0.0_f64), |(count, most), pole| (count + 1, most.max(pole.re)));
     let subject =
@@ -41,30 +42,6 @@ fn without_loose(equations: &SecondOrder) -> Vec<usize> {
         let Some(loose) = kept.iter().position(|k| is_loose(*k)) else { return kept };
         kept.remove(loose);
     }
-}
-
-/// A frequency that a coordinate is measured by.
-fn scale(equations: &SecondOrder, kept: &[usize], k: usize) -> f64 {
-    let SecondOrder { stiffness, damping, .. } = equations;
-    let of = |i: usize, j: usize| stiffness[(i, j)].abs().sqrt().max(damping[(i, j)].abs());
-    let own = of(k, k);
-    let by_others = || kept.iter().map(|j| of(*j, k).max(damping[(k, *j)].abs())).fold(0.0, f64::max);
-    let size = if own > 0.0 { own } else { by_others() };
-    if size > 0.0 { size } else { 1.0 }
-}
-
-/// The poles of some coordinates, of x = s η and y = η̇ with scales s, by which all entries are frequencies.
-fn poles(equations: &SecondOrder, kept: &[usize], scales: &[f64]) -> Result<Vec<c64>, LinearError> {
-    let SecondOrder { stiffness, damping, .. } = equations;
-    let size = kept.len();
-    let matrix =
-        Mat::from_fn(2 * size, 2 * size, |row, column| match (row.checked_sub(size), column.checked_sub(size)) {
-            (None, None) => 0.0,
-            (None, Some(column)) => scales[row] * f64::from(u8::from(row == column)),
-            (Some(row), None) => -stiffness[(kept[row], kept[column])] / scales[column],
-            (Some(row), Some(column)) => -damping[(kept[row], kept[column])],
-        });
-    matrix.eigenvalues().map_err(|_| LinearError::Eigen { size: 2 * size })
 }
 
 #[cfg(test)]
