@@ -34,7 +34,6 @@ use crate::system::joint::coupling::CoupledCoordinate;
 use crate::system::joint::work::JointWork;
 use crate::system::radau::stage_rates::StageRates;
 use crate::system::stage::{BodyStart, Stage, Start};
-use crate::vibration::system::error::SteadyError;
 
 /// The step whose Newton matrix is the metric in which a system is assembled, as a part of the shortest period.
 const ASSEMBLY: f64 = 1.0;
@@ -59,14 +58,6 @@ pub enum Failed {
     Newton,
     /// The rates cannot be found.
     Rates(RateError),
-    /// Bodies find no shape for a start without ringing.
-    Rest(SteadyError),
-}
-
-impl From<SteadyError> for Failed {
-    fn from(error: SteadyError) -> Self {
-        Self::Rest(error)
-    }
 }
 
 impl From<RateError> for Failed {

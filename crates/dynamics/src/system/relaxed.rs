@@ -20,13 +20,34 @@ use crate::vibration::system::error::SteadyError;
 /// Passes: the deformation changes the forces a little.
 const PASSES: usize = 6;
 
+/// A start without ringing that was not found.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RelaxError {
+    /// The bodies are not assembled, or the inertia of one is singular.
+    Failed(Failed),
+    /// Bodies with large modes find no shape.
+    Rest(SteadyError),
+}
+
+impl From<Failed> for RelaxError {
+    fn from(error: Failed) -> Self {
+        Self::Failed(error)
+    }
+}
+
+impl From<SteadyError> for RelaxError {
+    fn from(error: SteadyError) -> Self {
+        Self::Rest(error)
+    }
+}
+
 impl SystemMotion {
     /// Deforms the bodies so that an undeformed start does not ring, and assembles them again. Returns the largest residual and
     /// the largest rate that are left.
     ///
     /// # Errors
-    /// [`Failed`] where the inertia of a body is singular, the joints do not fit, or bodies with large modes find no shape.
-    pub fn relax(&mut self) -> Result<[f64; 2], Failed> {
+    /// [`RelaxError`].
+    pub fn relax(&mut self) -> Result<[f64; 2], RelaxError> {
         let mut left = self.assemble()?;
         let is_bent = self.system.bodies.iter().any(|body| body.manifold.is_some());
         for _ in 0..PASSES {
@@ -43,10 +64,10 @@ impl SystemMotion {
 
     /// With large modes forces change as the bodies bend, so the shapes come from Newton's method with their tangent: (L7) with the
     /// accelerations of (L11).
-    fn bend(&mut self) -> Result<(), Failed> {
+    fn bend(&mut self) -> Result<(), SteadyError> {
         let state = self.moving_state()?;
         // They are of the right length; numbers alone can be wrong.
-        self.set_states(&state.states()).map_err(|_| SteadyError::Numbers.into())
+        self.set_states(&state.states()).map_err(|_| SteadyError::Numbers)
     }
 
     /// V' and ω' of rigid bodies where the system is, in body axes, over the coordinates of all bodies.

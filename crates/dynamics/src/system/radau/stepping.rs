@@ -54,7 +54,7 @@ impl SystemMotion {
                     *h = length * factor.min(0.9);
                 }
             }
-            Err(Failed::Newton | Failed::Rest(_)) => *h = 0.4 * length,
+            Err(Failed::Newton) => *h = 0.4 * length,
             Err(Failed::Rates(error)) if length < 1e-12 * end => return Err(error.in_step(self.time, length)),
             Err(Failed::Rates(_)) => *h = 0.25 * length,
         }
@@ -83,7 +83,7 @@ impl SystemMotion {
         match self.assemble_by(branch_time) {
             Ok(_) => {}
             Err(Failed::Rates(error)) => return Err(error),
-            Err(Failed::Newton | Failed::Rest(_)) => return Err(RateError::Inertia),
+            Err(Failed::Newton) => return Err(RateError::Inertia),
         }
         let after = energies(self)?;
         for (body, (before, after)) in before.into_iter().zip(after).enumerate() {

@@ -67,7 +67,7 @@ impl LastStep {
 /// The error of a step that was not done.
 pub(super) fn of_step(failed: Failed, time: f64, step: f64) -> StepError {
     match failed {
-        Failed::Newton | Failed::Rest(_) => StepError::Newton { time, step },
+        Failed::Newton => StepError::Newton { time, step },
         Failed::Rates(error) => error.in_step(time, step),
     }
 }

@@ -11,7 +11,8 @@ use crate::scheme::mode_limit::stable_step_of_modes;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
-use crate::system::radau::{Failed, SystemMotion};
+use crate::system::radau::SystemMotion;
+use crate::system::relaxed::RelaxError;
 
 /// Residuals of positions beyond this part of the size of the system are not closed.
 const CLOSED: f64 = 1e-9;
@@ -115,10 +116,10 @@ pub(super) fn assemble(
     [size, end]: [f64; 2],
 ) -> Result<Vec<Assembled>, SetupError> {
     let open = motion.largest_gap().map_err(|_| SINGULAR)?;
-    let done = if relaxed { motion.relax() } else { motion.assemble() };
+    let done = if relaxed { motion.relax() } else { motion.assemble().map_err(RelaxError::from) };
     let [left, rates] = match (done, open) {
         (Ok(left), _) => left,
-        (Err(Failed::Rest(error)), _) => return Err(error.into()),
+        (Err(RelaxError::Rest(error)), _) => return Err(error.into()),
         // Bodies that are too far from where they have to be.
         (Err(_), Some((joint, [left, rate]))) => {
             return Err(SetupError::NotAssembled { joint: joint.into(), left, rate });
