@@ -25,7 +25,7 @@ use nalgebra::Vector3;
 use scene::{Scene, System};
 
 use at_time::{moving_modes, states_at};
-pub(super) use channels::input_channels;
+pub(super) use channels::{acting_loads, input_channels};
 pub use error::LinearizeError;
 use growth::growing;
 pub use reduction::{Reduced, Reduction};
@@ -109,12 +109,9 @@ pub fn linear_model(
         state.warnings.extend(moving_modes(&models, states));
     }
     let whole = channels.chosen(settings, &system.bodies[0])?;
-    let equations = match settings.without_rigid {
-        true => whole.without(&(0..state.rigid).collect::<Vec<_>>()),
-        false => whole.clone(),
-    };
-    state.warnings.extend(unseen(&whole, &equations));
-    Ok(LinearModel { equations, state })
+    let without_rigid = settings.without_rigid.then(|| whole.without(&(0..state.rigid).collect::<Vec<_>>()));
+    state.warnings.extend(unseen(&whole, without_rigid.as_ref().unwrap_or(&whole)));
+    Ok(LinearModel { equations: without_rigid.unwrap_or(whole), state })
 }
 
 /// Linearises a scene, and lowers the order of its state space where that is asked for.

@@ -75,16 +75,11 @@ impl Subject {
 
     /// The value of a parameter at a coordinate: the logarithm of its ratio to the first value, or of a Poisson's ratio the difference.
     pub fn value(&self, i: usize, x: f64) -> f64 {
-        match self {
-            Self::Body(body, parameters) => {
-                let first = parameters[i].value(body.body());
-                if self.is_plain(i) { first + x } else { first * x.exp() }
-            }
-            Self::System(varied, parameters) => {
-                let first = parameters[i].value(&varied.system);
-                if self.is_plain(i) { first + x } else { first * x.exp() }
-            }
-        }
+        let first = match self {
+            Self::Body(body, parameters) => parameters[i].value(body.body()),
+            Self::System(varied, parameters) => parameters[i].value(&varied.system),
+        };
+        if self.is_plain(i) { first + x } else { first * x.exp() }
     }
 
     /// True within the limits of the search.

@@ -9,7 +9,7 @@ use model::Model;
 use scene::System;
 
 use super::error::GradientError;
-use super::number::Number;
+use super::number::{Number, Place};
 use super::varying::{REPEATED, Varying};
 use crate::commands::system_modes::{SystemModesError, TiedMotion, tied_motions};
 
@@ -76,6 +76,18 @@ impl<'a> Here<'a> {
             self.steady.modal_displacement(place).iter().all(|q| q.abs() <= ROUNDING * size)
         };
         if self.motion.bodies.iter().enumerate().all(is_still) { Ok(()) } else { Err(self.loaded()) }
+    }
+
+    /// The body that a number varies, by its number in the scene, with the place of this number among those of the body.
+    pub fn varying<'v>(
+        &self,
+        i: usize,
+        number: &Number,
+        varied: &'v [Option<Varied<'v>>],
+    ) -> Result<(usize, &'v Varying<'v>, usize), GradientError> {
+        let Place::Body(body, _) = number.place else { return Err(self.outside(number)) };
+        let found = varied[body].as_ref().and_then(|varied| varied.of(i));
+        found.map(|(of_body, k)| (body, of_body, k)).ok_or_else(|| self.outside(number))
     }
 
     pub fn repeated(&self) -> Vec<Range<usize>> {

@@ -17,11 +17,18 @@ pub(crate) struct Number {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Place {
     Spring(usize),
-    /// Number, true about an axis, axis.
-    Bushing(usize, bool, usize),
+    /// Number, part of its stiffness, axis.
+    Bushing(usize, Part, usize),
     Joint(usize),
     /// Number of the body in the scene.
     Body(usize, Parameter),
+}
+
+/// A part of the stiffness of a bushing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Part {
+    Translation,
+    Rotation,
 }
 
 impl Number {
@@ -36,13 +43,13 @@ impl Number {
             .enumerate()
             .map(|(i, _)| Self { name: format!("springs[{i}].stiffness"), place: Place::Spring(i) });
         let of_bushing = |i: usize| {
-            let of = move |(kind, about): (&'static str, bool)| {
+            let of = move |(kind, part): (&'static str, Part)| {
                 (0..3).map(move |axis| Self {
                     name: format!("bushings[{i}].stiffness.{kind}[{axis}]"),
-                    place: Place::Bushing(i, about, axis),
+                    place: Place::Bushing(i, part, axis),
                 })
             };
-            [("translation", false), ("rotation", true)].into_iter().flat_map(of)
+            [("translation", Part::Translation), ("rotation", Part::Rotation)].into_iter().flat_map(of)
         };
         let joints = system
             .joints
@@ -83,9 +90,12 @@ impl Number {
     pub fn value(&self, system: &System) -> f64 {
         match &self.place {
             Place::Spring(i) => system.springs[*i].stiffness,
-            Place::Bushing(i, about, axis) => {
+            Place::Bushing(i, part, axis) => {
                 let AlongAndAbout { translation, rotation } = system.bushings[*i].stiffness;
-                if *about { rotation[*axis] } else { translation[*axis] }
+                match part {
+                    Part::Translation => translation[*axis],
+                    Part::Rotation => rotation[*axis],
+                }
             }
             Place::Joint(i) => system.joints[*i].spring.map_or(0.0, |spring| spring.stiffness),
             Place::Body(i, parameter) => meshed(&system.bodies[*i]).map_or(f64::NAN, |body| parameter.value(body)),
@@ -96,10 +106,12 @@ impl Number {
     pub fn set(&self, system: &mut System, value: f64) {
         match &self.place {
             Place::Spring(i) => system.springs[*i].stiffness = value,
-            Place::Bushing(i, about, axis) => {
+            Place::Bushing(i, part, axis) => {
                 let AlongAndAbout { translation, rotation } = &mut system.bushings[*i].stiffness;
-                let list = if *about { rotation } else { translation };
-                list[*axis] = value;
+                match part {
+                    Part::Translation => translation[*axis] = value,
+                    Part::Rotation => rotation[*axis] = value,
+                }
             }
             Place::Joint(i) => {
                 if let Some(spring) = &mut system.joints[*i].spring {

@@ -143,7 +143,6 @@ impl GradientReport {
     ) -> Self {
         let scene = &system.bodies[0];
         let SystemRates { frequencies, repeated, rates, responses } = found;
-        let has_responses = !response_frequencies.is_empty();
         let of_parameter = |((parameter, rates), of_responses): ((&Number, Vec<f64>), Vec<_>)| {
             let value = parameter.value(system);
             ParameterReport {
@@ -153,7 +152,7 @@ impl GradientReport {
                 frequencies: rates,
                 effective_masses: Vec::new(),
                 statics: Vec::new(),
-                responses: if has_responses { of_responses } else { Vec::new() },
+                responses: of_responses,
             }
         };
         Self {
@@ -162,7 +161,7 @@ impl GradientReport {
             repeated: repeated.into_iter().map(|group| [group.start + 1, group.end]).collect(),
             effective_masses: Vec::new(),
             statics: Vec::new(),
-            responses: if has_responses { responses.responses } else { Vec::new() },
+            responses: responses.responses,
             response_frequencies,
             parameters: parameters.iter().zip(rates).zip(responses.rates).map(of_parameter).collect(),
             frequencies,

@@ -60,18 +60,21 @@ impl VariedSystem {
         let here = Here::new(system, anew.as_deref().unwrap_or(&self.models))?;
         let repeated = here.repeated();
         let varied = self.varied(&here, numbers)?;
-        let rates = numbers.iter().enumerate().map(|(i, number)| match &number.place {
-            Place::Body(body, _) => {
-                let found = varied[*body].as_ref().and_then(|varied| varied.of(i));
-                let (of_body, k) = found.ok_or_else(|| here.outside(number))?;
+        let of_stiffness = |number: &Number| match number.place {
+            Place::Body(..) => Ok(None),
+            _ => here.stiffness_rate(number).map(Some),
+        };
+        let stiffness_rates: Vec<Option<Mat<f64>>> = numbers.iter().map(of_stiffness).collect::<Result<_, _>>()?;
+        let rates = numbers.iter().zip(&stiffness_rates).enumerate().map(|(i, (number, rate))| match rate {
+            Some(rate) => {
+                frequency_rates(&here, &repeated, number, |a, b| product(rate, &a.coordinates, &b.coordinates))
+            }
+            None => {
+                let (_, of_body, k) = here.varying(i, number, &varied)?;
                 frequency_rates(&here, &repeated, number, |a, b| {
                     let motions = [&a.motion[..], &b.motion[..]];
                     of_body.change(a.eigenvalue, motions, [&[], &[]], &of_body.body.rates[k])
                 })
-            }
-            _ => {
-                let rate = here.stiffness_rate(number)?;
-                frequency_rates(&here, &repeated, number, |a, b| product(&rate, &a.coordinates, &b.coordinates))
             }
         });
         let rates = rates.collect::<Result<_, _>>()?;
@@ -79,7 +82,7 @@ impl VariedSystem {
             frequencies: here.modes.iter().map(|mode| mode.circular_frequency() / TAU).collect(),
             repeated,
             rates,
-            responses: here.responses(numbers, &varied, frequencies)?,
+            responses: here.responses(numbers, &stiffness_rates, &varied, frequencies)?,
         })
     }
 

@@ -5,15 +5,14 @@ use std::f64::consts::TAU;
 use dynamics::Coordinate;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
-use model::Model;
 use nalgebra::Vector3;
 
 use super::error::GradientError;
 use super::here::{Here, Varied};
-use super::number::{Number, Place};
+use super::number::Number;
 use super::responses::{AXES, ResponseReport};
 use super::varying::{Varying, product, times};
-use crate::commands::linear::linearize::input_channels;
+use crate::commands::linear::linearize::{acting_loads, input_channels};
 
 /// Real and imaginary parts at each frequency.
 type Values = Vec<[f64; 2]>;
@@ -50,18 +49,25 @@ struct Followed {
 }
 
 impl Here<'_> {
-    /// The responses at some frequencies, cycles per time.
+    /// The responses at some frequencies, cycles per time; `stiffness_rates` are K' by each number that is a stiffness.
     pub fn responses(
         &self,
         numbers: &[Number],
+        stiffness_rates: &[Option<Mat<f64>>],
         varied: &[Option<Varied<'_>>],
         frequencies: &[f64],
     ) -> Result<SystemResponses, GradientError> {
+        if frequencies.is_empty() {
+            return Ok(SystemResponses { responses: Vec::new(), rates: vec![Vec::new(); numbers.len()] });
+        }
         let [inputs, outputs] = self.ports();
         let (first, count) = (inputs.len(), outputs.len());
         let pairs: Vec<(usize, usize)> = (0..first).flat_map(|i| (first..first + count).map(move |o| (i, o))).collect();
         let ports: Vec<&Port> = inputs.iter().chain(&outputs).collect();
-        let changes = numbers.iter().enumerate().map(|(i, number)| self.change_with(i, number, varied, &ports));
+        let changes = numbers.iter().zip(stiffness_rates).enumerate().map(|(i, (number, rate))| match rate {
+            Some(rate) => Ok(Change::Stiffness(rate)),
+            None => self.change_with(i, number, varied, &ports),
+        });
         let changes: Vec<Change<'_>> = changes.collect::<Result<_, _>>()?;
         let linear = &self.steady.linear;
         let size = linear.size();
@@ -119,7 +125,7 @@ impl Here<'_> {
             };
             let units = motion.system().bodies()[place].unit_forces(&state);
             let channels = input_channels(scene, model, &prefix);
-            for ((unit, channel), load) in units.iter().zip(channels).zip(numbers_of_loads(scene, model)) {
+            for ((unit, channel), (load, _)) in units.iter().zip(channels).zip(acting_loads(scene, model)) {
                 inputs.push(Port { name: channel.name, row: over(unit), of: Of::Load { body: *body, load } });
             }
             for (point, (name, shapes)) in model.points.iter().enumerate() {
@@ -152,6 +158,7 @@ impl Here<'_> {
         [inputs, outputs]
     }
 
+    /// The change by a number of a body.
     fn change_with<'a>(
         &self,
         i: usize,
@@ -159,10 +166,7 @@ impl Here<'_> {
         varied: &'a [Option<Varied<'a>>],
         ports: &[&Port],
     ) -> Result<Change<'a>, GradientError> {
-        let Place::Body(body, _) = number.place else {
-            return Ok(Change::Stiffness(self.stiffness_rate(number)?));
-        };
-        let (of_body, k) = varied[body].as_ref().and_then(|varied| varied.of(i)).ok_or_else(|| self.outside(number))?;
+        let (body, of_body, k) = self.varying(i, number, varied)?;
         let rates = &of_body.body.rates[k];
         let followed = |port: &&Port| {
             let direct = || port.row[of_body.first..of_body.first + rates.mass.nrows()].to_vec();
@@ -186,7 +190,7 @@ impl Here<'_> {
 /// The change by a number.
 enum Change<'a> {
     /// K of the independent coordinates, by this.
-    Stiffness(Mat<f64>),
+    Stiffness(&'a Mat<f64>),
     /// A body by one of its numbers, and the ports; none of a load that it changes in a way that is not known.
     Body { of_body: &'a Varying<'a>, number: usize, ports: Vec<Option<Followed>> },
 }
@@ -213,12 +217,4 @@ impl Change<'_> {
             }
         }
     }
-}
-
-/// Numbers in the scene of the loads of a model.
-fn numbers_of_loads(scene: &scene::Scene, model: &Model) -> Vec<usize> {
-    // Gravity that the scene does not call for is not among them.
-    let all = scene.loads.len() == model.loads().len();
-    let acting = scene.loads.iter().enumerate().filter(|(_, load)| all || !matches!(load, scene::Load::Gravity(_)));
-    acting.map(|(i, _)| i).collect()
 }

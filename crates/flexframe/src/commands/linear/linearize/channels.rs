@@ -64,12 +64,20 @@ pub(super) fn unit_of_coordinate(scene: &Scene) -> String {
     format!("√{} {}", scene.units.mass, scene.units.length)
 }
 
+/// The loads of a model, with their numbers in the scene.
+pub(in crate::commands::linear) fn acting_loads<'a>(
+    scene: &'a Scene,
+    model: &Model,
+) -> impl Iterator<Item = (usize, &'a Load)> {
+    // Gravity that the scene does not call for is not among them.
+    let all = scene.loads.len() == model.loads().len();
+    scene.loads.iter().enumerate().filter(move |(_, load)| all || !matches!(load, Load::Gravity(_)))
+}
+
 /// An input for each load that acts: its factor, so that 1 is the load as the scene has it where its history is 1.
 pub(in crate::commands::linear) fn input_channels(scene: &Scene, model: &Model, prefix: &str) -> Vec<Channel> {
-    // Gravity that the scene does not call for is not among the loads of the model.
-    let all = scene.loads.len() == model.loads().len();
-    let acting = scene.loads.iter().enumerate().filter(|(_, load)| all || !matches!(load, Load::Gravity(_)));
-    let names: Vec<String> = acting.map(|(i, load)| format!("{prefix}loads[{i}].{}", load.kind())).collect();
+    let names: Vec<String> =
+        acting_loads(scene, model).map(|(i, load)| format!("{prefix}loads[{i}].{}", load.kind())).collect();
     (0..model.loads().len())
         .map(|k| Channel::new(names.get(k).cloned().unwrap_or_else(|| format!("{prefix}load{k}")), "factor"))
         .collect()
