@@ -37,6 +37,8 @@ impl Peaks {
 /// An oscillator beside the base that it follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Following {
+    /// Its peaks.
+    pub peaks: Peaks,
     /// Correlation α of the acceleration of the mass with that of the base during the motion, from 0 to 1.
     pub correlation: f64,
     /// The part β of the base motion that is in that of the mass, from 0 to 1.
@@ -80,7 +82,7 @@ impl BaseMotion {
         let (part, correlation) = (ratio(of_base), ratio((of_mass * of_base).sqrt()));
         let mut watch = Watch::new(oscillator, part);
         self.lead(&mut watch);
-        Ok(Following { correlation, part, rest: watch.peaks() })
+        Ok(Following { peaks: first.peaks(), correlation, part, rest: watch.peaks() })
     }
 
     /// The oscillator of a frequency, cycles per time.

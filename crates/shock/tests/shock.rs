@@ -13,7 +13,8 @@ fn close(found: f64, expected: f64, tolerance: f64) {
 #[test]
 fn a_fast_oscillator_follows_the_base_and_a_slow_one_does_not() {
     let half_sine = pulse(|t| (PI * t).sin());
-    let Following { correlation, part, rest } = half_sine.following(50.0, 0.0).unwrap();
+    let Following { peaks, correlation, part, rest } = half_sine.following(50.0, 0.0).unwrap();
+    assert_eq!(peaks, half_sine.peaks(50.0, 0.0).unwrap());
     close(part, 1.0, 1e-3);
     close(correlation, 1.0, 1e-3);
     close(rest.acceleration(), 2.0 * 0.01 / (1.0 - 1e-4), 1e-4);

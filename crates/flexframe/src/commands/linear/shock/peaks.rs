@@ -34,9 +34,7 @@ pub(super) struct ModePeaks {
     pub damping_ratios: Vec<f64>,
     /// Factors b of the input, −Γ of a base.
     pub factors: Vec<f64>,
-    /// Peaks of an oscillator of that frequency and damping on a base that follows the table.
-    pub peaks: Vec<Peaks>,
-    /// How each follows the table.
+    /// Peaks of an oscillator of that frequency and damping on a base that follows the table, and how it follows.
     pub following: Vec<Following>,
     /// Shapes over the coordinates, a list a mode.
     shapes: Vec<Vec<f64>>,
@@ -48,11 +46,10 @@ impl ModePeaks {
         let factor = |shape: &Vec<f64>| (0..shape.len()).map(|i| shape[i] * equations.forces[(i, 0)]).sum();
         let frequencies: Vec<f64> = modes.circular_frequencies.iter().map(|omega| omega / TAU).collect();
         let damping_ratios = modes.damping_ratios.clone();
-        let each = || frequencies.par_iter().zip(&damping_ratios);
-        let peaks = each().map(|(frequency, ratio)| motion.peaks(*frequency, *ratio)).collect::<Result<_, _>>()?;
-        let following = each().map(|(frequency, ratio)| motion.following(*frequency, *ratio));
+        let each = frequencies.par_iter().zip(&damping_ratios);
+        let following = each.map(|(frequency, ratio)| motion.following(*frequency, *ratio));
         let following = following.collect::<Result<_, _>>()?;
-        Ok(Self { frequencies, damping_ratios, factors: shapes.iter().map(factor).collect(), peaks, following, shapes })
+        Ok(Self { frequencies, damping_ratios, factors: shapes.iter().map(factor).collect(), following, shapes })
     }
 
     /// The sums of each output that sees places or accelerations, Eqs. (R6) to (R9); velocities have no spectrum. `largest`: the
@@ -74,8 +71,8 @@ impl ModePeaks {
         let mut rigid = direct;
         let mut in_phase = 0.0;
         let (mut followed, mut beside) = (direct, 0.0);
-        let mut peaks = Vec::with_capacity(self.peaks.len());
-        let mut periodic = Vec::with_capacity(self.peaks.len());
+        let mut peaks = Vec::with_capacity(self.following.len());
+        let mut periodic = Vec::with_capacity(self.following.len());
         for (k, shape) in self.shapes.iter().enumerate() {
             let [r, s] = [of_place, of_acceleration].map(|row| along(row, shape));
             let (b, following) = (self.factors[k], &self.following[k]);
@@ -83,7 +80,7 @@ impl ModePeaks {
             let of = |peaks: &Peaks| -b * (r * peaks.displacement - s * peaks.acceleration());
             let peak =
                 |value: f64| ModalPeak { frequency: self.frequencies[k], damping_ratio: self.damping_ratios[k], value };
-            let (value, alpha) = (of(&self.peaks[k]), following.correlation);
+            let (value, alpha) = (of(&following.peaks), following.correlation);
             in_phase -= alpha * value;
             peaks.push(peak(value));
             periodic.push(peak((1.0 - alpha * alpha).sqrt() * value));

@@ -63,8 +63,8 @@ impl ShockReport {
             frequency: peaks.frequencies[k],
             damping_ratio: peaks.damping_ratios[k],
             factor: peaks.factors[k],
-            displacement: peaks.peaks[k].displacement,
-            acceleration: peaks.peaks[k].acceleration(),
+            displacement: peaks.following[k].peaks.displacement,
+            acceleration: peaks.following[k].peaks.acceleration(),
             follows: peaks.following[k].correlation,
         };
         Self {
@@ -73,7 +73,7 @@ impl ShockReport {
             input: input.to_owned(),
             duration: motion.duration(),
             peak: motion.peak(),
-            modes: (0..peaks.peaks.len()).map(mode).collect(),
+            modes: (0..peaks.following.len()).map(mode).collect(),
             outputs,
             warnings,
         }
