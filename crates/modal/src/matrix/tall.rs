@@ -96,12 +96,15 @@ pub(crate) fn take_out(x: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>)
     h
 }
 
-/// The columns of A, then those of B.
-pub(crate) fn side_by_side(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
-    let mut all = Mat::zeros(a.nrows(), a.ncols() + b.ncols());
-    let (mut first, mut second) = all.as_mut().split_at_col_mut(a.ncols());
-    first.copy_from(a);
-    second.copy_from(b);
+/// The columns of matrices of as many rows, one after another.
+pub fn side_by_side(parts: &[MatRef<'_, f64>]) -> Mat<f64> {
+    let rows = parts.first().map_or(0, MatRef::nrows);
+    let mut all = Mat::zeros(rows, parts.iter().map(MatRef::ncols).sum());
+    let mut first = 0;
+    for part in parts {
+        all.as_mut().subcols_mut(first, part.ncols()).copy_from(part);
+        first += part.ncols();
+    }
     all
 }
 

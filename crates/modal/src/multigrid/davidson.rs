@@ -273,7 +273,7 @@ impl<'a> Search<'a> {
             let Svqb { transform, .. } = orthonormal(&inner(last.as_ref(), last.as_ref()))?;
             last = product(last.as_ref(), transform.as_ref());
         }
-        let kept = tall::side_by_side(lowest, last.as_ref());
+        let kept = tall::side_by_side(&[lowest, last.as_ref()]);
         let projected = product(self.projected.as_ref(), kept.as_ref());
         self.projected = inner(kept.as_ref(), projected.as_ref());
         combine(self.columns.as_mut().subcols_mut(self.rigid, self.size), kept.as_ref());

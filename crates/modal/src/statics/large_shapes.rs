@@ -142,7 +142,7 @@ impl Solver<'_> {
         }
         memory::check("shapes of large modes", of_vectors(size, 3 * (dynamic + fields.ncols())))?;
         let beside = self.beside(&modes, fields, DEPENDENT)?;
-        let shapes = tall::side_by_side(modes.shapes.as_ref(), beside.as_ref());
+        let shapes = tall::side_by_side(&[modes.shapes.as_ref(), beside.as_ref()]);
         let momenta = self.mass.product(fields);
         let mut coefficients = tall::inner(shapes.as_ref(), momenta.as_ref());
         for (column, product) in of_displacement.iter().enumerate() {

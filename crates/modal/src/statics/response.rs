@@ -130,13 +130,13 @@ impl Solver<'_> {
         // Static shapes are no eigenvectors: what is M-orthogonal to them is not K-orthogonal, unless all are combined.
         let natural = modes.natural();
         let before = modes.shapes.ncols() - natural;
-        let added = tall::side_by_side(modes.shapes.subcols(natural, before), added.as_ref());
+        let added = tall::side_by_side(&[modes.shapes.subcols(natural, before), added.as_ref()]);
         let RitzPairs { eigenvalues, shapes, .. } =
             rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, added)?;
         let mut modes = modes;
         modes.eigenvalues.truncate(natural);
         modes.eigenvalues.extend(eigenvalues);
-        modes.shapes = tall::side_by_side(modes.shapes.get(.., ..natural), shapes.as_ref());
+        modes.shapes = tall::side_by_side(&[modes.shapes.get(.., ..natural), shapes.as_ref()]);
         Ok(modes)
     }
 

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Location, MatrixRates, Mesh};
-use modal::{ModalError, Modes, Solver, StaticAccuracy, centrifugal_accelerations};
+use modal::{ModalError, Modes, Solver, StaticAccuracy, centrifugal_accelerations, side_by_side};
 use nalgebra::Vector3;
 use scene::{Scene, Tie, key_path};
 
@@ -301,15 +301,4 @@ impl<'a> Basis<'a> {
             loads: self.loads.iter().map(load).collect(),
         })
     }
-}
-
-fn side_by_side(parts: &[MatRef<'_, f64>]) -> Mat<f64> {
-    let rows = parts.first().map_or(0, MatRef::nrows);
-    let mut all = Mat::zeros(rows, parts.iter().map(MatRef::ncols).sum());
-    let mut first = 0;
-    for part in parts {
-        all.as_mut().subcols_mut(first, part.ncols()).copy_from(part);
-        first += part.ncols();
-    }
-    all
 }

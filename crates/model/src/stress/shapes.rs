@@ -12,7 +12,7 @@
 use dynamics::{Manifold, Observation};
 use faer::Mat;
 use fem_tet10::{StressSites, von_mises};
-use modal::Modes;
+use modal::{Modes, side_by_side};
 use nalgebra::Vector3;
 use scene::Output;
 
@@ -176,7 +176,7 @@ fn of_coordinates(
     let Some((manifold, extended)) = large else {
         let found = structure.nodal_stress(modes.shapes.as_ref(), modes.shapes.get(.., ..0), &[])?;
         return Ok(match &of_reference {
-            Some(of_reference) => side_by_side([&found, of_reference]),
+            Some(of_reference) => side_by_side(&[found.as_ref(), of_reference.as_ref()]),
             None => found,
         });
     };
@@ -184,14 +184,7 @@ fn of_coordinates(
     let found = structure.nodal_stress(extended.shapes.as_ref(), strains.fields.as_ref(), &strains.pairs)?;
     let shapes = extended.shapes.ncols();
     let of_products = strains.stress(found.get(.., shapes..));
-    let linear = found.get(.., ..shapes).to_owned();
-    Ok(match &of_reference {
-        Some(of_reference) => side_by_side([&side_by_side([&linear, of_reference]), &of_products]),
-        None => side_by_side([&linear, &of_products]),
-    })
-}
-
-fn side_by_side([a, b]: [&Mat<f64>; 2]) -> Mat<f64> {
-    let first = a.ncols();
-    Mat::from_fn(a.nrows(), first + b.ncols(), |i, j| if j < first { a[(i, j)] } else { b[(i, j - first)] })
+    let of_reference = of_reference.as_ref().map(Mat::as_ref);
+    let all = [Some(found.get(.., ..shapes)), of_reference, Some(of_products.as_ref())];
+    Ok(side_by_side(&all.into_iter().flatten().collect::<Vec<_>>()))
 }
