@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use crate::mechanism::at_rest;
 use dynamics::{
     ConservativeBody, History, Initial, Joint, JointDrive, Marker, MotionState, Observation, Physics, PointForce,
     PointShapes, RotationShapes, Rows, SecondOrder, SharedLoad, Simulation, StepControl, System, SystemMotion, Table,
@@ -149,15 +150,7 @@ fn the_slider_crank_ends_where_others_have_it() {
         ),
     ];
     let still = Attitude::identity();
-    let state = |mass_at: f64| MotionState {
-        time: 0.0,
-        attitude: still,
-        origin_global: Vector3::new(mass_at, 0.0, 0.0),
-        velocity_global: Vector3::zeros(),
-        omega_body: Vector3::zeros(),
-        modal_displacement: Vec::new(),
-        modal_velocity: Vec::new(),
-    };
+    let state = |mass_at: f64| at_rest(Vector3::new(mass_at, 0.0, 0.0));
     let spin = Vector3::new(0.0, 0.0, 150.0);
     let crank =
         MotionState { velocity_global: Vector3::y() * 150.0 * 0.5 * radius, omega_body: spin, ..state(0.5 * radius) };

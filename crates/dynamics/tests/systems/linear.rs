@@ -14,6 +14,7 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
 use crate::flexible::Jointed;
+use crate::mechanism::at_rest;
 
 /// A bar of 200 × 10 × 10 mm, with its ends for patches; N, mm, t.
 fn bar() -> &'static Jointed {
@@ -165,15 +166,7 @@ fn rotor(speed: f64) -> (System, Vec<MotionState>) {
     };
     let elements: Vec<Arc<dyn ForceElement>> = vec![Arc::new(strut), Arc::new(pad)];
     let system = System::new(bodies, joints).unwrap().with_elements(elements).unwrap();
-    let hub = MotionState {
-        time: 0.0,
-        attitude: Attitude::identity(),
-        origin_global: Vector3::zeros(),
-        velocity_global: Vector3::zeros(),
-        omega_body: Vector3::zeros(),
-        modal_displacement: Vec::new(),
-        modal_velocity: Vec::new(),
-    };
+    let hub = at_rest(Vector3::zeros());
     let at = |x: f64| bar.at_rest(Vector3::new(x, 0.0, 0.0), Attitude::identity());
     (system, vec![hub, at(150.0), at(350.0)])
 }

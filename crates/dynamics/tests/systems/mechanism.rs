@@ -7,6 +7,19 @@ use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
+/// A rigid body at rest, its axes along the global ones.
+pub fn at_rest(origin_global: Vector3<f64>) -> MotionState {
+    MotionState {
+        time: 0.0,
+        attitude: Attitude::identity(),
+        origin_global,
+        velocity_global: Vector3::zeros(),
+        omega_body: Vector3::zeros(),
+        modal_displacement: Vec::new(),
+        modal_velocity: Vec::new(),
+    }
+}
+
 /// A rigid body with its centre of mass at a place, turned by an angle about z.
 pub struct Link {
     pub mass: f64,

@@ -13,6 +13,7 @@ use rigid_kin::Attitude;
 
 use crate::flexible::Jointed;
 use crate::linear::{changed_by, rigid};
+use crate::mechanism::at_rest;
 use crate::vibrations::blade;
 
 /// Axes whose z is along x.
@@ -21,15 +22,7 @@ fn along_x() -> Matrix3<f64> {
 }
 
 fn at(x: f64) -> MotionState {
-    MotionState {
-        time: 0.0,
-        attitude: Attitude::identity(),
-        origin_global: Vector3::new(x, 0.0, 0.0),
-        velocity_global: Vector3::zeros(),
-        omega_body: Vector3::zeros(),
-        modal_displacement: Vec::new(),
-        modal_velocity: Vec::new(),
-    }
+    at_rest(Vector3::new(x, 0.0, 0.0))
 }
 
 fn driven(joint: Joint, speed: f64) -> Joint {

@@ -2,14 +2,14 @@
 
 use std::sync::{Arc, Mutex};
 
+use crate::mechanism::at_rest;
 use dynamics::{
-    ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MarkerForce, MarkerLaw, MotionState,
-    Observation, Observer, Physics, PointForce, PointShapes, Reached, RelativeMotion, Rows, SetupError, SharedLoad,
-    StepControl, StepEnd, StepError, System, SystemObservation, SystemScheme, SystemSetup, SystemSimulation, Table,
+    ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MarkerForce, MarkerLaw, Observation,
+    Observer, Physics, PointForce, PointShapes, Reached, RelativeMotion, Rows, SetupError, SharedLoad, StepControl,
+    StepEnd, StepError, System, SystemObservation, SystemScheme, SystemSetup, SystemSimulation, Table,
 };
 use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
-use rigid_kin::Attitude;
 
 /// Two rods of 1 m and 1 kg that hang from each other and from the ground in a field of gravity, with a spring between them.
 fn pendulum(control: StepControl, drive: Option<JointDrive>) -> SystemSetup {
@@ -28,15 +28,7 @@ fn pendulum(control: StepControl, drive: Option<JointDrive>) -> SystemSetup {
     let spring = JointForce { stiffness: 2.0, damping: 0.1, free: 0.5, ..JointForce::default() };
     let second = Joint::revolute("second", [end(0, 0.5), end(1, -0.5)]).with_force(Coordinate::Turn, spring);
     let system = System::new(vec![body.clone(), body], vec![first, second]).unwrap();
-    let at = |x: f64| MotionState {
-        time: 0.0,
-        attitude: Attitude::identity(),
-        origin_global: Vector3::x() * x,
-        velocity_global: Vector3::zeros(),
-        omega_body: Vector3::zeros(),
-        modal_displacement: Vec::new(),
-        modal_velocity: Vec::new(),
-    };
+    let at = |x: f64| at_rest(Vector3::x() * x);
     SystemSetup {
         system,
         states: vec![at(0.5), at(1.5)],

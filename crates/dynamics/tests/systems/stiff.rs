@@ -13,6 +13,7 @@ use rigid_kin::{Attitude, transformation_matrix};
 
 use crate::elements::Like;
 use crate::flexible::Jointed;
+use crate::mechanism::at_rest;
 
 /// A bar of 1 m and 1 kg along x, with its weight along −y.
 fn bar() -> ConservativeBody {
@@ -32,15 +33,7 @@ fn falling(second: Option<Joint>, elements: Vec<Arc<dyn ForceElement>>) -> Syste
     let first = Joint::revolute("first", [Marker::on_ground(Vector3::zeros(), Matrix3::identity()), end(0, -0.5)]);
     let joints = [first].into_iter().chain(second).collect();
     let system = System::new(vec![bar(), bar()], joints).unwrap().with_elements(elements).unwrap();
-    let state = |x: f64| MotionState {
-        time: 0.0,
-        attitude: Attitude::identity(),
-        origin_global: Vector3::new(x, 0.0, 0.0),
-        velocity_global: Vector3::zeros(),
-        omega_body: Vector3::zeros(),
-        modal_displacement: Vec::new(),
-        modal_velocity: Vec::new(),
-    };
+    let state = |x: f64| at_rest(Vector3::new(x, 0.0, 0.0));
     SystemMotion::new(system, &[state(0.5), state(1.5)]).unwrap()
 }
 

@@ -7,7 +7,7 @@ use rigid_kin::Attitude;
 
 use crate::flexible::Jointed;
 use crate::linear::{changed_by, rigid};
-use crate::mechanism::{Link, Mechanism};
+use crate::mechanism::{Link, Mechanism, at_rest};
 use crate::rigid::weight;
 
 const GRAVITY: f64 = 9.81;
@@ -117,15 +117,7 @@ fn a_blade_flaps_and_lags_as_its_spin_holds_it() {
         let drive = dynamics::JointDrive { amplitude: 0.0, history: dynamics::History::Constant };
         let shaft = Joint::revolute("shaft", shaft).turned_by(drive);
         let system = System::new(vec![hub, blade], vec![shaft, hinge]).unwrap();
-        let at = |x: f64| MotionState {
-            time: 0.0,
-            attitude: Attitude::identity(),
-            origin_global: Vector3::x() * x,
-            velocity_global: Vector3::zeros(),
-            omega_body: Vector3::zeros(),
-            modal_displacement: Vec::new(),
-            modal_velocity: Vec::new(),
-        };
+        let at = |x: f64| at_rest(Vector3::x() * x);
         let motion = SystemMotion::new(system, &[at(0.0), at(offset + 0.5 * length)]).unwrap();
         let spin = CommonSpin { omega_global: Vector3::z() * speed, point_global: Vector3::zeros() };
         let (rigid, found) = modes(&motion, &spin);
@@ -175,15 +167,7 @@ pub fn blade(speed: f64) -> (System, Vec<MotionState>) {
         )
         .with_force(dynamics::Coordinate::Turn, JointForce { stiffness: 120.0, damping: 1.5, ..JointForce::default() }),
     ];
-    let state = |x: f64| MotionState {
-        time: 0.0,
-        attitude: Attitude::identity(),
-        origin_global: at(x),
-        velocity_global: Vector3::zeros(),
-        omega_body: Vector3::zeros(),
-        modal_displacement: Vec::new(),
-        modal_velocity: Vec::new(),
-    };
+    let state = |x: f64| at_rest(at(x));
     (System::new(bodies, joints).unwrap(), vec![state(0.0), state(offset + 0.5 * length)])
 }
 
