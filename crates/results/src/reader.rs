@@ -2,7 +2,7 @@
 
 use crate::checkpoint::{Checkpoint, Sums};
 use crate::column::SystemRow;
-use crate::container::store::{Store, metadata_of};
+use crate::container::store::{Store, is_complete, metadata_of};
 use crate::history::{History, histories};
 use crate::{BodyMetadata, Column, FileError, Metadata, Shapes};
 use sealed::{Format, SealedFile};
@@ -93,6 +93,14 @@ impl Results {
     pub fn metadata_of(path: impl AsRef<Path>) -> Result<Metadata, FileError> {
         let path = path.as_ref();
         metadata_of(&SealedFile::open(path, Format::RESULTS)?)
+    }
+
+    /// True if the run of a file came to its end, without a look at its rows.
+    ///
+    /// # Errors
+    /// [`FileError::Sealed`], as [`Results::open`].
+    pub fn is_complete(path: impl AsRef<Path>) -> Result<bool, FileError> {
+        Ok(is_complete(&SealedFile::open(path.as_ref(), Format::RESULTS)?))
     }
 
     /// With the last checkpoint of an unfinished file whose rows are as they were then, and their sums.

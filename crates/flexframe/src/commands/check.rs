@@ -58,7 +58,7 @@ pub fn check(
 /// # Errors
 /// [`FileError::NotComplete`] for an unfinished file; those of [`Results::open`].
 pub fn expect_finished(file: &Path) -> Result<(), FileError> {
-    match Results::open(file, &COLUMNS)?.complete {
+    match Results::is_complete(file)? {
         true => Ok(()),
         false => Err(FileError::NotComplete { path: file.to_owned() }),
     }

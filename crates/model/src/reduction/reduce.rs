@@ -58,8 +58,8 @@ impl Reduction {
             let responses = of_markers.iter().chain(of_others).collect::<Vec<_>>();
             let Basis { mut modes, mut body } = model.structure.basis(&modes.truncated(decision.keep), &responses)?;
             let rigid: Vec<&[u32]> = model.markers.iter().filter_map(MeshMarker::rigid_nodes).collect();
-            let is_free = rigid.is_empty() || of_markers.is_none();
-            if !is_free {
+            let has_rigid = !rigid.is_empty() && of_markers.is_some();
+            if has_rigid {
                 Basis { modes, body } = model.structure.with_rigid_patches(&modes, model.dofs, &rigid)?;
             }
             let modal = ModalModel::new(model, body, &modes)?;
@@ -67,7 +67,7 @@ impl Reduction {
             let keep = decision.keep;
             let first = |spin: [Mat<f64>; 6]| spin.map(|k| k.get(..keep, ..keep).to_owned()).to_vec();
             // Modes of which something moves as a rigid body are others.
-            let known = spin.filter(|_| is_free).map_or_else(Vec::new, first);
+            let known = spin.filter(|_| !has_rigid).map_or_else(Vec::new, first);
             let spin = if stiffens { statics.stress_stiffness(model, &modes, &known)? } else { None };
             (modes, modal, spin, deflection)
         };

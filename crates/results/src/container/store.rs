@@ -266,6 +266,11 @@ impl Store {
     }
 }
 
+/// True if the run of a file came to its end.
+pub(crate) fn is_complete(file: &SealedFile) -> bool {
+    !file.has(CHECKPOINT)
+}
+
 /// Metadata of a results file, without a look at its rows.
 pub(crate) fn metadata_of(file: &SealedFile) -> Result<Metadata, FileError> {
     let json = file.text(METADATA).unwrap_or_default();

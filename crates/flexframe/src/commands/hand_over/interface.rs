@@ -73,14 +73,15 @@ pub fn coordinates(rows: &Mat<f64>, mass: &Mat<f64>, stiffness: &Mat<f64>) -> Re
     let scaled = |matrix: &Mat<f64>| Mat::from_fn(size, size, |i, j| matrix[(i, j)] * unit[i] * unit[j]);
     let (mass, stiffness) = (scaled(mass), scaled(stiffness));
     // A motion that holds all places strains the body unless it is one of the base alone.
-    if rank(&alike.get(.., ..BASE).to_owned())? < BASE {
+    let of_base = alike.get(.., ..BASE).singular_values().map_err(|_| NoInterface::Numbers)?;
+    if rank(&of_base) < BASE {
         return Err(NoInterface::Free);
-    }
-    if rank(&alike)? < count {
-        return Err(NoInterface::Together);
     }
     let svd = alike.svd().map_err(|_| NoInterface::Numbers)?;
     let values: Vec<f64> = svd.S().column_vector().iter().copied().collect();
+    if rank(&values) < count {
+        return Err(NoInterface::Together);
+    }
     let along = |i: usize, j: usize| -> f64 { (0..count).map(|k| svd.V()[(i, k)] * svd.U()[(j, k)] / values[k]).sum() };
     let moved = Mat::from_fn(size, count, |i, j| along(i, j) / lengths[j]);
     let held = svd.V().get(.., count..).to_owned();
@@ -115,8 +116,7 @@ pub fn coordinates(rows: &Mat<f64>, mass: &Mat<f64>, stiffness: &Mat<f64>) -> Re
 }
 
 /// Number of singular values that are more than rounding.
-fn rank(of: &Mat<f64>) -> Result<usize, NoInterface> {
-    let values = of.singular_values().map_err(|_| NoInterface::Numbers)?;
+fn rank(values: &[f64]) -> usize {
     let largest = values.iter().copied().fold(0.0, f64::max);
-    Ok(values.into_iter().filter(|value| *value > DEPENDENT * largest).count())
+    values.iter().filter(|value| **value > DEPENDENT * largest).count()
 }
