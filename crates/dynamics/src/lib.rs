@@ -85,6 +85,7 @@ pub use system::joint::{Joint, JointPart};
 pub use system::marker::Marker;
 pub use system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 pub use system::radau::{Failed, SystemMotion, Tried};
+pub use system::relaxed::RelaxError;
 pub use system::simulation::SystemSimulation;
 pub use system::simulation::observation::SystemObservation;
 pub use system::simulation::setup::{Assembled, ShapeLimit, SystemSetup};
