@@ -153,9 +153,9 @@ def run(controller: Controller | None) -> dict[str, np.ndarray | float]:
 
 
 def settled(motion: dict) -> float:
-    """When the energy falls below a thousandth for good; the end where it does not."""
-    above = np.flatnonzero(motion["energy"] > 1e-3 * motion["energy"][0])
-    return float(motion["time"][min(above[-1] + 1, len(motion["time"]) - 1)])
+    """When the energy falls below a thousandth for good; infinity where it does not."""
+    last = np.flatnonzero(motion["energy"] > 1e-3 * motion["energy"][0])[-1]
+    return float(motion["time"][last + 1]) if last + 1 < len(motion["time"]) else np.inf
 
 
 def compare() -> dict[str, float]:
@@ -172,7 +172,8 @@ def compare() -> dict[str, float]:
         numbers |= {f"{name} settled": settled(motion), f"{name} gap": abs(gap) / first, f"{name} left": last / first}
         print(
             f"{name:>5}: energy {first:.1f} to {last:.3g} mJ, work {motion['work']:.1f}, loss {motion['loss']:.1f}, "
-            f"not accounted for {abs(gap) / first:.1e} of the first; below 1/1000 at {settled(motion):.2f} s; "
+            f"not accounted for {abs(gap) / first:.1e} of the first; "
+            f"{f'below 1/1000 at {settled(motion):.2f} s' if np.isfinite(settled(motion)) else 'never below 1/1000'}; "
             f"tip deflects by {np.abs(motion['deflection']).max():.1f} mm; largest moment {np.abs(motion['moment']).max() / 1e3:.2f} N m"
         )
     return numbers

@@ -430,6 +430,7 @@ fn a_tumbling_plate_is_a_small_animation() {
         frame_milliseconds: 50,
         view: View::default(),
         ground: true,
+        plain_triangles: &[],
         traced_point: Some(0),
     };
     let path = folder().join("tumbling.gif");
@@ -477,6 +478,7 @@ fn a_body_without_extent_is_drawn() {
         frame_milliseconds: 20,
         view: View::default(),
         ground: true,
+        plain_triangles: &[],
         traced_point: Some(2),
     };
     animation.save_gif(folder().join("point.gif")).unwrap();

@@ -4,6 +4,7 @@ mod hash;
 mod of_body_file;
 mod of_model;
 mod opened;
+mod solid;
 mod stored;
 
 pub(crate) use of_model::{shapes_of, surface_shapes_of};

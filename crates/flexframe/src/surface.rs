@@ -26,18 +26,17 @@ impl Surface {
         Self { edges: sharp_edges(&shapes.positions, &shapes.faces), triangles: facets(&shapes.faces), shapes }
     }
 
-    /// The surface of a model; `None` for a rigid body without a mesh.
-    pub fn of_model(model: &Model) -> Option<Self> {
-        let meshed = model.meshed.as_ref()?;
-        Some(Self::new(shapes_of(meshed, model.physics.large_deflection.as_ref())))
+    /// The surface of a model; of a rigid body without a mesh, the solid that stands for it.
+    pub fn of_model(model: &Model) -> Self {
+        Self::new(shapes_of(model))
     }
 
-    /// The same with its stress; `None` for a rigid body without a mesh.
+    /// The same with its stress.
     ///
     /// # Errors
     /// [`BuildError`] where the stress cannot be computed, for want of memory.
-    pub(crate) fn with_stress(model: &Model) -> Result<Option<Self>, BuildError> {
-        Ok(surface_shapes_of(model)?.map(Self::new))
+    pub(crate) fn with_stress(model: &Model) -> Result<Self, BuildError> {
+        Ok(Self::new(surface_shapes_of(model)?))
     }
 
     /// Von Mises stress at the points in the coordinates of the stress ([`Shapes::stress_coordinates`]); those that are not given

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use flexframe::model::{BuildProgress, Model};
-use flexframe::plausible::doubts_of_scene;
+use flexframe::plausible::doubts_of_system;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -36,9 +36,7 @@ impl System {
     #[new]
     fn new(py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
         let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-        for of in &system.bodies {
-            warn(py, doubts_of_scene(of))?;
-        }
+        warn(py, doubts_of_system(&system))?;
         let build = move |told: &mut dyn FnMut(BuildProgress)| {
             system.bodies.iter().map(|of| builder.build(of, &mut *told).map(Arc::new)).collect()
         };

@@ -116,7 +116,7 @@ pub struct Body {
     pub name: String,
     /// Lines about it, such as its mass and the size of its mesh.
     pub facts: Vec<Fact>,
-    /// Surface or nodes of the undeformed body; none for a rigid body without a mesh.
+    /// Surface or nodes of the undeformed body; none where the results file has none.
     pub surface: Option<Surface>,
     /// Shapes of the body, in the order of the coordinates.
     pub shapes: Vec<Shape>,

@@ -224,16 +224,41 @@ fn a_results_file_becomes_a_table_and_fields() {
     assert!(!Path::new(&at("new.csv")).exists() && !Path::new(&at("new.vtkhdf")).exists());
 }
 
+/// Closed form: the edges of the uniform box with a mass and moments of inertia, a² = 6 (J₂ + J₃ − J₁) / m; a bar to the point.
+#[test]
+fn a_rigid_body_without_a_mesh_is_drawn_as_the_box_of_its_inertia() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let file = run(folder.path(), &format!("{RIGID}[output.points]\nnose = [0.0, 0.0, 1.5]\n"));
+    let file = file.to_str().unwrap();
+    done(&["export", file, "--vtkhdf", &at("moving.vtkhdf")]);
+    let points = hdf5::File::open(at("moving.vtkhdf")).unwrap().dataset("VTKHDF/Points").unwrap();
+    let points = points.read_raw::<f64>().unwrap();
+    let (points, _) = points.as_chunks::<3>();
+    // Eight corners of a brick, and a middle on each of its 12 edges and 6 diagonals.
+    let (of_box, of_bar) = points.split_at(26);
+    assert_eq!(of_bar.len(), 26);
+    let largest = |places: &[[f64; 3]]| [0, 1, 2].map(|axis| places.iter().map(|x| x[axis].abs()).fold(0.0, f64::max));
+    let expected = [0.96_f64, 0.04, 0.04].map(|square| 0.5 * square.sqrt());
+    assert!(largest(of_box).iter().zip(expected).all(|(found, half)| (found - half).abs() < 1e-9));
+    assert!((largest(of_bar)[2] - 1.5).abs() < 1e-9);
+
+    done(&["animate", file, "-o", &at("rod.gif"), "--frames", "2"]);
+    done(&["report", file, "-o", &at("rod.html")]);
+    let page = std::fs::read_to_string(at("rod.html")).unwrap();
+    assert!(page.contains("the box of its mass and inertia"));
+    let text = refused(&["export", file, "--vtkhdf", &at("inside.vtkhdf"), "--volume"], 3);
+    assert!(text.contains("has a surface alone"), "{text}");
+}
+
 #[test]
 fn what_cannot_be_exported_is_refused_and_an_unfinished_run_is_marked() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let file = run(folder.path(), RIGID);
     let file = file.to_str().unwrap();
-    for what in ["--vtkhdf", "--vtu", "--modes"] {
-        let text = refused(&["export", file, what, &at("out")], 3);
-        assert!(text.contains("a rigid body without a mesh has no surface"), "{text}");
-    }
+    let text = refused(&["export", file, "--modes", &at("out")], 3);
+    assert!(text.contains("the body has no flexible modes"), "{text}");
     std::fs::write(at("diary.h5"), "a diary").unwrap();
     let text = refused(&["export", &at("diary.h5"), "--csv", &at("out.csv")], 3);
     assert!(text.contains("not a results file"), "{text}");

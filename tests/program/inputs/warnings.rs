@@ -267,7 +267,7 @@ fn far_beyond_it_the_run_stops_and_its_file_can_be_read() {
 fn the_surface_moves_as_the_points_do() {
     let scene = clamped("large = 1\n", 0.2, [0.0; 2]);
     let model = Model::build(&scene, |_| ()).unwrap();
-    let surface = Surface::of_model(&model).unwrap();
+    let surface = Surface::of_model(&model);
     let tip = surface
         .shapes
         .positions

@@ -11,7 +11,7 @@ use whole_file::WholeFile;
 
 use crate::FigureError;
 use crate::body::key::{self, colour_axis, draw_key, shade};
-use crate::body::render::{Canvas, Grades, check_indices, check_points, surface_colours};
+use crate::body::render::{Canvas, Grades, check_indices, check_points, plain_colours, surface_colours};
 use crate::body::shapes::EDGE;
 use crate::body::view::{View, Window};
 use crate::chart::axis::{Axis, round_step};
@@ -51,6 +51,8 @@ pub struct Animation<'a> {
     pub value_label: String,
     /// The surface, by indices of points.
     pub triangles: &'a [[u32; 3]],
+    /// The surface of bodies without values, whose points have values of zero.
+    pub plain_triangles: &'a [[u32; 3]],
     /// Edges drawn as lines, by indices of points.
     pub edges: &'a [[u32; 2]],
     /// The frames in the order of time.
@@ -124,6 +126,7 @@ impl Animation<'_> {
         };
         let count = first.points.len();
         check_indices(figure, "a triangle", self.triangles, count)?;
+        check_indices(figure, "a triangle", self.plain_triangles, count)?;
         check_indices(figure, "an edge", self.edges, count)?;
         if let Some(index) = self.traced_point.filter(|&index| index >= count) {
             return Err(FigureError::NoSuchPoint { figure: figure.into(), what: "the trace", index, count });
@@ -187,7 +190,11 @@ impl Figure for Shot<'_> {
     }
 
     fn draw<DB: DrawingBackend>(&self, picture: &Area<DB>, unit: Unit) -> Result<(), FigureError> {
-        let &Shot { animation: &Animation { ref title, triangles, edges, frames, view, .. }, stage, last } = self;
+        let &Shot {
+            animation: &Animation { ref title, triangles, plain_triangles, edges, frames, view, .. },
+            stage,
+            last,
+        } = self;
         let frame = &frames[last];
         let fine = unit.per_pixel();
         let (_, area) = picture.split_vertically(unit.px(self.animation.body_top()));
@@ -207,6 +214,7 @@ impl Figure for Shot<'_> {
         let values: Vec<f64> = frame.values.iter().map(|value| shade(&stage.values, *value)).collect();
         let points: Vec<_> = frame.points.iter().map(|point| view.see(point)).collect();
         canvas.surface(triangles, &points, &values);
+        canvas.plain_surface(plain_triangles, &points);
         for edge in edges {
             let [from, to] = edge.map(|i| points[i as usize]);
             canvas.line(&from, &to, 0.9 * fine, EDGE);
@@ -258,6 +266,7 @@ impl Palette {
         colours.extend(bright.iter().map(|&colour| mixed(colour, rgb(EDGE), 0.5)));
         colours.extend((0..=16).map(|i| mixed(rgb(INK), rgb(WHITE), f64::from(i) / 16.0)));
         colours.extend((0..4).map(|i| mixed(rgb(TRACE), rgb(WHITE), f64::from(i) / 4.0)));
+        colours.extend(plain_colours(GRADES.lights));
         colours.push(rgb(GROUND));
         Self { colours, nearest: HashMap::new() }
     }

@@ -23,15 +23,23 @@ pub(crate) fn value_colour(value: f64) -> RGBColor {
 
 /// The colours of a surface: row by row of equal light, each by value.
 pub(crate) fn surface_colours(Grades { values, lights }: Grades) -> Vec<[u8; 3]> {
-    let grade = |i: usize, count: usize| i as f64 / (count - 1).max(1) as f64;
-    let of_light = |light: usize| {
-        let light = DARKEST + (1.0 - DARKEST) * grade(light, lights);
-        (0..values).map(move |value| {
-            let RGBColor(r, g, b) = value_colour(grade(value, values));
-            [r, g, b].map(|channel| (light * f64::from(channel)).round() as u8)
-        })
-    };
+    let of_light = |light| (0..values).map(move |value| lit(value_colour(grade(value, values)), light, lights));
     (0..lights).flat_map(of_light).collect()
+}
+
+/// The colours of a surface without values, by light.
+pub(crate) fn plain_colours(lights: usize) -> impl Iterator<Item = [u8; 3]> {
+    (0..lights).map(move |light| lit(PLAIN, light, lights))
+}
+
+/// A colour in one of some grades of light.
+fn lit(RGBColor(r, g, b): RGBColor, light: usize, lights: usize) -> [u8; 3] {
+    let light = DARKEST + (1.0 - DARKEST) * grade(light, lights);
+    [r, g, b].map(|channel| (light * f64::from(channel)).round() as u8)
+}
+
+fn grade(i: usize, count: usize) -> f64 {
+    i as f64 / (count - 1).max(1) as f64
 }
 
 /// The corners of a triangle: right and down in dots, and towards the viewer.
@@ -39,6 +47,9 @@ pub(crate) type Corners = [Seen; 3];
 
 /// No triangle.
 const NONE: u32 = u32::MAX;
+
+/// A surface without values.
+const PLAIN: RGBColor = RGBColor(190, 194, 200);
 
 /// Brightness of a surface that is seen edge-on.
 const DARKEST: f64 = 0.6;
@@ -106,11 +117,16 @@ impl Canvas {
         triangle.map(|i| self.dots(&points[i as usize]))
     }
 
-    /// Where the colours of a triangle begin, which are those of its light, from the viewer's side.
-    fn row(&self, [a, b, c]: &Corners) -> usize {
+    /// The grade of the light on a triangle, from the viewer's side.
+    fn light(&self, [a, b, c]: &Corners) -> usize {
         let normal = (b - a).cross(&(c - a));
         let light = (normal / normal.norm() * normal.z.signum()).dot(&Seen::new(-0.35, -0.45, 0.82)).max(0.0);
-        (light * (self.grades.lights - 1) as f64).round() as usize * self.grades.values
+        (light * (self.grades.lights - 1) as f64).round() as usize
+    }
+
+    /// Where the colours of a triangle begin, which are those of its light.
+    fn row(&self, corners: &Corners) -> usize {
+        self.light(corners) * self.grades.values
     }
 
     fn graded(&self, value: f64) -> usize {
@@ -134,6 +150,18 @@ impl Canvas {
                 if self.put(x, y, depth, |canvas| canvas.colours[row + canvas.graded(value)]) {
                     self.owner[size[0] * y + x] = number;
                 }
+            });
+        }
+    }
+
+    /// A surface without values, lit in the same way.
+    pub(crate) fn plain_surface(&mut self, triangles: &[[u32; 3]], points: &[Seen]) {
+        let size = [self.width, self.height];
+        for triangle in triangles {
+            let corners = self.corners(triangle, points);
+            let colour = lit(PLAIN, self.light(&corners), self.grades.lights);
+            each_dot(&corners, size, |x, y, _, depth| {
+                self.put(x, y, depth, |_| colour);
             });
         }
     }

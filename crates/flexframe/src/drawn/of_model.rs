@@ -6,27 +6,32 @@ use fem_tet10::{AssemblyError, Mesh, StressRecovery};
 use model::{Meshed, Model, ProductStrains, stress_about};
 use results::{Shapes, StressShapes};
 
+use super::solid::solid;
+
 /// Largest number of nodes that a body without elements is drawn by.
 const MAX_NODES: usize = 20_000;
 
-/// The shapes on the surface, with their stress; of a body without elements, on its nodes. `None` for a rigid body without a
-/// mesh.
+/// The shapes on the surface, with their stress; of a body without elements, on its nodes; of a rigid body without a mesh, the
+/// solid that stands for it.
 ///
 /// # Errors
 /// [`AssemblyError`] where the stress cannot be computed, for want of memory.
-pub(crate) fn surface_shapes_of(model: &Model) -> Result<Option<Shapes>, AssemblyError> {
-    let Some(meshed) = &model.meshed else { return Ok(None) };
-    let manifold = model.physics.large_deflection.as_ref();
-    let mut shapes = shapes_of(meshed, manifold);
-    if let Some(body) = &meshed.elements {
+pub(crate) fn surface_shapes_of(model: &Model) -> Result<Shapes, AssemblyError> {
+    let mut shapes = shapes_of(model);
+    if let Some(meshed) = &model.meshed
+        && let Some(body) = &meshed.elements
+    {
+        let manifold = model.physics.large_deflection.as_ref();
         let recovery = StressRecovery::new(&meshed.mesh, &body.materials)?.at_nodes(&shapes.nodes);
         shapes.stress = Some(stress(&recovery, meshed, manifold, &shapes.nodes)?);
     }
-    Ok(Some(shapes))
+    Ok(shapes)
 }
 
 /// The same without the stress.
-pub(crate) fn shapes_of(meshed: &Meshed, manifold: Option<&Manifold>) -> Shapes {
+pub(crate) fn shapes_of(model: &Model) -> Shapes {
+    let Some(meshed) = &model.meshed else { return solid(model) };
+    let manifold = model.physics.large_deflection.as_ref();
     let mesh = &meshed.mesh;
     let (nodes, faces) = if mesh.has_elements() { surface(mesh) } else { (spread_nodes(mesh), Vec::new()) };
     // Nodes of matrices from elsewhere may have rotations, too.

@@ -20,7 +20,7 @@ pub(crate) struct Drawn {
 /// A body as it is drawn.
 #[derive(Debug)]
 pub(crate) struct DrawnBody {
-    /// On the surface, or on all nodes; `None` for a rigid body without a mesh.
+    /// On the surface, or on all nodes; `None` where the file of an older version has none of a rigid body.
     pub shapes: Option<Shapes>,
     /// Elements, where the whole volume was asked for: corners, then mid-edges 01 12 02 03 23 13.
     pub tetrahedra: Vec<[u32; 10]>,

@@ -15,14 +15,16 @@ use crate::files::scene_file;
 /// Shapes of more bytes stay in the body file; of several bodies each may have its share of them.
 const MAX_BYTES: u64 = 256_000_000;
 
-/// The shapes that the results file of a run carries of each body: none of a rigid body without a mesh, nor those that are too
-/// large.
+/// The shapes that the results file of a run carries of each body, unless they are too large.
 ///
 /// # Errors
 /// [`AssemblyError`] where the stress cannot be computed, for want of memory.
 pub(crate) fn stored_shapes(bodies: &[RunBody<'_>]) -> Result<Vec<Option<Shapes>>, AssemblyError> {
     let fits = |model: &Model| bytes(model) <= share(bodies.len());
-    bodies.iter().map(|body| if fits(body.model) { surface_shapes_of(body.model) } else { Ok(None) }).collect()
+    bodies
+        .iter()
+        .map(|body| if fits(body.model) { surface_shapes_of(body.model).map(Some) } else { Ok(None) })
+        .collect()
 }
 
 /// Bytes that a body may have of a file of several.

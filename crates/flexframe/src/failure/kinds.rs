@@ -444,7 +444,6 @@ impl Fault for AnimationError {
                 Known::default()
             }
             Self::Step { scene, .. } => Kind::Run.of(scene),
-            Self::NoMesh { scene } => Kind::Input.of(scene),
             Self::NoStress { file } => Kind::Input.of(file),
             Self::NoSuchMode { scene, .. } | Self::SeveralMotions { scene, .. } => Kind::Usage.of(scene),
             Self::Film(FilmError::OtherFormat { path }) => Kind::Usage.of(path),
@@ -469,7 +468,7 @@ impl Fault for ExportError {
     fn known(&self) -> Known {
         match self {
             Self::File(_) | Self::Write(_) | Self::Output(_) | Self::Drawn(_) => Known::default(),
-            Self::NoMesh { path } | Self::NoElements { path } | Self::NoModes { path } => Kind::Input.of(path),
+            Self::NoElements { path } | Self::NoModes { path } => Kind::Input.of(path),
             Self::NoRows { path, .. } | Self::NoColumn { path, .. } => Kind::Usage.of(path),
         }
     }

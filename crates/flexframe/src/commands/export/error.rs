@@ -24,12 +24,10 @@ pub enum ExportError {
     /// The shapes of the body cannot be read.
     #[error("{0}")]
     Drawn(#[from] DrawnError),
-    /// There is no mesh to show.
-    #[error("{}: a rigid body without a mesh has no surface to export; give it a mesh and `flexible = 0`", path.display())]
-    NoMesh { path: PathBuf },
     /// The body has nodes, but no elements.
     #[error(
-        "{}: the elements and the surface of a body of matrices are not known; export a table, --csv TABLE.csv, or give the body a mesh",
+        "{}: no elements to show: a body of matrices has none, nor a surface, and a rigid body without a mesh has a surface alone; export \
+         a table, --csv TABLE.csv, or give the body a mesh",
         path.display()
     )]
     NoElements { path: PathBuf },

@@ -16,7 +16,7 @@ use crate::drawn::{Drawn, DrawnBody, Part};
 #[derive(Debug)]
 pub struct Motion {
     pub(super) results: Results,
-    /// The bodies that have a mesh of elements.
+    /// The bodies that have a surface, or elements where these are asked for.
     pub(super) bodies: Vec<MeshedBody>,
 }
 
@@ -47,17 +47,11 @@ impl Motion {
     /// volume, which is in body files.
     ///
     /// # Errors
-    /// [`ExportError`]; also where no body has a mesh of elements.
+    /// [`ExportError`]; also where no body has elements or a surface.
     pub fn open(file: &Path, volume: bool) -> Result<Self, ExportError> {
         let part = if volume { Part::Volume } else { Part::Surface };
         let Drawn { results, bodies } = Drawn::open(file, part)?;
-        let meshes: Vec<_> = results.metadata.bodies.iter().map(|body| body.model.mesh.as_ref()).collect();
-        if meshes.iter().all(Option::is_none) {
-            return Err(ExportError::NoMesh { path: file.to_owned() });
-        }
-        let has_elements = |number: usize| meshes[number].is_some_and(|mesh| mesh.elements > 0);
         let bodies: Vec<MeshedBody> = (bodies.into_iter().enumerate())
-            .filter(|(number, _)| has_elements(*number))
             .filter_map(|(number, body)| MeshedBody::new(number, body, volume))
             .collect();
         if bodies.is_empty() {
@@ -90,7 +84,7 @@ impl Motion {
 
 impl MeshedBody {
     fn new(number: usize, DrawnBody { shapes, tetrahedra, body_file }: DrawnBody, volume: bool) -> Option<Self> {
-        let shapes = shapes?;
+        let shapes = shapes.filter(|shapes| if volume { !tetrahedra.is_empty() } else { !shapes.faces.is_empty() })?;
         let points = shapes.positions.clone();
         let grid = if volume {
             // VTK has the middles of 13 and 23 the other way round.

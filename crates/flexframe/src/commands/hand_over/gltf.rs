@@ -71,7 +71,7 @@ impl Buffer {
 pub fn bytes(scene: &Scene, model: &Model) -> Result<Vec<u8>, HandOverError> {
     require_surface(scene)?;
     let meshed = require_flexible(scene, model)?;
-    let Some(surface) = Surface::of_model(model) else { return Ok(Vec::new()) };
+    let surface = Surface::of_model(model);
     let single = |v: &[f64; 3]| v.map(|x| x as f32);
     let mut buffer = Buffer::default();
     let positions: Vec<[f32; 3]> = surface.shapes.positions.iter().map(single).collect();

@@ -59,16 +59,12 @@ pub fn animate(
             Coloured::Displacement => Surface::of_model(&model),
             Coloured::Stress => Surface::with_stress(&model)?,
         };
-        let Some(surface) = surface else { continue };
         let mut simulation = model
             .start(scene)
             .map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
         simulation.keep_last_step();
         simulations.push(simulation);
         bodies.push(PictureBody::new(model.body.origin, surface, settings.coloured, &scene.path)?);
-    }
-    if bodies.is_empty() {
-        return Err(AnimationError::NoMesh { scene: scene.path.clone() });
     }
     let last = settings.frames.clamp(2, MAX_FRAMES) - 1;
     let units = run::units(scene);
@@ -123,7 +119,7 @@ pub fn animate_results(
     let drawn: Vec<(BodyResults<'_>, Shapes)> =
         results.bodies().zip(bodies).filter_map(|(of, body)| Some((of, body.shapes?))).collect();
     if drawn.is_empty() {
-        return Err(ExportError::NoMesh { path: file.to_owned() }.into());
+        return Err(ExportError::NoElements { path: file.to_owned() }.into());
     }
     if drawn.iter().any(|(_, shapes)| shapes.faces.is_empty()) {
         return Err(ExportError::NoElements { path: file.to_owned() }.into());
@@ -249,8 +245,9 @@ impl<'a> Picture<'a> {
             factor => format!(" (drawn {factor} times as large)"),
         };
         // The points of all bodies are in one list.
-        let (mut triangles, mut edges, mut first) = (Vec::new(), Vec::new(), 0);
+        let (mut triangles, mut plain, mut edges, mut first) = (Vec::new(), Vec::new(), Vec::new(), 0);
         for PictureBody { surface, .. } in &bodies {
+            let triangles = if surface.shapes.displacements.is_empty() { &mut plain } else { &mut triangles };
             triangles.extend(surface.triangles.iter().map(|points| points.map(|point| first + point)));
             edges.extend(surface.edges.iter().map(|points| points.map(|point| first + point)));
             first += surface.shapes.positions.len() as u32;
@@ -267,6 +264,7 @@ impl<'a> Picture<'a> {
             title: title.to_owned(),
             value_label,
             triangles: &triangles,
+            plain_triangles: &plain,
             edges: &edges,
             frames: &frames,
             frame_milliseconds: 50,

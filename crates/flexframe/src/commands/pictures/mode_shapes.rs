@@ -8,7 +8,6 @@ use nalgebra::Vector3;
 use scene::{Scene, SceneError};
 
 use crate::commands::modes::{frequency_unit, require_flexible, require_surface};
-use crate::drawn::shapes_of;
 use crate::surface::Surface;
 
 /// Largest displacement drawn, as a fraction of the body's size.
@@ -38,7 +37,7 @@ pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 3], S
     require_surface(scene)?;
     let meshed = require_flexible(scene, model)?;
     let Meshed { mesh, modes, .. } = meshed;
-    let surface = Surface::new(shapes_of(meshed, model.physics.large_deflection.as_ref()));
+    let surface = Surface::of_model(model);
     let unit = frequency_unit(&scene.units.time);
     let panels = modes
         .natural_frequencies()

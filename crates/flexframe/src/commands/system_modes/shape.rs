@@ -58,7 +58,6 @@ impl<'a> SystemSurface<'a> {
                 require_surface(scene)?;
             }
             let surface = if stress { Surface::with_stress(model)? } else { Surface::of_model(model) };
-            let Some(surface) = surface else { continue };
             let origin = Vector3::from(model.body.origin);
             let offset = u32::try_from(made.points.len()).unwrap_or(u32::MAX);
             made.triangles.extend(surface.triangles.iter().map(|corners| corners.map(|corner| corner + offset)));

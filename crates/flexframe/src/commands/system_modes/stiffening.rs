@@ -25,8 +25,9 @@ pub struct StiffenedBody {
     /// The largest moment.
     #[serde(serialize_with = "json::number")]
     pub moment: f64,
-    /// The largest displacement of its surface that all forces bend it by, in the frame of its modes; `None` without a mesh.
-    pub deflection: Option<f64>,
+    /// The largest displacement of its surface that all forces bend it by, in the frame of its modes.
+    #[serde(serialize_with = "json::number")]
+    pub deflection: f64,
     /// False if the scene lets no forces stiffen it.
     pub stiffens: bool,
     /// Frequencies of the slowest vibrations in which it bends.
@@ -74,7 +75,7 @@ pub(super) fn stiffened(
             body,
             force: found.force,
             moment: found.moment,
-            deflection: Surface::of_model(model).map(largest),
+            deflection: largest(Surface::of_model(model)),
             stiffens: model.physics.effects[Effect::GeometricStiffening],
             modes: found.modes.iter().map(StiffenedFrequency::from).collect(),
         })
@@ -89,9 +90,10 @@ impl StiffenedBody {
     pub(super) fn sentence(&self, units: UnitLabels<'_>, frequency_unit: &str, tolerance: f64) -> String {
         let Self { body, force, moment, .. } = self;
         let (length, unit) = (units.length, frequency_unit);
-        let bent = match self.deflection {
-            Some(deflection) if deflection > 0.0 => format!(", and it bends by up to {} {length}", short(deflection)),
-            _ => String::new(),
+        let bent = if self.deflection > 0.0 {
+            format!(", and it bends by up to {} {length}", short(self.deflection))
+        } else {
+            String::new()
         };
         let borne = format!(
             "{body}: at the start its joints bear up to {} {} and {} {}{bent}",

@@ -246,7 +246,8 @@ export class Body {
     colourBy(field: Field, peak: number) {
         const stressed = field === "stress" && this.stressPeaks !== null;
         this.surface.material = this.material(stressed ? "stress" : "plain");
-        this.uniforms.coloured.value = stressed || field === "displacement"; // without stress a body is plain
+        // A body without the quantity is plain.
+        this.uniforms.coloured.value = stressed || (field === "displacement" && this.count > 0);
         this.uniforms.peak.value = peak;
     }
 

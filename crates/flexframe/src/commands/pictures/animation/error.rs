@@ -22,9 +22,6 @@ pub enum AnimationError {
     /// A step failed, and no picture is drawn.
     #[error("{}: {source}", scene.display())]
     Step { scene: PathBuf, source: StepError },
-    /// Nothing to draw.
-    #[error("{}: a rigid body without a mesh has no surface to draw; give it a mesh and `flexible = 0`", scene.display())]
-    NoMesh { scene: PathBuf },
     /// The film could not be made.
     #[error("{0}")]
     Film(#[from] FilmError),

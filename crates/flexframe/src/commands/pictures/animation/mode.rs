@@ -46,9 +46,6 @@ pub fn animate_mode(
         let count = modes.vibrations.modes.len();
         let mode = modes.vibrations.modes.get(index).ok_or_else(|| no_such(count))?;
         let surface = SystemSurface::new(system, &models, modes, settings.coloured == Coloured::Stress)?;
-        if surface.points.is_empty() {
-            return Err(AnimationError::NoMesh { scene: scene.path.clone() });
-        }
         let swinging = Swinging {
             title: title(scene, number, modes.report.modes[index].frequency),
             triangles: &surface.triangles,
@@ -75,7 +72,6 @@ pub fn animate_mode(
         Coloured::Stress => Surface::with_stress(&model)?,
         Coloured::Displacement => Surface::of_model(&model),
     };
-    let surface = surface.ok_or_else(|| AnimationError::NoMesh { scene: scene.path.clone() })?;
     let swinging = Swinging {
         title: title(scene, number, frequency),
         triangles: &surface.triangles,
@@ -148,6 +144,7 @@ impl Swinging<'_> {
             frame_milliseconds: 50,
             view: settings.view,
             ground: false,
+            plain_triangles: &[],
             traced_point: None,
         };
         Ok(format.write(&animation, path, |part| progress(RunProgress::Motion(part)))?)

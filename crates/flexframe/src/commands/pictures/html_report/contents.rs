@@ -57,7 +57,7 @@ fn body(of: BodyResults<'_>, shapes: Option<Shapes>, results: &Results) -> Optio
     let surface = shapes.map(surface::Surface::new);
     Some(Body {
         name: of.metadata.name.clone(),
-        facts: facts_of_body(model, &results.metadata.units),
+        facts: facts_of_body(model, surface.is_some(), &results.metadata.units),
         surface: surface.as_ref().map(|surface| reference(surface, model)),
         shapes: surface.as_ref().map_or_else(Vec::new, |surface| described(&surface.shapes, model)),
         stress: surface.as_ref().and_then(|surface| stress(&surface.shapes, of, results)),
@@ -108,7 +108,7 @@ fn facts(results: &Results) -> Option<Vec<Fact>> {
     Some(several.into_iter().chain([time, Fact::new("Scheme", format!("{scheme} ({formulation})"))]).collect())
 }
 
-fn facts_of_body(body: &BodyProperties, units: &results::Units) -> Vec<Fact> {
+fn facts_of_body(body: &BodyProperties, is_drawn: bool, units: &results::Units) -> Vec<Fact> {
     let mut facts = vec![Fact::new("Mass", format!("{} {}", quantity(body.mass), units.mass))];
     match &body.mesh {
         Some(MeshProperties { nodes, elements: 0, .. }) => {
@@ -116,6 +116,9 @@ fn facts_of_body(body: &BodyProperties, units: &results::Units) -> Vec<Fact> {
         }
         Some(MeshProperties { nodes, elements, .. }) => {
             facts.push(Fact::new("Mesh", format!("{nodes} nodes, {elements} elements")));
+        }
+        None if is_drawn => {
+            facts.push(Fact::new("Shown as", "the box of its mass and inertia, bars to its points".to_owned()));
         }
         None => {}
     }
