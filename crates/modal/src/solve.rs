@@ -405,15 +405,7 @@ impl<'a> Solver<'a> {
             rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, vectors)?;
         self.refuse_soft(&eigenvalues, &shapes, stats.shift)?;
         let stats = SolveStats { ritz_time: started.elapsed(), ..stats };
-        Ok(Modes {
-            rigid: self.rigid.clone(),
-            eigenvalues,
-            shapes,
-            residuals,
-            force_residuals,
-            coupling: None,
-            stats,
-        })
+        Ok(Modes { rigid: self.rigid.clone(), eigenvalues, shapes, residuals, force_residuals, coupling: None, stats })
     }
 
     /// Cycles, should they be faster for `modes` modes than the factor of K + sM; none for bodies of which they cannot be made, too.

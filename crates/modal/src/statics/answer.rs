@@ -11,6 +11,7 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
 use crate::error::ModalError;
+use crate::memory_estimate::of_vectors;
 use crate::solve::Modes;
 
 impl Modes {
@@ -19,7 +20,7 @@ impl Modes {
     /// `None` where the answer has no more than `least` of itself beside the modes that are kept, or these are all that there are.
     ///
     /// # Errors
-    /// [`ModalError::Length`], [`ModalError::DenseEigen`].
+    /// [`ModalError::Length`], [`ModalError::DenseEigen`], [`ModalError::Memory`].
     pub fn with_answer(
         &self,
         amplitudes: &[f64],
@@ -49,13 +50,15 @@ impl Modes {
                 q[(*row, *column)] = if j == 0 { t[(0, i)] } else { rest[(i, j - 1)] };
             }
         }
-        let stiffness = |a: usize, b: usize| (0..size).map(|i| q[(i, a)] * self.eigenvalues[i] * q[(i, b)]).sum::<f64>();
+        let stiffness =
+            |a: usize, b: usize| (0..size).map(|i| q[(i, a)] * self.eigenvalues[i] * q[(i, b)]).sum::<f64>();
         let eigenvalues = (0..size).map(|k| stiffness(k, k)).collect();
         let mut coupling = Mat::zeros(size, size);
         for other in &places[1..] {
             let value = stiffness(place, *other);
             (coupling[(place, *other)], coupling[(*other, place)]) = (value, value);
         }
+        memory::check("modes with a static answer", of_vectors(self.shapes.nrows(), size))?;
         let shapes = &self.shapes * &q;
         Ok(Some((Self { eigenvalues, shapes, coupling: Some(coupling), ..self.clone() }, place)))
     }
@@ -70,7 +73,8 @@ impl Modes {
                 let stiffness = Mat::from_fn(coupling.nrows(), coupling.ncols(), |i, j| {
                     if i == j { self.eigenvalues[i] } else { coupling[(i, j)] }
                 });
-                let factor = stiffness.llt(Side::Lower).map_err(|_| ModalError::DenseEigen { size: coupling.nrows() })?;
+                let factor =
+                    stiffness.llt(Side::Lower).map_err(|_| ModalError::DenseEigen { size: coupling.nrows() })?;
                 factor.solve_in_place(forces);
             }
             None => {
