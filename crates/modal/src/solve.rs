@@ -56,6 +56,8 @@ pub struct Modes {
     /// ‖Kφ − λMφ‖ / ‖Kφ‖ for each natural mode, without the reactions of a support. Rounding in K leaves up to 1e-6 of
     /// this in the lowest modes of fine meshes.
     pub force_residuals: Vec<f64>,
+    /// ΨᵀKΨ beside its diagonal (nf×nf), of shapes that are not K-orthogonal ([`Modes::with_answer`]); none of others.
+    pub coupling: Option<Mat<f64>>,
     /// Counts of the work, and its times.
     pub stats: SolveStats,
 }
@@ -110,6 +112,7 @@ impl Modes {
             shapes: self.shapes.get(.., ..kept).to_owned(),
             residuals: first(&self.residuals),
             force_residuals: first(&self.force_residuals),
+            coupling: self.coupling.as_ref().filter(|_| kept > 0).map(|k| k.get(..kept, ..kept).to_owned()),
             stats: self.stats,
         }
     }
@@ -298,6 +301,7 @@ impl<'a> Solver<'a> {
                 shapes: Mat::zeros(unknowns, 0),
                 residuals: none(),
                 force_residuals: none(),
+                coupling: None,
                 stats: SolveStats {
                     unknowns,
                     peak_bytes: self.memory_estimate().peak(0),
@@ -401,7 +405,7 @@ impl<'a> Solver<'a> {
             rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, vectors)?;
         self.refuse_soft(&eigenvalues, &shapes, stats.shift)?;
         let stats = SolveStats { ritz_time: started.elapsed(), ..stats };
-        Ok(Modes { rigid: self.rigid.clone(), eigenvalues, shapes, residuals, force_residuals, stats })
+        Ok(Modes { rigid: self.rigid.clone(), eigenvalues, shapes, residuals, force_residuals, coupling: None, stats })
     }
 
     /// Cycles, should they be faster for `modes` modes than the factor of K + sM; none for bodies of which they cannot be made, too.

@@ -1,6 +1,7 @@
 //! From the finite-element model of a scene to the reduced body: a survey, a decision, and the reduction.
 
 pub(crate) mod about;
+mod answer;
 pub(crate) mod backbones;
 mod bent;
 mod damping;

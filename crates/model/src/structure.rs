@@ -207,6 +207,12 @@ impl<'a> Structure<'a> {
         ReducedBody::of_mass(modes, self.solver()?.mass(), positions).map_err(|error| self.modal(error))
     }
 
+    /// The body in the coordinates of modes with a static answer among them.
+    pub fn with_answer(&self, modes: &Modes) -> Result<ReducedBody, BuildError> {
+        let asked = self.of_held_body("body with an answer").with_modes(modes).with("natural", &modes.natural());
+        self.ask(asked, modes, || self.reduced(modes))
+    }
+
     fn modal(&self, error: ModalError) -> BuildError {
         modal(&self.assembled.scene)(error)
     }
@@ -586,12 +592,11 @@ impl Structure<'_> {
     /// The stress (6m×k) of static responses (3n×k) that modes and static shapes leave out.
     pub fn stress_beside(&self, modes: &Modes, responses: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
         let recovery = self.recovery()?;
+        // Coupled shapes follow from the shapes.
         let asked = self.of_body("stress beside modes").with_modes(modes).with("responses", &responses);
         self.ask(asked, [6 * recovery.sites().len(), responses.ncols()], || {
             let mut parts = modes.shapes.transpose() * (self.matrices()?.stiffness() * responses);
-            for (k, eigenvalue) in modes.eigenvalues.iter().enumerate() {
-                parts.row_mut(k).iter_mut().for_each(|part| *part /= eigenvalue);
-            }
+            modes.answer(&mut parts).map_err(|error| self.modal(error))?;
             let rest = responses - &modes.shapes * parts;
             Ok(recovery.nodal_stress(rest.as_ref())?)
         })

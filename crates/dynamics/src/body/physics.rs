@@ -114,13 +114,15 @@ pub struct Physics {
     /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that
     /// of the modes counts.
     pub large_deflection: Option<Manifold>,
-    /// Forces that hold the bent body that the modes are about, where that is not the undeformed one.
+    /// Forces that hold the bent body that the modes are about, where that is not the undeformed one; or the stiffness that couples
+    /// the coordinates.
     pub reference: Option<ReferenceForces>,
 }
 
-/// The strain energy g·q + ½ qᵀBq that a body has beside its stiffness and its manifold where its modes are about a bent
-/// reference. g are the internal forces there, which loads and spin of the reference balance; B takes from the stiffness what the
-/// stress of these would count twice, and adds the work of g on displacements of second order.
+/// The strain energy g·q + ½ qᵀBq that a body has beside its stiffness and its manifold. Where its modes are about a bent
+/// reference, g are the internal forces there, which loads and spin of the reference balance; B takes from the stiffness what the
+/// stress of these would count twice, and adds the work of g on displacements of second order. Of coordinates that are coupled, as
+/// [`modal::Modes::with_answer`] has them, B is the stiffness between them, and g is zero.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct ReferenceForces {
     /// g (nf).
@@ -131,6 +133,11 @@ pub struct ReferenceForces {
 }
 
 impl ReferenceForces {
+    /// The stiffness between coordinates that are coupled.
+    pub fn of_coupling(stiffness: Mat<f64>) -> Self {
+        Self { force: vec![0.0; stiffness.nrows()], stiffness }
+    }
+
     /// Refuses sizes other than `nf`, and numbers that are not finite.
     pub(crate) fn check(&self, nf: usize) -> Result<(), SetupError> {
         let Self { force, stiffness } = self;

@@ -36,6 +36,7 @@ impl Modes {
             shapes: &self.shapes * (free * eigen.U()),
             residuals: first(&self.residuals),
             force_residuals: first(&self.force_residuals),
+            coupling: None,
             stats: self.stats,
         })
     }

@@ -133,10 +133,16 @@ pub(crate) fn bent_modes(scene: &Scene, advice: &Advice, keep: usize, natural: u
     if large.is_empty() {
         return Bent::default();
     }
-    let omega = |k: usize| advice.modes[k].circular_frequency;
     let count = advice.modes.len().min(keep).min(natural);
-    let follows = |k: &usize| !large.contains(k) && omega(*k) <= FOLLOWING * omega(0);
-    Bent { following: (0..count).filter(follows).take(scene.modes.following).collect(), large }
+    let squares: Vec<f64> = advice.modes[..count].iter().map(|mode| mode.circular_frequency.powi(2)).collect();
+    Bent { following: following(scene, &squares, &large), large }
+}
+
+/// Which coordinates follow the large ones, by the squares of their circular frequencies.
+pub(crate) fn following(scene: &Scene, squares: &[f64], large: &[usize]) -> Vec<usize> {
+    let lowest = squares.iter().copied().fold(f64::INFINITY, f64::min);
+    let follows = |k: &usize| !large.contains(k) && squares[*k] <= FOLLOWING * FOLLOWING * lowest;
+    (0..squares.len()).filter(follows).take(scene.modes.following).collect()
 }
 
 /// The effects with what large modes need: what follows them moves along the body, where turning acts on it.

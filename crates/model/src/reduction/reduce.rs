@@ -7,6 +7,7 @@ use modal::Modes;
 use scene::key_path;
 
 use crate::error::BuildError;
+use crate::reduction::answer::WithAnswer;
 use crate::reduction::decide::Decision;
 use crate::reduction::manifold::LargeDeflection;
 use crate::reduction::mesh_model::MeshModel;
@@ -73,6 +74,17 @@ impl Reduction {
         };
         let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
         let bent = decision.bent.clone().settled(model, &modes)?;
+        let (modes, modal, bent) = match WithAnswer::new(model, &modes, &bent, &advice)? {
+            Some(WithAnswer { modes, bent }) => {
+                let body = model.structure.with_answer(&modes)?;
+                let spin = if stiffens { statics.stress_stiffness(model, &modes, &[])? } else { None };
+                let modal = ModalModel::new(model, body, &modes)?.with_stress_stiffness(model, spin.as_ref())?;
+                // A backbone is that of a mode.
+                backbones.iter_mut().for_each(|backbone| *backbone = None);
+                (modes, modal, bent)
+            }
+            None => (modes, modal, bent),
+        };
         if let (false, Some(marker)) =
             (bent.large.is_empty(), model.markers.iter().find(|of| of.rigid_nodes().is_some()))
         {
@@ -119,7 +131,7 @@ impl Reduction {
                 }
                 Some(ReferenceForces { force: reference.modal_forces(&modes), stiffness })
             }
-            None => None,
+            None => modes.coupling.clone().map(ReferenceForces::of_coupling),
         };
         let of_markers = match &of_markers {
             Some(responses) if physics::may_stress(model.scene) => match &large {

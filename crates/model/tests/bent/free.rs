@@ -7,7 +7,7 @@ use model::{Builder, Checker, Model, StateCheck};
 use nonlinear::StateErrorSettings;
 use scene::{Marker, MarkerPlace, Scene, Tie};
 
-use crate::bodies::{BRACKET, CLAMP, CONSTANT, built};
+use crate::bodies::{BRACKET, CLAMP, CONED, CONSTANT, built};
 
 /// The bracket, held by nothing, in a spin about the axis across its plane: a principal one.
 fn spinning(modes: &str, spin: f64) -> Scene {
@@ -98,6 +98,37 @@ fn about_the_reference_a_free_body_may_spin_at_another_speed() {
         let (with, without) = (error(&about), error(""));
         println!("free bracket, spin changed by {change}: off by {with:.3e}, {without:.3e} without a reference");
         assert!(with < bound && (change < -0.2 || with < 0.2 * without), "{change}: {with} {without}");
+    }
+}
+
+/// Independent reference: as above. Moments at both ends that balance bend a rod that nothing holds: they have one static answer together.
+#[test]
+fn moments_at_both_ends_bend_a_free_rod() {
+    for (angle, bound) in [(0.2, 1.5e-4), (0.5, 1.6e-3)] {
+        // E I/L.
+        let moment = angle * 2e9 * 0.02_f64.powi(4) / 12.0;
+        let load = |at: f64, moment: f64| {
+            format!(
+                "[[loads]]\nkind = \"moment\"\nat = [{at}, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = {moment:e}\n\
+                 history = {CONSTANT}\n"
+            )
+        };
+        let mut scene =
+            CONED.scene("", &format!("large_deflection = true\n{}{}", load(1.0, moment), load(0.0, -moment)));
+        // Before it could turn fast, as each of them alone would have it.
+        scene.time.end = 1e-4;
+        let (model, check) = rest(&scene);
+        assert!(model.meshed.as_ref().unwrap().modes.coupling.is_some(), "{:?}", model.large_modes());
+        // A scene that begins with amplitudes has the modes themselves as coordinates.
+        scene.initial.modal_displacement = vec![0.0];
+        let (_, without) = rest(&scene);
+        println!(
+            "free rod to {angle} rad: large {:?}, off by {:.2e}, {:.2e} without the answer",
+            model.large_modes(),
+            check.error,
+            without.error
+        );
+        assert!(check.error < bound && check.error < 0.1 * without.error, "{angle}: {} {}", check.error, without.error);
     }
 }
 

@@ -1,0 +1,151 @@
+//! Modes with a static answer as one of their coordinates.
+//!
+//! ```text
+//! u = Ψ c      t = c without its parts along the modes that are kept, |t| = 1
+//! Q = [kept, t, rest]      Ψ' = Ψ Q      Ψ'ᵀKΨ' = QᵀΛQ
+//! ```
+//!
+//! The rest are Rayleigh–Ritz vectors of what is left. So only t is coupled to them by K, and the kept modes to none.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+
+use crate::error::ModalError;
+use crate::memory_estimate::of_vectors;
+use crate::solve::Modes;
+
+impl Modes {
+    /// The same motions by other coordinates: the modes `kept` in their places; in the first place that is left, the part that a static
+    /// answer of these `amplitudes` has beside them; in the others, slowest first, what else there is. Returns them and the place;
+    /// `None` where the answer has no more than `least` of itself beside the modes that are kept, or these are all that there are.
+    ///
+    /// # Errors
+    /// [`ModalError::Length`], [`ModalError::DenseEigen`], [`ModalError::Memory`].
+    pub fn with_answer(
+        &self,
+        amplitudes: &[f64],
+        kept: &[usize],
+        least: f64,
+    ) -> Result<Option<(Self, usize)>, ModalError> {
+        let (size, found) = (self.shapes.ncols(), amplitudes.len());
+        if found != size {
+            return Err(ModalError::Length { what: "the amplitudes of a static answer", expected: size, found });
+        }
+        let places: Vec<usize> = (0..size).filter(|k| !kept.contains(k)).collect();
+        let norm = |list: &mut dyn Iterator<Item = f64>| list.map(|c| c * c).sum::<f64>().sqrt();
+        let beside = norm(&mut places.iter().map(|k| amplitudes[*k]));
+        let is_there = beside > least * norm(&mut amplitudes.iter().copied());
+        let Some(place) = places.first().copied().filter(|_| is_there) else { return Ok(None) };
+        let failed = || ModalError::DenseEigen { size };
+        // Of the coordinates that are not kept: t, and an orthonormal basis of what is left.
+        let t = Mat::from_fn(1, places.len(), |_, k| amplitudes[places[k]] / beside);
+        let svd = t.svd().map_err(|_| failed())?;
+        let left = svd.V().subcols(1, places.len() - 1);
+        let stiff = Mat::from_fn(places.len(), left.ncols(), |i, j| self.eigenvalues[places[i]] * left[(i, j)]);
+        let ritz = (left.transpose() * stiff).self_adjoint_eigen(Side::Lower).map_err(|_| failed())?;
+        let rest = left * ritz.U();
+        let mut q = Mat::<f64>::identity(size, size);
+        for (i, row) in places.iter().enumerate() {
+            for (j, column) in places.iter().enumerate() {
+                q[(*row, *column)] = if j == 0 { t[(0, i)] } else { rest[(i, j - 1)] };
+            }
+        }
+        let stiffness =
+            |a: usize, b: usize| (0..size).map(|i| q[(i, a)] * self.eigenvalues[i] * q[(i, b)]).sum::<f64>();
+        let eigenvalues = (0..size).map(|k| stiffness(k, k)).collect();
+        let mut coupling = Mat::zeros(size, size);
+        for other in &places[1..] {
+            let value = stiffness(place, *other);
+            (coupling[(place, *other)], coupling[(*other, place)]) = (value, value);
+        }
+        memory::check("modes with a static answer", of_vectors(self.shapes.nrows(), size))?;
+        let shapes = &self.shapes * &q;
+        Ok(Some((Self { eigenvalues, shapes, coupling: Some(coupling), ..self.clone() }, place)))
+    }
+
+    /// Replaces modal forces (nf×k) by the amplitudes of the static answers to them.
+    ///
+    /// # Errors
+    /// [`ModalError::DenseEigen`].
+    pub fn answer(&self, forces: &mut Mat<f64>) -> Result<(), ModalError> {
+        match &self.coupling {
+            Some(coupling) => {
+                let stiffness = Mat::from_fn(coupling.nrows(), coupling.ncols(), |i, j| {
+                    if i == j { self.eigenvalues[i] } else { coupling[(i, j)] }
+                });
+                let factor =
+                    stiffness.llt(Side::Lower).map_err(|_| ModalError::DenseEigen { size: coupling.nrows() })?;
+                factor.solve_in_place(forces);
+            }
+            None => {
+                for (k, eigenvalue) in self.eigenvalues.iter().enumerate() {
+                    forces.row_mut(k).iter_mut().for_each(|force| *force /= eigenvalue);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, Vector3};
+
+    use super::*;
+    use crate::solve::SolveStats;
+    use crate::support::motion::RigidMotion;
+    use crate::support::rigid::RigidModes;
+
+    /// Modes of a body whose M is 1 and whose K is diagonal.
+    fn modes(eigenvalues: &[f64]) -> Modes {
+        let size = eigenvalues.len();
+        Modes {
+            rigid: RigidModes {
+                motion: RigidMotion::clamp(Vector3::zeros()),
+                mass: 1.0,
+                center_of_mass: Vector3::zeros(),
+                origin: Vector3::zeros(),
+                inertia: Matrix3::identity(),
+                translation_basis: Matrix3::zeros(),
+                rotation_basis: Matrix3::zeros(),
+                shapes: Mat::zeros(size, 6),
+            },
+            eigenvalues: eigenvalues.to_vec(),
+            shapes: Mat::identity(size, size),
+            residuals: vec![0.0; size],
+            force_residuals: vec![0.0; size],
+            coupling: None,
+            stats: SolveStats::default(),
+        }
+    }
+
+    /// Conserved: M and K of the same motions.
+    #[test]
+    fn the_answer_and_what_is_kept_are_coordinates() {
+        let eigenvalues = [1.0, 4.0, 9.0, 25.0, 400.0];
+        let answer = [0.5, 3.0, 0.1, -0.4, 0.02];
+        let (found, place) = modes(&eigenvalues).with_answer(&answer, &[1], 1e-3).unwrap().unwrap();
+        assert_eq!(place, 0);
+        let coupling = found.coupling.as_ref().unwrap();
+        let q = &found.shapes;
+        for (i, j) in (0..5).flat_map(|i| (0..5).map(move |j| (i, j))) {
+            let mass: f64 = (0..5).map(|k| q[(k, i)] * q[(k, j)]).sum();
+            let stiffness: f64 = (0..5).map(|k| q[(k, i)] * eigenvalues[k] * q[(k, j)]).sum();
+            let of_one = if i == j { [1.0, found.eigenvalues[i]] } else { [0.0, coupling[(i, j)]] };
+            assert!((mass - of_one[0]).abs() < 1e-13 && (stiffness - of_one[1]).abs() < 1e-11, "{i} {j}");
+        }
+        assert_eq!(q.col(1).iter().copied().collect::<Vec<_>>(), [0.0, 1.0, 0.0, 0.0, 0.0]);
+        assert!(found.eigenvalues[2..].is_sorted());
+        // All of the answer is along the two.
+        let along: f64 = [0, 1].map(|j| (0..5).map(|i| q[(i, j)] * answer[i]).sum::<f64>().powi(2)).iter().sum();
+        assert!((along - answer.iter().map(|c| c * c).sum::<f64>()).abs() < 1e-13);
+    }
+
+    #[test]
+    fn an_answer_that_the_kept_modes_have_adds_nothing() {
+        let modes = modes(&[1.0, 4.0]);
+        assert!(modes.with_answer(&[1.0, 1e-4], &[0], 1e-3).unwrap().is_none());
+        assert!(modes.with_answer(&[1.0, 1.0], &[0, 1], 1e-3).unwrap().is_none());
+        assert!(modes.with_answer(&[1.0], &[0], 1e-3).is_err());
+    }
+}
