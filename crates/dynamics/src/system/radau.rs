@@ -11,6 +11,7 @@ mod end;
 mod exchange;
 mod explicit;
 mod newton;
+mod springs;
 pub(in crate::system) mod stage_rates;
 mod stepping;
 mod within;
@@ -23,6 +24,7 @@ use crate::body::motion_state::MotionState;
 use crate::conservative::{ConservativeBody, get, part};
 use crate::equations::Equations;
 use crate::error::{RateError, SetupError};
+use crate::matrix::lists::larger;
 use crate::state::State;
 use crate::system::collocation::{Collocation, STAGES, SystemScheme};
 use crate::system::description::System;
@@ -96,6 +98,8 @@ pub struct SystemMotion {
     pub(super) jump_work: f64,
     /// Works of the drives and forces of joints since the beginning.
     pub(super) joint_works: Vec<JointWork>,
+    /// Energy of the springs of each joint at the start of a step, where it is known by the coordinates.
+    pub(super) spring_energies: Vec<Option<f64>>,
     /// Work of the force elements since the beginning.
     pub(super) element_work: f64,
     pub(super) evaluations: u64,
@@ -113,6 +117,8 @@ struct Room {
     stage_rates: StageRates,
     /// Residuals or changes of a stage.
     change: [Vec<f64>; 2],
+    /// Impulses of the rows by which velocities were last projected.
+    impulses: Vec<f64>,
 }
 
 impl SystemMotion {
@@ -165,6 +171,7 @@ impl SystemMotion {
                 y_rates: std::array::from_fn(|_| zeros()),
                 stage_rates: StageRates::new(&flexible, joints),
                 change: [zeros(), zeros()],
+                impulses: vec![0.0; rows],
             },
             patterns,
             bodies,
@@ -172,6 +179,7 @@ impl SystemMotion {
             largest_energy: 0.0,
             jump_work: 0.0,
             joint_works: vec![JointWork::default(); joints],
+            spring_energies: vec![None; joints],
             element_work: 0.0,
             evaluations: 0,
             reactions: vec![0.0; rows],
@@ -352,7 +360,9 @@ impl SystemMotion {
         }
         self.predict(h);
         let energy = self.largest_energy;
-        let tried = self.newton(h, exactness).map(|passes| Tried { error: self.error(h), passes });
+        let tried = self
+            .newton(h, exactness)
+            .map(|passes| Tried { error: larger(self.error(h), self.stop_error_of_stages(h)), passes });
         let is_taken = tried.as_ref().is_ok_and(|tried| tried.error <= tolerance);
         if !is_taken {
             // That of a step that is too long says nothing about a shorter one.

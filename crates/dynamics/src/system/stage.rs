@@ -414,7 +414,12 @@ impl Stage {
 
     /// Removes the part of the velocities that the rows forbid, and the momenta that go with it, by `solve` of A λ = G v.
     /// Returns the largest rate that was left, NaN where one is no number.
-    pub fn project_velocities(&mut self, system: &System, momenta: &mut [f64], solve: impl Fn(&mut [f64])) -> f64 {
+    pub fn project_velocities(
+        &mut self,
+        system: &System,
+        momenta: &mut [f64],
+        mut solve: impl FnMut(&mut [f64]),
+    ) -> f64 {
         let mut left = f64::INFINITY;
         for _ in 0..MAX_PROJECTIONS {
             self.constraints.rates(&self.velocities, &mut self.constraint_rates);

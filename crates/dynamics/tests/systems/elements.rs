@@ -8,7 +8,7 @@ use dynamics::{
 };
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
-use rigid_kin::{Attitude, rotation_vector, transformation_matrix};
+use rigid_kin::{Attitude, cross_matrix, rotation_vector, transformation_matrix};
 
 fn bodies(count: usize) -> Vec<ConservativeBody> {
     let inertia = Matrix3::from_diagonal(&Vector3::new(0.2, 0.3, 0.4));
@@ -113,6 +113,45 @@ fn a_bushing_between_free_bodies_keeps_their_momenta() {
     assert!(imbalance(&motion, energy) < 1e-6, "{}", imbalance(&motion, energy));
 }
 
+/// Conserved: the energy of a lopsided body on a bushing that holds its tilts and lets it turn about z, with the energy of the bushing, through
+/// three turns. Against a hinge: its center of mass goes where that of a body on a hinge does, the farther the stiffer the bushing.
+#[test]
+fn a_bushing_with_a_free_axis_is_a_soft_hinge() {
+    let inertia = Matrix3::new(0.2, 0.0, 0.03, 0.0, 0.3, 0.0, 0.03, 0.0, 0.4);
+    let lopsided = ReducedBody::rigid(2.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
+    let body = ConservativeBody::new(&lopsided, &[], Vec::new(), &Physics::default()).unwrap();
+    let axes = Matrix3::identity();
+    let (arm, stiff) = (Vector3::new(-0.3, 0.1, 0.2), 2e4);
+    let bushing = Bushing {
+        markers: [Marker::on_ground(arm, axes), Marker::on_rigid(0, arm, axes)],
+        stiffness: [Vector3::repeat(stiff), Vector3::new(stiff, stiff, 0.0)],
+        damping: [Vector3::zeros(); 2],
+    };
+    let omega = 6.0;
+    let start = MotionState {
+        omega_body: Vector3::new(0.0, 0.0, omega),
+        velocity_global: Vector3::z().cross(&-arm) * omega,
+        ..at(0.0, 0.0)
+    };
+    let system = System::new(vec![body], Vec::new()).unwrap().with_elements(vec![Arc::new(bushing)]).unwrap();
+    let mut motion = SystemMotion::new(system, &[start]).unwrap();
+    let energy = motion.energy().unwrap();
+    let mut h = 1e-3;
+    for time in [0.2, 0.4, 0.5, 0.6, 0.9, 1.3, 2.0, 3.1] {
+        motion.advance(time, 1e-9, &mut h).unwrap();
+        let now = motion.state(0).unwrap();
+        let to_global = now.attitude.global_to_body().transpose();
+        let moved = now.origin_global + to_global * arm - arm;
+        let turned = rotation_vector(&to_global.transpose()).unwrap();
+        let held = 0.5 * stiff * (moved.norm_squared() + turned.x.powi(2) + turned.y.powi(2));
+        let open = (motion.energy().unwrap() + held) / energy - 1.0;
+        let expected = arm - nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), omega * time) * arm;
+        let off = (now.origin_global - expected).norm();
+        println!("{time}: open by {open:.1e}, off by {off:.1e}");
+        assert!(open.abs() < 1e-6 && off < 2e-2, "{time}: {open:e} {off}");
+    }
+}
+
 /// The laws of a bushing and of a spring.
 #[derive(Debug)]
 pub enum Like {
@@ -128,7 +167,13 @@ impl MarkerLaw for Like {
                 let law = |which: usize, by: Vector3<f64>, rate: Vector3<f64>| {
                     -stiffness[which].component_mul(&by) - damping[which].component_mul(&rate)
                 };
-                [law(0, motion.position, motion.velocity), law(1, turned, motion.omega)]
+                // The rotation of the second marker turns by T(φ) δφ, so that the energy ½ φᵀKφ has the moment T(φ)⁻ᵀ K φ.
+                let (t, cross) = (turned.norm().max(1e-9), cross_matrix(&turned));
+                let tangent = Matrix3::identity()
+                    + cross * ((1.0 - t.cos()) / (t * t))
+                    + cross * cross * ((t - t.sin()) / (t * t * t));
+                let torque = tangent.transpose().try_inverse().unwrap() * stiffness[1].component_mul(&turned);
+                [law(0, motion.position, motion.velocity), -torque - damping[1].component_mul(&motion.omega)]
             }
             Self::Spring(PointSpring { stiffness, damping, free_length, .. }) => {
                 let along = motion.position.normalize();

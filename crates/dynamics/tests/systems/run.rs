@@ -217,6 +217,37 @@ fn a_drive_whose_rate_jumps_takes_the_bodies_with_it() {
     }
 }
 
+/// Conserved: what a drive whose rate jumps has done is told at its joint, with the jumps: here those of two wheels at once. Closed form: ½ J ω²
+/// of a wheel that has been brought to ω at once, and nothing once it has been stopped.
+#[test]
+fn the_work_of_a_jump_is_told_at_the_joint_of_its_drive() {
+    let wheel = |inertia: f64| {
+        let wheel =
+            ReducedBody::rigid(1.0, Vector3::zeros(), Matrix3::identity() * inertia, RigidMotion::free()).unwrap();
+        ConservativeBody::new(&wheel, &[], Vec::new(), &Physics::default()).unwrap()
+    };
+    let ramp = |rate: f64| JointDrive { amplitude: rate, history: History::Ramp { start: 0.5, duration: 1.0 } };
+    let axes = Matrix3::identity();
+    let hinge = |body: usize, rate: f64| {
+        let ends = [Marker::on_ground(Vector3::zeros(), axes), Marker::on_rigid(body, Vector3::zeros(), axes)];
+        Joint::revolute(&format!("hinge {body}"), ends).turned_by(ramp(rate))
+    };
+    let system = System::new(vec![wheel(0.2), wheel(0.4)], vec![hinge(0, 3.0), hinge(1, -2.0)]).unwrap();
+    let states = vec![at_rest(Vector3::zeros()); 2];
+    let setup = SystemSetup { system, states, ..pendulum(StepControl::Tolerance(1e-6), None) };
+    let setup = SystemSetup { points: vec![Vec::new(); 2], ..setup };
+    let mut simulation = SystemSimulation::new(setup).unwrap();
+    let mut works = Vec::new();
+    while simulation.motion().time() < 2.0 {
+        if simulation.advance_watched(10, |_, _| ()).unwrap() == Reached::Row {
+            works.push([0, 1].map(|joint| simulation.motion().joint_work(joint).drive));
+        }
+    }
+    let [first, second] = works[3];
+    assert!((first - 0.5 * 0.2 * 9.0).abs() < 1e-12 && (second - 0.5 * 0.4 * 4.0).abs() < 1e-12, "{first} {second}");
+    assert!(works.last().unwrap().iter().all(|work| work.abs() < 1e-12), "{works:?}");
+}
+
 #[test]
 fn what_does_not_fit_is_moved_or_refused_with_the_name_of_the_joint() {
     let mut setup = pendulum(StepControl::Tolerance(1e-6), None);

@@ -69,7 +69,8 @@ impl ForceElement for PointSpring {
     }
 }
 
-/// Springs and dampers along and about the axes of the first of two markers, for small turns of the second against it.
+/// Springs and dampers along and about the axes of the first of two markers. Turns of the second against it are the components of their
+/// rotation vector φ, with the energy ½ φᵀKφ; it is meant for small ones, but for one about an axis without stiffness.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Bushing {
     /// i, whose axes count, and j.
@@ -93,10 +94,12 @@ impl ForceElement for Bushing {
         // A turn by half a turn has no vector: then there is no spring, either.
         let turned = rotation_vector(&(j.axes_global.transpose() * i.axes_global)).unwrap_or_default();
         let spin = i.axes_global.tr_mul(&(j.omega_global - i.omega_global));
-        let law = |which: usize, by: Vector3<f64>, rate: Vector3<f64>| {
-            i.axes_global * (self.stiffness[which].component_mul(&by) + self.damping[which].component_mul(&rate))
+        let [pull, torque] = [(0, moved), (1, turned)].map(|(which, by)| self.stiffness[which].component_mul(&by));
+        let law = |spring: Vector3<f64>, which: usize, rate: Vector3<f64>| {
+            i.axes_global * (spring + self.damping[which].component_mul(&rate))
         };
-        let (force, moment) = (law(0, moved, rate), law(1, turned, spin));
+        let force = law(pull, 0, rate);
+        let moment = law(on_turn(&turned, &torque), 1, spin);
         on_j.force_global = -force;
         on_j.moment_global = -moment;
         on_i.force_global = force;
@@ -110,6 +113,7 @@ impl ForceElement for Bushing {
     fn linearize(&self, _: [f64; 2], motions: &[MarkerMotion], set: &mut SetDirection<'_>) {
         let [i, j] = motions else { return };
         let line = j.position_global - i.position_global;
+        let turned = rotation_vector(&(j.axes_global.transpose() * i.axes_global)).unwrap_or_default();
         let zero = Vector3::zeros();
         for (k, axis) in i.axes_global.column_iter().enumerate() {
             let along: Vector3<f64> = axis.into();
@@ -117,7 +121,8 @@ impl ForceElement for Bushing {
             let [on_i, on_j] = [(-along, -line.cross(&along)), (along, zero)]
                 .map(|(force_global, moment_global)| MarkerWrench { force_global, moment_global });
             set(k, of(0), &[on_i, on_j]);
-            let [on_i, on_j] = [-along, along].map(|moment_global| MarkerWrench { force_global: zero, moment_global });
+            let about = i.axes_global * on_turn(&turned, &Vector3::ith(k, 1.0));
+            let [on_i, on_j] = [-about, about].map(|moment_global| MarkerWrench { force_global: zero, moment_global });
             set(3 + k, of(1), &[on_i, on_j]);
         }
     }
@@ -143,15 +148,46 @@ impl ForceElement for Bushing {
         let turned = rotation_vector(&(j.axes_global.transpose() * axes)).unwrap_or_default();
         let d_turn = axes.tr_mul(&(by_j.turn_global - by_i.turn_global));
         let d_turned = tangent_of(&turned).try_inverse().map_or_else(Vector3::zeros, |inverse| inverse * d_turn);
-        let law = |which: usize, by: &Vector3<f64>, rate: &Vector3<f64>| {
-            axes * (self.stiffness[which].component_mul(by) + self.damping[which].component_mul(rate))
+        let [pull, d_pull, torque, d_torque] = [(0, moved), (0, d_moved), (1, turned), (1, d_turned)]
+            .map(|(which, by)| self.stiffness[which].component_mul(&by));
+        let law = |spring: Vector3<f64>, which: usize, rate: &Vector3<f64>| {
+            axes * (spring + self.damping[which].component_mul(rate))
         };
         let turn_of_i = cross_matrix(&by_i.turn_global);
-        let force = law(0, &moved, &rate);
-        let d_force = law(0, &d_moved, &d_rate) + turn_of_i * force;
-        let d_moment = law(1, &d_turned, &d_turning) + turn_of_i * law(1, &turned, &turning);
+        let force = law(pull, 0, &rate);
+        let d_force = law(d_pull, 0, &d_rate) + turn_of_i * force;
+        let d_on_turn = change_on_turn(&turned, &d_turned, &torque) + on_turn(&turned, &d_torque);
+        let d_moment = law(d_on_turn, 1, &d_turning) + turn_of_i * law(on_turn(&turned, &torque), 1, &turning);
         (on_j.force_global, on_j.moment_global) = (-d_force, -d_moment);
         on_i.force_global = d_force;
         on_i.moment_global = d_moment + d_line.cross(&force) + line.cross(&d_force);
     }
+}
+
+/// T(φ)⁻ᵀ m = m + ½ φ×m + b φ×(φ×m), b = (1 − t/2 cot t/2)/t², t = |φ|: the moment of forces m along the components of φ.
+fn on_turn(phi: &Vector3<f64>, m: &Vector3<f64>) -> Vector3<f64> {
+    let [b, _] = factor_of_square(phi.norm());
+    let crossed = phi.cross(m);
+    m + crossed * 0.5 + phi.cross(&crossed) * b
+}
+
+/// The change of [`on_turn`] by that of φ.
+fn change_on_turn(phi: &Vector3<f64>, change: &Vector3<f64>, m: &Vector3<f64>) -> Vector3<f64> {
+    let [b, slope] = factor_of_square(phi.norm());
+    let (crossed, changed) = (phi.cross(m), change.cross(m));
+    changed * 0.5 + (change.cross(&crossed) + phi.cross(&changed)) * b + phi.cross(&crossed) * (slope * phi.dot(change))
+}
+
+/// b(t), and its slope over t.
+fn factor_of_square(t: f64) -> [f64; 2] {
+    if t < 0.15 {
+        let square = t * t;
+        return [
+            (1.0 + square / 60.0 * (1.0 + square / 42.0 * (1.0 + square / 40.0))) / 12.0,
+            (1.0 + square / 21.0 * (1.0 + 3.0 * square / 80.0)) / 360.0,
+        ];
+    }
+    let half = 0.5 * t;
+    let [square, cot] = [t * t, half.tan().recip()];
+    [(1.0 - half * cot) / square, (cot / (2.0 * t) + 0.25 / half.sin().powi(2) - 2.0 / square) / square]
 }

@@ -100,6 +100,16 @@ impl JointForce {
 }
 
 impl JointForce {
+    /// Energy of its spring, its stops and the preload at a coordinate; `None` where a characteristic has more, which no formula
+    /// tells.
+    pub(crate) fn energy(&self, x: f64) -> Option<f64> {
+        if self.characteristic.is_some() {
+            return None;
+        }
+        let beyond = self.stops.and_then(|stops| Some(0.5 * stops.stiffness * stops.depth(x)?.powi(2)));
+        Some(0.5 * self.stiffness * (x - self.free).powi(2) - self.preload * x + beyond.unwrap_or_default())
+    }
+
     /// How much the force falls by the coordinate and by its rate; nothing where it rises.
     pub(crate) fn stiffness_and_damping(&self, [x, rate]: [f64; 2], times: [f64; 2]) -> [f64; 2] {
         let slope = self.characteristic.as_ref().map_or(0.0, |of| of.at([x, x])[1]);

@@ -18,7 +18,7 @@ pub struct JointObservation {
     pub force_marker: Vector3<f64>,
     /// The same moment, in the axes of the first marker.
     pub moment_marker: Vector3<f64>,
-    /// Moment about the z axis of its spring, damper, stops, friction and motor, on the second marker.
+    /// Moment about the z axis of its spring, damper, stops, friction, motor and couplings, on the second marker.
     pub turn_effort: f64,
     /// Force of the same along the z axis.
     pub slide_effort: f64,
@@ -70,6 +70,15 @@ impl SystemMotion {
             let forces = force.at(at, times);
             *effort = forces.sum();
             out.drive_power += forces.motor * at[1];
+        }
+        for (coupling, of) in connections.couplings.iter().enumerate() {
+            for term in of.terms.iter().filter(|term| term.joint == number) {
+                let effort = match term.coordinate {
+                    Coordinate::Turn => &mut out.turn_effort,
+                    Coordinate::Slide => &mut out.slide_effort,
+                };
+                *effort += self.coupling_force(coupling) * term.factor;
+            }
         }
         out
     }

@@ -33,8 +33,10 @@ impl SystemMotion {
         last.correct_momenta(system, |k| {
             stage_rates.iter().zip(weights).map(|(rates, weight)| weight * rates.y[k]).sum::<f64>()
         });
+        self.keep_spring_energies();
         self.end(times, h)?;
         self.add_exchange(weights);
+        self.settle_springs(weights);
         Ok(())
     }
 
@@ -90,7 +92,11 @@ impl SystemMotion {
         last.evaluate(system, start, times)?;
         self.evaluations += 1;
         real.y.fill(0.0);
-        let rates = last.project_velocities(system, &mut real.y, |rates| matrices.of_mass.solve(&patterns.rows, rates));
+        room.impulses.fill(0.0);
+        let rates = last.project_velocities(system, &mut real.y, |rates| {
+            matrices.of_mass.solve(&patterns.rows, rates);
+            room.impulses.iter_mut().zip(&*rates).for_each(|(impulse, found)| *impulse -= found);
+        });
         if rates.is_nan() {
             return Err(Failed::Newton);
         }

@@ -2,6 +2,8 @@
 //!
 //! Eqs. (J18) of `docs/method/systems.md`.
 
+use crate::matrix::lists::larger;
+use crate::system::collocation::STAGES;
 use crate::system::elimination::newton::sizes;
 use crate::system::radau::stage_rates::StageRates;
 use crate::system::radau::{Failed, SystemMotion, Tried};
@@ -34,6 +36,10 @@ impl SystemMotion {
             self.next_rates(h, branch_time, place)?;
         }
         let error = self.explicit_error(h, times)?;
+        self.largest_energy = self.largest_energy.max(self.first.energy(&self.system, h));
+        let power = |stage: usize, joint: usize, _| self.stage_rates[stage].joints[joint].spring;
+        let after = |force: usize| self.stages[STAGES - 1].constraints.coordinates[force];
+        let error = larger(error, self.stop_error(h, power, after));
         if error.is_nan() {
             return Err(Failed::Newton);
         }

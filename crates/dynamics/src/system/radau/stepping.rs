@@ -75,7 +75,10 @@ impl SystemMotion {
             return Ok(());
         }
         // The discontinuity itself is where it is but for rounding.
-        let branch_time = self.time + 1e-12 * self.time.abs();
+        let [branch_before, branch_time] = [-1.0, 1.0].map(|side| self.time + side * 1e-12 * self.time.abs());
+        self.begin();
+        self.evaluate_first(branch_before)?;
+        let rates_before = self.first.constraints.own_rates.clone();
         let energies = |motion: &Self| {
             (0..motion.bodies.len()).map(|body| motion.energy_of(body)).collect::<Result<Vec<f64>, _>>()
         };
@@ -86,6 +89,7 @@ impl SystemMotion {
             Err(Failed::Newton) => return Err(RateError::Inertia),
         }
         let after = energies(self)?;
+        self.jump_work -= self.count_impulses(&rates_before);
         for (body, (before, after)) in before.into_iter().zip(after).enumerate() {
             let mut list = self.system.bodies[body].list_mut(&mut self.bodies[body]);
             let mut slow = *list.slow();
@@ -94,5 +98,21 @@ impl SystemMotion {
             self.jump_work += after - before;
         }
         Ok(())
+    }
+
+    /// Counts what the last impulses of the rows have done as work of the drives of their joints, between these rates of the rows and those
+    /// of now. Returns the sum.
+    fn count_impulses(&mut self, rates_before: &[f64]) -> f64 {
+        let Self { stages: [.., last], room, system, joint_works, .. } = self;
+        let of_row = |((impulse, before), after): ((&f64, &f64), &f64)| -0.5 * impulse * (before + after);
+        let mut of_rows = room.impulses.iter().zip(rates_before).zip(&last.constraints.own_rates).map(of_row);
+        let joints = system.connections.joints.iter().zip(joint_works);
+        joints
+            .map(|(joint, work)| {
+                let of_joint: f64 = of_rows.by_ref().take(joint.row_count()).sum();
+                work.drive += of_joint;
+                of_joint
+            })
+            .sum()
     }
 }

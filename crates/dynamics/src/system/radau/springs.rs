@@ -1,0 +1,108 @@
+//! Energy of the springs and stops of joints, which is known by the coordinates alone.
+//!
+//! The stages of a step sum up the work of a spring; its energy is a function of the coordinate. Where a step goes into a stop or
+//! leaves it, the two differ: by energy that the step makes or loses. Eqs. (J21) of `docs/method/systems.md`.
+
+use std::ops::Range;
+
+use crate::conservative::part;
+use crate::system::collocation::STAGES;
+use crate::system::joint::Joint;
+use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
+use crate::system::joint::force::JointForce;
+use crate::system::radau::SystemMotion;
+
+/// Energy that a step makes or loses at a stop over the largest so far, for which it counts as an error of one: a bounce takes some ten
+/// steps, and what it makes or loses is not forgotten.
+const STOP_ERROR: f64 = 0.1;
+
+impl SystemMotion {
+    /// Error of a step of length `h` by the energy that joints with stops make or lose in it. `power` has that of the
+    /// springs of a joint at a stage, by the numbers of its forces; `after` the coordinate of a force at the end of the step.
+    pub(super) fn stop_error(
+        &self,
+        h: f64,
+        power: impl Fn(usize, usize, Range<usize>) -> f64,
+        after: impl Fn(usize) -> f64,
+    ) -> f64 {
+        let (mut made, mut first) = (0.0, 0);
+        for (number, joint) in self.system.connections.joints.iter().enumerate() {
+            let own = first..first + joint.forces().count();
+            first = own.end;
+            if !joint.forces().any(|(_, force)| force.stops.is_some()) {
+                continue;
+            }
+            let before = |force: usize| self.first.constraints.coordinates[force];
+            let gains = joint
+                .forces()
+                .zip(own.clone())
+                .map(|((_, force), at)| Some(force.energy(after(at))? - force.energy(before(at))?));
+            let Some(gain) = gains.sum::<Option<f64>>() else { continue };
+            let work: f64 =
+                (0..STAGES).map(|stage| self.scheme.weights[stage] * h * power(stage, number, own.clone())).sum();
+            made += (gain + work).abs();
+        }
+        if made > 0.0 { made / (STOP_ERROR * self.largest_energy) } else { 0.0 }
+    }
+
+    /// The same of a step by collocation, whose stages are known.
+    pub(super) fn stop_error_of_stages(&self, h: f64) -> f64 {
+        let coordinate = |stage: usize, force: usize| self.stages[stage].constraints.coordinates[force];
+        let after = |force: usize| {
+            let before = self.first.constraints.coordinates[force];
+            let to_end = |factors: [f64; STAGES]| {
+                (0..STAGES).map(|stage| factors[stage] * (coordinate(stage, force) - before)).sum::<f64>() + before
+            };
+            self.scheme.at_end.map_or_else(|| coordinate(STAGES - 1, force), to_end)
+        };
+        let power = |stage: usize, _, own: Range<usize>| {
+            own.map(|force| self.stages[stage].joint_powers[force].spring).sum::<f64>()
+        };
+        self.stop_error(h, power, after)
+    }
+
+    /// Keeps the energy of the springs where the system is.
+    pub(super) fn keep_spring_energies(&mut self) {
+        let Self { system, start, spring_energies, .. } = self;
+        let joints = system.connections.joints.iter().zip(&start.joints);
+        for (energy, (joint, coordinates)) in spring_energies.iter_mut().zip(joints) {
+            *energy = energy_of(joint, coordinates);
+        }
+    }
+
+    /// Counts what springs have given since [`Self::keep_spring_energies`] by their energy, and not by `summed`, which the stages say of
+    /// a joint. The difference, which a step has made or lost, is work on the bodies that it holds, in equal parts, so that balances tell.
+    pub(super) fn settle_springs(&mut self, weights: [f64; STAGES]) {
+        let Self { system, start, spring_energies, stage_rates, joint_works, bodies, .. } = self;
+        for (number, joint) in system.connections.joints.iter().enumerate() {
+            let Some([before, after]) =
+                spring_energies[number].zip(energy_of(joint, &start.joints[number])).map(<[f64; 2]>::from)
+            else {
+                continue;
+            };
+            let summed: f64 =
+                stage_rates.iter().zip(weights).map(|(rates, weight)| weight * rates.joints[number].spring).sum();
+            let missing = before - after - summed;
+            if missing == 0.0 {
+                continue;
+            }
+            joint_works[number].spring += missing;
+            let held = joint.markers.iter().filter_map(|marker| marker.body());
+            let share = missing / held.clone().count().max(1) as f64;
+            for b in held {
+                let mut list = system.bodies[b].list_mut(&mut bodies[b]);
+                let mut slow = *list.slow();
+                slow[part::WORK] += share;
+                list.set_slow(&slow);
+            }
+        }
+    }
+}
+
+/// Energy of the springs of a joint, where it is known by the coordinates.
+fn energy_of(joint: &Joint, coordinates: &JointCoordinates) -> Option<f64> {
+    let of_force = |(coordinate, force): (Coordinate, &JointForce)| {
+        force.energy(if coordinate == Coordinate::Turn { coordinates.turn } else { coordinates.slide })
+    };
+    joint.forces().map(of_force).sum()
+}
