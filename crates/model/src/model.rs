@@ -160,9 +160,18 @@ impl Model {
         self.body.flexible() - self.body.natural_modes
     }
 
-    /// Which modes are large, numbered from 0; none without large deflection.
+    /// Which coordinates are large, numbered from 0: modes, and the [static answer](Self::static_answer); none without large deflection.
     pub fn large_modes(&self) -> &[usize] {
         self.physics.large_deflection.as_ref().map_or(&[], Manifold::large)
+    }
+
+    /// The large coordinate that is the static answer to moments, numbered from 0, if there is one.
+    pub fn static_answer(&self) -> Option<usize> {
+        let coupling = self.meshed.as_ref()?.modes.coupling.as_ref()?;
+        let large = self.large_modes();
+        let coupled = large.iter().copied().find(|k| coupling.col(*k).norm_max() > 0.0);
+        // Where nothing is left beside it, it is coupled to nothing: it is a static shape, which comes last.
+        coupled.or(large.last().copied())
     }
 
     /// The coordinates of the modes and of the shapes that follow them: u is their sum with [`Meshed::modes`] and then

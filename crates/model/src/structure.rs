@@ -592,7 +592,7 @@ impl Structure<'_> {
     /// The stress (6m×k) of static responses (3n×k) that modes and static shapes leave out.
     pub fn stress_beside(&self, modes: &Modes, responses: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
         let recovery = self.recovery()?;
-        // Coupled shapes follow from the shapes.
+        // The coupling of the shapes follows from them.
         let asked = self.of_body("stress beside modes").with_modes(modes).with("responses", &responses);
         self.ask(asked, [6 * recovery.sites().len(), responses.ncols()], || {
             let mut parts = modes.shapes.transpose() * (self.matrices()?.stiffness() * responses);

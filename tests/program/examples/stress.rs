@@ -140,7 +140,7 @@ fn bent(model: &Model, deflection: f64) -> f64 {
     deflection * LENGTH * model.body.mass.sqrt() / 2.0
 }
 
-/// What large modes leave out of the stress is stated only where they hardly bend the body.
+/// The stress that large modes leave out is stated only where they hardly bend the body.
 #[test]
 fn what_large_modes_leave_out_of_a_body_that_is_bent_far_is_not_stated() {
     for (deflection, is_stated) in [(0.01, true), (0.05, false)] {

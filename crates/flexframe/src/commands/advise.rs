@@ -160,7 +160,7 @@ pub fn advise(
                 share: mode.share,
                 worth_keeping: mode.worth_keeping,
                 linear_strain: mode.strain.map(LinearStrainRow::from),
-                large: model.large_modes().contains(&k),
+                large: model.large_modes().contains(&k) && model.static_answer() != Some(k),
             })
             .collect(),
         keep: model.advice.keep,

@@ -1,4 +1,4 @@
-//! The static answer to the moments on a body, as a large coordinate.
+//! The static answer to the moments on a body, as a large coordinate: Eq. (G5) of `docs/method/stiffening.md`.
 //!
 //! A moment works on the angle of its patch, of which no mode has the right share: with the modes alone large a rod that an end
 //! moment turns by half a radian is off by 3 %. With what its answer has beside these as one more direction the manifold holds the whole

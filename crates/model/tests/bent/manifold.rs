@@ -173,6 +173,15 @@ fn a_rod_that_a_moment_swings_keeps_its_energy() {
     assert!(errors[1] < 2e-7 && errors[1] < errors[0] / 8.0, "{errors:?}");
 }
 
+/// With no more modes than are large, the answer is the static shape.
+#[test]
+fn the_answer_may_be_all_that_is_left() {
+    let mut scene = turned(0.2);
+    scene.modes.flexible = Flexible::Count(2);
+    let model = built(&scene);
+    assert_eq!((model.large_modes(), model.static_answer()), (&[0, 1, 2][..], Some(2)));
+}
+
 /// Bodies whose loads are no moments, or are small beside others, have their modes as coordinates.
 #[test]
 fn the_answer_to_a_small_moment_is_no_coordinate() {

@@ -112,10 +112,9 @@ pub(crate) fn settled(scene: &Scene, model: &Model, switched: Option<(Subject, b
         if on { Choice::On } else { Choice::Off }
     };
     settled.effects.choices = EffectMap::from_fn(|effect| choose(Subject::Effect(effect)));
-    let large: Vec<usize> = model.large_modes().iter().map(|k| k + 1).collect();
-    // With a static answer among them, the list of the modes is that of the scene.
-    let has_answer = model.meshed.as_ref().is_some_and(|meshed| meshed.modes.coupling.is_some());
-    if !large.is_empty() && !has_answer {
+    let large: Vec<usize> =
+        model.large_modes().iter().filter(|k| model.static_answer() != Some(**k)).map(|k| k + 1).collect();
+    if !large.is_empty() {
         settled.modes.large = Some(Large::List(large));
     }
     settled.modes.static_correction = choose(Subject::StaticCorrection);

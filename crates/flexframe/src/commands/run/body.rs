@@ -141,6 +141,7 @@ impl<'a> FollowedBody<'a> {
             step_error,
             effects: effects::computed(scene, model),
             large_modes: model.large_modes().iter().map(|k| k + 1).collect(),
+            static_answer: model.static_answer().map(|k| k + 1),
         };
         (report, warnings)
     }

@@ -56,4 +56,6 @@ pub struct BodyRunReport {
     pub effects: Vec<(&'static str, bool)>,
     /// The modes that bent the body far; none without large deflection. Numbered from 1.
     pub large_modes: Vec<usize>,
+    /// The one of these that is no mode, but what the static answer to the moments has beside the others.
+    pub static_answer: Option<usize>,
 }

@@ -102,7 +102,11 @@ impl BodyRunReport {
         if !self.large_modes.is_empty() {
             let modes: Vec<String> = self.large_modes.iter().map(ToString::to_string).collect();
             let s = if modes.len() == 1 { "" } else { "s" };
-            writeln!(f, "  large    mode{s} {}", modes.join(", "))?;
+            let answer = match self.static_answer {
+                Some(k) => format!(" ({k} is the static answer to the moments beside the others)"),
+                None => String::new(),
+            };
+            writeln!(f, "  large    mode{s} {}{answer}", modes.join(", "))?;
         }
         write!(f, "  motion   {}", self.steps_in_words(run))?;
         match is_single {

@@ -81,19 +81,23 @@ fn a_body_file_is_the_same_whether_its_answers_were_known() {
 const STRESS: &str =
     "[effects]\nlarge_deflection = true\nrefuse = false\n[output]\nstress = true\npeak_stress = true\n";
 const LARGE: &str = "flexible = 6\nstatic_correction = true\nlarge = [1, 2]";
+/// A moment, of which the static answer is a large coordinate.
+const MOMENT: &str = "[[loads]]\nkind = \"moment\"\nat = [200.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = 1e4\n\
+    history = { kind = \"constant\" }\n";
 
 /// Conserved: the same bits from the mesh.
 #[test]
 fn the_stress_from_a_body_file_is_the_same_to_the_last_bit_and_not_recovered_again() {
-    for modes in [MODES, LARGE] {
+    for (modes, load) in [(MODES, FORCE), (LARGE, FORCE), (LARGE, MOMENT)] {
         let rest = format!(
-            "{CLAMPED}{FORCE}{}",
+            "{CLAMPED}{load}{}",
             if modes == LARGE { STRESS } else { &STRESS[STRESS.find("[output]").unwrap()..] }
         );
         let (folder, direct, _) = reduced(modes, &rest, false);
         let builder = Builder::default();
         let stresses = |scene: &Scene| {
             let model = builder.build(scene, |_| ()).unwrap();
+            assert_eq!(model.static_answer(), (load == MOMENT).then_some(2));
             let stress = model.stress.as_ref().unwrap();
             let of_row = |now: dynamics::Observation| {
                 let peak = stress.peak(&now).unwrap();
