@@ -80,7 +80,7 @@ impl BodyRunReport {
         let Self { turned, turned_from_start: from_start, .. } = *self;
         let turned_by = format!("turned by {} rad", quantity(turned));
         if turned.abs() <= PI {
-            if (turned.abs() - from_start).abs() <= SAME_TURN * from_start {
+            if turned.abs() <= (1.0 + SAME_TURN) * from_start {
                 return turned_by;
             }
             let from_start = quantity(rounded(from_start, 4));
