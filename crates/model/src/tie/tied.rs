@@ -19,7 +19,7 @@ use crate::tie::pairs::{Unpaired, pairs};
 
 /// Sine or cosine of the angle between an axis and a line below which they are parallel or at right angles.
 const ALONG: f64 = 1e-6;
-/// Time on both sides of a discontinuity, over that of the run, at which a drive is looked at; and the part of its value by which one jumps.
+/// Time on both sides of a discontinuity, over that of the run, at which a drive is looked at; and the part of its largest value by which one jumps.
 const BESIDE: f64 = 4e-13;
 const JUMP: f64 = 1e-9;
 
@@ -306,10 +306,11 @@ impl<'a> Island<'a> {
         let of_body = &self.scene.bodies[self.bodies[0]];
         let end = of_body.time.end;
         let beside = |time: f64, by: f64| made.history.at(time, time + by * BESIDE * end);
+        let rounding = JUMP * made.history.largest(end);
         let jump =
             made.history.discontinuities().into_iter().filter(|time| *time > 0.0 && *time < end).find_map(|time| {
                 let [before, after] = [-1.0, 1.0].map(|by| beside(time, by));
-                ((after - before).abs() > JUMP * before.abs().max(after.abs())).then_some((time, before, after))
+                ((after - before).abs() > rounding).then_some((time, before, after))
             });
         let Some((time, before, after)) = jump else { return Ok(made) };
         let [before, after] = [before, after].map(|factor| drive.amplitude * factor);
