@@ -10,6 +10,7 @@ use modal::NoCycles;
 use model::{BodyMarker, Doubt, Meshed, Model};
 use scene::{Body, Choice, Load, Scene, System, Units};
 
+use crate::report::quantity;
 use crate::rows::units::UnitLabels;
 
 /// Young's moduli of materials, Pa: from the softest gels to above diamond.
@@ -23,6 +24,8 @@ const SPEEDS_OF_SOUND: [f64; 2] = [0.3, 3e4];
 /// filled with metal may be).
 const DENSE: f64 = 2500.0;
 const SLOWEST_DENSE: f64 = 300.0;
+/// A mass, kg, that no part has which is drawn solid: 1300 m³ of steel. A part of 20 mm whose mesh is in mm and is taken for one in m is as heavy.
+const HEAVIEST: f64 = 1e7;
 /// Standard gravity, m/s², and its number in the usual units: m, cm, mm; in, ft.
 const GRAVITY: f64 = 9.80665;
 const DECIMAL_GRAVITIES: [f64; 3] = [9.81, 981.0, 9810.0];
@@ -73,6 +76,7 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
             doubts.extend(of_materials(&body.materials, &scene.units));
         }
         doubts.extend(mesh_notes.iter().map(|note| format!("{}: {note}", body.mesh.display())));
+        doubts.extend(of_mass(model.body.mass, mesh.size(), &scene.units));
         doubts.extend(model::doubts(scene, body, mesh).into_iter().map(|doubt: Doubt| doubt.to_string()));
     }
     if let Some(reason) = model.meshed.as_ref().and_then(|meshed| meshed.no_cycles.as_ref()) {
@@ -213,6 +217,21 @@ fn of_sound(material: &Material, of: &str, labels: &UnitLabels<'_>) -> Option<St
     ))
 }
 
+/// Doubt about the mass of a mesh: that of one in millimetres, taken for metres.
+fn of_mass(mass: f64, size: [f64; 3], units: &Units) -> Option<String> {
+    let in_si = mass * UnitLabels::from(units).in_si([0, 1, 0])?;
+    let longest = size.into_iter().fold(0.0, f64::max);
+    (in_si > HEAVIEST).then(|| {
+        format!(
+            "the body is {} {} long and has a mass of {mass:.3e} {}: check the unit of its mesh against `units`, since nothing is \
+             converted; with a mesh in mm, `length = \"mm\"`, and numbers that go with it (docs/reference/units.md)",
+            quantity(longest),
+            units.length,
+            units.mass
+        )
+    })
+}
+
 /// Doubt about gravity, or about an acceleration of the base: the number of standard gravity in other units than those of
 /// the scene.
 fn of_acceleration(load: usize, acts: &Load, units: &Units) -> Option<String> {
@@ -253,6 +272,15 @@ mod tests {
     fn a_factor_in_the_place_of_cycles_is_told_with_the_reason() {
         let told = without_cycles(&NoCycles::FlatElements { left: 0.81, limit: 0.75 });
         assert!(told.contains("takes long") && told.contains("leaves 0.81 of the strain energy"), "{told}");
+    }
+
+    /// Closed form: a bar of steel of 200 x 20 x 10 mm has 0.314 kg, and 3.14e8 kg where its mesh is taken to be in metres.
+    #[test]
+    fn a_mesh_in_millimetres_that_is_taken_for_metres_is_told() {
+        let told = of_mass(7850.0 * 200.0 * 20.0 * 10.0, [200.0, 20.0, 10.0], &units("m", "kg")).unwrap();
+        assert!(told.contains("200 m long") && told.contains("3.140e8 kg"), "{told}");
+        assert!(of_mass(0.314e-3, [200.0, 20.0, 10.0], &units("mm", "Mg")).is_none());
+        assert!(of_mass(1e20, [1.0; 3], &units("cubit", "talent")).is_none(), "units without a size");
     }
 
     /// A marker whose faces warp so.

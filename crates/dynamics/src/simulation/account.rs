@@ -114,6 +114,11 @@ impl EnergyAccount {
 
     /// Checks the energy at a time; the `rate` is the largest of ω_k and 2 ζ_k ω_k.
     pub(crate) fn check(&mut self, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
+        self.check_beyond(0.0, now, rate, step)
+    }
+
+    /// The same where steps may miss or add this energy.
+    pub(crate) fn check_beyond(&mut self, unseen: f64, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
         let Energies { time, internal, .. } = *now;
         let start = *self.start.get_or_insert(*now);
         let put_in = (now.work - start.work) - (now.translation - start.translation);
@@ -128,7 +133,8 @@ impl EnergyAccount {
         let last = self.last.replace(*now).unwrap_or(start);
         let exchange = (now.work - last.work).abs() + (now.dissipation - last.dissipation).abs();
         self.largest_exchange = self.largest_exchange.max(exchange);
-        let unknown = self.largest_exchange + SUMMED * self.exchanged.sum() + rounding + SETTING_IN * self.of_loads;
+        let unknown =
+            self.largest_exchange + SUMMED * self.exchanged.sum() + rounding + SETTING_IN * self.of_loads + unseen;
         let is_off = if is_resolved(rate, step) {
             excess.abs() > OFF * self.scale + unknown
         } else {

@@ -147,6 +147,31 @@ fn bouncing_between_stops_keeps_the_energy() {
     }
 }
 
+/// Closed form: a wheel at rest on which nothing acts begins to turn as its drive does, however gently that begins.
+#[test]
+fn a_drive_begins_from_rest() {
+    for (formula, angle, rate) in
+        [("t^2", 2.25, 3.0), ("t^3", 3.375, 6.75), ("t - sin(t)", 1.5 - f64::sin(1.5), 1.0 - f64::cos(1.5))]
+    {
+        let history = History::Expression(Expression::new(formula, Vec::new()).unwrap());
+        for (scheme, tolerance) in
+            [(SystemScheme::Radau, 1e-3), (SystemScheme::Radau, 1e-8), (SystemScheme::Gauss, 1e-6)]
+        {
+            let drive = JointDrive { amplitude: 1.0, history: history.clone() };
+            let joint = Joint::revolute("hinge", [ground(0.0), on(0, 0.0)]).turned_by(drive);
+            let system = System::new(bodies(1), vec![joint]).unwrap();
+            let mut motion = SystemMotion::new(system, &[at(0.0, 0.0, 0.0)]).unwrap().with_scheme(scheme);
+            let steps = motion.advance(1.5, tolerance, &mut 1e-4).unwrap();
+            let found = motion.joint_coordinates(0);
+            assert!(
+                (found.turn - angle).abs() < 1e-10 && (found.turn_rate - rate).abs() < 1e-9,
+                "{formula}: {found:?}"
+            );
+            assert!(steps < 500, "{formula}: {steps} steps");
+        }
+    }
+}
+
 /// Closed form: dry friction takes v²/2a and all of the energy.
 #[test]
 fn friction_brings_to_rest() {

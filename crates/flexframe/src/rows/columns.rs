@@ -95,7 +95,7 @@ pub static COLUMNS: [Column<Row>; 61] = [
     joint("rate", (AngularVelocity, "none"), "rate of the angle", Number(|now| now.coordinates.turn_rate)).only_with(part::TURNS),
     joint("position", (Length, "none"), "distance of the second marker along the z axis of the first", Number(|now| now.coordinates.slide)).only_with(part::SLIDES),
     joint("velocity", (Velocity, "none"), "rate of the position", Number(|now| now.coordinates.slide_rate)).only_with(part::SLIDES),
-    joint("torque", (Moment, "none"), "moment of the spring, the damper, the stops, friction and the motor on the second body, about the axis", Number(|now| now.turn_effort)).only_with(part::TURN_FORCE).in_role(Direct),
+    joint("torque", (Moment, "none"), "moment of the spring, the damper, the stops, friction, the motor and couplings on the second body, about the axis", Number(|now| now.turn_effort)).only_with(part::TURN_FORCE).in_role(Direct),
     joint("thrust", (Force, "none"), "force of the same along the axis", Number(|now| now.slide_effort)).only_with(part::SLIDE_FORCE).in_role(Direct),
     joint("force", (Force, "global"), "force of the joint on its second body, at the second marker; on the first it is the opposite", Vector(|now| now.reaction_global.force_global.into())).in_role(Direct),
     joint("moment", (Moment, "global"), "moment of the joint on its second body, about the second marker", Vector(|now| now.reaction_global.moment_global.into())).in_role(Direct),

@@ -26,8 +26,14 @@ pub(super) fn line(scene: &Scene, report: &BodyRunReport, scene_file: &str) -> L
     match (expected, open) {
         (Some((error, how)), open) if open.is_none_or(|open| open <= error) => {
             let most = if matches!(scene.time.control, StepControl::Tolerance(_)) { "at most " } else { "about " };
-            let meaning = format!("motion off by {most}{} of its largest", percent(error));
-            Place::Steps.known(error, meaning, format!("{how}{closed}"), next(error))
+            // Of bodies in joints each step has the bound, by the size of the bodies.
+            let (of_what, beside) = if scene.tied {
+                ("the size of the bodies in a step", "; velocities and accelerations may be off by more")
+            } else {
+                ("its largest", "")
+            };
+            let meaning = format!("motion off by {most}{} of {of_what}", percent(error));
+            Place::Steps.known(error, meaning, format!("{how}{beside}{closed}"), next(error))
         }
         (_, Some(open)) => {
             let meaning = format!("energy off by {} of what there was or came and went", percent(open));

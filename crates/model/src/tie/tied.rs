@@ -19,6 +19,9 @@ use crate::tie::pairs::{Unpaired, pairs};
 
 /// Sine or cosine of the angle between an axis and a line below which they are parallel or at right angles.
 const ALONG: f64 = 1e-6;
+/// Time on both sides of a discontinuity, over that of the run, at which a drive is looked at; and the part of its largest value by which one jumps.
+const BESIDE: f64 = 4e-13;
+const JUMP: f64 = 1e-9;
 
 /// Bodies that joints, springs and bushings connect with each other.
 #[derive(Debug, Clone)]
@@ -187,7 +190,7 @@ impl<'a> Island<'a> {
             }
         };
         if let Some(drive) = drive {
-            let given = self.drive(&format!("{key}.drive"), drive)?;
+            let given = self.steady_drive(&format!("{key}.drive"), drive)?;
             made = match drive.along {
                 scene::Coordinate::Turn => made.turned_by(given),
                 scene::Coordinate::Slide => made.moved_by(given),
@@ -295,6 +298,25 @@ impl<'a> Island<'a> {
         let help = "let the marker take faces (`group`, `box`, `at` with `radius`), or use a joint that leaves the turn free: \
                     a line of nodes is hinged by `tie = \"nodes\"` and a revolute joint along it";
         self.scene.place(key).refuse(found, "a marker whose turns are known", help).into()
+    }
+
+    /// The drive of a coordinate, which may not jump: no force moves a body in no time.
+    fn steady_drive(&self, key: &str, drive: &JointDrive) -> Result<dynamics::JointDrive, BuildError> {
+        let made = self.drive(key, drive)?;
+        let of_body = &self.scene.bodies[self.bodies[0]];
+        let end = of_body.time.end;
+        let beside = |time: f64, by: f64| made.history.at(time, time + by * BESIDE * end);
+        let rounding = JUMP * made.history.largest(end);
+        let jump =
+            made.history.discontinuities().into_iter().filter(|time| *time > 0.0 && *time < end).find_map(|time| {
+                let [before, after] = [-1.0, 1.0].map(|by| beside(time, by));
+                ((after - before).abs() > rounding).then_some((time, before, after))
+            });
+        let Some((time, before, after)) = jump else { return Ok(made) };
+        let [before, after] = [before, after].map(|factor| drive.amplitude * factor);
+        let found = format!("a coordinate that jumps from {before} to {after} at time {time}");
+        let help = "give it time: a `ramp`, a `table`, or a formula without jumps; a force or a moment that jumps is a `motor`";
+        Err(self.scene.place(&format!("{key}.history")).refuse(found, "a coordinate without jumps", help).into())
     }
 
     fn drive(&self, key: &str, drive: &JointDrive) -> Result<dynamics::JointDrive, BuildError> {

@@ -326,6 +326,35 @@ fn places_that_do_not_fit_each_other_or_their_joint_are_refused() {
     assert_eq!((joint.rows.len(), joint.row_count()), (0, 3 * models[0].markers[0].parts.len()));
 }
 
+#[test]
+fn a_drive_whose_coordinate_jumps_is_refused_with_the_time_and_one_whose_speed_jumps_is_not() {
+    let driven = |history: &str| {
+        format!(
+            "{HEAD}[body]\n{RIGID}markers = {{ m = {{ at = [0, 0, 0] }} }}\n[[joints]]\nkind = 'revolute'\naxis = [0, 0, 1]\n\
+             between = ['ground', 'body.m']\ndrive = {{ amplitude = 2.0, history = {history} }}\n{TIME}"
+        )
+    };
+    for (history, words) in [
+        ("{ kind = 'step', at = 0.01 }", "jumps from 0 to 2 at time 0.01"),
+        ("{ kind = 'sine', frequency = 100.0, phase = 0.5, start = 0.005 }", "at time 0.005"),
+        ("{ kind = 'expression', formula = 'floor(100*t)' }", "jumps from 0 to 2 at time 0.01"),
+    ] {
+        let (system, models) = system(&driven(history));
+        let error = tie(&system, &models).expect_err(history).to_string();
+        assert!(error.contains("joints[0].drive.history") && error.contains(words), "{history}: {error}");
+    }
+    for history in [
+        "{ kind = 'ramp', start = 0.005, duration = 0.01 }",
+        "{ kind = 'table', points = [[0, 0], [0.01, 1], [0.0100001, 5], [0.02, 0]] }",
+        "{ kind = 'half-sine', start = 0.001, duration = 0.01 }",
+        "{ kind = 'expression', formula = 'abs(t - 0.01)' }",
+        "{ kind = 'step', at = 0.0 }",
+    ] {
+        let (system, models) = system(&driven(history));
+        assert!(tie(&system, &models).is_ok(), "{history}");
+    }
+}
+
 /// Stress along a bar at points on its upper side, at rest under a load, by its end.
 fn stress_at_rest(text: &str) -> Vec<f64> {
     let (system, models) = system(text);

@@ -87,7 +87,7 @@ impl Check<'_> {
             Body::Rigid(_) => Err(self.document.place(key).refuse(
                 "a part of a mesh",
                 "none, since `rigid` in [body] has no mesh",
-                "use loads and constraints at points, or give `mesh` and `material` in [body] instead of `rigid`",
+                "use points (`at` alone) for loads, constraints and markers, or give `mesh` and `material` in [body] instead of `rigid`",
             )),
         }
     }

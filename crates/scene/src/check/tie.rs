@@ -223,6 +223,9 @@ impl Check<'_> {
                 }
             }
         }
+        let is_nothing = [stiffness, damping].iter().all(|of| of.translation == [0.0; 3] && of.rotation == [0.0; 3]);
+        let help = "give `stiffness = { translation = [x, y, z], rotation = [x, y, z] }`, `damping` likewise, or remove the bushing";
+        self.require(!is_nothing, key, "a stiffness or a damping that is not zero", help)?;
         Ok(Bushing { name, between, stiffness, damping })
     }
 

@@ -278,6 +278,17 @@ pub enum CouplingKind {
 }
 
 impl CouplingKind {
+    /// True if it acts along a coordinate of a joint.
+    pub fn acts_on(&self, joint: usize, along: Coordinate) -> bool {
+        match (*self, along) {
+            (Self::Gear { joints, .. }, Coordinate::Turn) => joints.contains(&joint),
+            (Self::Gear { .. }, Coordinate::Slide) => false,
+            (Self::Rack { joints: [turns, _], .. }, Coordinate::Turn) => turns == joint,
+            (Self::Rack { joints: [_, slides], .. }, Coordinate::Slide) => slides == joint,
+            (Self::Screw { joint: of, .. }, _) => of == joint,
+        }
+    }
+
     /// The joints.
     pub fn joints(&self) -> [usize; 2] {
         match *self {

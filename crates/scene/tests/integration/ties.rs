@@ -226,6 +226,7 @@ fn refusals_name_the_place_and_the_way_out() {
         ("high = 0.2, stiffness", "stiffness", "joints[1].spring.stops", "`low`, `high` or both"),
         ("rate = 1e-3", "rate = 0", "joints[1].spring.friction.rate", "greater than 0"),
         ("translation = [1, 2, 3]", "translation = [1, 2, -3]", "bushings[0].stiffness.translation[2]", "0 or more"),
+        ("translation = [1, 2, 3]", "translation = [0, 0, 0]", "bushings[0]", "that is not zero"),
         ("duration = 0.5", "duration = -0.5", "joints[0].drive.history.duration", "greater than 0"),
         // Bodies.
         (

@@ -1,4 +1,4 @@
-//! Springs, dampers and bushings between markers.
+//! Springs, dampers and bushings between markers: Eq. (J22) of `docs/method/systems.md`.
 
 use nalgebra::Vector3;
 use rigid_kin::{cross_matrix, rotation_vector};

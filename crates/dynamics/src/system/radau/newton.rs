@@ -71,9 +71,7 @@ impl SystemMotion {
         let (mut last, mut since) = (f64::INFINITY, 0);
         for pass in 1..=MAX_PASSES {
             self.evaluate_stages(h)?;
-            if pass == 1 {
-                self.find_energy(h);
-            }
+            self.find_energy(h);
             since = if self.factor(h, pass == 1)? { 1 } else { since + 1 };
             let [position, change] = self.improve(h);
             if !change.is_finite() {
@@ -99,7 +97,7 @@ impl SystemMotion {
     }
 
     /// The energy that changes are measured by, where the start has none: that of bodies at rest, on which loads begin to act within the
-    /// step.
+    /// step, or which drives have begun to move in the pass before.
     fn find_energy(&mut self, h: f64) {
         let Self { stages, system, largest_energy, .. } = self;
         if *largest_energy == 0.0 {
@@ -183,7 +181,14 @@ impl SystemMotion {
             let [position, mut energy] = sizes(system, dx, h);
             energy += matrices.strain_energy(&stages[1], dx);
             moved = larger(moved, position);
-            let of_energy = if energy == 0.0 { 0.0 } else { (energy / *largest_energy).sqrt() };
+            let of_energy = if energy == 0.0 {
+                0.0
+            } else if *largest_energy == 0.0 {
+                // Drives move what was at rest: the change is all that there is.
+                1.0
+            } else {
+                (energy / *largest_energy).sqrt()
+            };
             largest = larger(larger(largest, position), of_energy);
             stages[i].add_in_body_axes(system, dx, dy);
             for row in 0..multipliers[i].len() {

@@ -3,7 +3,7 @@
 use dynamics::DrivenMotion;
 use model::Builder;
 use results::{BodyMetadata, BodyProperties, JointMetadata, Metadata, Units};
-use scene::{Coordinate, Joint, Scene, StepControl, System};
+use scene::{Coordinate, Scene, StepControl, System};
 
 use super::body::RunBody;
 use crate::drawn::mesh_properties;
@@ -30,7 +30,7 @@ pub(super) fn metadata_of_file(system: &System, bodies: &[RunBody<'_>], builder:
 
 /// As [`metadata`], with the joints.
 pub fn metadata_of_system(system: &System, bodies: &[RunBody<'_>]) -> Option<Metadata> {
-    let joints = system.joints.iter().map(|joint| joint_metadata(system, joint)).collect();
+    let joints = (0..system.joints.len()).map(|joint| joint_metadata(system, joint)).collect();
     Some(Metadata { joints, ..metadata(bodies)? })
 }
 
@@ -102,11 +102,13 @@ fn body_metadata(of: &RunBody<'_>) -> BodyMetadata {
     }
 }
 
-fn joint_metadata(system: &System, joint: &Joint) -> JointMetadata {
+fn joint_metadata(system: &System, number: usize) -> JointMetadata {
+    let joint = &system.joints[number];
     let coordinates = joint.kind.coordinates();
     let acts = |along| {
         let of_spring = joint.spring.iter().map(|spring| spring.along);
-        of_spring.chain(joint.motor.iter().map(|motor| motor.along)).any(|coordinate| coordinate == along)
+        let is_coupled = system.couplings.iter().any(|coupling| coupling.kind.acts_on(number, along));
+        is_coupled || of_spring.chain(joint.motor.iter().map(|motor| motor.along)).any(|coordinate| coordinate == along)
     };
     let parts = [
         (part::TURNS, coordinates.contains(&Coordinate::Turn)),

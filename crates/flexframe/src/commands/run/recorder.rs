@@ -124,7 +124,7 @@ impl<'a> Recorder<'a> {
         self.flush()?;
         let time = started.elapsed();
         let steps = self.steps();
-        let tied = self.movers.iter().filter_map(Mover::tied_report).collect();
+        let tied: Vec<_> = self.movers.iter().filter_map(Mover::tied_report).collect();
         let Self { movers, row, writer, rows, estimate, .. } = self;
         let count = row.bodies.len();
         let mut reports: Vec<_> = movers.into_iter().flat_map(|mover| reports(mover, &row, count)).collect();
@@ -135,7 +135,8 @@ impl<'a> Recorder<'a> {
         schemes.dedup();
         let mut times = Times::default();
         reports.iter().for_each(|report| times.add_all(&report.times));
-        let warnings = reports.iter().flat_map(|report| report.warnings.clone()).collect();
+        let of_bodies = reports.iter().flat_map(|report| report.warnings.clone());
+        let warnings = tied.iter().flat_map(|tied| tied.doubts()).chain(of_bodies).collect();
         let mut report = RunReport {
             title: scene.title.clone(),
             units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),

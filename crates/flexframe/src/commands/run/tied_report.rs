@@ -10,6 +10,8 @@ use crate::report::{quantity, rounded};
 
 /// Changes of a body at the beginning below these parts of the size of the system and of its speeds are not told.
 const TOLD: f64 = 1e-9;
+/// Moves over the size of the system, and turns (rad), above which a place in the scene may be wrong.
+const FAR: f64 = 0.1;
 
 /// Report of bodies that joints, springs or bushings tie together.
 #[derive(Debug, Clone, Serialize)]
@@ -26,6 +28,9 @@ pub struct TiedReport {
     pub redundant: Vec<(String, usize)>,
     /// Changes by which the joints closed at the beginning, of the bodies that were not where they had to be.
     pub assembled: Vec<AssembledReport>,
+    /// Size of the system.
+    #[serde(skip)]
+    size: f64,
     /// Steps taken.
     pub steps: u64,
     /// The limit that the shapes of a body set for the steps of an explicit scheme, where steps came near to it.
@@ -87,6 +92,7 @@ impl TiedReport {
             rigid_dofs: simulation.rigid_dofs(),
             redundant: simulation.redundant().to_vec(),
             assembled: assembled.filter(is_told).collect(),
+            size,
             steps: simulation.stats().accepted,
             step_limit: simulation.met_shape_limit().map(|ShapeLimit { body, frequency, limit }| StepLimitReport {
                 body: bodies[body].clone(),
@@ -95,6 +101,20 @@ impl TiedReport {
             }),
             bodies,
         }
+    }
+}
+
+impl TiedReport {
+    /// Warnings of bodies that were moved far.
+    pub(super) fn doubts(&self) -> impl Iterator<Item = String> {
+        let is_far = |of: &&AssembledReport| of.moved > FAR * self.size || of.turned > FAR;
+        self.assembled.iter().filter(is_far).map(|AssembledReport { body, moved, turned, .. }| {
+            let [moved, turned] = [moved, turned].map(|x| quantity(rounded(*x, 4)));
+            format!(
+                "{body} does not begin where its scene has it, but moved by {moved} and turned by {turned} rad, since its joints do not \
+                 close there: if this was not meant, a position, an attitude, a marker or the start of a drive is wrong"
+            )
+        })
     }
 }
 

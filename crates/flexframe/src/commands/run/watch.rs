@@ -123,6 +123,11 @@ impl<'a> Watch<'a> {
     /// Findings when the motion has come to its end, in which this energy came and went, in steps of at most this length.
     pub fn finish(&mut self, exchanged: f64, longest_step: f64) -> Watched {
         let Self { scene, model, .. } = *self;
+        if scene.tied {
+            // A body in joints may turn about a center of mass that rests, under forces that cancel.
+            let linear_momentum = (2.0 * model.body.mass * self.monitor.scales().energy).sqrt();
+            self.monitor.widen(&Balances { linear_momentum, ..Balances::default() });
+        }
         self.monitor.exchanged(exchanged);
         let balances = self.monitor.balances();
         let is_right_unsummed = self.is_right_unsummed(longest_step);

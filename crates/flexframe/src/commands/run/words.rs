@@ -12,6 +12,9 @@ use crate::report::{quantity, rounded, size_and_mass};
 use crate::rows::effects;
 use crate::rows::units::UnitLabels;
 
+/// Part by which a body may have turned further than the angle to its first attitude, and still have turned one way.
+const SAME_TURN: f64 = 0.01;
+
 impl fmt::Display for RunReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [length, mass, time] = &self.units;
@@ -72,12 +75,16 @@ impl BodyRunReport {
         format!("{form} form, scheme {}, {} steps{control} {lengths}", self.scheme, self.steps)
     }
 
-    /// "turned by 300 rad (47.7 turns), to an attitude 1.59 rad from the first".
+    /// "turned by 0.3 rad"; "turned by 0.3 rad in all, to an attitude 0.1 rad from the first"; "turned by 300 rad (47.7 turns), to an attitude 1.59 rad from the first".
     fn turned_in_words(&self) -> String {
         let Self { turned, turned_from_start: from_start, .. } = *self;
         let turned_by = format!("turned by {} rad", quantity(turned));
         if turned.abs() <= PI {
-            return turned_by;
+            if turned.abs() <= (1.0 + SAME_TURN) * from_start {
+                return turned_by;
+            }
+            let from_start = quantity(rounded(from_start, 4));
+            return format!("{turned_by} in all, to an attitude {from_start} rad from the first");
         }
         let turns = quantity(rounded(turned / TAU, 4));
         let from_start = quantity(rounded(from_start, 4));
