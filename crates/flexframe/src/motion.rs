@@ -157,7 +157,8 @@ impl Motion {
         either!(self, of => of.event(number).map(|event| event.name()))
     }
 
-    /// Sum of |work| + |dissipation| of all steps, of a body.
+    /// Energy that has come and gone, of a body: the sum of |work| + |dissipation| of all steps of one that moves alone, whose loads the
+    /// stages sum up; the largest of both since the beginning of one in joints.
     pub fn exchanged(&self, body: usize) -> f64 {
         match self {
             Self::Alone(simulation) => simulation.exchanged(),

@@ -21,7 +21,7 @@ use crate::observation::moment::Moment;
 use crate::observation::observer::{Observer, StepEnd};
 use crate::observation::observers::Observers;
 use crate::simulation::Reached;
-use crate::simulation::account::{EnergyAccount, Exchanged};
+use crate::simulation::account::EnergyAccount;
 use crate::simulation::checkpoint::{equal_room, fixed_room};
 use crate::simulation::events::{Event, Events};
 use crate::simulation::longest_step::LongestStep;
@@ -61,7 +61,8 @@ pub struct SystemSimulation {
     is_implied: Vec<bool>,
     stats: Stats,
     account: EnergyAccount,
-    exchanged: Vec<Exchanged>,
+    /// Of each body, see [`Self::exchanged`].
+    exchanged: Vec<f64>,
     events: Events<SystemObservation>,
     /// Where events and observers look at the motion.
     looked_at: SystemObservation,
@@ -128,7 +129,7 @@ impl SystemSimulation {
                 Rows::EverySteps(1),
             ),
             walk: Walk { segment: None, equal: EqualSteps::default(), next: FIRST * end, longest: f64::INFINITY },
-            exchanged: vec![Exchanged::default(); system.bodies().len()],
+            exchanged: vec![0.0; system.bodies().len()],
             looked_at: SystemObservation::new(system, &points),
             observers: Observers::NONE,
             last_step: is_within.then(|| Box::new(LastStep::new(&motion, &points))),
@@ -200,7 +201,8 @@ impl SystemSimulation {
         (6 * system.bodies().len() + implied).saturating_sub(system.rows())
     }
 
-    /// Sum of |work of loads, joints and elements| + |dissipation| of all steps, of a body.
+    /// Largest |work of loads, joints and elements| + |dissipation| since the beginning, of a body. Not their sum over the steps: what a
+    /// spring gives and takes in each period would hide what is lost in all of them.
     pub fn exchanged(&self, body: usize) -> f64 {
         self.exchanged[body].sum()
     }
@@ -299,7 +301,7 @@ impl SystemSimulation {
         let stays = self.plan.are_same(motion.time(), self.time());
         self.motion = motion;
         self.account = EnergyAccount::default();
-        self.exchanged.fill(Exchanged::default());
+        self.exchanged.fill(0.0);
         if let Some(step) = &mut self.last_step {
             step.keep(&self.motion);
         }
@@ -595,7 +597,7 @@ impl SystemSimulation {
         let mut total = [0.0; 2];
         for (body, exchanged) in self.exchanged.iter_mut().enumerate() {
             let now = self.motion.work_and_dissipation(body);
-            exchanged.add(now);
+            *exchanged = exchanged.max(now[0].abs() + now[1].abs());
             total = [total[0] + now[0], total[1] + now[1]];
         }
         self.account.exchange(total);

@@ -4,9 +4,9 @@ use std::sync::{Arc, Mutex};
 
 use crate::mechanism::at_rest;
 use dynamics::{
-    ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MarkerForce, MarkerLaw, Observation,
-    Observer, Physics, PointForce, PointShapes, Reached, RelativeMotion, Rows, SetupError, SharedLoad, StepControl,
-    StepEnd, StepError, System, SystemObservation, SystemScheme, SystemSetup, SystemSimulation, Table,
+    ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MarkerForce, MarkerLaw, MotionState,
+    Observation, Observer, Physics, PointForce, PointShapes, Reached, RelativeMotion, Rows, SetupError, SharedLoad,
+    StepControl, StepEnd, StepError, System, SystemObservation, SystemScheme, SystemSetup, SystemSimulation, Table,
 };
 use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -279,4 +279,34 @@ fn bodies_far_from_where_they_belong_are_put_together() {
     let mut motion = simulation.motion().clone();
     let open = motion.residuals().unwrap().map(|list| list.iter().fold(0.0_f64, |most, g| most.max(g.abs())));
     assert!(open[0] < 1e-12 && open[1] < 1e-11, "{open:?}");
+}
+
+/// Conserved: the energy of a wheel on a spring. After a hundred periods the balance over what has come and gone is the part that is lost,
+/// however often the spring has given and taken it.
+#[test]
+fn the_balance_of_a_long_vibration_is_the_part_that_it_has_lost() {
+    let wheel = ReducedBody::rigid(1.0, Vector3::zeros(), Matrix3::identity() * 0.2, RigidMotion::free()).unwrap();
+    let body = ConservativeBody::new(&wheel, &[], Vec::new(), &Physics::default()).unwrap();
+    let axes = Matrix3::identity();
+    let ends = [Marker::on_ground(Vector3::zeros(), axes), Marker::on_rigid(0, Vector3::zeros(), axes)];
+    let spring = JointForce { stiffness: 0.2 * std::f64::consts::TAU.powi(2), ..JointForce::default() };
+    let joint = Joint::revolute("hinge", ends).with_force(Coordinate::Turn, spring);
+    let start = MotionState { omega_body: Vector3::z(), ..at_rest(Vector3::zeros()) };
+    let setup = SystemSetup {
+        system: System::new(vec![body], vec![joint]).unwrap(),
+        states: vec![start],
+        end: 100.0,
+        points: vec![Vec::new()],
+        ..pendulum(StepControl::Tolerance(1e-3), None)
+    };
+    let mut simulation = SystemSimulation::new(setup).unwrap();
+    while simulation.advance_watched(100, |_, _| ()).unwrap() != Reached::End {}
+    let mut row = vec![simulation.room(0)];
+    simulation.observe(&mut row).unwrap();
+    let turn = simulation.motion().joint_coordinates(0).turn;
+    let energy = row[0].energy() + 0.5 * spring.stiffness * turn.powi(2);
+    let (lost, open) = (1.0 - energy / 0.1, row[0].energy_balance() - 0.1);
+    println!("lost {lost:e}, open {:e}", open.abs() / simulation.exchanged(0));
+    assert!(lost > 1e-3, "{lost}");
+    assert!((open.abs() / simulation.exchanged(0) / lost - 1.0).abs() < 0.1);
 }

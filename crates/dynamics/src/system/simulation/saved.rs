@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::simulation::account::{EnergyAccount, Exchanged};
+use crate::simulation::account::EnergyAccount;
 use crate::simulation::checkpoint::{CheckpointError, counts, decode, encode, expect, finite};
 use crate::simulation::checkpoint::{fixed_room, from_words, to_words};
 use crate::simulation::plan::Progress;
@@ -21,7 +21,7 @@ struct Saved {
     steps_since_row: u64,
     due: Due,
     account: EnergyAccount,
-    exchanged: Vec<Exchanged>,
+    exchanged: Vec<f64>,
     stats: Stats,
     last_step: Option<SavedStep>,
 }
@@ -72,7 +72,7 @@ impl SystemSimulation {
         counts(&[steps_since_row, due.rows])?;
         stats.check()?;
         expect("the number of bodies", exchanged.len() == self.exchanged.len())?;
-        exchanged.iter().try_for_each(Exchanged::check)?;
+        finite("the energy exchanged", &exchanged)?;
         walk.equal.check()?;
         expect("the next step", walk.next > 0.0 && walk.longest > 0.0)?;
         account.check_saved()?;

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::files::json;
 
 /// Largest changes, over the rows, of what should be constants of the motion, relative to the largest value of the
-/// quantity itself; of the energy, or to the sum of |work| + |dissipation| of all steps, if that is more; of the linear momentum of a
+/// quantity itself; of the energy, or to what has come and gone by work and dissipation, if that is more; of the linear momentum of a
 /// body in joints, or to that which its mass has with its largest energy, if that is more.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Balances {
