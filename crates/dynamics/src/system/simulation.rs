@@ -204,7 +204,7 @@ impl SystemSimulation {
     /// Largest |work of loads, joints and elements| + |dissipation| since the beginning, of a body. Not their sum over the steps: what a
     /// spring gives and takes in each period would hide what is lost in all of them.
     pub fn exchanged(&self, body: usize) -> f64 {
-        self.exchanged[body].sum()
+        self.exchanged[body]
     }
 
     /// The limit that shapes set for the steps, if the scheme is one that they limit and steps have come near to it.

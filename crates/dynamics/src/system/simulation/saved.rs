@@ -72,7 +72,7 @@ impl SystemSimulation {
         counts(&[steps_since_row, due.rows])?;
         stats.check()?;
         expect("the number of bodies", exchanged.len() == self.exchanged.len())?;
-        finite("the energy exchanged", &exchanged)?;
+        finite("the energy exchanged", exchanged.iter())?;
         walk.equal.check()?;
         expect("the next step", walk.next > 0.0 && walk.longest > 0.0)?;
         account.check_saved()?;
