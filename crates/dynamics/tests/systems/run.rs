@@ -289,7 +289,8 @@ fn the_balance_of_a_long_vibration_is_the_part_that_it_has_lost() {
     let body = ConservativeBody::new(&wheel, &[], Vec::new(), &Physics::default()).unwrap();
     let axes = Matrix3::identity();
     let ends = [Marker::on_ground(Vector3::zeros(), axes), Marker::on_rigid(0, Vector3::zeros(), axes)];
-    let spring = JointForce { stiffness: 0.2 * std::f64::consts::TAU.powi(2), ..JointForce::default() };
+    let stiffness = 0.2 * std::f64::consts::TAU.powi(2);
+    let spring = JointForce { stiffness, ..JointForce::default() };
     let joint = Joint::revolute("hinge", ends).with_force(Coordinate::Turn, spring);
     let start = MotionState { omega_body: Vector3::z(), ..at_rest(Vector3::zeros()) };
     let setup = SystemSetup {
@@ -304,7 +305,7 @@ fn the_balance_of_a_long_vibration_is_the_part_that_it_has_lost() {
     let mut row = vec![simulation.room(0)];
     simulation.observe(&mut row).unwrap();
     let turn = simulation.motion().joint_coordinates(0).turn;
-    let energy = row[0].energy() + 0.5 * spring.stiffness * turn.powi(2);
+    let energy = row[0].energy() + 0.5 * stiffness * turn.powi(2);
     let (lost, open) = (1.0 - energy / 0.1, row[0].energy_balance() - 0.1);
     println!("lost {lost:e}, open {:e}", open.abs() / simulation.exchanged(0));
     assert!(lost > 1e-3, "{lost}");
