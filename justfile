@@ -25,7 +25,7 @@ outside:
 lint:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets --quiet -- -D warnings
-    # As clippy's arguments are here, rustdoc takes what clippy has checked; otherwise the compiler would check it again.
+    # With clippy's arguments rustdoc takes what clippy has checked. Where clippy names them otherwise, the compiler checks it again.
     RUSTC_WORKSPACE_WRAPPER="$(rustc --print sysroot)/bin/clippy-driver" \
         CLIPPY_ARGS="-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__" RUSTDOCFLAGS="-D warnings" \
         cargo doc --workspace --no-deps --document-private-items --quiet

@@ -82,5 +82,8 @@ pub use inertia::{Inertia, InertiaError};
 pub use nalgebra;
 pub use reference_points::{CollinearPoints, ReferencePoints, euler_angular_acceleration, relative_velocity_rate};
 pub use rigid_body::{RigidBody, RigidBodyError, RigidState, RigidStepError, Wrench};
-pub use rotation::{BeyondFullTurn, NotARotation, cross_matrix, f_inverse, rotation_vector, transformation_matrix};
+pub use rotation::{
+    BeyondFullTurn, NotARotation, cross_matrix, f_inverse, half_cotangent_factor, rotation_vector,
+    transformation_matrix,
+};
 pub use torque_free::{Regime, TorqueFreeError, TorqueFreeMotion, TorqueFreeState};

@@ -160,7 +160,7 @@ const SERIES: [f64; 10] = [
 ];
 
 /// (1 − (θ/2) cot(θ/2))/θ² for 0 ≤ θ < 2π.
-fn half_cotangent_factor(angle: f64) -> f64 {
+pub fn half_cotangent_factor(angle: f64) -> f64 {
     if angle < 1.0 {
         SERIES.iter().rev().fold(0.0, |sum, term| sum * angle * angle + term)
     } else {

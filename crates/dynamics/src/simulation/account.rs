@@ -84,6 +84,11 @@ impl EnergyAccount {
         Self { start, of_loads, ..Self::default() }
     }
 
+    /// Time since the beginning; none before it has been seen.
+    pub(crate) fn elapsed(&self, time: f64) -> f64 {
+        self.start.map_or(0.0, |start| time - start.time)
+    }
+
     /// Energy scale of the loads.
     pub(crate) fn of_loads(&self) -> f64 {
         self.of_loads

@@ -98,8 +98,6 @@ pub struct SystemMotion {
     pub(super) jump_work: f64,
     /// Works of the drives and forces of joints since the beginning.
     pub(super) joint_works: Vec<JointWork>,
-    /// Energy of the springs of each joint at the start of a step, where it is known by the coordinates.
-    pub(super) spring_energies: Vec<Option<f64>>,
     /// Work of the force elements since the beginning.
     pub(super) element_work: f64,
     pub(super) evaluations: u64,
@@ -119,6 +117,8 @@ struct Room {
     change: [Vec<f64>; 2],
     /// Impulses of the rows by which velocities were last projected.
     impulses: Vec<f64>,
+    /// Energy of the springs of each joint at the start of a step, where it is known by the coordinates.
+    spring_energies: Vec<Option<f64>>,
 }
 
 impl SystemMotion {
@@ -172,6 +172,7 @@ impl SystemMotion {
                 stage_rates: StageRates::new(&flexible, joints),
                 change: [zeros(), zeros()],
                 impulses: vec![0.0; rows],
+                spring_energies: vec![None; joints],
             },
             patterns,
             bodies,
@@ -179,7 +180,6 @@ impl SystemMotion {
             largest_energy: 0.0,
             jump_work: 0.0,
             joint_works: vec![JointWork::default(); joints],
-            spring_energies: vec![None; joints],
             element_work: 0.0,
             evaluations: 0,
             reactions: vec![0.0; rows],

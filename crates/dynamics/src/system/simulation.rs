@@ -39,6 +39,8 @@ const FIRST: f64 = 1e-3;
 const STABLE: f64 = 0.9;
 /// Error of a fixed step over the size of a body that is taken for what it does not see.
 const FIXED_ERROR: f64 = 1e-4;
+/// Speed of what begins to move as t³, over its mean speed since then.
+const BEGINS: f64 = 3.0;
 
 /// A run of bodies with joints in progress. Its steps end where they like, and at discontinuities and stops: a row within a step is
 /// that of the step's polynomials.
@@ -222,16 +224,16 @@ impl SystemSimulation {
         Observation::new(self.motion.system().bodies()[body].flexible(), self.points[body].len())
     }
 
-    /// Energy of bodies that move by the error of a step, within the longest one: what moves less than that has work that steps do not see.
+    /// Energy of bodies that have moved by the error of a step since the beginning: what has moved less has work that steps do not see.
     fn unseen_energy(&self) -> f64 {
+        let elapsed = self.account.elapsed(self.time());
         let part = match self.control {
             StepControl::Fixed(_) => FIXED_ERROR,
             StepControl::Tolerance(tolerance) => tolerance,
         };
-        let of_body = |body: &ConservativeBody| {
-            0.5 * body.mass() * (part * body.radius_of_gyration() / self.stats.longest).powi(2)
-        };
-        if self.stats.longest > 0.0 { self.motion.system().bodies().iter().map(of_body).sum() } else { 0.0 }
+        let of_body =
+            |body: &ConservativeBody| 0.5 * body.mass() * (BEGINS * part * body.radius_of_gyration() / elapsed).powi(2);
+        if elapsed > 0.0 { self.motion.system().bodies().iter().map(of_body).sum() } else { 0.0 }
     }
 
     /// Fills `out`, one for each body, with the motion at the time that has been reached.

@@ -36,7 +36,7 @@ const BRICK: [[usize; 3]; 12] = [
 pub(super) fn solid(model: &Model) -> Shapes {
     let body = &model.body;
     let center = body.center_of_mass;
-    let (axes, edges) = box_of_inertia(body.mass, &inertia_about_center(model));
+    let (axes, edges) = box_of_inertia(body.mass, &body.inertia_about_center());
     let points = model.points.iter().map(|(_, point)| point.position_body());
     let markers = model.markers.iter().map(|marker| marker.point.position_body());
     let arms: Vec<Vector3<f64>> = points.chain(markers).map(|at| at + body.origin - center).collect();
@@ -46,7 +46,7 @@ pub(super) fn solid(model: &Model) -> Shapes {
     let size = longest.max(farthest);
     let half = (edges * (longest / edges.max())).map(|edge| 0.5 * edge.max(LEAST_WIDTH * size));
 
-    let mut drawn = Drawn::default();
+    let mut drawn = SurfaceSoFar::default();
     drawn.brick(&center, &(axes * Matrix3::from_diagonal(&half)));
     for arm in &arms {
         let within = axes.transpose() * arm;
@@ -62,13 +62,6 @@ pub(super) fn solid(model: &Model) -> Shapes {
     }
 }
 
-/// Inertia about the centre of mass, mesh axes.
-fn inertia_about_center(model: &Model) -> Matrix3<f64> {
-    let body = &model.body;
-    let arm = body.center_of_mass - body.origin;
-    body.inertia - (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * body.mass
-}
-
 /// Principal axes, as columns of a rotation, and edges of the uniform box with a mass and an inertia about its centre:
 /// J₁ = m (b² + c²) / 12 and so on.
 fn box_of_inertia(mass: f64, inertia: &Matrix3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
@@ -82,14 +75,14 @@ fn box_of_inertia(mass: f64, inertia: &Matrix3<f64>) -> (Matrix3<f64>, Vector3<f
     (axes, principal.eigenvalues.map(edge))
 }
 
-/// What is drawn up to now.
+/// The surface so far.
 #[derive(Default)]
-struct Drawn {
+struct SurfaceSoFar {
     positions: Vec<[f64; 3]>,
     faces: Vec<[u32; 6]>,
 }
 
-impl Drawn {
+impl SurfaceSoFar {
     /// A brick about a centre, with its half edges as columns.
     fn brick(&mut self, center: &Vector3<f64>, half_edges: &Matrix3<f64>) {
         let first = self.positions.len();
@@ -148,7 +141,7 @@ mod tests {
 
     #[test]
     fn a_bar_is_closed_and_seen_from_outside() {
-        let mut drawn = Drawn::default();
+        let mut drawn = SurfaceSoFar::default();
         let [center, arm] = [Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.6, -0.8, 2.0)];
         drawn.bar(&center, &arm, 0.05);
         let corner = |place: u32| Vector3::from(drawn.positions[place as usize]) - center;

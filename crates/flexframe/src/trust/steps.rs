@@ -26,7 +26,7 @@ pub(super) fn line(scene: &Scene, report: &BodyRunReport, scene_file: &str) -> L
     match (expected, open) {
         (Some((error, how)), open) if open.is_none_or(|open| open <= error) => {
             let most = if matches!(scene.time.control, StepControl::Tolerance(_)) { "at most " } else { "about " };
-            // Of bodies in joints each step has the bound, by the size of the bodies.
+            // In joints the bound is that of each step, over the size of the bodies.
             let (of_what, beside) = if scene.tied {
                 ("the size of the bodies in a step", "; velocities and accelerations may be off by more")
             } else {

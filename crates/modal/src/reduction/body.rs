@@ -216,6 +216,12 @@ impl ReducedBody {
         })
     }
 
+    /// Inertia of the undeformed body about its centre of mass, mesh axes.
+    pub fn inertia_about_center(&self) -> Matrix3<f64> {
+        let arm = self.center_of_mass - self.origin;
+        self.inertia - (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * self.mass
+    }
+
     /// Number of flexible modes nf.
     pub fn flexible(&self) -> usize {
         self.circular_frequencies.len()

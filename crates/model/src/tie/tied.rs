@@ -19,8 +19,9 @@ use crate::tie::pairs::{Unpaired, pairs};
 
 /// Sine or cosine of the angle between an axis and a line below which they are parallel or at right angles.
 const ALONG: f64 = 1e-6;
-/// Time on both sides of a discontinuity, over that of the run, at which a drive is looked at; and the part of its largest value by which one jumps.
+/// Time on both sides of a discontinuity at which a drive is looked at, over that of the run.
 const BESIDE: f64 = 4e-13;
+/// Least jump of a drive over its largest value.
 const JUMP: f64 = 1e-9;
 
 /// Bodies that joints, springs and bushings connect with each other.
@@ -190,7 +191,7 @@ impl<'a> Island<'a> {
             }
         };
         if let Some(drive) = drive {
-            let given = self.steady_drive(&format!("{key}.drive"), drive)?;
+            let given = self.continuous_drive(&format!("{key}.drive"), drive)?;
             made = match drive.along {
                 scene::Coordinate::Turn => made.turned_by(given),
                 scene::Coordinate::Slide => made.moved_by(given),
@@ -301,7 +302,7 @@ impl<'a> Island<'a> {
     }
 
     /// The drive of a coordinate, which may not jump: no force moves a body in no time.
-    fn steady_drive(&self, key: &str, drive: &JointDrive) -> Result<dynamics::JointDrive, BuildError> {
+    fn continuous_drive(&self, key: &str, drive: &JointDrive) -> Result<dynamics::JointDrive, BuildError> {
         let made = self.drive(key, drive)?;
         let of_body = &self.scene.bodies[self.bodies[0]];
         let end = of_body.time.end;

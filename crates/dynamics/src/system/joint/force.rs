@@ -110,6 +110,11 @@ impl JointForce {
         Some(0.5 * self.stiffness * (x - self.free).powi(2) - self.preload * x + beyond.unwrap_or_default())
     }
 
+    /// True if a coordinate is beyond a stop.
+    pub(crate) fn is_at_stop(&self, x: f64) -> bool {
+        self.stops.is_some_and(|stops| stops.depth(x).is_some())
+    }
+
     /// How much the force falls by the coordinate and by its rate; nothing where it rises.
     pub(crate) fn stiffness_and_damping(&self, [x, rate]: [f64; 2], times: [f64; 2]) -> [f64; 2] {
         let slope = self.characteristic.as_ref().map_or(0.0, |of| of.at([x, x])[1]);

@@ -36,17 +36,21 @@ impl SystemMotion {
             self.next_rates(h, branch_time, place)?;
         }
         let error = self.explicit_error(h, times)?;
-        self.largest_energy = self.largest_energy.max(self.first.energy(&self.system, h));
+        let energy = self.largest_energy;
+        self.largest_energy = energy.max(self.first.energy(&self.system, h));
         let power = |stage: usize, joint: usize, _| self.stage_rates[stage].joints[joint].spring;
         let after = |force: usize| self.stages[STAGES - 1].constraints.coordinates[force];
         let error = larger(error, self.stop_error(h, power, after));
-        if error.is_nan() {
-            return Err(Failed::Newton);
-        }
         if error <= tolerance {
             self.last_length = h;
             let weights = self.scheme.weights.map(|weight| h * weight);
             self.land([end, branch_time], h, weights)?;
+        } else {
+            // That of a step that is too long says nothing about a shorter one.
+            self.largest_energy = energy;
+        }
+        if error.is_nan() {
+            return Err(Failed::Newton);
         }
         Ok(Tried { error, passes: 1 })
     }

@@ -17,12 +17,12 @@ use crate::drawn::{Drawn, DrawnBody, Part};
 pub struct Motion {
     pub(super) results: Results,
     /// The bodies that have a surface, or elements where these are asked for.
-    pub(super) bodies: Vec<MeshedBody>,
+    pub(super) bodies: Vec<DrawnSurface>,
 }
 
-/// A body on its mesh.
+/// A body on its surface or its elements.
 #[derive(Debug)]
-pub(super) struct MeshedBody {
+pub(super) struct DrawnSurface {
     /// Its number among all bodies.
     number: usize,
     pub shapes: Shapes,
@@ -51,8 +51,8 @@ impl Motion {
     pub fn open(file: &Path, volume: bool) -> Result<Self, ExportError> {
         let part = if volume { Part::Volume } else { Part::Surface };
         let Drawn { results, bodies } = Drawn::open(file, part)?;
-        let bodies: Vec<MeshedBody> = (bodies.into_iter().enumerate())
-            .filter_map(|(number, body)| MeshedBody::new(number, body, volume))
+        let bodies: Vec<DrawnSurface> = (bodies.into_iter().enumerate())
+            .filter_map(|(number, body)| DrawnSurface::new(number, body, volume))
             .collect();
         if bodies.is_empty() {
             return Err(ExportError::NoElements { path: file.to_owned() });
@@ -82,7 +82,7 @@ impl Motion {
     }
 }
 
-impl MeshedBody {
+impl DrawnSurface {
     fn new(number: usize, DrawnBody { shapes, tetrahedra, body_file }: DrawnBody, volume: bool) -> Option<Self> {
         let shapes = shapes.filter(|shapes| if volume { !tetrahedra.is_empty() } else { !shapes.faces.is_empty() })?;
         let points = shapes.positions.clone();

@@ -7,7 +7,7 @@ use results::{Block, Field, PvdEntry, VtkHdf, write_pvd, write_vtu};
 use super::Exported;
 use super::error::ExportError;
 use super::fields::fields;
-use super::motion::{MeshedBody, Motion, Placed};
+use super::motion::{DrawnSurface, Motion, Placed};
 use super::rows::ExportRows;
 use crate::commands::modes::frequency_unit;
 use crate::files::outputs::{OutputError, Written, outputs_of_results};
@@ -26,7 +26,7 @@ impl Motion {
     fn create(
         &self,
         to: &Path,
-        bodies: &[(&MeshedBody, Vec<Field>)],
+        bodies: &[(&DrawnSurface, Vec<Field>)],
         times: Option<&[f64]>,
         overwrite: bool,
     ) -> Result<VtkHdf, ExportError> {
@@ -89,7 +89,7 @@ pub fn export_vtu(
     Written::FOLDER.check(folder).map_err(OutputError::from)?;
     let stem = file.file_stem().unwrap_or("results".as_ref()).to_string_lossy().into_owned();
     let list = folder.join(format!("{stem}.pvd"));
-    let name = |step: usize, body: &MeshedBody| match motion.is_single() {
+    let name = |step: usize, body: &DrawnSurface| match motion.is_single() {
         true => format!("{stem}_{step:06}.vtu"),
         false => format!("{stem}.{}_{step:06}.vtu", body.metadata(motion).name),
     };
@@ -147,7 +147,7 @@ pub fn export_modes(file: &Path, motion: &Motion, to: &Path, rows: &ExportRows) 
 }
 
 /// A field for each shape, and then one for the stress of each.
-fn fields_of_modes(body: &MeshedBody, motion: &Motion, unit: &str) -> Vec<Field> {
+fn fields_of_modes(body: &DrawnSurface, motion: &Motion, unit: &str) -> Vec<Field> {
     let model = &body.metadata(motion).model;
     let digits = model.frequencies.len().to_string().len();
     let name = |(k, (kind, frequency)): (usize, (&str, &f64))| match kind {

@@ -31,7 +31,7 @@ use crate::rows::units::UnitLabels;
 use crate::surface::Surface;
 
 /// Runs the bodies of a scene and draws them into a moving picture at `path`, which ends in `.gif`, or with ffmpeg in `.mp4` or
-/// `.webm`. Rigid bodies without a mesh are not drawn. Returns a warning where the frames are too few to show the spin.
+/// `.webm`. Returns a warning where the frames are too few to show the spin.
 ///
 /// # Errors
 /// [`AnimationError`].

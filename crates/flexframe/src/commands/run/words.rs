@@ -14,6 +14,8 @@ use crate::rows::units::UnitLabels;
 
 /// Part by which a body may have turned further than the angle to its first attitude, and still have turned one way.
 const SAME_TURN: f64 = 0.01;
+/// Turn that is rounding.
+const ROUNDED_TURN: f64 = 1e-9;
 
 impl fmt::Display for RunReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -80,7 +82,7 @@ impl BodyRunReport {
         let Self { turned, turned_from_start: from_start, .. } = *self;
         let turned_by = format!("turned by {} rad", quantity(turned));
         if turned.abs() <= PI {
-            if turned.abs() <= (1.0 + SAME_TURN) * from_start {
+            if turned.abs() <= (1.0 + SAME_TURN) * from_start + ROUNDED_TURN {
                 return turned_by;
             }
             let from_start = quantity(rounded(from_start, 4));

@@ -20,10 +20,10 @@ const DRAWN: f64 = 0.08;
 const MAX_PANELS: usize = 20;
 
 /// Draws the vibrations of a system, numbered from 1, to `<stem>.svg`, `<stem>.pdf` and `<stem>.png`; of damped ones and those in
-/// spin the real part. Bodies without a mesh are not drawn.
+/// spin the real part.
 ///
 /// # Errors
-/// [`ShapesError`]; nothing is drawn where no body has a mesh.
+/// [`ShapesError`].
 pub fn draw(
     system: &System,
     models: &[Model],

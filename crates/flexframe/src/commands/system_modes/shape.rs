@@ -13,7 +13,7 @@ use super::report::SystemModes;
 use crate::commands::modes::require_surface;
 use crate::surface::Surface;
 
-/// The surfaces of the bodies of a system where it stands; bodies without a mesh are not among them.
+/// The surfaces of the bodies of a system where it stands.
 pub(crate) struct SystemSurface<'a> {
     parts: Vec<Part<'a>>,
     pub(crate) triangles: Vec<[u32; 3]>,
