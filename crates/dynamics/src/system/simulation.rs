@@ -63,7 +63,7 @@ pub struct SystemSimulation {
     is_implied: Vec<bool>,
     stats: Stats,
     account: EnergyAccount,
-    /// Of each body, see [`Self::exchanged`].
+    /// Energy exchanged of each body, see [`Self::exchanged`].
     exchanged: Vec<f64>,
     events: Events<SystemObservation>,
     /// Where events and observers look at the motion.
