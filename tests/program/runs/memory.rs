@@ -33,7 +33,7 @@ fn little_memory_ends_in_words() {
         (2, &["modes", ring, "--threads", "2"]),
         (2, &["run", small, "--threads", "2", "-o", folder, "--overwrite"]),
     ];
-    let limits = [100, 120, 140, 160, 200, 250, 300, 350, 450, 600, 1000];
+    let limits = [100, 130, 170, 250, 350, 500, 1000];
     for (threads, arguments) in commands {
         let (mut good, mut refused) = (0, 0);
         // Without the reserve, and with it: a processor may have more cache than all of these limits.
