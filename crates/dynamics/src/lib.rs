@@ -78,7 +78,7 @@ pub use system::joint::coupling::{CoupledCoordinate, Coupling};
 pub use system::joint::drive::JointDrive;
 pub use system::joint::force::{Friction, JointForce, Stops};
 pub use system::joint::law::{JointLaw, JointLawFn};
-pub use system::joint::observation::JointObservation;
+pub use system::joint::observation::{JointObservation, LineObservation};
 pub use system::joint::row::Row;
 pub use system::joint::work::JointWork;
 pub use system::joint::{Joint, JointPart};

@@ -122,5 +122,7 @@ fn steps_of_a_system_with_joints_allocate_nothing() {
         motion.advance(1e-3, 1e-8, &mut h).unwrap();
         let steps = || assert!(motion.advance(end, 1e-8, &mut h).unwrap() > 10);
         assert_eq!(measure(steps).count_total, 0, "{scheme:?}");
+        motion.find_reactions().unwrap();
+        assert_eq!(measure(|| assert!(motion.observe_element(0).is_finite())).count_total, 0, "{scheme:?}");
     }
 }

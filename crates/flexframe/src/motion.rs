@@ -108,11 +108,14 @@ impl Motion {
         }
     }
 
-    /// Observes a joint, after [`Self::observe`]; a body alone has none.
-    pub fn observe_joint(&self, joint: usize) -> JointObservation {
-        match self {
-            Self::Alone(_) => JointObservation::default(),
-            Self::Tied(simulation) => simulation.observe_joint(joint),
+    /// Observes its joints and elements, at their numbers in a row, after [`Self::observe`]; a body alone has none.
+    pub fn observe_ties(&self, [joints, elements]: [&[usize]; 2], row: &mut [JointObservation]) {
+        let Self::Tied(simulation) = self else { return };
+        for (joint, place) in joints.iter().enumerate() {
+            row[*place] = simulation.observe_joint(joint);
+        }
+        for (element, place) in elements.iter().enumerate() {
+            row[*place] = simulation.observe_element(element);
         }
     }
 

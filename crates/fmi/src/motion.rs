@@ -86,6 +86,8 @@ impl Motion {
     /// From the beginning of the scene to its end or the `stop` time, if that is later; times in the scene's unit.
     pub fn new(fmu: FmuModel, stop: Option<f64>) -> Result<Self, (Box<FmuModel>, Error)> {
         let initial: Vec<Initial> = fmu.bodies.iter().map(|body| body.model.initial(&body.scene)).collect();
+        let flexframe::scene::System { joints, springs, bushings, .. } = &fmu.system;
+        let ties = joints.len() + springs.len() + bushings.len();
         let inputs: Vec<Channel> = fmu.variables.iter().filter_map(|variable| channel(variable.source)).collect();
         let motions = match motions(&fmu, &inputs, stop) {
             Ok(motions) => motions,
@@ -95,7 +97,7 @@ impl Motion {
             row: Row {
                 time: 0.0,
                 bodies: fmu.bodies.iter().map(|body| BodyRow::new(&body.model)).collect(),
-                joints: vec![JointObservation::default(); fmu.system.joints.len()],
+                joints: vec![JointObservation::default(); ties],
             },
             reviewed: Some(Reviewed::of(Owner { fmu, initial })),
             changed: vec![false; motions.len()],
@@ -151,10 +153,10 @@ impl Motion {
         let fmu = &reviewed.borrow_owner().fmu;
         self.row.time = self.time();
         let Self { motions, row, .. } = self;
-        for Moving { motion, bodies, joints } in motions {
+        for Moving { motion, bodies, joints, elements } in motions {
             let own = row.bodies.iter_mut().enumerate().filter(|(number, _)| bodies.contains(number));
             motion.observe(None, own.map(|(_, body)| &mut body.motion))?;
-            joints.iter().enumerate().for_each(|(i, number)| row.joints[*number] = motion.observe_joint(i));
+            motion.observe_ties([joints, elements], &mut row.joints);
         }
         row.bodies.iter_mut().zip(&fmu.bodies).for_each(|(row, body)| row.complete(&body.model));
         fmu.numbers(&self.row, &mut self.numbers);
@@ -249,8 +251,8 @@ impl Motion {
         }
         let motions = self.motions.iter().zip(&state.checkpoints);
         let restored = motions.map(|(moving, checkpoint)| {
-            let Moving { motion, bodies, joints } = moving.clone();
-            Ok(Moving { motion: motion.restored(checkpoint)?, bodies, joints })
+            let Moving { motion, bodies, joints, elements } = moving.clone();
+            Ok(Moving { motion: motion.restored(checkpoint)?, bodies, joints, elements })
         });
         self.motions = restored.collect::<Result<_, Error>>()?;
         for (channel, (value, numbers)) in self.inputs.iter_mut().zip(&state.inputs) {

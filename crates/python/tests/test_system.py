@@ -172,6 +172,14 @@ def test_a_law_between_markers_does_what_an_element_of_the_scene_does(law, eleme
         for column, scale in [("position", 1.0), ("angular_velocity", 10.0)]:
             path = f"bodies/{body}/{column}"
             assert found[path] == pytest.approx(expected[path], abs=1e-5 * scale)
+    # The forces of the scene's element are in its results: those that the law finds.
+    if "springs" in elements:
+        pull = SPRING["stiffness"] * (expected["joints/tie/length"] - SPRING["free_length"])
+        pull += SPRING["damping"] * expected["joints/tie/length_rate"]
+        assert expected["joints/tie/pull"] == pytest.approx(pull, abs=1e-9)
+    else:
+        assert np.ptp(expected["joints/tie/force_marker"], axis=0).max() > 1.0
+        assert np.ptp(expected["joints/tie/moment"], axis=0).max() > 0.1
     # It moved, and momenta stayed.
     assert np.ptp(found["bodies/upper/position"], axis=0).max() > 0.05
     momentum = found["system/momentum/linear"]

@@ -38,6 +38,8 @@ pub struct Column<R: SystemRow> {
     /// Part that a body or a joint must have for its histories, one of [`BodyMetadata::parts`] or [`JointMetadata::parts`]; all
     /// have it if `None`.
     pub part: Option<&'static str>,
+    /// Part that it must not have.
+    pub other_part: Option<&'static str>,
     /// Use of the numbers where the body is a part of a larger model.
     pub role: Role,
 }
@@ -186,7 +188,7 @@ impl<R: SystemRow> Column<R> {
         description: &'static str,
         values: Values<R>,
     ) -> Self {
-        Self { group, name, dimension, frame, description, values, part: None, role: Role::Output }
+        Self { group, name, dimension, frame, description, values, part: None, other_part: None, role: Role::Output }
     }
 
     /// A column of the system, from its group and name, and its dimension and frame.
@@ -255,6 +257,12 @@ impl<R: SystemRow> Column<R> {
         Self { part: Some(part), ..self }
     }
 
+    /// The same of bodies or joints without this part only.
+    #[must_use]
+    pub const fn only_without(self, part: &'static str) -> Self {
+        Self { other_part: Some(part), ..self }
+    }
+
     /// The same in another role.
     #[must_use]
     pub const fn in_role(self, role: Role) -> Self {
@@ -310,6 +318,7 @@ impl<R: SystemRow> Column<R> {
     }
 
     fn is_of_parts(&self, parts: &[String]) -> bool {
-        self.part.is_none_or(|part| parts.iter().any(|has| has == part))
+        let has = |part| parts.iter().any(|has| has == part);
+        self.part.is_none_or(has) && !self.other_part.is_some_and(has)
     }
 }

@@ -177,7 +177,7 @@ pub struct Metadata {
     pub input_files: Vec<String>,
     /// The bodies, at least one, in the order of the scene.
     pub bodies: Vec<BodyMetadata>,
-    /// The joints, in the order of the scene.
+    /// The joints, then the springs and the bushings, each in the order of the scene.
     #[serde(default)]
     pub joints: Vec<JointMetadata>,
     /// Warnings of the run, each a sentence or more: see [`Writer::warn`](crate::Writer::warn).

@@ -782,6 +782,8 @@ fn joints_have_groups_beside_those_of_the_bodies() {
     assert_eq!(results.metadata, metadata);
     assert_eq!(results.numbers("joints/shoulder/angle"), Some(&[0.0, 0.5, 1.0][..]));
     assert_eq!(results.numbers("joints/stiff/angle"), None);
+    assert_eq!(results.numbers("joints/stiff/moment"), Some(&[-1.0; 3][..]));
+    assert_eq!(results.numbers("joints/shoulder/moment"), None);
     let file = hdf5::File::open(&path).unwrap();
     let kind = file.group("joints/stiff").unwrap().attr("kind").unwrap();
     assert_eq!(kind.read_scalar::<hdf5::types::VarLenUnicode>().unwrap().as_str(), "revolute");

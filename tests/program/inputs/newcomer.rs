@@ -493,3 +493,59 @@ fn what_a_coupling_does_is_in_the_results_of_its_joints() {
         }
     }
 }
+
+/// Closed form: 3 kg in rest on a spring of 150 N/m are 0.2 m below its free length of 1 m, and pull with 30 N; 2 kg on a bushing of
+/// 100 N/m fall as 0.2 (1 − cos √50 t) m in its x axis, which is up.
+#[test]
+fn what_springs_and_bushings_do_is_in_the_results() {
+    let desk = Desk::new();
+    let gravity = "loads = [{ kind = \"gravity\", direction = [0, 0, -1], amplitude = 10.0 }]\n";
+    desk.file(
+        "x.toml",
+        &format!(
+            "{WHEEL}{}{gravity}initial = {{ position = [0, 0, -1.2] }}\n{}{gravity}\
+             [ground.markers]\nhook = {{ at = [0, 0, 0] }}\nseat = {{ at = [0, 0, 0], z = [0, 1, 0], x = [0, 0, 1] }}\n\
+             [[springs]]\nname = \"wire\"\nbetween = [\"ground.hook\", \"stone.m\"]\nstiffness = 150.0\ndamping = 3.0\nfree_length = 1.0\n\
+             [[bushings]]\nname = \"pad\"\nbetween = [\"ground.seat\", \"box.m\"]\n\
+             stiffness = {{ translation = [100.0, 50.0, 50.0], rotation = [5.0, 5.0, 5.0] }}\n",
+            rigid("stone", 3.0, 1.0),
+            rigid("box", 2.0, 1.0)
+        ),
+    );
+    let (said, _) = desk.done(&["run", "x.toml", "-o", "out"]);
+    assert!(!said.contains("warning"), "{said}");
+    let (table, _) = desk.done(&["export", "out/x.h5", "--csv", "-"]);
+    let column = |head: &str| -> Vec<f64> {
+        let heads: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+        let column =
+            heads.iter().position(|of| of.starts_with(&format!("{head} ["))).unwrap_or_else(|| panic!("{heads:?}"));
+        table.lines().skip(1).map(|line| line.split(',').nth(column).unwrap().parse().unwrap()).collect()
+    };
+    for (path, expected) in [
+        ("joints/wire/length", 1.2),
+        ("joints/wire/length_rate", 0.0),
+        ("joints/wire/pull", 30.0),
+        ("joints/wire/force z", 30.0),
+    ] {
+        let numbers = column(path);
+        assert!(
+            numbers.len() == 4 && numbers.iter().all(|number| (number - expected).abs() < 1e-9),
+            "{path}: {numbers:?}"
+        );
+    }
+    for path in ["joints/pad/force z", "joints/pad/force_marker x"] {
+        for (row, number) in column(path).into_iter().enumerate() {
+            let expected = 20.0 * (1.0 - (50.0_f64.sqrt() * 0.5 * row as f64).cos());
+            assert!((number - expected).abs() < 1e-4, "{path}: {number} {expected}");
+        }
+    }
+    assert!(column("joints/pad/moment y").iter().all(|number| number.abs() < 1e-12));
+    let results = hdf5::File::open(desk.path("out/x.h5")).unwrap();
+    let kind = |name: &str| {
+        let kind = results.group(&format!("joints/{name}")).unwrap().attr("kind").unwrap();
+        kind.read_scalar::<hdf5::types::VarLenUnicode>().unwrap().to_string()
+    };
+    assert_eq!([kind("wire"), kind("pad")], ["spring", "bushing"]);
+    let has = |path: &str| results.dataset(&format!("joints/{path}")).is_ok();
+    assert!(has("pad/moment_marker") && !has("pad/length") && !has("wire/moment") && !has("wire/force_marker"));
+}

@@ -51,10 +51,15 @@ fn a_run_with_joints_goes_on_bit_for_bit() {
     let folder = tempfile::tempdir().unwrap();
     let (whole, cut) = (folder.path().join("whole"), folder.path().join("cut"));
     let settings = RunSettings { rows_alone: true, ..RunSettings::default() };
-    let (_, report) = run(&system(), &whole, &settings, |_| ()).unwrap();
+    let springs = "[[springs]]\nname = \"wire\"\nbetween = [\"ground.bearing\", \"slider.middle\"]\nstiffness = 50.0\ndamping = 0.1\n\
+                   [[bushings]]\nname = \"pad\"\nbetween = [\"ground.guide\", \"slider.back\"]\n\
+                   stiffness = { translation = [9.0, 9.0, 9.0] }\n";
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tied.toml"));
+    let system = System::parse(&format!("{SCENE}\n{springs}"), file).unwrap();
+    let (_, report) = run(&system, &whole, &settings, |_| ()).unwrap();
     let stop = Arc::new(AtomicBool::new(false));
     let asked = RunSettings { stop: stop.clone(), ..settings.clone() };
-    let stopped = run(&system(), &cut, &asked, |progress| {
+    let stopped = run(&system, &cut, &asked, |progress| {
         if matches!(progress, RunProgress::Motion(part) if part > 0.3) {
             stop.store(true, Ordering::Relaxed);
         }
@@ -63,6 +68,17 @@ fn a_run_with_joints_goes_on_bit_for_bit() {
     let resumed = resume(&part, &settings, |_| ()).unwrap();
     let read = |path: &Path| std::fs::read(path).unwrap();
     assert!(read(&report.results) == read(&resumed.results));
+    let results = Results::open(&resumed.results, &COLUMNS).unwrap();
+    // Closed form: the wire goes from the origin to the slider, and the pad is at rest with it there.
+    let slider = results.vectors::<3>("bodies/slider/position").unwrap();
+    let (length, pad) =
+        (results.numbers("joints/wire/length").unwrap(), results.vectors::<3>("joints/pad/force").unwrap());
+    for ((place, length), force) in slider.iter().zip(length).zip(pad) {
+        assert!(
+            (place[0] - length).abs() < 1e-9 && (force[0] + 9.0 * place[0]).abs() < 1e-8,
+            "{place:?} {length} {force:?}"
+        );
+    }
 }
 
 /// Independent reference: the same as above, by the other scheme.

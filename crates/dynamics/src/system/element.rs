@@ -6,6 +6,7 @@ pub(crate) mod springs;
 use std::any::Any;
 use std::fmt;
 
+use crate::system::joint::observation::JointObservation;
 use crate::system::marker::Marker;
 use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 
@@ -23,6 +24,11 @@ pub trait ForceElement: fmt::Debug + Send + Sync + Any {
     /// Finds the wrench on each of its markers at a time; laws with branches are taken as they are at the time `times[1]`.
     /// `wrenches` are zero before.
     fn apply(&self, times: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]);
+
+    /// What rows of results show of an element between two markers. A law from outside shows nothing: it may take long.
+    fn observe(&self, _motions: &[MarkerMotion; 2]) -> Option<JointObservation> {
+        None
+    }
 
     /// Times at which the law or one of its rates jumps, rising. Steps end there.
     fn discontinuities(&self) -> Vec<f64> {

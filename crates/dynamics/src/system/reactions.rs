@@ -6,6 +6,7 @@
 //!
 //! Eqs. (J10) of `docs/method/systems.md`. Ġ v + ġ_t is found by differences along the motion.
 
+mod observation;
 mod wrenches;
 
 use crate::body::shapes::PointShapes;

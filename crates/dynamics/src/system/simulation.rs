@@ -282,12 +282,20 @@ impl SystemSimulation {
         for (joint, out) in out.joints.iter_mut().enumerate() {
             *out = self.observe_joint(joint);
         }
+        for (element, out) in out.elements.iter_mut().enumerate() {
+            *out = self.observe_element(element);
+        }
         Ok(out)
     }
 
     /// Observes a joint, after [`Self::observe`].
     pub fn observe_joint(&self, joint: usize) -> JointObservation {
         self.motion().observe_joint(joint)
+    }
+
+    /// Observes a force element, after [`Self::observe`]; zeros of one that does not show what it does.
+    pub fn observe_element(&self, element: usize) -> JointObservation {
+        self.motion().observe_element(element)
     }
 
     /// Goes on from other states of the bodies, at the time of the first of them. They are moved so that the joints close. Works,

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use dynamics::{
-    Bushing, ConservativeBody, ForceElement, Joint, Marker, MarkerForce, MarkerLaw, MotionState, Physics, PointSpring,
-    RelativeMotion, System, SystemMotion,
+    Bushing, ConservativeBody, ForceElement, Joint, LineObservation, Marker, MarkerForce, MarkerLaw, MotionState,
+    Physics, PointSpring, RelativeMotion, System, SystemMotion,
 };
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -89,6 +89,68 @@ fn a_bushing_has_its_frequencies() {
     let expected = [0.1 * (f64::sqrt(40.0) * end).cos(), 0.05 * (omega * end).cos()];
     assert!((now.origin_global.x - expected[0]).abs() < 1e-8, "{now:?}");
     assert!((now.omega_body.z - expected[1]).abs() < 1e-8, "{now:?} {expected:?}");
+}
+
+/// Closed form: k (l − l₀) + c l̇ along the line, by the places and the velocities of the bodies; on the second of two, towards the first.
+#[test]
+fn a_spring_shows_its_length_and_its_force() {
+    let (stiffness, damping, free_length) = (50.0, 1.5, 1.0);
+    let markers = [marker(Some(0), 0.0), marker(Some(1), 0.0)];
+    let spring = PointSpring { markers, stiffness, damping, free_length };
+    let moving = MotionState { velocity_global: Vector3::new(0.3, 0.8, -0.5), ..at(1.2, 0.4) };
+    let mut motion = system(2, Vec::new(), spring, &[at(0.0, 0.0), moving]);
+    let mut pulls = Vec::new();
+    for end in [0.0, 0.2, 0.7] {
+        if end > 0.0 {
+            motion.advance(end, 1e-9, &mut 1e-3).unwrap();
+        }
+        motion.find_reactions().unwrap();
+        let seen = motion.observe_element(0);
+        let [first, second] = [0, 1].map(|body| motion.state(body).unwrap());
+        let line = second.origin_global - first.origin_global;
+        let rate = line.normalize().dot(&(second.velocity_global - first.velocity_global));
+        let pull = stiffness * (line.norm() - free_length) + damping * rate;
+        assert!((seen.line.length - line.norm()).abs() < 1e-14 && (seen.line.rate - rate).abs() < 1e-13, "{seen:?}");
+        assert!((seen.line.pull - pull).abs() < 1e-12, "{seen:?} {pull}");
+        assert!((seen.reaction_global.force_global + line.normalize() * pull).norm() < 1e-12, "{seen:?}");
+        assert!(seen.reaction_global.moment_global == Vector3::zeros() && seen.is_finite());
+        let in_axes = first.attitude.to_body(&seen.reaction_global.force_global);
+        assert!((seen.force_marker - in_axes).norm() < 1e-12, "{seen:?} {in_axes}");
+        pulls.push(pull);
+    }
+    assert!(pulls[0] > 0.0 && pulls[1] < 0.0, "{pulls:?}");
+}
+
+/// Closed form: −K times the displacement, −c times its rate and −K times the angle about the first marker's axes, which stand on
+/// their head; the damper is that along x.
+#[test]
+fn a_bushing_shows_its_force_and_moment_in_the_axes_of_its_first_marker() {
+    let axes = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+    let bushing = Bushing {
+        markers: [Marker::on_ground(Vector3::zeros(), axes), marker(Some(0), 0.0)],
+        stiffness: [Vector3::new(80.0, 90.0, 100.0), Vector3::new(5.0, 6.0, 7.0)],
+        damping: [Vector3::new(2.0, 0.0, 0.0), Vector3::zeros()],
+    };
+    let angle: f64 = 0.3;
+    // The second marker has turned by the angle about z from the axes of the first.
+    let turned = Matrix3::new(angle.cos(), -angle.sin(), 0.0, angle.sin(), angle.cos(), 0.0, 0.0, 0.0, 1.0);
+    let state = MotionState {
+        attitude: Attitude::from_global_to_body(&(axes * turned).transpose()).unwrap(),
+        origin_global: Vector3::new(0.1, 0.2, 0.3),
+        velocity_global: Vector3::new(0.5, 0.6, 0.7),
+        ..at(0.0, 0.0)
+    };
+    let mut motion = system(1, Vec::new(), bushing, &[state]);
+    motion.find_reactions().unwrap();
+    let seen = motion.observe_element(0);
+    // x of the marker is y, and its y is −x.
+    let expected = Vector3::new(-80.0 * 0.2 - 2.0 * 0.6, 90.0 * 0.1, -100.0 * 0.3);
+    assert!((seen.force_marker - expected).norm() < 1e-12, "{seen:?}");
+    let expected_global = Vector3::new(-expected.y, expected.x, expected.z);
+    assert!((seen.reaction_global.force_global - expected_global).norm() < 1e-12, "{seen:?}");
+    assert!((seen.moment_marker - Vector3::new(0.0, 0.0, -7.0 * angle)).norm() < 1e-12, "{seen:?}");
+    assert!((seen.reaction_global.moment_global - Vector3::new(0.0, 0.0, -7.0 * angle)).norm() < 1e-12, "{seen:?}");
+    assert_eq!(seen.line, LineObservation::default());
 }
 
 /// Conserved: momenta of a pair with a bushing that is turned and stretched at once; energy by the work of the bushing.

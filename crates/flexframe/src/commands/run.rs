@@ -259,7 +259,8 @@ fn movers<'a>(
     let mover = |moving: crate::motion::Moving| {
         let follow = |number: &usize| FollowedBody::new(bodies[*number], *number, &initial[*number]);
         let followed = moving.bodies.iter().map(follow).collect::<Result<_, _>>()?;
-        Ok(Mover { motion: moving.motion, bodies: followed, joints: moving.joints })
+        let crate::motion::Moving { motion, joints, elements, .. } = moving;
+        Ok(Mover { motion, bodies: followed, joints, elements })
     };
     begin(system, &models, &beginning).map_err(|error| error.at_key(system))?.into_iter().map(mover).collect()
 }

@@ -79,6 +79,8 @@ pub struct Moving {
     pub bodies: Vec<usize>,
     /// Numbers of its joints in the scene.
     pub joints: Vec<usize>,
+    /// Numbers of its springs and bushings in rows, which have those of the scene after the joints.
+    pub elements: Vec<usize>,
 }
 
 impl Beginning {
@@ -123,17 +125,25 @@ pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Resul
             let alone = alone(scene, model, &beginning.bodies[number], beginning);
             let simulation = alone.map_err(|source| BeginError::start(number, scene, source))?;
             let motion = Motion::Alone(Box::new(simulation));
-            all.push(Moving { motion, bodies: vec![number], joints: Vec::new() });
+            all.push(Moving { motion, bodies: vec![number], joints: Vec::new(), elements: Vec::new() });
         }
     }
     for tied in tied {
-        let (bodies, joints) = (tied.bodies.clone(), tied.joints.clone());
+        let (bodies, joints, elements) = (tied.bodies.clone(), tied.joints.clone(), elements_in_rows(system, &tied));
         let scene = &system.bodies[bodies[0]];
         let simulation = start_tied(system, models, tied, beginning);
         let simulation = simulation.map_err(|source| BeginError::start(bodies[0], scene, source))?;
-        all.push(Moving { motion: Motion::Tied(Box::new(simulation)), bodies, joints });
+        all.push(Moving { motion: Motion::Tied(Box::new(simulation)), bodies, joints, elements });
     }
     Ok(all)
+}
+
+/// Numbers in rows of the springs and bushings of a system, in its order; laws from outside come after them.
+fn elements_in_rows(system: &System, tied: &Tied) -> Vec<usize> {
+    let springs = system.springs.iter().map(|spring| &spring.name);
+    let names = springs.chain(system.bushings.iter().map(|bushing| &bushing.name));
+    let of_system = (system.joints.len()..).zip(names).filter(|(_, name)| tied.elements.contains(name));
+    of_system.map(|(number, _)| number).collect()
 }
 
 /// The systems of a scene, with the laws from outside.

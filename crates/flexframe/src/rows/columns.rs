@@ -45,10 +45,12 @@ pub mod part {
     pub const SLIDE_FORCE: &str = "slide force";
     /// A spring acts in the joint, with a damper, stops and friction.
     pub const SPRING: &str = "spring";
+    /// It is a spring along the line between two markers.
+    pub const LINE: &str = "line";
 }
 
 /// All columns; those of the system come last.
-pub static COLUMNS: [Column<Row>; 61] = [
+pub static COLUMNS: [Column<Row>; 64] = [
     // Each body.
     body(["", "attitude"], (Dimension::Number, "body to global"), "unit quaternion (w, x, y, z) that takes body components to global ones", Quaternion(|now| now.attitude.wxyz())),
     body(["", "origin"], (Length, "global"), "position of the origin of the body frame", Vector(|now| now.origin_global.into())),
@@ -90,21 +92,24 @@ pub static COLUMNS: [Column<Row>; 61] = [
     points("stress", (Stress, "body"), "stress at the point: components xx, yy, zz, xy, yz, zx", Named(&STRESSES, |now, i| Some(&now.stress.get(i)?.components))).only_with(part::STRESS),
     points("von_mises_stress", (Stress, "none"), "von Mises stress at the point", Quantities::Number(|now, i| Some(now.stress.get(i)?.von_mises))).only_with(part::STRESS),
     points("principal_stress", (Stress, "none"), "principal stresses at the point, the largest first", Named(&["1", "2", "3"], |now, i| Some(&now.stress.get(i)?.principal))).only_with(part::STRESS),
-    // Each joint.
+    // Each joint, spring and bushing.
     joint("angle", (Angle, "none"), "angle about the z axis of the first marker, from its x axis to that of the second; it grows beyond a turn", Number(|now| now.coordinates.turn)).only_with(part::TURNS),
     joint("rate", (AngularVelocity, "none"), "rate of the angle", Number(|now| now.coordinates.turn_rate)).only_with(part::TURNS),
     joint("position", (Length, "none"), "distance of the second marker along the z axis of the first", Number(|now| now.coordinates.slide)).only_with(part::SLIDES),
     joint("velocity", (Velocity, "none"), "rate of the position", Number(|now| now.coordinates.slide_rate)).only_with(part::SLIDES),
     joint("torque", (Moment, "none"), "moment of the spring, the damper, the stops, friction, the motor and couplings on the second body, about the axis", Number(|now| now.turn_effort)).only_with(part::TURN_FORCE).in_role(Direct),
     joint("thrust", (Force, "none"), "force of the same along the axis", Number(|now| now.slide_effort)).only_with(part::SLIDE_FORCE).in_role(Direct),
-    joint("force", (Force, "global"), "force of the joint on its second body, at the second marker; on the first it is the opposite", Vector(|now| now.reaction_global.force_global.into())).in_role(Direct),
-    joint("moment", (Moment, "global"), "moment of the joint on its second body, about the second marker", Vector(|now| now.reaction_global.moment_global.into())).in_role(Direct),
-    joint("force_marker", (Force, "first marker"), "the same force, in the axes of the first marker", Vector(|now| now.force_marker.into())).in_role(Direct),
-    joint("moment_marker", (Moment, "first marker"), "the same moment, in the axes of the first marker", Vector(|now| now.moment_marker.into())).in_role(Direct),
+    joint("force", (Force, "global"), "force of the joint, spring or bushing on its second body, at the second marker; on the first it is the opposite", Vector(|now| now.reaction_global.force_global.into())).in_role(Direct),
+    joint("moment", (Moment, "global"), "moment of the joint or bushing on its second body, about the second marker", Vector(|now| now.reaction_global.moment_global.into())).only_without(part::LINE).in_role(Direct),
+    joint("force_marker", (Force, "first marker"), "the same force, in the axes of the first marker", Vector(|now| now.force_marker.into())).only_without(part::LINE).in_role(Direct),
+    joint("moment_marker", (Moment, "first marker"), "the same moment, in the axes of the first marker", Vector(|now| now.moment_marker.into())).only_without(part::LINE).in_role(Direct),
     joint("drive_work", (Energy, "none"), "work of the drive and the motor since t = 0", Number(|now| now.work.drive)).only_with(part::DRIVE).in_role(Internal),
     joint("drive_power", (Power, "none"), "power of the drive and the motor", Number(|now| now.drive_power)).only_with(part::DRIVE).in_role(Direct),
     joint("spring_work", (Energy, "none"), "work of the spring, the stops and the preload since t = 0", Number(|now| now.work.spring)).only_with(part::SPRING).in_role(Internal),
     joint("loss", (Energy, "none"), "energy that friction and the damper have taken since t = 0", Number(|now| now.work.loss)).only_with(part::SPRING).in_role(Internal),
+    joint("length", (Length, "none"), "distance between the markers of a spring", Number(|now| now.line.length)).only_with(part::LINE),
+    joint("length_rate", (Velocity, "none"), "rate of the length", Number(|now| now.line.rate)).only_with(part::LINE),
+    joint("pull", (Force, "none"), "force by which the spring and its damper pull the markers together; negative where they push", Number(|now| now.line.pull)).only_with(part::LINE).in_role(Direct),
     // All bodies together.
     system(["energy", "kinetic"], (Energy, "none"), "kinetic energy of all bodies", Number(Row::kinetic_energy)),
     system(["energy", "strain"], (Energy, "none"), "strain energy of all bodies", Number(Row::strain_energy)),

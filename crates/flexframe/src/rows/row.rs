@@ -15,7 +15,7 @@ pub struct Row {
     pub time: f64,
     /// The bodies, in the order of the scene.
     pub bodies: Vec<BodyRow>,
-    /// The joints, in the order of the scene.
+    /// The joints, then the springs and the bushings, each in the order of the scene.
     pub joints: Vec<JointObservation>,
 }
 

@@ -333,6 +333,17 @@ kind = "revolute"
 between = ["ground", "rotor.axle"]
 axis = [0, 0, 1]
 spring = { stiffness = 8.0 }
+[ground.markers.wall]
+at = [0, 0, 2]
+[[springs]]
+name = "wire"
+between = ["ground.wall", "rotor.axle"]
+stiffness = 3.0
+free_length = 1.5
+[[bushings]]
+name = "pad"
+between = ["ground", "rotor.axle"]
+damping = { translation = [1.0, 1.0, 1.0] }
 [time]
 end = 1.0
 tolerance = 1e-8
@@ -340,6 +351,8 @@ tolerance = 1e-8
     let system = flexframe::scene::System::parse(text, "rotor.toml").unwrap();
     let fmu = Fmu::of_system(&system);
     let motor = fmu.reference("joints.axle.motor.torque");
+    let of_springs = ["joints.wire.length", "joints.wire.pull", "joints.wire.force[3]", "joints.pad.force[3]"];
+    let of_springs = of_springs.map(|name| fmu.reference(name));
     let seen = ["joints.axle.angle", "joints.axle.rate", "joints.axle.torque", "joints.axle.drive_work"];
     let seen = seen.map(|name| fmu.reference(name));
     let (moment, stiffness, inertia) = (0.6, 8.0, 0.5);
@@ -372,4 +385,7 @@ tolerance = 1e-8
     // All that the motor has put in is at the end in the spring and in the motion.
     assert!((last[3] - 0.5 * stiffness * last[0].powi(2) - 0.5 * inertia * last[1].powi(2)).abs() < 1e-7, "{last:?}");
     assert!((last[2] + stiffness * last[0]).abs() < 1e-9, "{last:?}");
+    // The axle stays 2 from the wall, 0.5 more than the wire has without a force.
+    let now = instance.get(&of_springs).unwrap();
+    assert!(now.iter().zip([2.0, 1.5, 1.5, 0.0]).all(|(now, expected)| (now - expected).abs() < 1e-9), "{now:?}");
 }

@@ -8,7 +8,7 @@ use flexframe::dynamics::{
 };
 use flexframe::failure::{Details, Kind};
 use flexframe::model::{Model, StartError};
-use flexframe::motion::{Beginning, BodyForces, Motion, begin};
+use flexframe::motion::{Beginning, BodyForces, Motion, Moving, begin};
 use flexframe::results::Metadata;
 use flexframe::row::BodyRow;
 use flexframe::run::{RunBody, RunError, Watch};
@@ -101,6 +101,8 @@ struct Moved {
 
 struct Running {
     motion: Motion,
+    /// Numbers of its joints, and of its springs and bushings, in rows.
+    ties: [Vec<usize>; 2],
     /// True if the row at the start has been given, or a step been tried.
     begun: bool,
     /// True if the state has been set since the last try of a step, and no run has given its row.
@@ -111,10 +113,10 @@ struct Running {
 impl Running {
     /// Observes the motion at the time that it has come to.
     fn observe(&mut self) -> Result<(), StepError> {
-        let Self { motion, row, .. } = self;
+        let Self { motion, ties, row, .. } = self;
         motion.observe(None, row.bodies.iter_mut().map(|body| &mut body.motion))?;
         row.time = motion.time();
-        row.joints.iter_mut().enumerate().for_each(|(joint, out)| *out = motion.observe_joint(joint));
+        motion.observe_ties(ties.each_ref().map(|ties| &ties[..]), &mut row.joints);
         Ok(())
     }
 }
@@ -367,7 +369,7 @@ impl Simulation {
             return Err(fault);
         }
         let begun = begun.map_err(|error| exception(py, &RunError::from(error)))?;
-        let Some(mut motion) = begun.into_iter().next().map(|moving| moving.motion) else {
+        let Some(Moving { mut motion, joints, elements, .. }) = begun.into_iter().next() else {
             return Err(exception(py, &RunError::NoBody));
         };
         if let Motion::Alone(simulation) = &mut motion {
@@ -376,7 +378,7 @@ impl Simulation {
         let row = flexframe::row::Row {
             time: 0.0,
             bodies: models.iter().map(|model| BodyRow::new(model)).collect(),
-            joints: vec![JointObservation::default(); system.joints.len()],
+            joints: vec![JointObservation::default(); metadata.joints.len()],
         };
         let bodies = system.bodies.iter().zip(&models).zip(beginning.bodies);
         let bodies = bodies.map(|((scene, model), forces)| Moved {
@@ -385,7 +387,7 @@ impl Simulation {
             effects: forces.physics.effects,
         });
         let bodies = bodies.collect();
-        let running = Mutex::new(Running { motion, begun: false, is_set: false, row });
+        let running = Mutex::new(Running { motion, ties: [joints, elements], begun: false, is_set: false, row });
         Ok(Self { of: body.unbind(), bodies, models, metadata, faults, running })
     }
 
@@ -536,7 +538,9 @@ impl Simulation {
                         body
                     };
                     let bodies = now.bodies.iter().zip(&models).map(body).collect();
-                    seen(flexframe::row::Row { time: now.time, bodies, joints: now.joints.clone() })
+                    // Laws from outside come last.
+                    let joints = now.joints.iter().chain(&now.elements).take(joints).copied().collect();
+                    seen(flexframe::row::Row { time: now.time, bodies, joints })
                 });
                 detached(py, || simulation.add_event(event))?
             }

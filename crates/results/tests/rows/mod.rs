@@ -80,7 +80,7 @@ pub type Writer = results::Writer<Row>;
 pub type Resumed = results::Resumed<Row>;
 
 /// The last but one is of a body with a hinge only.
-pub static COLUMNS: [Column<Row>; 23] = [
+pub static COLUMNS: [Column<Row>; 24] = [
     Column::of_system(["energy", "kinetic"], KIND, "of a test", Number(|row: &Row| row.time + 20.0)),
     of_body("", "attitude", Quaternion(|row| [row.time, 0.1, 0.2, 0.3])),
     of_body("", "position", Vector(|row| row.vector(1.0))),
@@ -104,6 +104,7 @@ pub static COLUMNS: [Column<Row>; 23] = [
     of_points("rigid_acceleration", |row, i| Some(row.points.get(i)?[3])),
     of_body("hinge", "angle", Number(|row| row.time + 19.0)).only_with("hinge"),
     Column::of_joint(["", "angle"], KIND, "of a test", Number(|joint: &f64| *joint)).only_with("turns"),
+    Column::of_joint(["", "moment"], KIND, "of a test", Number(|joint: &f64| *joint)).only_without("turns"),
 ];
 
 const KIND: (Dimension, &str) = (Dimension::Energy, "none");

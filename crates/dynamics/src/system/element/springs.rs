@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use rigid_kin::{cross_matrix, f_inverse, half_cotangent_factor, rotation_vector};
 
 use crate::system::element::{ForceElement, SetDirection};
+use crate::system::joint::observation::{JointObservation, LineObservation};
 use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 use crate::system::marker::{Marker, tangent_of};
 
@@ -20,6 +21,21 @@ pub struct PointSpring {
     pub free_length: f64,
 }
 
+impl PointSpring {
+    /// The direction from the first marker to the second, and what is along it; none where they are at one place.
+    fn line(&self, [i, j]: [&MarkerMotion; 2]) -> Option<(Vector3<f64>, LineObservation)> {
+        let line = j.position_global - i.position_global;
+        let length = line.norm();
+        if length == 0.0 {
+            return None;
+        }
+        let along = line / length;
+        let rate = along.dot(&(j.velocity_global - i.velocity_global));
+        let pull = self.stiffness * (length - self.free_length) + self.damping * rate;
+        Some((along, LineObservation { length, rate, pull }))
+    }
+}
+
 impl ForceElement for PointSpring {
     fn markers(&self) -> &[Marker] {
         &self.markers
@@ -27,15 +43,15 @@ impl ForceElement for PointSpring {
 
     fn apply(&self, _: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]) {
         let ([i, j], [on_i, on_j]) = (motions, wrenches) else { return };
-        let line = j.position_global - i.position_global;
-        let length = line.norm();
-        if length == 0.0 {
-            return;
-        }
-        let along = line / length;
-        let rate = along.dot(&(j.velocity_global - i.velocity_global));
-        let force = along * (self.stiffness * (length - self.free_length) + self.damping * rate);
+        let Some((along, LineObservation { pull, .. })) = self.line([i, j]) else { return };
+        let force = along * pull;
         (on_i.force_global, on_j.force_global) = (force, -force);
+    }
+
+    fn observe(&self, [i, j]: &[MarkerMotion; 2]) -> Option<JointObservation> {
+        let (along, line) = self.line([i, j]).unwrap_or_default();
+        let on_second = MarkerWrench { force_global: along * -line.pull, ..MarkerWrench::default() };
+        Some(JointObservation { line, ..JointObservation::of_wrench(on_second, &i.axes_global) })
     }
 
     fn directions(&self) -> usize {
@@ -105,6 +121,12 @@ impl ForceElement for Bushing {
         on_j.moment_global = -moment;
         on_i.force_global = force;
         on_i.moment_global = moment + line.cross(&force);
+    }
+
+    fn observe(&self, motions: &[MarkerMotion; 2]) -> Option<JointObservation> {
+        let mut wrenches = [MarkerWrench::default(); 2];
+        self.apply([0.0; 2], motions, &mut wrenches);
+        Some(JointObservation::of_wrench(wrenches[1], &motions[0].axes_global))
     }
 
     fn directions(&self) -> usize {

@@ -20,6 +20,8 @@ pub struct SystemObservation {
     pub bodies: Vec<Observation>,
     /// The joints, in their order in the system.
     pub joints: Vec<JointObservation>,
+    /// The force elements, in their order in the system; zeros of those that do not show what they do.
+    pub elements: Vec<JointObservation>,
 }
 
 impl SystemObservation {
@@ -30,6 +32,7 @@ impl SystemObservation {
             time: 0.0,
             bodies: of_bodies.map(|(body, points)| Observation::new(body.flexible(), points.len())).collect(),
             joints: vec![JointObservation::default(); system.joints().len()],
+            elements: vec![JointObservation::default(); system.elements().len()],
         }
     }
 
@@ -42,6 +45,9 @@ impl SystemObservation {
         }
         for (joint, out) in self.joints.iter_mut().enumerate() {
             *out = motion.observe_joint(joint);
+        }
+        for (element, out) in self.elements.iter_mut().enumerate() {
+            *out = motion.observe_element(element);
         }
         Ok(())
     }

@@ -108,8 +108,9 @@ impl Of {
         match history.body {
             Some(body) => Self::body(metadata, body),
             None => match history.joint.and_then(|joint| metadata.joints.get(joint)) {
-                Some(JointMetadata { name, .. }) => {
-                    Self { prefix: format!("joints.{}.", identifier(name)), words: format!(" of the joint {name}") }
+                Some(JointMetadata { name, kind, .. }) => {
+                    let what = if ["spring", "bushing"].contains(&kind.as_str()) { kind } else { "joint" };
+                    Self { prefix: format!("joints.{}.", identifier(name)), words: format!(" of the {what} {name}") }
                 }
                 None => Self { prefix: "system.".to_owned(), words: String::new() },
             },

@@ -3,7 +3,7 @@
 use dynamics::DrivenMotion;
 use model::Builder;
 use results::{BodyMetadata, BodyProperties, JointMetadata, Metadata, Units};
-use scene::{Coordinate, Scene, StepControl, System};
+use scene::{Coordinate, End, Scene, StepControl, System};
 
 use super::body::RunBody;
 use crate::drawn::mesh_properties;
@@ -28,9 +28,10 @@ pub(super) fn metadata_of_file(system: &System, bodies: &[RunBody<'_>], builder:
     Some(Metadata { input_files: files, ..metadata })
 }
 
-/// As [`metadata`], with the joints.
+/// As [`metadata`], with the joints, springs and bushings.
 pub fn metadata_of_system(system: &System, bodies: &[RunBody<'_>]) -> Option<Metadata> {
-    let joints = (0..system.joints.len()).map(|joint| joint_metadata(system, joint)).collect();
+    let joints = (0..system.joints.len()).map(|joint| joint_metadata(system, joint));
+    let joints = joints.chain(element_metadata(system)).collect();
     Some(Metadata { joints, ..metadata(bodies)? })
 }
 
@@ -124,6 +125,18 @@ fn joint_metadata(system: &System, number: usize) -> JointMetadata {
         between: joint.between.map(|end| system.name_of(end)),
         parts: parts.into_iter().filter(|(_, has)| *has).map(|(part, _)| part.to_owned()).collect(),
     }
+}
+
+/// Springs, then bushings.
+fn element_metadata(system: &System) -> impl Iterator<Item = JointMetadata> {
+    let of = |name: &String, kind: &str, between: [End; 2], parts: &[&str]| JointMetadata {
+        name: name.clone(),
+        kind: kind.to_owned(),
+        between: between.map(|end| system.name_of(end)),
+        parts: parts.iter().map(|part| (*part).to_owned()).collect(),
+    };
+    let springs = system.springs.iter().map(move |spring| of(&spring.name, "spring", spring.between, &[part::LINE]));
+    springs.chain(system.bushings.iter().map(move |bushing| of(&bushing.name, "bushing", bushing.between, &[])))
 }
 
 /// The labels of a scene's units.

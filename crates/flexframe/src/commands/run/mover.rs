@@ -17,6 +17,8 @@ pub(super) struct Mover<'a> {
     pub bodies: Vec<FollowedBody<'a>>,
     /// Numbers of its joints in the scene.
     pub joints: Vec<usize>,
+    /// Numbers of its springs and bushings in rows.
+    pub elements: Vec<usize>,
 }
 
 /// The place where a motion goes next.
@@ -72,7 +74,7 @@ impl Mover<'_> {
 
     /// Observes its bodies and joints at the time that it has come to, or at the time of a row within its last step.
     pub fn observe(&mut self, within: Option<f64>, row: &mut Row) -> Result<(), StepError> {
-        let Self { motion, bodies, joints } = self;
+        let Self { motion, bodies, joints, elements } = self;
         let mut rows: Vec<&mut BodyRow> = Vec::with_capacity(bodies.len());
         // Its bodies are in the order of the scene.
         let mut rest = row.bodies.iter_mut().enumerate();
@@ -81,9 +83,7 @@ impl Mover<'_> {
         }
         motion.observe(within, rows.iter_mut().map(|row| &mut row.motion))?;
         rows.into_iter().zip(&*bodies).for_each(|(row, body)| row.complete(body.of.model));
-        for (i, number) in joints.iter().enumerate() {
-            row.joints[*number] = motion.observe_joint(i);
-        }
+        motion.observe_ties([joints, elements], &mut row.joints);
         Ok(())
     }
 }

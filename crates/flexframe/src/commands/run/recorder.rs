@@ -43,7 +43,7 @@ impl<'a> Recorder<'a> {
         if times.is_some_and(|times| times.may_be_between_steps()) {
             movers.iter_mut().for_each(|mover| mover.motion.keep_last_step());
         }
-        let joints = movers.iter().map(|mover| mover.joints.len()).sum();
+        let joints = movers.iter().map(|mover| mover.joints.len() + mover.elements.len()).sum();
         let row = Row {
             time: 0.0,
             bodies: bodies.iter().map(|body| BodyRow::new(body.model)).collect(),

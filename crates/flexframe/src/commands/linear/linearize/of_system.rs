@@ -35,7 +35,7 @@ pub(super) fn of_system(
     let beginning = Beginning::of(system, &references).ok_or_else(no_body)?;
     let beginning = Beginning { together: true, ..beginning };
     let mut moving = motion::begin(system, &references, &beginning).map_err(Box::new)?;
-    let Some(Moving { motion, joints, bodies }) = moving.first_mut() else { return Err(no_body()) };
+    let Some(Moving { motion, joints, bodies, .. }) = moving.first_mut() else { return Err(no_body()) };
     if let Some(states) = states {
         let states: Vec<MotionState> = bodies.iter().map(|body| states[*body].clone()).collect();
         let scene = scene.path.clone();
