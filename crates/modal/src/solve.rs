@@ -22,6 +22,7 @@ use crate::matrix::symmetry::check_symmetric;
 use crate::memory_estimate::MemoryEstimate;
 use crate::multigrid::{CycledBody, Cycles, NoCycles, are_faster};
 use crate::progress::Progress;
+use crate::statics::answer::Answer;
 use crate::support::constraints::Constraints;
 use crate::support::held_problem::HeldProblem;
 use crate::support::motion::Support;
@@ -56,8 +57,8 @@ pub struct Modes {
     /// ‖Kφ − λMφ‖ / ‖Kφ‖ for each natural mode, without the reactions of a support. Rounding in K leaves up to 1e-6 of
     /// this in the lowest modes of fine meshes.
     pub force_residuals: Vec<f64>,
-    /// ΨᵀKΨ beside its diagonal (nf×nf), of shapes that are not K-orthogonal ([`Modes::with_answer`]); none of others.
-    pub coupling: Option<Mat<f64>>,
+    /// The static answer among the shapes ([`Modes::with_answer`]), if there is one.
+    pub answer: Option<Answer>,
     /// Counts of the work, and its times.
     pub stats: SolveStats,
 }
@@ -96,9 +97,9 @@ pub struct SolveStats {
 }
 
 impl Modes {
-    /// Number of natural modes; what follows them are static shapes.
+    /// Number of natural modes, or of the combinations in their places; what follows them are static shapes.
     pub fn natural(&self) -> usize {
-        self.residuals.len()
+        self.answer.as_ref().map_or(self.residuals.len(), |answer| answer.natural)
     }
 
     /// The first of them only.
@@ -112,7 +113,7 @@ impl Modes {
             shapes: self.shapes.get(.., ..kept).to_owned(),
             residuals: first(&self.residuals),
             force_residuals: first(&self.force_residuals),
-            coupling: self.coupling.as_ref().filter(|_| kept > 0).map(|k| k.get(..kept, ..kept).to_owned()),
+            answer: self.answer.as_ref().and_then(|answer| answer.truncated(kept)),
             stats: self.stats,
         }
     }
@@ -301,7 +302,7 @@ impl<'a> Solver<'a> {
                 shapes: Mat::zeros(unknowns, 0),
                 residuals: none(),
                 force_residuals: none(),
-                coupling: None,
+                answer: None,
                 stats: SolveStats {
                     unknowns,
                     peak_bytes: self.memory_estimate().peak(0),
@@ -405,7 +406,7 @@ impl<'a> Solver<'a> {
             rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, vectors)?;
         self.refuse_soft(&eigenvalues, &shapes, stats.shift)?;
         let stats = SolveStats { ritz_time: started.elapsed(), ..stats };
-        Ok(Modes { rigid: self.rigid.clone(), eigenvalues, shapes, residuals, force_residuals, coupling: None, stats })
+        Ok(Modes { rigid: self.rigid.clone(), eigenvalues, shapes, residuals, force_residuals, answer: None, stats })
     }
 
     /// Cycles, should they be faster for `modes` modes than the factor of K + sM; none for bodies of which they cannot be made, too.

@@ -1,6 +1,6 @@
 //! Static responses, and shapes of large modes.
 
-mod answer;
+pub(crate) mod answer;
 pub(crate) mod inertia_relief;
 pub(crate) mod large_shapes;
 pub(crate) mod mass_left_out;

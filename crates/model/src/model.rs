@@ -167,11 +167,7 @@ impl Model {
 
     /// The large coordinate that is the static answer to moments, numbered from 0, if there is one.
     pub fn static_answer(&self) -> Option<usize> {
-        let coupling = self.meshed.as_ref()?.modes.coupling.as_ref()?;
-        let large = self.large_modes();
-        let coupled = large.iter().copied().find(|k| coupling.col(*k).norm_max() > 0.0);
-        // Where nothing is left beside it, it is coupled to nothing: it is a static shape, which comes last.
-        coupled.or(large.last().copied())
+        Some(self.meshed.as_ref()?.modes.answer.as_ref()?.place)
     }
 
     /// The coordinates of the modes and of the shapes that follow them: u is their sum with [`Meshed::modes`] and then

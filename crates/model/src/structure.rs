@@ -404,11 +404,11 @@ impl Structure<'_> {
             let motions = motions + self.solve(modes, forces.as_ref(), StaticAccuracy::Full)?;
             let (size, shapes) = (modes.shapes.nrows(), modes.shapes.ncols());
             let mut extended = modes.clone();
-            // They have no frequency; the equations of motion do not meet them.
-            extended.eigenvalues.resize(shapes + motions.ncols(), 1.0);
-            extended.shapes = Mat::from_fn(size, shapes + motions.ncols(), |i, j| {
+            let all = Mat::from_fn(size, shapes + motions.ncols(), |i, j| {
                 if j < shapes { modes.shapes[(i, j)] } else { motions[(i, j - shapes)] }
             });
+            // They have no frequency; the equations of motion do not meet them.
+            extended.append(vec![1.0; motions.ncols()], all);
             Ok(Basis { body: self.reduced(&extended)?, modes: extended })
         })
     }

@@ -90,6 +90,31 @@ fn shapes_of_two_meshes_are_the_same() {
     }
 }
 
+/// Conserved: natural modes are those of the body, whatever bends it far in a run. Of a run the static answer to the moment takes the place
+/// of one.
+#[test]
+fn modes_of_a_body_that_a_moment_bends_far_are_natural_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = [
+        "",
+        "[[loads]]\nkind = \"moment\"\nat = [200.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = 1e4\n\
+         history = { kind = \"constant\" }\n",
+    ]
+    .map(|load| {
+        let scene = folder.path().join("bent.toml");
+        let mesh = crate::program::root().join("meshes/rotating_bar.msh");
+        let text = format!(
+            "title = \"Bent\"\nunits = {{ length = \"mm\", mass = \"Mg\", time = \"s\" }}\n[body]\nmesh = {mesh:?}\n\
+             material = {{ young_modulus = 7e4, poisson_ratio = 0.3, density = 2.7e-9 }}\n[modes]\nflexible = 6\nlarge = 2\n\
+             [time]\nend = 1e-3\nstep = 1e-5\n[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n{load}"
+        );
+        std::fs::write(&scene, text).unwrap();
+        let report = modes(&[scene.to_str().unwrap()]);
+        (numbers(&report["body"]["natural_frequencies"]), report["body"]["kinds"].clone())
+    });
+    assert_eq!(found[0], found[1]);
+}
+
 #[test]
 fn bodies_that_cannot_be_compared_are_refused() {
     let refused = |arguments: &[&str], words: &str| {

@@ -95,7 +95,7 @@ impl Solver<'_> {
             ..SolveStats::default()
         };
         let rigid = self.rigid.clone();
-        Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, coupling: None, stats }.truncated(flexible))
+        Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, answer: None, stats }.truncated(flexible))
     }
 
     /// Rounding error of the product Kφ with each shape, relative to it.

@@ -11,25 +11,55 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
 use crate::error::ModalError;
+use crate::input::check_finite_entries;
 use crate::memory_estimate::of_vectors;
 use crate::solve::Modes;
 
+/// A static answer among shapes, the one of them that is not K-orthogonal to the others.
+#[derive(Debug, Clone)]
+pub struct Answer {
+    /// Its place, numbered from 0.
+    pub place: usize,
+    /// Its stiffness with each shape, beside that with itself (nf).
+    pub coupling: Vec<f64>,
+    /// Number of shapes in the places of natural modes.
+    pub natural: usize,
+}
+
+impl Answer {
+    /// Among the first shapes only; `None` where it is none of them.
+    pub(crate) fn truncated(&self, shapes: usize) -> Option<Self> {
+        let Self { place, coupling, natural } = self;
+        let coupling = coupling.iter().copied().take(shapes).collect();
+        (*place < shapes).then_some(Self { place: *place, coupling, natural: shapes.min(*natural) })
+    }
+
+    /// ΨᵀKΨ beside its diagonal (nf×nf).
+    pub fn stiffness(&self) -> Mat<f64> {
+        let size = self.coupling.len();
+        let mut stiffness = Mat::zeros(size, size);
+        for (k, value) in self.coupling.iter().enumerate() {
+            (stiffness[(self.place, k)], stiffness[(k, self.place)]) = (*value, *value);
+        }
+        stiffness
+    }
+}
+
 impl Modes {
     /// The same motions by other coordinates: the modes `kept` in their places; in the first place that is left, the part that a static
-    /// answer of these `amplitudes` has beside them; in the others, slowest first, what else there is. Returns them and the place;
+    /// answer of these `amplitudes` has beside them; in the others, slowest first, what else there is.
     /// `None` where the answer has no more than `least` of itself beside the modes that are kept, or these are all that there are.
     ///
     /// # Errors
-    /// [`ModalError::Length`], [`ModalError::DenseEigen`], [`ModalError::Memory`].
-    pub fn with_answer(
-        &self,
-        amplitudes: &[f64],
-        kept: &[usize],
-        least: f64,
-    ) -> Result<Option<(Self, usize)>, ModalError> {
+    /// [`ModalError::Length`], [`ModalError::NotFinite`], [`ModalError::LargeModes`], [`ModalError::DenseEigen`], [`ModalError::Memory`].
+    pub fn with_answer(&self, amplitudes: &[f64], kept: &[usize], least: f64) -> Result<Option<Self>, ModalError> {
         let (size, found) = (self.shapes.ncols(), amplitudes.len());
         if found != size {
             return Err(ModalError::Length { what: "the amplitudes of a static answer", expected: size, found });
+        }
+        check_finite_entries("amplitudes of a static answer", amplitudes.iter().copied())?;
+        if kept.iter().any(|k| *k >= size) {
+            return Err(ModalError::LargeModes { found: kept.to_vec(), count: size });
         }
         let places: Vec<usize> = (0..size).filter(|k| !kept.contains(k)).collect();
         let norm = |list: &mut dyn Iterator<Item = f64>| list.map(|c| c * c).sum::<f64>().sqrt();
@@ -53,29 +83,48 @@ impl Modes {
         let stiffness =
             |a: usize, b: usize| (0..size).map(|i| q[(i, a)] * self.eigenvalues[i] * q[(i, b)]).sum::<f64>();
         let eigenvalues = (0..size).map(|k| stiffness(k, k)).collect();
-        let mut coupling = Mat::zeros(size, size);
-        for other in &places[1..] {
-            let value = stiffness(place, *other);
-            (coupling[(place, *other)], coupling[(*other, place)]) = (value, value);
-        }
+        let mut coupling = vec![0.0; size];
+        places[1..].iter().for_each(|other| coupling[*other] = stiffness(place, *other));
         memory::check("modes with a static answer", of_vectors(self.shapes.nrows(), size))?;
-        let shapes = &self.shapes * &q;
-        Ok(Some((Self { eigenvalues, shapes, coupling: Some(coupling), ..self.clone() }, place)))
+        Ok(Some(Self {
+            rigid: self.rigid.clone(),
+            eigenvalues,
+            shapes: &self.shapes * &q,
+            // Those of eigenvectors, which most of these are not.
+            residuals: Vec::new(),
+            force_residuals: Vec::new(),
+            answer: Some(Answer { place, coupling, natural: self.natural() }),
+            stats: self.stats,
+        }))
+    }
+
+    /// Lets `shapes` that have more columns take the place of its own, with `eigenvalues` of those that follow, to which K couples none.
+    pub fn append(&mut self, eigenvalues: impl IntoIterator<Item = f64>, shapes: Mat<f64>) {
+        self.eigenvalues.extend(eigenvalues);
+        if let Some(answer) = &mut self.answer {
+            answer.coupling.resize(self.eigenvalues.len(), 0.0);
+        }
+        self.shapes = shapes;
+    }
+
+    /// ΨᵀKΨ (nf×nf).
+    pub(crate) fn stiffness(&self) -> Mat<f64> {
+        let size = self.eigenvalues.len();
+        let mut stiffness = self.answer.as_ref().map_or_else(|| Mat::zeros(size, size), Answer::stiffness);
+        self.eigenvalues.iter().enumerate().for_each(|(k, eigenvalue)| stiffness[(k, k)] = *eigenvalue);
+        stiffness
     }
 
     /// Replaces modal forces (nf×k) by the amplitudes of the static answers to them.
     ///
     /// # Errors
-    /// [`ModalError::DenseEigen`].
+    /// [`ModalError::NotPositiveDefinite`].
     pub fn answer(&self, forces: &mut Mat<f64>) -> Result<(), ModalError> {
-        match &self.coupling {
-            Some(coupling) => {
-                let stiffness = Mat::from_fn(coupling.nrows(), coupling.ncols(), |i, j| {
-                    if i == j { self.eigenvalues[i] } else { coupling[(i, j)] }
-                });
-                let factor =
-                    stiffness.llt(Side::Lower).map_err(|_| ModalError::DenseEigen { size: coupling.nrows() })?;
-                factor.solve_in_place(forces);
+        match &self.answer {
+            Some(_) => {
+                let (stiffness, size) = (self.stiffness(), self.eigenvalues.len());
+                let failed = |_| ModalError::NotPositiveDefinite { matrix: "stiffness", size };
+                stiffness.llt(Side::Lower).map_err(failed)?.solve_in_place(forces);
             }
             None => {
                 for (k, eigenvalue) in self.eigenvalues.iter().enumerate() {
@@ -114,7 +163,7 @@ mod tests {
             shapes: Mat::identity(size, size),
             residuals: vec![0.0; size],
             force_residuals: vec![0.0; size],
-            coupling: None,
+            answer: None,
             stats: SolveStats::default(),
         }
     }
@@ -124,15 +173,17 @@ mod tests {
     fn the_answer_and_what_is_kept_are_coordinates() {
         let eigenvalues = [1.0, 4.0, 9.0, 25.0, 400.0];
         let answer = [0.5, 3.0, 0.1, -0.4, 0.02];
-        let (found, place) = modes(&eigenvalues).with_answer(&answer, &[1], 1e-3).unwrap().unwrap();
-        assert_eq!(place, 0);
-        let coupling = found.coupling.as_ref().unwrap();
+        let found = modes(&eigenvalues).with_answer(&answer, &[1], 1e-3).unwrap().unwrap();
+        assert_eq!((found.answer.as_ref().unwrap().place, found.natural()), (0, 5));
+        // They are those of eigenvectors.
+        assert!(found.residuals.is_empty() && found.force_residuals.is_empty());
+        let of_found = found.stiffness();
         let q = &found.shapes;
         for (i, j) in (0..5).flat_map(|i| (0..5).map(move |j| (i, j))) {
             let mass: f64 = (0..5).map(|k| q[(k, i)] * q[(k, j)]).sum();
             let stiffness: f64 = (0..5).map(|k| q[(k, i)] * eigenvalues[k] * q[(k, j)]).sum();
-            let of_one = if i == j { [1.0, found.eigenvalues[i]] } else { [0.0, coupling[(i, j)]] };
-            assert!((mass - of_one[0]).abs() < 1e-13 && (stiffness - of_one[1]).abs() < 1e-11, "{i} {j}");
+            let identity = f64::from(u8::from(i == j));
+            assert!((mass - identity).abs() < 1e-13 && (stiffness - of_found[(i, j)]).abs() < 1e-11, "{i} {j}");
         }
         assert_eq!(q.col(1).iter().copied().collect::<Vec<_>>(), [0.0, 1.0, 0.0, 0.0, 0.0]);
         assert!(found.eigenvalues[2..].is_sorted());
@@ -146,6 +197,27 @@ mod tests {
         let modes = modes(&[1.0, 4.0]);
         assert!(modes.with_answer(&[1.0, 1e-4], &[0], 1e-3).unwrap().is_none());
         assert!(modes.with_answer(&[1.0, 1.0], &[0, 1], 1e-3).unwrap().is_none());
-        assert!(modes.with_answer(&[1.0], &[0], 1e-3).is_err());
+    }
+
+    #[test]
+    fn what_is_no_answer_is_refused() {
+        let modes = modes(&[1.0, 4.0]);
+        assert!(matches!(modes.with_answer(&[1.0], &[0], 1e-3), Err(ModalError::Length { .. })));
+        assert!(matches!(modes.with_answer(&[1.0, f64::NAN], &[0], 1e-3), Err(ModalError::NotFinite { .. })));
+        assert!(matches!(modes.with_answer(&[1.0, 1.0], &[2], 1e-3), Err(ModalError::LargeModes { .. })));
+        let mut soft = modes.with_answer(&[1.0, 1.0], &[], 1e-3).unwrap().unwrap();
+        soft.eigenvalues[0] = 0.0;
+        let failure = soft.answer(&mut Mat::zeros(2, 1));
+        assert!(matches!(failure, Err(ModalError::NotPositiveDefinite { .. })), "{failure:?}");
+    }
+
+    /// Closed form: of modes that are forbidden to move along the first the frequencies are those of the others, in any coordinates.
+    #[test]
+    fn what_is_restricted_may_have_an_answer() {
+        let found = modes(&[1.0, 4.0, 9.0]).with_answer(&[0.5, 3.0, 0.1], &[], 1e-3).unwrap().unwrap();
+        let row = Mat::from_fn(1, 3, |_, k| found.shapes[(0, k)]);
+        let restricted = found.restricted(row.as_ref()).unwrap();
+        let errors = restricted.eigenvalues.iter().zip([4.0, 9.0]).map(|(found, expected)| (found - expected).abs());
+        assert!(errors.fold(0.0, f64::max) < 1e-12, "{:?}", restricted.eigenvalues);
     }
 }

@@ -152,8 +152,7 @@ impl Solver<'_> {
         let stiff = self.stiffness.product(beside.as_ref());
         let of_beside = (0..beside.ncols()).map(|k| beside.col(k).transpose() * stiff.col(k));
         let mut modes = modes;
-        modes.eigenvalues.extend(of_beside);
-        modes.shapes = shapes;
+        modes.append(of_beside, shapes);
         Ok(LargeShapes { modes, dynamic, large: large.to_vec(), following: following.to_vec(), coefficients })
     }
 }

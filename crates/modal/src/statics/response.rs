@@ -82,7 +82,7 @@ impl Solver<'_> {
         check_rows("mode shapes", modes.shapes.nrows(), expected)?;
         check_finite_columns("forces", forces)?;
         // Shapes that are coupled are no natural modes.
-        let none = modes.coupling.is_some().then(|| modes.truncated(0));
+        let none = modes.answer.is_some().then(|| modes.truncated(0));
         let modes = none.as_ref().unwrap_or(modes);
         if let Some(engine) = &self.engine {
             return self.static_response_by(engine.as_ref(), forces);

@@ -1,6 +1,6 @@
 //! Modes of a body some of whose motions are forbidden: Eq. (J20) of `docs/method/systems.md`.
 
-use faer::{Mat, MatRef, Side};
+use faer::{MatRef, Side};
 
 use crate::error::ModalError;
 use crate::input::check_finite_columns;
@@ -26,7 +26,7 @@ impl Modes {
         let largest = values.iter().copied().fold(0.0, f64::max);
         let rank = values.iter().filter(|value| **value > DEPENDENT * largest).count();
         let free = svd.V().subcols(rank, size - rank);
-        let stiff = Mat::from_fn(size, size - rank, |i, j| self.eigenvalues[i] * free[(i, j)]);
+        let stiff = self.stiffness() * free;
         let eigen = (free.transpose() * stiff).self_adjoint_eigen(Side::Lower).map_err(failed)?;
         let natural = self.natural().min(size - rank);
         let first = |list: &[f64]| list.iter().copied().take(natural).collect();
@@ -36,7 +36,7 @@ impl Modes {
             shapes: &self.shapes * (free * eigen.U()),
             residuals: first(&self.residuals),
             force_residuals: first(&self.force_residuals),
-            coupling: None,
+            answer: None,
             stats: self.stats,
         })
     }

@@ -322,9 +322,16 @@ impl Named<'_> {
         let circular = body.circular_frequencies.clone();
         let unit = format!("rad/{time}");
         add("circular_frequencies", &[nf], &unit, "none", "of the natural modes, then of the static shapes", circular);
-        if let Some(coupling) = model.meshed.as_ref().and_then(|meshed| meshed.modes.coupling.as_ref()) {
+        if let Some(answer) = model.meshed.as_ref().and_then(|meshed| meshed.modes.answer.as_ref()) {
             let of_coupling = "stiffness between coordinates, beside the squares of circular_frequencies";
-            add("coupling", &[nf, nf], &format!("rad^2/{time}^2"), "none", of_coupling, by_columns(coupling.as_ref()));
+            add(
+                "coupling",
+                &[nf, nf],
+                &format!("rad^2/{time}^2"),
+                "none",
+                of_coupling,
+                by_columns(answer.stiffness().as_ref()),
+            );
         }
         let products = matrices(&mut body.rotation_products.iter().flatten());
         add("rotation_products", &[3, 3, all, all], "1", "body", "E_ab = Psi^T M (I x e_a e_b^T) Psi", products);

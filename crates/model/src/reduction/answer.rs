@@ -47,8 +47,9 @@ impl WithAnswer {
             return Ok(None);
         }
         let found = modes.with_answer(&amplitudes, &bent.large, LEAST).map_err(modal(scene))?;
-        Ok(found.map(|(modes, place)| {
-            let mut large = [&bent.large[..], &[place]].concat();
+        Ok(found.map(|modes| {
+            let mut large: Vec<usize> =
+                bent.large.iter().copied().chain(modes.answer.iter().map(|of| of.place)).collect();
             large.sort_unstable();
             let following = physics::following(scene, &modes.eigenvalues[..modes.natural()], &large);
             Self { modes, bent: Bent { large, following } }

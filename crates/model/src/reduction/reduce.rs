@@ -131,7 +131,7 @@ impl Reduction {
                 }
                 Some(ReferenceForces { force: reference.modal_forces(&modes), stiffness })
             }
-            None => modes.coupling.clone().map(ReferenceForces::of_coupling),
+            None => modes.answer.as_ref().map(|answer| ReferenceForces::of_coupling(answer.stiffness())),
         };
         let of_markers = match &of_markers {
             Some(responses) if physics::may_stress(model.scene) => match &large {

@@ -28,7 +28,7 @@ impl Keep for Found {
     fn write(&self, to: &mut Arrays) {
         let Self { modes, body, weights, available, matrix_bytes } = self;
         // Modes that are found are not coupled.
-        let Modes { rigid, eigenvalues, shapes, residuals, force_residuals, coupling: _, stats } = modes;
+        let Modes { rigid, eigenvalues, shapes, residuals, force_residuals, answer: _, stats } = modes;
         let SolveStats { shift, unknowns, factor_entries, block_solves, basis_size, .. } = *stats;
         to.list("mass", &[rigid.mass]);
         to.list("center_of_mass", rigid.center_of_mass.as_slice());
@@ -73,7 +73,7 @@ impl Keep for Found {
             shapes: from.matrix("shapes", rows, Some(flexible))?,
             residuals: list("residuals")?,
             force_residuals: list("force_residuals")?,
-            coupling: None,
+            answer: None,
             stats,
         };
         let weights = from.matrix("weights", weights[0], Some(weights[1]))?;
@@ -96,8 +96,8 @@ fn read_added(from: &Kept<'_>, modes: &Modes, before: usize) -> Result<Modes, Se
     shapes.as_mut().subcols_mut(0, before).copy_from(modes.shapes.subcols(0, before));
     shapes.as_mut().subcols_mut(before, added.ncols()).copy_from(&added);
     let eigenvalues = modes.eigenvalues[..before].iter().copied().chain(eigenvalues).collect();
-    let Modes { rigid, residuals, force_residuals, coupling, stats, .. } = modes.clone();
-    Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, coupling, stats })
+    let Modes { rigid, residuals, force_residuals, answer, stats, .. } = modes.clone();
+    Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, answer, stats })
 }
 
 /// Static responses side by side (3n×k).

@@ -118,7 +118,7 @@ fn moments_at_both_ends_bend_a_free_rod() {
         // Before it could turn fast, as each of them alone would have it.
         scene.time.end = 1e-4;
         let (model, check) = rest(&scene);
-        assert!(model.meshed.as_ref().unwrap().modes.coupling.is_some(), "{:?}", model.large_modes());
+        assert!(model.meshed.as_ref().unwrap().modes.answer.is_some(), "{:?}", model.large_modes());
         // A scene that begins with amplitudes has the modes themselves as coordinates.
         scene.initial.modal_displacement = vec![0.0];
         let (_, without) = rest(&scene);

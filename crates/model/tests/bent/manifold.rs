@@ -2,7 +2,7 @@
 
 use model::StateCheck;
 use nonlinear::StateErrorSettings;
-use scene::{Choice, Flexible, Scene};
+use scene::{Choice, Flexible, Large, Scene};
 
 use crate::bodies::{ARC, BLADE, BRACKET, Body, CLAMP, CONED, CONSTANT, built, checked};
 
@@ -180,6 +180,11 @@ fn the_answer_may_be_all_that_is_left() {
     scene.modes.flexible = Flexible::Count(2);
     let model = built(&scene);
     assert_eq!((model.large_modes(), model.static_answer()), (&[0, 1, 2][..], Some(2)));
+    // Of one mode more, which is not large, and without a static shape: in its place.
+    (scene.modes.flexible, scene.modes.static_correction) = (Flexible::Count(3), Choice::Off);
+    scene.modes.large = Some(Large::List(vec![2, 3]));
+    let model = built(&scene);
+    assert_eq!((model.large_modes(), model.static_answer()), (&[0, 1, 2][..], Some(0)));
 }
 
 /// Bodies whose loads are no moments, or are small beside others, have their modes as coordinates.
@@ -189,7 +194,7 @@ fn the_answer_to_a_small_moment_is_no_coordinate() {
     let force = CONED.scene("", &CONED.force([0.0, 1.0, 0.0], 10.0, CONSTANT));
     scene.loads.extend(force.loads);
     let model = built(&scene);
-    assert!(model.meshed.unwrap().modes.coupling.is_none());
+    assert!(model.meshed.unwrap().modes.answer.is_none());
 }
 
 /// Independent reference: 29.0332 Hz of the nonlinear finite elements of `verification::nonlinear` (`a_rod_under_pressure_on_all_sides_as_the_whole_mesh`).

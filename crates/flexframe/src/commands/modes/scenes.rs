@@ -12,6 +12,8 @@ pub(crate) fn unloaded(scene: &Scene) -> Scene {
     scene.modes.static_correction = Choice::Off;
     scene.effects.choices[Effect::Damping] = Choice::On;
     scene.effects.choices[Effect::GeometricStiffening] = Choice::Off;
+    // Where modes are large, the static answer to a moment takes the place of one.
+    scene.effects.choices[Effect::LargeDeflection] = Choice::Off;
     scene
 }
 
