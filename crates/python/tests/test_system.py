@@ -178,8 +178,8 @@ def test_a_law_between_markers_does_what_an_element_of_the_scene_does(law, eleme
         pull += SPRING["damping"] * expected["joints/tie/length_rate"]
         assert expected["joints/tie/pull"] == pytest.approx(pull, abs=1e-9)
     else:
-        assert np.ptp(expected["joints/tie/force_marker"], axis=0).max() > 1.0
-        assert np.ptp(expected["joints/tie/moment"], axis=0).max() > 0.1
+        assert np.ptp(expected["joints/tie/force_marker"], axis=0).max() > 0.1
+        assert np.ptp(expected["joints/tie/moment"], axis=0).max() > 0.01
     # It moved, and momenta stayed.
     assert np.ptp(found["bodies/upper/position"], axis=0).max() > 0.05
     momentum = found["system/momentum/linear"]

@@ -25,7 +25,7 @@ pub trait ForceElement: fmt::Debug + Send + Sync + Any {
     /// `wrenches` are zero before.
     fn apply(&self, times: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]);
 
-    /// What rows of results show of an element between two markers. A law from outside shows nothing: it may take long.
+    /// The element in rows of results, where it is between two markers. A law from outside is in none: it may take long.
     fn observe(&self, _motions: &[MarkerMotion; 2]) -> Option<JointObservation> {
         None
     }

@@ -118,7 +118,7 @@ fn a_spring_shows_its_length_and_its_force() {
         assert!((seen.force_marker - in_axes).norm() < 1e-12, "{seen:?} {in_axes}");
         pulls.push(pull);
     }
-    assert!(pulls[0] > 0.0 && pulls[1] < 0.0, "{pulls:?}");
+    assert!(pulls[0] > 2.0 * pulls[1], "it moves: {pulls:?}");
 }
 
 /// Closed form: −K times the displacement, −c times its rate and −K times the angle about the first marker's axes, which stand on
