@@ -230,7 +230,7 @@ mod tests {
         let mut physics = Physics { reference: Some(ReferenceForces::of_coupling(stiffness)), ..Physics::default() };
         let found = physics.with_highest(&[2.0, 1.0]);
         assert!(found[1] == 1.0 && (found[0] - (2.5 + 3.69_f64.sqrt()).sqrt()).abs() < 1e-14, "{found:?}");
-        for reference in &mut physics.reference {
+        if let Some(reference) = &mut physics.reference {
             reference.is_about_rest = true;
         }
         assert_eq!(physics.with_highest(&[2.0, 1.0]), [2.0, 1.0]);
