@@ -137,7 +137,7 @@ pub fn step_estimate(setup: &Setup) -> Result<Option<StepEstimate>, SetupError> 
         Rows::Interval(interval) => interval / (interval / longest * (1.0 - 1e-12)).ceil().max(1.0),
         Rows::EverySteps(_) => longest,
     };
-    let omega = &setup.body.circular_frequencies;
+    let omega = setup.physics.with_highest(&setup.body.circular_frequencies);
     let highest = omega.iter().copied().fold(0.0, f64::max);
     let halvings = (step * highest / RESOLVED).log2().ceil().max(f64::from(HALVINGS[0])).min(f64::from(HALVINGS[1]));
     let finer = halvings.exp2();
@@ -267,7 +267,8 @@ impl Comparison {
             let end = setup.end.min(seen.max(FORGOTTEN / decay));
             ModeError { error: until(end, &|i| self.modes[nf * i + k]) / peak, share: peak / largest }
         };
-        let highest = body.circular_frequencies.iter().copied().fold(0.0, f64::max);
+        let frequencies = setup.physics.with_highest(&body.circular_frequencies);
+        let highest = frequencies.into_iter().fold(0.0, f64::max);
         StepEstimate {
             step,
             finer,

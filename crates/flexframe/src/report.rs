@@ -348,21 +348,25 @@ impl fmt::Display for MeshReport {
 }
 
 impl BodyReport {
-    /// How many static shapes follow the natural modes.
-    pub fn static_shapes(&self) -> usize {
-        self.kinds.iter().filter(|kind| **kind == STATIC_SHAPE).count()
-    }
-
     /// How many there are and their frequencies, such as "10 flexible modes from 24.53 to 582.1 Hz and 4 static shapes"; of a
     /// rigid body, "rigid".
     pub fn modes_in_words(&self, frequency_unit: &str) -> String {
-        let shapes = self.static_shapes();
-        let natural = &self.natural_frequencies[..self.natural_frequencies.len() - shapes];
+        let of_kinds = self.kinds.iter().zip(&self.natural_frequencies);
+        let natural: Vec<f64> = of_kinds.filter(|(kind, _)| **kind == NATURAL_MODE).map(|(_, f)| *f).collect();
         let (Some(first), Some(last)) = (natural.first(), natural.last()) else { return "rigid".to_owned() };
-        let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-        let shapes = if shapes == 0 { String::new() } else { format!(" and {}", counted(shapes, STATIC_SHAPE)) };
-        let modes = counted(natural.len(), "flexible mode");
-        format!("{modes} from {first:.4} to {last:.4} {frequency_unit}{shapes}")
+        let counted =
+            |count: usize, [one, several]: [&str; 2]| format!("{count} {}", if count == 1 { one } else { several });
+        let modes = counted(natural.len(), ["flexible mode", "flexible modes"]);
+        let others = [
+            [STATIC_ANSWER, "static answers"],
+            [COMBINATION, "combinations of modes"],
+            [STATIC_SHAPE, "static shapes"],
+        ];
+        let others = others.into_iter().filter_map(|names| {
+            let count = self.kinds.iter().filter(|kind| **kind == names[0]).count();
+            (count > 0).then(|| format!(" and {}", counted(count, names)))
+        });
+        format!("{modes} from {first:.4} to {last:.4} {frequency_unit}{}", others.collect::<String>())
     }
 
     /// The report of a model.
@@ -385,12 +389,22 @@ impl BodyReport {
     }
 }
 
-/// Kind of a coordinate of the body that is no natural mode.
+/// Kind of a coordinate of the body that is a natural mode.
+pub(crate) const NATURAL_MODE: &str = "natural mode";
 const STATIC_SHAPE: &str = "static shape";
+const STATIC_ANSWER: &str = "static answer";
+const COMBINATION: &str = "combination of modes";
 
-fn kinds(model: &Model) -> Vec<&'static str> {
-    let (count, shapes) = (model.body.flexible(), model.static_shapes());
-    (0..count).map(|k| if k < count - shapes { "natural mode" } else { STATIC_SHAPE }).collect()
+/// Kind of each coordinate. Beside a static answer only the large modes are as they were.
+pub(crate) fn kinds(model: &Model) -> Vec<&'static str> {
+    let natural = model.body.flexible() - model.static_shapes();
+    let kind = |k: usize| match model.static_answer() {
+        Some(answer) if k == answer => STATIC_ANSWER,
+        Some(_) if !model.large_modes().contains(&k) => COMBINATION,
+        _ if k < natural => NATURAL_MODE,
+        _ => STATIC_SHAPE,
+    };
+    (0..model.body.flexible()).map(kind).collect()
 }
 
 #[cfg(test)]

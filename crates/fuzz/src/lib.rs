@@ -98,6 +98,7 @@ fn body(name: String, modes: usize, points: usize) -> BodyMetadata {
             damping_ratios: vec![0.0; modes],
             origin: [0.0; 3],
             static_shapes: 0,
+            kinds: Vec::new(),
             rotation_axes: Vec::new(),
             translation_axes: Vec::new(),
             mesh: None,

@@ -49,7 +49,7 @@ pub use reduction::body::{BodyPoint, Constants, ReducedBody};
 pub use reduction::fields::{acceleration_fields, centrifugal_accelerations, centrifugal_fields, turning_field};
 pub use reduction::participation::{OfBase, Participation};
 pub use solve::{Modes, SolveStats, Solver};
-pub use statics::answer::Answer;
+pub use statics::answered::Answer;
 pub use statics::large_shapes::{LargeShapes, Products};
 pub use statics::mass_left_out::mass_left_out;
 pub use statics::response::StaticAccuracy;

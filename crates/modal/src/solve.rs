@@ -22,7 +22,7 @@ use crate::matrix::symmetry::check_symmetric;
 use crate::memory_estimate::MemoryEstimate;
 use crate::multigrid::{CycledBody, Cycles, NoCycles, are_faster};
 use crate::progress::Progress;
-use crate::statics::answer::Answer;
+use crate::statics::answered::Answer;
 use crate::support::constraints::Constraints;
 use crate::support::held_problem::HeldProblem;
 use crate::support::motion::Support;

@@ -1,6 +1,7 @@
 //! Static responses, and shapes of large modes.
 
-pub(crate) mod answer;
+mod answer;
+pub(crate) mod answered;
 pub(crate) mod inertia_relief;
 pub(crate) mod large_shapes;
 pub(crate) mod mass_left_out;

@@ -108,6 +108,11 @@ impl Model {
         self.body.circular_frequencies.iter().map(|omega| omega / std::f64::consts::TAU).collect()
     }
 
+    /// The lowest circular frequency, 0 of a rigid body. Beside a static answer they do not rise.
+    pub(crate) fn lowest_frequency(&self) -> f64 {
+        self.body.circular_frequencies.iter().copied().reduce(f64::min).unwrap_or(0.0)
+    }
+
     /// Damping ratio of each flexible mode.
     pub fn damping_ratios(&self) -> &[f64] {
         &self.damping_ratios

@@ -148,7 +148,7 @@ impl Body {
         view(py, &self.model, |model| ArrayView1::from(model.damping_ratios()))
     }
 
-    /// Kind of each: "natural mode" or "static shape".
+    /// Kind of each: "natural mode" or "static shape"; beside the "static answer" to moments, "combination of modes".
     #[getter]
     fn kinds(&self) -> Vec<&'static str> {
         BodyReport::new(&self.model).kinds

@@ -55,6 +55,9 @@ pub struct BodyProperties {
     pub damping_ratios: Vec<f64>,
     /// How many static shapes there are.
     pub static_shapes: usize,
+    /// Kind of each coordinate, in words; empty where natural modes come first and then static shapes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub kinds: Vec<String>,
     /// Unit vectors, body axes, about which the support lets the body turn: three, one or none.
     pub rotation_axes: Vec<[f64; 3]>,
     /// Unit vectors, body axes, along which the support lets the origin move: three, one or none.
@@ -188,11 +191,15 @@ pub struct Metadata {
 }
 
 impl BodyProperties {
-    /// Kind of each coordinate, in words: of a natural mode or of a static shape.
-    pub fn kinds(&self) -> impl ExactSizeIterator<Item = &'static str> {
+    /// Kind of each coordinate, in words.
+    pub fn kinds(&self) -> impl ExactSizeIterator<Item = &str> {
         let count = self.frequencies.len();
         let natural = count.saturating_sub(self.static_shapes);
-        (0..count).map(move |k| if k < natural { "natural mode" } else { "static shape" })
+        (0..count).map(move |k| match self.kinds.get(k) {
+            Some(kind) => kind,
+            None if k < natural => "natural mode",
+            None => "static shape",
+        })
     }
 }
 
@@ -220,6 +227,7 @@ impl BodyMetadata {
             frequencies,
             damping_ratios,
             static_shapes,
+            kinds,
             rotation_axes,
             translation_axes,
             mesh,
@@ -227,6 +235,7 @@ impl BodyMetadata {
         for (quantity, expected, found) in [
             ("model/damping_ratios", frequencies.len(), damping_ratios.len()),
             ("model/kinds", frequencies.len(), frequencies.len().max(*static_shapes)),
+            ("model/kinds", if kinds.is_empty() { 0 } else { frequencies.len() }, kinds.len()),
             ("points/position", self.point_names.len(), self.point_positions.len()),
         ] {
             check_length(file, &self.path(quantity), expected, found)?;

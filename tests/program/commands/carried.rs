@@ -1,5 +1,7 @@
 //! `flexframe modes`: what each mode carries, where its strain energy is, the error of the mesh, and MAC.
 
+use flexframe::columns::COLUMNS;
+use flexframe::results::Results;
 use serde_json::Value;
 
 use crate::program::{done, flexframe, json, numbers};
@@ -113,6 +115,18 @@ fn modes_of_a_body_that_a_moment_bends_far_are_natural_ones() {
         (numbers(&report["body"]["natural_frequencies"]), report["body"]["kinds"].clone())
     });
     assert_eq!(found[0], found[1]);
+    // A run names its coordinates.
+    let out = folder.path().join("out");
+    let words = done(&["run", folder.path().join("bent.toml").to_str().unwrap(), "-o", out.to_str().unwrap()]);
+    assert!(words.contains(" and 1 static answer and 4 combinations of modes\n"), "{words}");
+    let results = Results::open(out.join("bent.h5"), &COLUMNS).unwrap();
+    let kinds: Vec<&str> = results.metadata.bodies[0].model.kinds().collect();
+    assert_eq!(kinds[..3], ["natural mode", "natural mode", "static answer"]);
+    assert!(kinds.len() == 7 && kinds[3..].iter().all(|kind| *kind == "combination of modes"), "{kinds:?}");
+    let gltf = folder.path().join("bent.glb");
+    done(&["reduce", folder.path().join("bent.toml").to_str().unwrap(), "-o", gltf.to_str().unwrap()]);
+    let bytes = std::fs::read(gltf).unwrap();
+    assert!(String::from_utf8_lossy(&bytes).contains("\"static answer 3\",\"combination of modes 4\""));
 }
 
 #[test]

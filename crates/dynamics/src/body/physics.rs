@@ -1,6 +1,6 @@
 //! The physics that a motion is to have.
 
-use faer::Mat;
+use faer::{Mat, Side};
 use keys::{Key, Keyed};
 use nalgebra::Vector3;
 use serde::Deserialize;
@@ -130,17 +130,19 @@ pub struct ReferenceForces {
     /// B (nf×nf), symmetric.
     #[serde(with = "modal::as_data")]
     pub stiffness: Mat<f64>,
+    /// True if the modes are about a bent reference; otherwise coordinates are coupled.
+    pub is_about_rest: bool,
 }
 
 impl ReferenceForces {
     /// The stiffness between coordinates that are coupled.
     pub fn of_coupling(stiffness: Mat<f64>) -> Self {
-        Self { force: vec![0.0; stiffness.nrows()], stiffness }
+        Self { force: vec![0.0; stiffness.nrows()], stiffness, is_about_rest: false }
     }
 
     /// Refuses sizes other than `nf`, and numbers that are not finite.
     pub(crate) fn check(&self, nf: usize) -> Result<(), SetupError> {
-        let Self { force, stiffness } = self;
+        let Self { force, stiffness, is_about_rest: _ } = self;
         for found in [force.len(), stiffness.nrows(), stiffness.ncols()] {
             if found != nf {
                 return Err(SetupError::Length { what: "the forces of a reference", expected: nf, found });
@@ -148,6 +150,26 @@ impl ReferenceForces {
         }
         let numbers = force.iter().chain(stiffness.col_iter().flat_map(|column| column.iter()));
         numbers.copied().try_for_each(|value| finite("a force of a reference", value))
+    }
+}
+
+impl Physics {
+    /// These circular frequencies; where coordinates are coupled, with the highest of √(Λ + B) in the place of the highest.
+    pub fn with_highest(&self, circular_frequencies: &[f64]) -> Vec<f64> {
+        let mut frequencies = circular_frequencies.to_vec();
+        // About a bent reference B takes back what the stress of loads adds.
+        let coupled = self.reference.as_ref().filter(|of| !of.is_about_rest);
+        let size = frequencies.len();
+        let highest = (0..size).max_by(|a, b| frequencies[*a].total_cmp(&frequencies[*b]));
+        if let (Some(ReferenceForces { stiffness, .. }), Some(highest)) = (coupled, highest) {
+            let square = |k: usize| frequencies[k] * frequencies[k];
+            let whole = Mat::from_fn(size, size, |i, j| stiffness[(i, j)] + if i == j { square(i) } else { 0.0 });
+            let found = whole.self_adjoint_eigenvalues(Side::Lower);
+            // It is no more than that of the sum of the largest.
+            let bound = |_| vec![square(highest) + stiffness.norm_l2()];
+            frequencies[highest] = found.unwrap_or_else(bound).into_iter().fold(square(highest), f64::max).sqrt();
+        }
+        frequencies
     }
 }
 
@@ -178,6 +200,7 @@ impl Keyed for DrivenMotion {
 
 impl Keyed for ReferenceForces {
     fn key(&self, key: Key) -> Key {
+        // The motion is that of these alone.
         key.of("reference forces", 1).with("force", &self.force).with("stiffness", &self.stiffness)
     }
 }
@@ -193,5 +216,23 @@ impl Keyed for Physics {
             .with("large deflection", large_deflection);
         // Runs without one keep the keys that they had before there was any.
         reference.iter().fold(key, |key, reference| key.with("reference", reference))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Closed form: λ² − 5λ + 4 − 1.44 = 0.
+    #[test]
+    fn coordinates_that_are_coupled_have_a_higher_frequency_than_each_alone() {
+        let stiffness = Mat::from_fn(2, 2, |i, j| if i == j { 0.0 } else { 1.2 });
+        let mut physics = Physics { reference: Some(ReferenceForces::of_coupling(stiffness)), ..Physics::default() };
+        let found = physics.with_highest(&[2.0, 1.0]);
+        assert!(found[1] == 1.0 && (found[0] - (2.5 + 3.69_f64.sqrt()).sqrt()).abs() < 1e-14, "{found:?}");
+        if let Some(reference) = &mut physics.reference {
+            reference.is_about_rest = true;
+        }
+        assert_eq!(physics.with_highest(&[2.0, 1.0]), [2.0, 1.0]);
     }
 }

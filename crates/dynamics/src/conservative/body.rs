@@ -53,12 +53,14 @@ pub struct ConservativeBody {
     pub(super) inverse_inertia: Matrix3<f64>,
     /// ω_k of the flexible modes.
     pub(crate) circular_frequencies: Vec<f64>,
+    /// The same with the highest of coordinates that are coupled.
+    pub(crate) with_highest: Vec<f64>,
     pub(crate) damping_ratios: Vec<f64>,
     /// Number of natural modes; the coordinates after them are those of static shapes.
     pub(crate) natural_modes: usize,
     /// Λ, the squares of ω_k.
     pub(super) stiffness: Vec<f64>,
-    /// Largest of ω_k and 2 ζ_k ω_k.
+    /// Largest of these and 2 ζ_k ω_k.
     pub(super) fastest_rate: f64,
     /// 2 ζ_k ω_k.
     pub(super) damping: Padded,

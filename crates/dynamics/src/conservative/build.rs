@@ -87,7 +87,8 @@ impl ConservativeBody {
         };
         let of_pairs = pair_weights.iter().map(|weights| constants.inertia_first(weights));
         let undeformed: Vec<Vec<f64>> = axes[..s_count].iter().map(of_axis).chain(of_pairs).collect();
-        let rates = modes.circular_frequencies.iter().chain(&damping);
+        let with_highest = physics.with_highest(&modes.circular_frequencies);
+        let rates = with_highest.iter().chain(&damping);
         Ok(Self {
             layout: state::layout(&axes, modes.flexible()),
             initial_attitude: Attitude::identity(),
@@ -97,6 +98,7 @@ impl ConservativeBody {
             inverse_inertia: inertia.try_inverse().unwrap_or_else(Matrix3::zeros),
             inertia,
             circular_frequencies: modes.circular_frequencies.clone(),
+            with_highest: with_highest.clone(),
             damping_ratios: damping_ratios.to_vec(),
             natural_modes: modes.natural_modes,
             stiffness: modes.circular_frequencies.iter().map(|omega| omega * omega).collect(),

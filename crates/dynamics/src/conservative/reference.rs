@@ -12,7 +12,7 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    pub fn new(ReferenceForces { force, stiffness }: &ReferenceForces) -> Self {
+    pub fn new(ReferenceForces { force, stiffness, .. }: &ReferenceForces) -> Self {
         Self { force: force.clone(), stiffness: BlockedMatrix::new(stiffness.as_ref()) }
     }
 

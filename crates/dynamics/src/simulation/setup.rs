@@ -153,7 +153,8 @@ impl Setup<'_> {
     fn check_step(&self, step: f64) -> Result<(), SetupError> {
         check_model(self.body, self.damping_ratios, self.loads)?;
         let StepLimit::Turn(longest_turn) = self.method.method().limit else {
-            return check_step_of_modes(&self.body.circular_frequencies, self.damping_ratios, step);
+            let frequencies = self.physics.with_highest(&self.body.circular_frequencies);
+            return check_step_of_modes(&frequencies, self.damping_ratios, step);
         };
         positive("the step", step)?;
         let driven = self.physics.drive.as_ref().map_or(0.0, |drive| match drive.motion {

@@ -189,7 +189,7 @@ impl Built {
         CostBody {
             name: body.name().to_owned(),
             flexible: Self::flexible(&self.model),
-            highest_frequency: self.model.natural_frequencies().last().copied(),
+            highest_frequency: self.model.natural_frequencies().into_iter().reduce(f64::max),
             initial_spin: nalgebra::Vector3::from(body.scene.initial.angular_velocity).norm(),
             points: self.model.points.len(),
             modes,

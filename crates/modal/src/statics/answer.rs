@@ -14,36 +14,7 @@ use crate::error::ModalError;
 use crate::input::check_finite_entries;
 use crate::memory_estimate::of_vectors;
 use crate::solve::Modes;
-
-/// A static answer among shapes, the one of them that is not K-orthogonal to the others.
-#[derive(Debug, Clone)]
-pub struct Answer {
-    /// Its place, numbered from 0.
-    pub place: usize,
-    /// Its stiffness with each shape, beside that with itself (nf).
-    pub coupling: Vec<f64>,
-    /// Number of shapes in the places of natural modes.
-    pub natural: usize,
-}
-
-impl Answer {
-    /// Among the first shapes only; `None` where it is none of them.
-    pub(crate) fn truncated(&self, shapes: usize) -> Option<Self> {
-        let Self { place, coupling, natural } = self;
-        let coupling = coupling.iter().copied().take(shapes).collect();
-        (*place < shapes).then_some(Self { place: *place, coupling, natural: shapes.min(*natural) })
-    }
-
-    /// ΨᵀKΨ beside its diagonal (nf×nf).
-    pub fn stiffness(&self) -> Mat<f64> {
-        let size = self.coupling.len();
-        let mut stiffness = Mat::zeros(size, size);
-        for (k, value) in self.coupling.iter().enumerate() {
-            (stiffness[(self.place, k)], stiffness[(k, self.place)]) = (*value, *value);
-        }
-        stiffness
-    }
-}
+use crate::statics::answered::Answer;
 
 impl Modes {
     /// The same motions by other coordinates: the modes `kept` in their places; in the first place that is left, the part that a static

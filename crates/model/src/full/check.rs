@@ -223,7 +223,7 @@ impl<'a> Checker<'a> {
     /// True if the spin is given, or next to none.
     fn spin_is_held(&self, state: &FullState) -> bool {
         let turns_freely = self.model.physics.drive.is_none() && !self.model.body.motion.rotations().is_empty();
-        let first = self.model.body.circular_frequencies.first().copied().unwrap_or(0.0);
+        let first = self.model.lowest_frequency();
         !turns_freely || state.omega_body.norm() < HELD_SPIN * first
     }
 
@@ -240,7 +240,7 @@ impl<'a> Checker<'a> {
             self.model.size.peaks.iter().map(|peak| 1e-4 * self.model.size.length / peak).collect();
         let model = moving.vibrations_at(motion, &amplitudes)?;
         // Those of the frame itself, of a body that turns freely.
-        let floor = 1e-3 * self.model.body.circular_frequencies.first().copied().unwrap_or(0.0);
+        let floor = 1e-3 * self.model.lowest_frequency();
         let tau = std::f64::consts::TAU;
         let of_model = model.iter().map(|mode| mode.circular_frequency).filter(|omega| *omega > floor);
         let of_full = full.iter().map(|mode| mode.circular_frequency).filter(|omega| *omega > floor);

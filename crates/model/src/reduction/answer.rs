@@ -16,7 +16,7 @@ use crate::reduction::physics;
 
 /// Least part of the answer beside the large modes: of less, these hold it.
 const LEAST: f64 = 0.01;
-/// Least size of the answer over the largest coordinate that is expected, as of a large mode: what else bends the body further is not helped.
+/// Least size of the answer over the largest coordinate that is expected. Below it other loads bend the body, whose motion the answer does not improve.
 const PART: f64 = 0.3;
 
 /// Modes of which one coordinate is what the answer to the moments has beside the large modes, with those that bend the body then.
@@ -26,7 +26,7 @@ pub(crate) struct WithAnswer {
 }
 
 impl WithAnswer {
-    /// `None` where no moment bends the body far beside its large modes; where other bodies may, in joints; of a body that is bent in its
+    /// `None` where no moment bends the body far beside its large modes; where moments go by several histories; where other bodies may, in joints; of a body that is bent in its
     /// reference already; and where the scene begins with amplitudes of modes, which are those of the modes themselves.
     pub fn new(
         model: &MeshModel<'_, '_>,
@@ -40,7 +40,7 @@ impl WithAnswer {
         if !has_room || begins_bent || !model.markers.is_empty() || model.reference.is_some() {
             return Ok(None);
         }
-        let amplitudes = amplitudes(model, modes);
+        let Some(amplitudes) = amplitudes(model, modes) else { return Ok(None) };
         let size = amplitudes.iter().map(|c| c * c).sum::<f64>().sqrt();
         let expected = bent.large.iter().filter_map(|k| advice.modes.get(*k)).map(|mode| mode.displacement);
         if size == 0.0 || size < PART * expected.fold(0.0, f64::max) {
@@ -57,15 +57,21 @@ impl WithAnswer {
     }
 }
 
-/// The static answer to all moments together, at their largest and in their first directions, in the modes.
-fn amplitudes(model: &MeshModel<'_, '_>, modes: &Modes) -> Vec<f64> {
+/// The static answer to all moments together, at their largest and in their first directions, in the modes; `None` without moments, and
+/// of those that do not go by one history, which have no answer together.
+fn amplitudes(model: &MeshModel<'_, '_>, modes: &Modes) -> Option<Vec<f64>> {
+    let moments: Vec<_> = model.loads.iter().filter(|load| matches!(load.action, Action::Moment { .. })).collect();
+    let first = moments.first()?;
+    if moments.iter().any(|load| load.history != first.history) {
+        return None;
+    }
     let mut forces = Mat::<f64>::zeros(modes.shapes.nrows(), 1);
-    for load in model.loads.iter().filter(|load| matches!(load.action, Action::Moment { .. })) {
+    for load in moments {
         let mut unit = Mat::zeros(forces.nrows(), 1);
         load.add_unit_nodal_forces(None, unit.col_mut(0));
         let size = load.size() * load.history.largest(model.scene.time.end);
         forces += unit * faer::Scale(size);
     }
     let along: Col<f64> = modes.shapes.transpose() * forces.col(0);
-    along.iter().zip(&modes.eigenvalues).map(|(force, lambda)| force / lambda).collect()
+    Some(along.iter().zip(&modes.eigenvalues).map(|(force, lambda)| force / lambda).collect())
 }

@@ -129,7 +129,7 @@ impl Reduction {
                 if let Some(by_stress) = model.structure.reference_stiffness(&modes)? {
                     stiffness += by_stress;
                 }
-                Some(ReferenceForces { force: reference.modal_forces(&modes), stiffness })
+                Some(ReferenceForces { force: reference.modal_forces(&modes), stiffness, is_about_rest: true })
             }
             None => modes.answer.as_ref().map(|answer| ReferenceForces::of_coupling(answer.stiffness())),
         };

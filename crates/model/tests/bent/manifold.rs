@@ -187,6 +187,18 @@ fn the_answer_may_be_all_that_is_left() {
     assert_eq!((model.large_modes(), model.static_answer()), (&[0, 1, 2][..], Some(0)));
 }
 
+/// Moments that go by several histories have no answer together.
+#[test]
+fn moments_that_act_one_after_the_other_have_no_answer() {
+    let mut scene = turned(0.2);
+    scene.loads.extend(turned(0.2).loads);
+    assert_eq!(built(&scene).static_answer(), Some(2));
+    if let scene::Load::Moment(load) = &mut scene.loads[1] {
+        load.history = dynamics::History::HalfSine { start: 0.05, duration: 0.01 };
+    }
+    assert_eq!(built(&scene).static_answer(), None);
+}
+
 /// Bodies whose loads are no moments, or are small beside others, have their modes as coordinates.
 #[test]
 fn the_answer_to_a_small_moment_is_no_coordinate() {

@@ -178,7 +178,7 @@ fn write_model(path: &Path, group: &Group, body: &BodyProperties, units: &Units)
             aview1(&body.frequencies).into_dyn(),
             &frequency_unit,
             "none",
-            "natural frequencies of the flexible modes; of a static shape (see kinds) no natural frequency",
+            "natural frequencies of the flexible modes; of other kinds (see kinds) no natural frequencies",
         ),
         (
             "damping_ratios",
@@ -204,7 +204,7 @@ fn write_model(path: &Path, group: &Group, body: &BodyProperties, units: &Units)
     ] {
         write_constant(path, group, &format!("{MODEL}/{name}"), values, [unit, frame, description])?;
     }
-    let description = "whether each coordinate is of a natural mode or a static shape";
+    let description = "kind of each coordinate, such as natural mode or static shape";
     write_texts(path, group, "model/kinds", body.kinds(), description)?;
     match &body.mesh {
         Some(mesh) => write_mesh(path, group, mesh, length),

@@ -35,6 +35,7 @@ pub fn body(name: &str, modes: usize, point_names: &[&str]) -> BodyMetadata {
             frequencies: (0..modes).map(|k| 24.5 + 60.0 * k as f64).collect(),
             damping_ratios: vec![0.05; modes],
             static_shapes: modes / 2,
+            kinds: Vec::new(),
             rotation_axes: vec![[0.0, 0.0, 1.0]],
             translation_axes: Vec::new(),
             mesh: Some(MeshProperties {

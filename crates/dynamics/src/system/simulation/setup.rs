@@ -76,8 +76,8 @@ impl SystemSetup {
             return None;
         }
         let of_body = |(body, of): (usize, &ConservativeBody)| {
-            let (mode, limit) = stable_step_of_modes(&of.circular_frequencies, &of.damping_ratios);
-            let omega = of.circular_frequencies.get(mode)?;
+            let (mode, limit) = stable_step_of_modes(&of.with_highest, &of.damping_ratios);
+            let omega = of.with_highest.get(mode)?;
             Some(ShapeLimit { body, frequency: omega / std::f64::consts::TAU, limit })
         };
         let limits = self.system.bodies().iter().enumerate().filter_map(of_body);

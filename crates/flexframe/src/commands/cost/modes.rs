@@ -69,7 +69,7 @@ pub(super) fn compare(
         let is_most = flexible == richest.body.flexible();
         Ok(ModesRow {
             flexible,
-            highest_frequency: model.natural_frequencies().last().copied().unwrap_or_default(),
+            highest_frequency: model.natural_frequencies().into_iter().reduce(f64::max).unwrap_or_default(),
             errors: (!is_most).then(|| Errors::between(&run, &most.trajectory, case.scales())),
             step_error: most.error.largest(),
             seconds_per_step,

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::error::HandOverError;
 use crate::commands::modes::{require_flexible, require_surface};
+use crate::report::{NATURAL_MODE, kinds};
 use crate::surface::Surface;
 
 /// Most morph targets: programs that show such files know eight of them, many not more.
@@ -79,7 +80,7 @@ pub fn bytes(scene: &Scene, model: &Model) -> Result<Vec<u8>, HandOverError> {
     let indices = surface.triangles.as_flattened();
     let accessor = json!({ "componentType": UNSIGNED, "count": indices.len(), "type": "SCALAR" });
     let indices = buffer.add(indices.iter().map(|i| i.to_le_bytes()), Some(INDICES), accessor);
-    let frequencies = model.natural_frequencies();
+    let (frequencies, kinds) = (model.natural_frequencies(), kinds(model));
     let count = frequencies.len().min(TARGETS);
     let (mut targets, mut names) = (Vec::new(), Vec::new());
     for (k, frequency) in frequencies.iter().enumerate().take(count) {
@@ -90,7 +91,10 @@ pub fn bytes(scene: &Scene, model: &Model) -> Result<Vec<u8>, HandOverError> {
         let scale = DRAWN * meshed.mesh.diagonal() / largest;
         let moved: Vec<[f32; 3]> = shape.iter().map(|u| single(&(u * scale).into())).collect();
         targets.push(json!({ "POSITION": buffer.vectors(&moved) }));
-        names.push(format!("mode {}: {frequency:.4} per {}", k + 1, scene.units.time));
+        names.push(match kinds[k] {
+            NATURAL_MODE => format!("mode {}: {frequency:.4} per {}", k + 1, scene.units.time),
+            kind => format!("{kind} {}", k + 1),
+        });
     }
     let times: Vec<f32> = (0..=FRAMES).map(|i| (PERIOD * i as f64 / FRAMES as f64) as f32).collect();
     let input = buffer.scalars(&times);

@@ -84,6 +84,9 @@ fn body_metadata(of: &RunBody<'_>) -> BodyMetadata {
             inertia: body.inertia,
             origin: model.body.origin.into(),
             static_shapes: model.static_shapes(),
+            kinds: model
+                .static_answer()
+                .map_or_else(Vec::new, |_| body.kinds.iter().map(|kind| (*kind).to_owned()).collect()),
             frequencies: body.natural_frequencies,
             damping_ratios: body.damping_ratios,
             rotation_axes: model.body.motion.rotations().iter().map(|axis| (*axis).into()).collect(),
