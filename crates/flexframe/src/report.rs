@@ -6,7 +6,6 @@ use std::time::Duration;
 use memory::Bytes;
 use modal::EngineStats;
 use model::{MatrixChecks, Meshed, Model};
-use nalgebra::Matrix3;
 use serde::{Serialize, Serializer};
 
 /// Reports of the bodies of a scene, in its order. As JSON it is the report of a single body, and otherwise an object with the list
@@ -372,8 +371,7 @@ impl BodyReport {
     /// The report of a model.
     pub fn new(model: &Model) -> Self {
         let body = &model.body;
-        let arm = body.center_of_mass - body.origin;
-        let inertia = body.inertia - (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * body.mass;
+        let inertia = body.inertia_about_center();
         let modes = model.meshed.as_ref().map(|meshed| &meshed.modes);
         Self {
             mass: body.mass,
