@@ -512,7 +512,9 @@ fn what_springs_and_bushings_do_is_in_the_results() {
             rigid("box", 2.0, 1.0)
         ),
     );
-    desk.done(&["run", "x.toml", "-o", "out"]);
+    let (summary, told) = desk.done(&["run", "x.toml", "-o", "out"]);
+    // The energy of the stone in rest is rounding, and so is what is missing of it.
+    assert!(![summary, told].concat().contains("balance is open"));
     let (table, _) = desk.done(&["export", "out/x.h5", "--csv", "-"]);
     let column = |head: &str| -> Vec<f64> {
         let heads: Vec<&str> = table.lines().next().unwrap().split(',').collect();

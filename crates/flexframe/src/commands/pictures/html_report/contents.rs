@@ -146,15 +146,16 @@ fn reference(surface: &surface::Surface, body: &BodyProperties) -> Surface {
 
 /// The shapes with their names.
 fn described(shapes: &Shapes, body: &BodyProperties) -> Vec<Shape> {
-    let (modes, flexible) = (natural_modes(body), body.frequencies.len());
+    let kinds: Vec<&str> = body.kinds().collect();
     let shape = |(k, displacement): (usize, &Vec<[f64; 3]>)| {
-        let (name, kind) = if k < modes {
-            let (frequency, damping_ratio) = (body.frequencies[k], body.damping_ratios[k]);
-            (format!("mode {}", k + 1), ShapeKind::Natural { frequency, damping_ratio })
-        } else if k < flexible {
-            (format!("static shape {}", k + 1), ShapeKind::Static)
-        } else {
-            (format!("shape {} of second order", k + 1 - flexible), ShapeKind::SecondOrder)
+        let (name, kind) = match kinds.get(k) {
+            Some(&"natural mode") => {
+                let (frequency, damping_ratio) = (body.frequencies[k], body.damping_ratios[k]);
+                (format!("mode {}", k + 1), ShapeKind::Natural { frequency, damping_ratio })
+            }
+            // Static answers and combinations of modes have no frequency, either.
+            Some(kind) => (format!("{kind} {}", k + 1), ShapeKind::Static),
+            None => (format!("shape {} of second order", k + 1 - kinds.len()), ShapeKind::SecondOrder),
         };
         Shape { name, kind, displacement: displacement.iter().map(|u| u.map(|x| x as f32)).collect() }
     };
