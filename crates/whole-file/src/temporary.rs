@@ -9,14 +9,16 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use tempfile::{Builder, PathPersistError, TempDir, TempPath};
 
 /// The start of the names of temporary files.
 pub(crate) const PREFIX: &str = ".flexframe-";
-/// A thread that makes a file has so long to come to its end.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// Tries of a removal, and to wait for a thread that makes a file.
+const TRIES: usize = 200;
+/// The wait before each further try.
+const PAUSE: Duration = Duration::from_millis(5);
 
 /// Files and folders that are there now.
 static THERE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -52,28 +54,29 @@ fn strike(path: &Path, there: &mut Vec<PathBuf>) {
 /// dropped: for a program that is about to end. A thread that is making one is waited for, but not for ever.
 #[must_use = "temporary files may be made again once it is dropped"]
 pub fn remove_temporaries() -> NoTemporaries {
-    let started = Instant::now();
+    let mut tries = 0;
     let mut there = loop {
         match THERE.try_lock() {
             Ok(there) => break there,
             Err(TryLockError::Poisoned(poisoned)) => break poisoned.into_inner(),
-            Err(TryLockError::WouldBlock) if started.elapsed() < PATIENCE => sleep(Duration::from_millis(5)),
-            Err(TryLockError::WouldBlock) => return NoTemporaries { _alone: None },
+            Err(TryLockError::WouldBlock) if tries == TRIES => return NoTemporaries { _alone: None },
+            Err(TryLockError::WouldBlock) => sleep(PAUSE),
         }
+        tries += 1;
     };
     there.drain(..).for_each(|path| remove(&path));
     NoTemporaries { _alone: Some(there) }
 }
 
-/// Removes a file, or a folder with all that is in it. A thread may put something into a folder, or make it again, meanwhile.
+/// Removes a file, or a folder with all that is in it. A thread may put something into a folder, or make it again, meanwhile:
+/// tries are counted, not time, since a folder may take long to remove.
 fn remove(path: &Path) {
-    let started = Instant::now();
-    loop {
+    for _ in 0..TRIES {
         let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
-        if path.symlink_metadata().is_err() || started.elapsed() > PATIENCE {
+        if path.symlink_metadata().is_err() {
             return;
         }
-        sleep(Duration::from_millis(5));
+        sleep(PAUSE);
     }
 }
 
@@ -215,6 +218,8 @@ fn without_a_path(error: io::Error) -> io::Error {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Instant;
+
     use super::*;
 
     #[test]
