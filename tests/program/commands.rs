@@ -2,20 +2,13 @@
 
 pub(crate) mod advise;
 pub(crate) mod body;
-pub(crate) mod campbell;
 pub(crate) mod carried;
 pub(crate) mod check;
 pub(crate) mod cost;
 pub(crate) mod export;
-pub(crate) mod fit;
 pub(crate) mod fmu;
-pub(crate) mod gradient;
-pub(crate) mod hand_over;
 pub(crate) mod html_report;
-pub(crate) mod linear;
 pub(crate) mod new_scene;
-pub(crate) mod rotors;
-pub(crate) mod srs;
 pub(crate) mod sweep;
 pub(crate) mod systems;
 pub(crate) mod trust;

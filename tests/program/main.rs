@@ -6,6 +6,7 @@ mod documentation;
 mod examples;
 mod inputs;
 mod library;
+mod linear;
 mod program;
 mod runs;
 mod slepc;

@@ -1,7 +1,9 @@
 //! The command line.
 
+mod arguments;
 mod cli;
 mod cli_error;
+mod commands;
 #[cfg(test)]
 mod documentation;
 mod out_of_memory;
@@ -9,9 +11,11 @@ mod output;
 mod progress;
 mod scene_input;
 mod served;
+mod session;
 mod signals;
 mod solver_input;
 mod threads;
+mod values;
 
 use std::process::ExitCode;
 use std::sync::Arc;

@@ -58,7 +58,7 @@ impl SolverInput {
     }
 
     /// As [`Self::take`]; refuses SLEPc for several bodies.
-    pub fn take_of(self, scenes: &[Scene], builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
+    pub fn take_of(&self, scenes: &[Scene], builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
         match scenes.len() {
             1 => self.take(builder, stop),
             count => self.refuse_several(count).map(|()| None),
@@ -66,7 +66,7 @@ impl SolverInput {
     }
 
     /// Gives the builder its solver, or says what is to be written instead; `stop` stops the solver.
-    pub fn take(self, builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
+    pub fn take(&self, builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
         let ranks = self.ranks.map(|ranks| ranks as usize);
         if self.solver != Some(Solver::Slepc) {
             let ours = [
@@ -79,7 +79,7 @@ impl SolverInput {
                 None => Ok(None),
             };
         }
-        match (ranks, self.write_only, self.read) {
+        match (ranks, self.write_only.clone(), self.read.clone()) {
             (Some(ranks), Some(folder), _) => return Ok(Some(WriteOnly { folder, ranks })),
             (Some(ranks), None, _) => builder.solver = Some(Slepc::run(ranks, stop.clone())),
             (None, _, Some(folder)) => builder.solver = Some(Slepc::read(folder)),

@@ -11,9 +11,8 @@
 //! | `mesh` | mesh or matrices of a body, and doubts about them |
 //! | `structure` | the finite-element model: modes, static responses, stress |
 //! | `support`, `load`, `stress` | what holds the body, what acts on it, and the stress of that |
-//! | `reduction` | `survey` (what the scene may need), `decide` (what it gets), `reduce` (make it) |
+//! | `reduction` | `survey` (what the scene may need), `decide` (what it gets), `reduce` (make it); `reference` (the bent body that modes are about) |
 //! | `model` | the reduced body with its points, markers and loads |
-//! | `reference` | the bent body that modes are about |
 //! | `full` | the full nonlinear body of the scene, and the check of a model's state by it |
 //! | `gradient` | rates of frequencies and answers with the numbers of a body |
 //! | `tie` | markers, and the systems of the bodies that joints connect |
@@ -31,7 +30,6 @@ mod load;
 mod mesh;
 mod model;
 mod reduction;
-mod reference;
 mod stress;
 mod structure;
 mod support;

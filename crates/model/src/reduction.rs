@@ -13,5 +13,6 @@ pub(crate) mod meshed;
 pub(crate) mod modal_model;
 pub(crate) mod physics;
 mod reduce;
+pub(crate) mod reference;
 pub(crate) mod rigid;
 mod survey;

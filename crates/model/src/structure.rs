@@ -33,7 +33,7 @@ use crate::cache::store::Store;
 use crate::error::{BuildError, modal, too_many_modes};
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{MatrixChecks, refuse_matrix};
-use crate::reference::Reference;
+use crate::reduction::reference::Reference;
 use crate::stress::about::stress_about;
 use crate::structure::kept::{Basis, Extended, Found, OwnSecondOrder, SecondOrder, StaticResponses};
 use crate::structure::rigid_patch::rigid_rows;

@@ -51,6 +51,8 @@ impl Expansion<'_> {
         let strains = Strains::new(self.products, is_part);
         let terms: Vec<ForceTerms> = wanted.iter().map(|wanted| strains.force_terms(self.products, wanted)).collect();
         let (rules, fields, groups) = (Rules::new(), self.rows(), Group::all(mesh));
+        // Products of ∇v with two gradients are cubic at most.
+        let is_cubic = self.reference.is_none() && wanted.iter().all(|wanted| wanted.len() <= 2);
         let of_group = |group: &Group| -> Vec<[[Lanes; 3]; OTHERS]> {
             let mut sums = vec![[[[0.0; LANES]; 3]; OTHERS]; wanted.len()];
             vectorized(
@@ -59,7 +61,7 @@ impl Expansion<'_> {
                     let (lame, positions) = (group.lame(&materials), group.positions(mesh));
                     let (mut relative, mut at) = (Vec::new(), AtPoint::default());
                     fields.relative(mesh, group, &mut relative);
-                    for rule in rules.fine() {
+                    for rule in if is_cubic { group.cubic_points(&rules) } else { rules.fine() } {
                         let point = GroupPoint::new(&positions, rule, group.count);
                         at.find(&point, &relative, &strains, &lame, self.reference.is_some());
                         for (terms, sums) in terms.iter().zip(&mut sums) {

@@ -6,21 +6,20 @@
 //! v·g_ab = ∫ ε(v):C:ε₂(a,b) + ε(a):C:ε₂(v,b) + ε(b):C:ε₂(v,a) dV        g_ab = ∂²f_int/∂q_a∂q_b at rest
 //! ```
 //!
-//! All integrands are sums of products of ∇v with a matrix P, so a force on a node is `∫ P ∇N_i dV`. As in the reduced
-//! geometric stiffness, displacements count against the element's first node, whose force is what balances the others.
+//! The forces are those of an [`Expansion`] whose fields have a coordinate each.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 use rayon::prelude::*;
 
-use crate::element::deformation::{OTHERS, check_field};
+use crate::element::deformation::check_field;
 use crate::element::integration::Rules;
-use crate::element::lanes::{Group, GroupPoint, LANES, Lame, Lanes, PARTS, Rows, Tensors};
+use crate::element::lanes::{Group, GroupPoint, LANES, PARTS, Rows};
 use crate::element::vectorized::vectorized;
 use crate::error::AssemblyError;
 use crate::material::Materials;
 use crate::mesh::checked::Mesh;
-use crate::nonlinear::element_sums::sum_of_forces;
+use crate::nonlinear::expansion::Expansion;
 
 /// The forces g_ab (N×p, force per squared unit of the fields) of each pair (a, b) of columns of `fields` (N×k, length,
 /// row `3·node + axis`): the second derivatives of the internal forces of a St. Venant–Kirchhoff body at rest.
@@ -39,9 +38,16 @@ pub fn second_order_forces(
     fields: MatRef<'_, f64>,
     pairs: &[[usize; 2]],
 ) -> Result<Mat<f64>, AssemblyError> {
-    element_forces(mesh, materials, fields, pairs, |[a, of_a], [b, of_b], lame| {
-        a.second_strain(b).stress(lame).plus(&b.times(of_a)).plus(&a.times(of_b))
-    })
+    assert!(pairs.as_flattened().iter().all(|column| *column < fields.ncols()), "the columns of pairs");
+    let products: Vec<Vec<usize>> = (0..fields.ncols()).map(|column| vec![column]).collect();
+    let wanted: Vec<Vec<usize>> = pairs.iter().map(|[a, b]| vec![*a.min(b), *a.max(b)]).collect();
+    let expansion = Expansion { products: &products, fields, reference: None };
+    let mut forces = expansion.forces(mesh, materials, &wanted)?;
+    // The expansion has the coefficient of q_a².
+    for (column, _) in pairs.iter().enumerate().filter(|(_, [a, b])| a == b) {
+        forces.col_mut(column).iter_mut().for_each(|force| *force *= 2.0);
+    }
+    Ok(forces)
 }
 
 /// `∫ ε₂(a,b) : C : ε₂(c,d) dV` (energy, one for each of `quadruples`) of columns a, b, c, d of `fields` (N×k, length).
@@ -115,47 +121,4 @@ pub fn second_order_energies(
     let parts: Vec<Mat<f64>> = groups.par_chunks(groups.len().div_ceil(PARTS)).map(of_part).collect();
     let sum = parts.into_iter().fold(zero(), |sum, part| sum + part);
     Ok(products.iter().map(|[first, second]| sum[(*first, *second)]).collect())
-}
-
-/// Forces (N×pairs) whose virtual work is `Σ ∫ ∇v : P dV`; `force` gives the matrix P of a pair of fields, which is a sum of
-/// products of two gradients, from ∇u and C:ε(u) of the first and of the second field and from Lamé's λ and μ.
-fn element_forces(
-    mesh: &Mesh,
-    materials: &Materials,
-    fields: MatRef<'_, f64>,
-    pairs: &[[usize; 2]],
-    force: impl Fn(&[Tensors; 2], &[Tensors; 2], &Lame) -> Tensors + Sync,
-) -> Result<Mat<f64>, AssemblyError> {
-    check_field(mesh, "fields", fields)?;
-    let materials = materials.of_elements(mesh)?;
-    let rows = fields.nrows();
-    if pairs.is_empty() {
-        return Ok(Mat::zeros(rows, 0));
-    }
-    let (rules, fields, groups) = (Rules::new(), Rows::new(fields), Group::all(mesh));
-    // By pair, then node but the first, then axis.
-    let of_group = |group: &Group| -> Vec<[[Lanes; 3]; OTHERS]> {
-        let mut sums = vec![[[[0.0; LANES]; 3]; OTHERS]; pairs.len()];
-        vectorized(
-            #[inline(always)]
-            || {
-                let (lame, positions) = (group.lame(&materials), group.positions(mesh));
-                let (mut relative, mut of_fields) = (Vec::new(), Vec::with_capacity(fields.columns));
-                fields.relative(mesh, group, &mut relative);
-                for rule in group.cubic_points(&rules) {
-                    let point = GroupPoint::new(&positions, rule, group.count);
-                    of_fields.clear();
-                    for relative in &relative {
-                        of_fields.push(point.gradient(relative).with_stress(&lame));
-                    }
-                    for ([a, b], sums) in pairs.iter().zip(&mut sums) {
-                        let force = force(&of_fields[*a], &of_fields[*b], &lame).scaled(&point.volume);
-                        point.add_forces(&force, sums);
-                    }
-                }
-            },
-        );
-        sums
-    };
-    Ok(sum_of_forces(mesh, &groups, pairs.len(), of_group))
 }

@@ -21,8 +21,8 @@ use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{Given, MatrixChecks};
 use crate::mesh::other_materials::other_materials;
 use crate::mesh::read::{matrices, mesh_file, mesh_in};
-use crate::reference::Reference;
-use crate::reference::found::Asked;
+use crate::reduction::reference::Reference;
+use crate::reduction::reference::found::Asked;
 use crate::support::support;
 
 /// The mesh and the matrices of the body of a scene, and what holds it.

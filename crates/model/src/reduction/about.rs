@@ -10,8 +10,8 @@ use crate::load::mesh_load::MeshLoad;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
 use crate::reduction::physics;
-use crate::reference::Reference;
-use crate::reference::found::{fits, steady};
+use crate::reduction::reference::Reference;
+use crate::reduction::reference::found::{fits, steady};
 
 /// Linear answer of a mode over the length from which modes about the bent body are proposed.
 const CALLS_FOR: f64 = 0.1;

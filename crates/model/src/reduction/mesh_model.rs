@@ -6,7 +6,7 @@ use modal::Support;
 use scene::Scene;
 
 use crate::load::mesh_load::MeshLoad;
-use crate::reference::Reference;
+use crate::reduction::reference::Reference;
 use crate::structure::Structure;
 use crate::tie::mesh_marker::MeshMarker;
 

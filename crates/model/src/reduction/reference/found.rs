@@ -17,7 +17,7 @@ use crate::cache::store::Store;
 use crate::error::BuildError;
 use crate::load::mesh_load::{self, Action, UnitWeight};
 use crate::reduction::physics;
-use crate::reference::{Reference, Steady};
+use crate::reduction::reference::{Reference, Steady};
 
 /// Largest displacement over the length of the body from which `"auto"` takes modes about the bent body: below it, large modes
 /// are as good.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::commands::gradient::{report, run, write_scene, write_system};
+use crate::linear::gradient::{report, run, write_scene, write_system};
 
 const E: &str = "body.material.young_modulus";
 const RHO: &str = "body.material.density";

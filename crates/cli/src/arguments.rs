@@ -1,0 +1,64 @@
+//! Options that several commands have.
+
+use clap::Args;
+use flexframe::linearize::LinearSettings;
+
+use crate::scene_input::SceneInput;
+use crate::values::{angular_velocity, finite};
+
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    #[command(flatten)]
+    pub scene: SceneInput,
+    /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The state that a linear model is about.
+#[derive(Debug, Args)]
+pub struct AboutArgs {
+    /// Angular velocity of the steady spin about the center of mass or the axis of a driven joint to the ground, radians per time, global; 0,0,0 is rest
+    /// [default: that of the scene's free body or drive].
+    #[arg(long, value_name = "X,Y,Z", value_parser = angular_velocity, allow_hyphen_values = true)]
+    pub spin: Option<[f64; 3]>,
+    /// Time of the run at which bodies are where they then are, under the loads of that time [default: the beginning].
+    #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
+    pub time: Option<f64>,
+    /// Take out the motions that deform no body.
+    #[arg(long)]
+    pub without_rigid: bool,
+}
+
+impl AboutArgs {
+    pub fn settings(&self, inputs: Vec<String>, outputs: Vec<String>) -> LinearSettings {
+        LinearSettings { spin: self.spin, time: self.time, without_rigid: self.without_rigid, inputs, outputs }
+    }
+}
+
+/// A linear model: its state and its channels.
+#[derive(Debug, Args)]
+pub struct LinearArgs {
+    #[command(flatten)]
+    pub about: AboutArgs,
+    /// Inputs, such as loads[0], base.acceleration.z, drive or hinge.drive [default: loads, and forces along the coordinates of joints].
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub inputs: Vec<String>,
+    /// Outputs, such as tip.acceleration, tip, reaction.force or hinge.moment [default: points, stresses and coordinates of joints].
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub outputs: Vec<String>,
+}
+
+impl LinearArgs {
+    pub fn settings(self) -> LinearSettings {
+        self.about.settings(self.inputs, self.outputs)
+    }
+}
+
+#[derive(Debug, Args)]
+pub struct FileArgs {
+    /// Replace files that are there, once the new one is complete; of a run, an unfinished one at once. A file that the command reads
+    /// is never replaced.
+    #[arg(long)]
+    pub overwrite: bool,
+}

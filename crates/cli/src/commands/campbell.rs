@@ -1,0 +1,97 @@
+//! `flexframe campbell`.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::Args;
+use flexframe::campbell::{self, AboutRest, CampbellSettings, Speeds, SystemCampbellSettings};
+use flexframe::outputs::outputs_of_scenes;
+use flexframe::run;
+use scene::Flexible;
+
+use crate::arguments::{FileArgs, SceneArgs};
+use crate::cli_error::CliError;
+use crate::output;
+use crate::session::{Session, folder, of_option};
+use crate::values::{about_rest, axis, mode_count, positive, speeds};
+
+/// Find natural frequencies against spin speed: table, CSV and Campbell diagram, with critical speeds.
+///
+/// The body spins steadily about an axis through its origin: the centre of mass of a free body, a fixed point of a
+/// held one (the mean of the nodes of a clamp). Coriolis terms, softening and stiffening are on unless the scene's
+/// [effects] say false; loads are left out. Frequencies are those in the rotating frame: order n is a load that
+/// passes n times in a revolution. Branches are followed by their mode shapes and numbered by their order at the
+/// lowest speed. Where two branches meet they cross, or veer if the spin couples them.
+#[derive(Debug, Args)]
+pub struct Campbell {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Spin axis in the axes of the mesh: x, y, z, or three numbers such as 0,0.6,0.8. Of bodies in joints it is global and goes
+    /// through their center of mass.
+    #[arg(long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
+    axis: Option<[f64; 3]>,
+    /// A joint about whose axis the bodies of a system spin, or the rigid rotor beyond it alone where other joints hold the others [default: the
+    /// one that a drive turns].
+    #[arg(long, value_name = "NAME", conflicts_with = "axis")]
+    joint: Option<String>,
+    /// Spin speeds in radians per time: from start to end, both included, count in all.
+    #[arg(long, value_name = "START:END:COUNT", value_parser = speeds, allow_hyphen_values = true)]
+    speeds: Speeds,
+    /// Engine orders, per revolution.
+    #[arg(
+        long,
+        value_name = "N,N,…",
+        value_delimiter = ',',
+        default_values_t = [1.0, 2.0, 3.0, 4.0],
+        value_parser = positive
+    )]
+    orders: Vec<f64>,
+    /// Vibrations about the rest of the full nonlinear body at each speed: auto (where the spin bends the body so far that a low
+    /// frequency at the highest speed is off by 1 % without), always, or never.
+    #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = about_rest)]
+    about_rest: AboutRest,
+    /// Number of flexible modes, instead of the scene's.
+    #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
+    flexible: Option<usize>,
+    /// Folder for campbell.csv, critical_speeds.csv and the diagram [default: out/<name of the scene file>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    files: FileArgs,
+}
+
+impl Campbell {
+    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+        let Self { scene: SceneArgs { scene, json }, axis, joint, speeds, orders, about_rest, flexible, output, files } =
+            self;
+        output::require_file("--output", output.as_deref())?;
+        let mut system = scene.clone().read_system()?;
+        if system.bodies.len() > 1 && !system.has_connections() {
+            system = session.read(scene)?.into();
+        } else {
+            session.tell_doubts(&system);
+        }
+        if let Some(count) = flexible {
+            system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
+        }
+        let Some(scene) = system.bodies.first() else { return Err(run::RunError::NoBody.into()) };
+        let folder = folder(scene, output)?;
+        outputs_of_scenes(&system.bodies, &session.builder, files.overwrite).claim(&campbell::files(&folder))?;
+        let report = if system.has_connections() {
+            let settings = SystemCampbellSettings { axis, joint, speeds, orders };
+            campbell::campbell_of_system(&system, &session.builder, &folder, &settings, |p| session.bar.campbell(p))
+        } else {
+            let axis = axis.ok_or_else(|| CliError::Option {
+                option: "--axis",
+                found: "none".to_owned(),
+                expected: "the axis of the spin, in the axes of the mesh".to_owned(),
+                help: "give x, y, z, or three numbers such as 0,0.6,0.8".to_owned(),
+            })?;
+            let settings = CampbellSettings { axis, speeds, orders, about_rest };
+            campbell::campbell(scene, &session.builder, &folder, &settings, |p| session.bar.campbell(p))
+        };
+        let report = report.map_err(|error| of_option(error, flexible))?;
+        drop(session.bar);
+        output::print(&report, json)
+    }
+}

@@ -1,0 +1,46 @@
+//! `flexframe cost`.
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+use flexframe::cost::{self, CostSettings};
+use flexframe::outputs::outputs_of_scenes;
+
+use crate::arguments::{FileArgs, SceneArgs};
+use crate::output;
+use crate::session::{Session, folder};
+use crate::values::{patience, positive};
+
+/// Measure error and computing time on a scene, for every scheme at many steps.
+#[derive(Debug, Args)]
+pub struct Cost {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder for cost.csv and the diagram [default: out/<name of the scene file>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    files: FileArgs,
+    /// Find the cheapest setting within this error, ready for the scene.
+    #[arg(long, value_name = "ERROR", value_parser = positive)]
+    target: Option<f64>,
+    /// Longest time of a run in seconds; the reference may take twenty times as long.
+    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = patience)]
+    patience: Duration,
+}
+
+impl Cost {
+    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+        let Self { scene: SceneArgs { scene, json }, output, files, target, patience } = self;
+        output::require_file("--output", output.as_deref())?;
+        let system = session.read_system(scene)?;
+        let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
+        let folder = folder(&system.bodies[0], output)?;
+        outputs_of_scenes(&system.bodies, &session.builder, files.overwrite).claim(&cost::files(&folder))?;
+        let report = cost::price_list(&system, &session.builder, &folder, settings, |p| session.bar.cost(p))?;
+        drop(session.bar);
+        output::print(&report, json)
+    }
+}

@@ -1,0 +1,61 @@
+//! `flexframe gradient`.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::Args;
+use flexframe::frequencies::Frequencies;
+use flexframe::gradient::{self, GradientError, GradientSettings};
+use flexframe::outputs::outputs_of_scenes;
+
+use crate::arguments::{FileArgs, SceneArgs};
+use crate::output;
+use crate::session::{Session, folder, of_option};
+use crate::values::{frequencies, mode_count};
+
+/// Find the rates of frequencies, effective masses and static displacements with the numbers that a body is made with.
+///
+/// They are exact, not differences (docs/method/gradients.md). Static displacements are those of the points of [output] under each load
+/// of a body that is held. Of bodies in joints, the parameters are the stiffnesses of springs, bushings and joints, and the materials and
+/// point masses of bodies with a mesh; frequencies and responses have rates.
+#[derive(Debug, Args)]
+pub struct Gradient {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Parameters: paths of keys, such as body.material.young_modulus or body.point_masses[0].mass, and thickness.AXIS or
+    /// thickness.GROUP.AXIS for a factor that stretches the mesh or a physical volume along x, y or z; of bodies in joints such as
+    /// springs[0].stiffness or bodies.arm.material.density [default: all keys of materials and point masses, and all stiffnesses].
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    parameters: Vec<String>,
+    /// Frequencies, cycles per time, at which the responses of points to the loads have rates, too: from start to end, both included,
+    /// count in all. Of one body they are sums over the modes that are kept, with the damping of the scene.
+    #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies)]
+    frequencies: Option<Frequencies>,
+    /// Number of flexible modes, instead of the scene's.
+    #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
+    flexible: Option<usize>,
+    /// Folder for gradient.csv and, of responses, gradient_frf.csv [default: out/<name of the scene file>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    files: FileArgs,
+}
+
+impl Gradient {
+    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+        let Self { scene: SceneArgs { scene, json }, parameters, frequencies, flexible, output, files } = self;
+        output::require_file("--output", output.as_deref())?;
+        let system = session.read_one(scene, flexible)?;
+        let folder = folder(&system.bodies[0], output)?;
+        let settings = GradientSettings { parameters, frequencies };
+        outputs_of_scenes(&system.bodies, &session.builder, files.overwrite)
+            .claim(&gradient::files(&folder, &settings))?;
+        let report = gradient::gradient(&system, &session.builder, &folder, &settings, |p| session.bar.build(p));
+        let report = report.map_err(|error| match error {
+            GradientError::Build(error) => of_option(error.into(), flexible),
+            error => error.into(),
+        })?;
+        drop(session.bar);
+        output::print(&report, json)
+    }
+}

@@ -1,0 +1,45 @@
+//! `flexframe shock`.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::Args;
+use flexframe::given_file::GivenFile;
+use flexframe::shock;
+
+use crate::arguments::{AboutArgs, SceneArgs};
+use crate::output;
+use crate::session::Session;
+
+/// Sum the peaks of the modes under a shock of the base or of a load: absolute, SRSS and CQC.
+///
+/// The input follows the table. Modes and damping are those of the scene; outputs are those of `flexframe linearize` but for velocities. A run
+/// with the table as history of the load has the peaks themselves.
+#[derive(Debug, Args)]
+pub struct Shock {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// CSV file of times and values of the input, such as accelerations of the base.
+    #[arg(long, value_name = "TABLE")]
+    table: PathBuf,
+    /// The input, such as base.acceleration.z or loads[0].
+    #[arg(long, value_name = "NAME")]
+    input: String,
+    #[command(flatten)]
+    about: AboutArgs,
+    /// Outputs, such as tip.acceleration or tip [default: points, stresses and coordinates of joints].
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    outputs: Vec<String>,
+}
+
+impl Shock {
+    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+        let Self { scene: SceneArgs { scene, json }, table, input, about, outputs } = self;
+        GivenFile::expect(&table, &[GivenFile::Table], "a CSV file of times and values (docs/reference/cli.md)")?;
+        let system = session.read_system(scene)?;
+        let settings = about.settings(vec![input], outputs);
+        let report = shock::shock(&system, &session.builder, &table, &settings, |p| session.bar.build(p))?;
+        drop(session.bar);
+        output::print(&report, json)
+    }
+}

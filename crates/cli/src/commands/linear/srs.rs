@@ -1,0 +1,60 @@
+//! `flexframe srs`.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use flexframe::frequencies::Frequencies;
+use flexframe::given_file::GivenFile;
+use flexframe::outputs::{Outputs, Written};
+use flexframe::srs::{self, SrsSettings};
+
+use crate::arguments::FileArgs;
+use crate::output;
+use crate::session::Session;
+use crate::values::{finite, frequencies};
+
+/// Find shock response spectra of a base motion: CSV, and a diagram (docs/method/shock.md).
+///
+/// A spectrum has the peaks of oscillators on the base, against their frequency: displacement relative to the base, and
+/// acceleration of the mass in both directions, during the motion and in the free vibration after it.
+#[derive(Debug, Args)]
+pub struct Srs {
+    /// CSV file of two columns, time and acceleration of the base; straight between lines, zero after the last.
+    #[arg(value_name = "TABLE")]
+    table: PathBuf,
+    /// Frequencies in cycles per time, at equal ratios: from start to end, both included, count in all.
+    #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies, allow_hyphen_values = true)]
+    frequencies: Frequencies,
+    /// Damping ratios, 0 to less than 1: a spectrum for each.
+    #[arg(long, value_name = "ZETA,ZETA,…", value_delimiter = ',', default_values_t = [0.05], value_parser = finite, allow_hyphen_values = true)]
+    damping: Vec<f64>,
+    /// Folder for srs.csv, the diagram and the page [default: out/<name of the table>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    files: FileArgs,
+    /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Srs {
+    pub fn execute(self, session: Session) -> Result<(), Box<dyn Error>> {
+        let Self { table, frequencies, damping, output, files, json } = self;
+        GivenFile::expect(
+            &table,
+            &[GivenFile::Table],
+            "a CSV file of times and accelerations (docs/reference/cli.md)",
+        )?;
+        output::require_file("--output", output.as_deref())?;
+        if let Some(folder) = &output {
+            Written::FOLDER.check(folder)?;
+        }
+        let folder = output.unwrap_or_else(|| Path::new("out").join(table.file_stem().unwrap_or("srs".as_ref())));
+        Outputs::new(vec![table.clone()], files.overwrite).claim(&srs::files(&folder))?;
+        let report = srs::srs(&table, &folder, &SrsSettings { frequencies, damping_ratios: damping })?;
+        drop(session.bar);
+        output::print(&report, json)
+    }
+}

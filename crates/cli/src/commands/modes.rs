@@ -1,0 +1,176 @@
+//! `flexframe modes`.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use flexframe::modes::{self, ModesReport};
+use flexframe::outputs::{OutputError, Written, outputs_of_scenes};
+use flexframe::report::OfBodies;
+use flexframe::system_modes::{self, ModesOfSystems};
+use flexframe::{figures, mode_shapes, run};
+use model::Model;
+use scene::{Flexible, Scene, System};
+
+use crate::arguments::{FileArgs, SceneArgs};
+use crate::cli_error::CliError;
+use crate::output;
+use crate::session::{Session, of_option};
+use crate::solver_input::SolverInput;
+use crate::values::{at_time, mode_count, point};
+
+/// Find natural frequencies and mode shapes of a scene's body.
+#[derive(Debug, Args)]
+pub struct Modes {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Number of flexible modes, instead of the scene's.
+    #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
+    flexible: Option<usize>,
+    /// The point that a base turns about, in the frame of the mesh, for effective moments of inertia [default: the support of a
+    /// held body, the center of mass of a free one].
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    about: Option<[f64; 3]>,
+    /// Compare the shapes with those of another body in the same place (MAC): a scene, a body file, or another mesh for this scene.
+    #[arg(long, value_name = "OTHER")]
+    mac: Option<PathBuf>,
+    /// Time of a run at which bodies in joints stand, at rest there [default: the start].
+    #[arg(long, value_name = "TIME", value_parser = at_time, allow_hyphen_values = true)]
+    time: Option<f64>,
+    /// Folder for a picture of the mode shapes (SVG, PDF and PNG), and of bodies in joints a file for ParaView (VTKHDF)
+    /// [default: no picture].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    files: FileArgs,
+    #[command(flatten)]
+    solver: SolverInput,
+}
+
+impl Modes {
+    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+        output::require_file("--output", self.output.as_deref())?;
+        let mut system = session.read_system(self.scene.scene.clone())?;
+        if self.mac.is_some() && system.bodies.len() > 1 {
+            return Err(CliError::Option {
+                option: "--mac",
+                found: format!("a scene of {} bodies", system.bodies.len()),
+                expected: "a scene of one body, to compare it with another one".to_owned(),
+                help: "name one: --body NAME".to_owned(),
+            }
+            .into());
+        }
+        if let Some(time) = self.time {
+            check_time(&system, time)?;
+        }
+        if let Some(count) = self.flexible {
+            system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
+        }
+        if let Some(to) = self.solver.take_of(&system.bodies, &mut session.builder, session.signals.slepc())? {
+            return session.write_only(&system.bodies[0], &to, self.files.overwrite);
+        }
+        self.output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
+        let json = self.scene.json;
+        let pictures = if system.has_connections() {
+            let (report, pictures) = self.of_bodies_in_joints(&system, &mut session)?;
+            drop(session.bar);
+            output::print(&report, json)?;
+            pictures
+        } else {
+            let (report, pictures) = self.of_bodies(&system.bodies, &mut session)?;
+            drop(session.bar);
+            output::print(&report, json)?;
+            pictures
+        };
+        if json { Ok(()) } else { output::list(&pictures) }
+    }
+
+    fn of_bodies(
+        &self,
+        scenes: &[Scene],
+        session: &mut Session,
+    ) -> Result<(OfBodies<ModesReport>, Vec<PathBuf>), Box<dyn Error>> {
+        let picture = |folder: &Path, scene: &Scene| match &scene.name {
+            Some(body) => folder.join(format!("modes.{body}")),
+            None => folder.join("modes"),
+        };
+        if let Some(folder) = &self.output {
+            scenes.iter().try_for_each(modes::require_surface)?;
+            let pictures: Vec<_> = scenes.iter().flat_map(|scene| figures::files(&picture(folder, scene))).collect();
+            outputs_of_scenes(scenes, &session.builder, self.files.overwrite).claim(&pictures)?;
+        }
+        let (mut reports, mut pictures) = (Vec::new(), Vec::new());
+        for scene in scenes {
+            let (model, mut report) = self.of_body(scene, session)?;
+            if let Some(other) = &self.mac {
+                let mac = modes::mac(scene, &model, other, &session.builder, |p| session.bar.build(p))?;
+                report.mac = Some(mac);
+            }
+            if let Some(folder) = self.output.as_ref().filter(|_| model.meshed.is_some() || scenes.len() == 1) {
+                make_folder(folder)?;
+                pictures.extend(mode_shapes::draw(scene, &model, &picture(folder, scene))?);
+            }
+            reports.push((scene.name.clone(), report));
+        }
+        Ok((OfBodies(reports), pictures))
+    }
+
+    fn of_body(&self, scene: &Scene, session: &mut Session) -> Result<(Model, ModesReport), Box<dyn Error>> {
+        modes::modes(scene, &session.builder, self.about, |p| session.bar.build(p))
+            .map_err(|error| of_option(error.into(), self.flexible))
+    }
+
+    /// Modes of each system that joints make, and of the bodies that none ties.
+    fn of_bodies_in_joints(
+        &self,
+        system: &System,
+        session: &mut Session,
+    ) -> Result<(ModesOfSystems, Vec<PathBuf>), Box<dyn Error>> {
+        let models = system_modes::build(system, &session.builder, |p| session.bar.build(p))
+            .map_err(|error| of_option(error.into(), self.flexible))?;
+        let systems = system_modes::system_modes(system, &models, self.time)?;
+        let mut pictures = Vec::new();
+        if let Some(folder) = &self.output {
+            make_folder(folder)?;
+            for (k, modes) in systems.iter().enumerate() {
+                let name = if systems.len() == 1 { "modes".to_owned() } else { format!("modes.system{}", k + 1) };
+                let stem = folder.join(name);
+                let fields = stem.with_extension("vtkhdf");
+                let all: Vec<PathBuf> = figures::files(&stem).into_iter().chain([fields.clone()]).collect();
+                outputs_of_scenes(&system.bodies, &session.builder, self.files.overwrite).claim(&all)?;
+                pictures.extend(system_modes::draw(system, &models, modes, &stem)?.into_iter().flatten());
+                if system_modes::write_fields(system, &models, modes, &fields, self.files.overwrite)? {
+                    pictures.push(fields);
+                }
+            }
+        }
+        let is_tied = |number: usize| systems.iter().any(|modes| modes.bodies.contains(&number));
+        let mut bodies = Vec::new();
+        for (_, scene) in system.bodies.iter().enumerate().filter(|(number, _)| !is_tied(*number)) {
+            bodies.push((scene.name.clone(), self.of_body(scene, session)?.1));
+        }
+        Ok((ModesOfSystems { systems: systems.into_iter().map(|modes| modes.report).collect(), bodies }, pictures))
+    }
+}
+
+fn make_folder(folder: &Path) -> Result<(), run::RunError> {
+    std::fs::create_dir_all(folder).map_err(|source| run::RunError::Folder { folder: folder.to_owned(), source })
+}
+
+/// Refuses a time of a run that bodies which nothing ties do not need, and one after its end.
+fn check_time(system: &System, time: f64) -> Result<(), CliError> {
+    let end = system.bodies.iter().map(|scene| scene.time.end).fold(0.0, f64::max);
+    let (found, expected, help) = if !system.has_connections() {
+        let help = "leave it out: a body alone has the same modes wherever it is";
+        ("a scene of bodies that nothing ties together".to_owned(), "joints, springs or bushings".to_owned(), help)
+    } else if time > end {
+        (
+            format!("{time}"),
+            format!("at most the end of the run, {end}"),
+            "change `end` in [time], or ask for an earlier time",
+        )
+    } else {
+        return Ok(());
+    };
+    Err(CliError::Option { option: "--time", found, expected, help: help.to_owned() })
+}

@@ -1,0 +1,42 @@
+//! `flexframe paper`.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::Args;
+use flexframe::outputs::outputs_of_scene;
+use flexframe::paper;
+use flexframe::run::RunSettings;
+
+use crate::arguments::{FileArgs, SceneArgs};
+use crate::output;
+use crate::session::{Session, folder};
+
+/// Run the paper's plate and compare it with the paper: every figure, and a report.
+#[derive(Debug, Args)]
+pub struct Paper {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder for results, figures and report.md [default: out/<name of the scene file>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    files: FileArgs,
+}
+
+impl Paper {
+    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+        let Self { scene: SceneArgs { scene, json }, output, files } = self;
+        output::require_file("--output", output.as_deref())?;
+        let scene = session.read(scene)?;
+        let settings = RunSettings { check: true, ..session.settings(files.overwrite) };
+        let folder = folder(&scene, output)?;
+        outputs_of_scene(&scene, &session.builder, files.overwrite).claim(&paper::files(&folder))?;
+        let report = paper::reproduce(&scene, &folder, &settings, |p| {
+            session.signals.heard(p);
+            session.bar.run(p);
+        })?;
+        drop(session.bar);
+        output::print(&report, json)
+    }
+}

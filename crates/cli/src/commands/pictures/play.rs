@@ -1,0 +1,42 @@
+//! `flexframe play`.
+
+use std::error::Error;
+
+use clap::Args;
+use flexframe::html_report;
+use flexframe::run::{self, RunSettings};
+
+use crate::cli_error::CliError;
+use crate::output;
+use crate::scene_input::SceneInput;
+use crate::served::Served;
+use crate::session::Session;
+
+/// Run a scene and show its live page at an address of this machine alone, until it is stopped (Ctrl-C).
+#[derive(Debug, Args)]
+pub struct Play {
+    #[command(flatten)]
+    scene: SceneInput,
+    /// The port; 0 takes one that is free.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    port: u16,
+}
+
+impl Play {
+    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+        let Self { scene, port } = self;
+        let system = session.read_system(scene)?;
+        let served = Served::new(port)?;
+        let folder = tempfile::tempdir().map_err(CliError::Folder)?;
+        let settings = RunSettings { check: false, ..session.settings(true) };
+        let (_, report) = run::run(&system, folder.path(), &settings, |p| {
+            session.signals.heard(p);
+            session.bar.run(p);
+        })?;
+        let contents = html_report::live_contents(&report.results, &session.builder, |p| session.bar.build(p))?;
+        let page = html_report::page(&contents)?;
+        drop((session.bar, contents));
+        output::line(&format!("  page     {} (Ctrl-C ends it)", served.address()))?;
+        Ok(served.serve(&page, &session.signals.stop())?)
+    }
+}

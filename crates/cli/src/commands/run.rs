@@ -1,0 +1,54 @@
+//! `flexframe run`.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::Args;
+use flexframe::run::{self, RunSettings};
+
+use crate::arguments::{FileArgs, SceneArgs};
+use crate::output;
+use crate::session::{Session, folder};
+use crate::solver_input::SolverInput;
+
+/// Run a scene and write its motion to an HDF5 file.
+///
+/// The first ctrl-C (or SIGTERM or SIGHUP) stops the run at its next row, and `flexframe resume` continues it. A second one, at
+/// least half a second later, ends the program at once.
+#[derive(Debug, Args)]
+pub struct Run {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder for the results; it is made if it does not exist [default: out/<name of the scene file>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    files: FileArgs,
+    /// Allow a results file of more than 1 GB.
+    #[arg(long)]
+    large: bool,
+    /// Leave out the check of a row by the full nonlinear body at the end (see `flexframe check`).
+    #[arg(long)]
+    no_check: bool,
+    #[command(flatten)]
+    solver: SolverInput,
+}
+
+impl Run {
+    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+        let Self { scene: SceneArgs { scene, json }, output, files, large, no_check, solver } = self;
+        output::require_file("--output", output.as_deref())?;
+        let system = session.read_system(scene)?;
+        if let Some(to) = solver.take_of(&system.bodies, &mut session.builder, session.signals.slepc())? {
+            return session.write_only(&system.bodies[0], &to, files.overwrite);
+        }
+        let folder = folder(&system.bodies[0], output)?;
+        let settings = RunSettings { large, check: !no_check, ..session.settings(files.overwrite) };
+        let (_, report) = run::run(&system, &folder, &settings, |p| {
+            session.signals.heard(p);
+            session.bar.run(p);
+        })?;
+        drop(session.bar);
+        output::print(&report, json)
+    }
+}

@@ -1,0 +1,101 @@
+//! What every command has at hand: where bodies come from, signals and the progress bar.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use flexframe::campbell::CampbellError;
+use flexframe::modes;
+use flexframe::outputs::{OutputError, Written, outputs_of_scene};
+use flexframe::plausible;
+use flexframe::run::RunSettings;
+use model::{BuildError, Builder};
+use scene::{Flexible, Scene, SceneError, System};
+use slepc::files_of_folder;
+
+use crate::cli_error::CliError;
+use crate::output;
+use crate::progress::Bar;
+use crate::scene_input::SceneInput;
+use crate::signals::Signals;
+use crate::solver_input::WriteOnly;
+
+pub struct Session {
+    pub builder: Builder,
+    pub signals: Signals,
+    pub bar: Bar,
+    /// True if standard error has an error as JSON, and nothing else.
+    pub json_errors: bool,
+}
+
+impl Session {
+    /// The scene of one body, after doubts about it have been told.
+    pub fn read(&self, input: SceneInput) -> Result<Scene, Box<dyn Error>> {
+        let scene = input.read()?;
+        if !self.json_errors {
+            output::doubts(plausible::doubts_of_scene(&scene));
+        }
+        Ok(scene)
+    }
+
+    /// As [`Self::read`], of any number of bodies.
+    pub fn read_system(&self, input: SceneInput) -> Result<System, Box<dyn Error>> {
+        let system = input.read_system()?;
+        self.tell_doubts(&system);
+        Ok(system)
+    }
+
+    /// A scene of one body, or of bodies in joints; of several that nothing ties one has to be named.
+    pub fn read_one(&self, input: SceneInput, flexible: Option<usize>) -> Result<System, Box<dyn Error>> {
+        let mut system = input.clone().read_system()?;
+        if !system.has_connections() && system.bodies.len() > 1 {
+            system = input.read()?.into();
+        }
+        self.tell_doubts(&system);
+        for scene in &mut system.bodies {
+            scene.modes.flexible = flexible.map_or(scene.modes.flexible, Flexible::Count);
+        }
+        Ok(system)
+    }
+
+    pub fn tell_doubts(&self, system: &System) {
+        if !self.json_errors {
+            output::doubts(plausible::doubts_of_system(system));
+        }
+    }
+
+    pub fn settings(&self, overwrite: bool) -> RunSettings {
+        RunSettings { overwrite, stop: self.signals.stop(), builder: self.builder.clone(), ..RunSettings::default() }
+    }
+
+    /// Writes the modes that a scene asks for as a problem for SLEPc.
+    pub fn write_only(mut self, scene: &Scene, to: &WriteOnly, overwrite: bool) -> Result<(), Box<dyn Error>> {
+        Written::FOLDER.check(&to.folder).map_err(OutputError::from)?;
+        outputs_of_scene(scene, &self.builder, overwrite).claim(&files_of_folder(&to.folder))?;
+        let files = modes::write_problem(scene, &self.builder, &to.folder, to.ranks, |p| self.bar.build(p))?;
+        drop(self.bar);
+        output::list(&files)
+    }
+}
+
+/// Kind of file that export and report take.
+pub const RESULTS: &str = "a results file of `flexframe run`";
+
+/// The refusal of a number of modes, at the option where that has replaced what the scene says.
+pub fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Error> {
+    match (error, flexible) {
+        (CampbellError::Build(BuildError::Scene(SceneError::Invalid { at, found, expected, help })), Some(_))
+            if at.key == "modes.flexible" =>
+        {
+            CliError::Option { option: "--flexible", found, expected, help }.into()
+        }
+        (error, _) => error.into(),
+    }
+}
+
+/// The folder asked for, or one named after the scene.
+pub fn folder(scene: &Scene, output: Option<PathBuf>) -> Result<PathBuf, OutputError> {
+    if let Some(folder) = &output {
+        Written::FOLDER.check(folder)?;
+    }
+    Ok(output.unwrap_or_else(|| Path::new("out").join(scene.path.file_stem().unwrap_or("scene".as_ref()))))
+}
