@@ -1,4 +1,4 @@
-//! What every command has at hand: where bodies come from, signals and the progress bar.
+//! Means that every command has: where bodies come from, signals and the progress bar.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

@@ -6,20 +6,20 @@
 pub(crate) mod kept;
 pub(crate) mod remainders;
 mod rigid_patch;
+mod second_order;
 pub(crate) mod statics;
+mod stress;
 
 use std::cell::{Cell, OnceCell, RefCell};
 use std::path::{Path, PathBuf};
 
 use dynamics::DrivenMotion;
 use faer::{ColRef, Mat, MatRef, Scale};
-use fem_tet10::{
-    Expansion, StressRecovery, StressSites, extended_geometric_stiffness, second_order_energies, second_order_forces,
-};
+use fem_tet10::StressRecovery;
 use keys::{Key, Keyed};
 use modal::{
-    ModalError, Modes, NoCycles, Products, ReducedBody, Solver, StaticAccuracy, acceleration_fields,
-    centrifugal_fields, mass_left_out, turning_field,
+    ModalError, Modes, NoCycles, ReducedBody, Solver, StaticAccuracy, acceleration_fields, centrifugal_fields,
+    mass_left_out, turning_field,
 };
 use nalgebra::Vector3;
 use slepc::write_folder;
@@ -34,8 +34,7 @@ use crate::error::{BuildError, modal, too_many_modes};
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{MatrixChecks, refuse_matrix};
 use crate::reduction::reference::Reference;
-use crate::stress::about::stress_about;
-use crate::structure::kept::{Basis, Extended, Found, OwnSecondOrder, SecondOrder, StaticResponses};
+use crate::structure::kept::{Basis, Found, StaticResponses};
 use crate::structure::rigid_patch::rigid_rows;
 
 /// The finite-element side of a body.
@@ -413,103 +412,6 @@ impl Structure<'_> {
         })
     }
 
-    /// The second order of some modes, each with itself: forces, responses and energy, and beside them for each
-    /// `φᵀMu` and `uᵀMu` of its response u.
-    pub fn own_second_order(&self, modes: &Modes, list: &[usize]) -> Result<OwnSecondOrder, BuildError> {
-        let asked = self.of_held_body("own second order").with_natural(modes).with("list", list);
-        self.ask(asked, [self.rows(), list.len()], || {
-            let (shapes, places) = (shapes_of(modes, list), 0..list.len());
-            let pairs: Vec<[usize; 2]> = places.clone().map(|j| [j; 2]).collect();
-            let quadruples: Vec<[usize; 4]> = places.map(|j| [j; 4]).collect();
-            let second = self.find_second_order(modes, shapes.as_ref(), &pairs, &quadruples)?;
-            let momenta = self.solver()?.mass().product(second.responses.as_ref());
-            let along = |fields: &Mat<f64>| {
-                fields
-                    .col_iter()
-                    .zip(momenta.col_iter())
-                    .map(|(field, momentum)| field.transpose() * momentum)
-                    .collect()
-            };
-            Ok(OwnSecondOrder { along: along(&shapes), inertia: along(&second.responses), second })
-        })
-    }
-
-    /// The part of the strain energy of second order of each pair of some modes that each of these relieves: pairs j ≤ k within
-    /// modes.
-    pub fn relieved(&self, modes: &Modes, list: &[usize]) -> Result<Vec<f64>, BuildError> {
-        let pairs: Vec<[usize; 2]> = (0..list.len()).flat_map(|j| (j..list.len()).map(move |k| [j, k])).collect();
-        let asked = self.of_held_body("relieved energies").with_natural(modes).with("list", list);
-        self.ask(asked, list.len() * pairs.len(), || {
-            let (mesh, materials, shapes) = (&self.assembled.mesh, self.assembled.materials()?, shapes_of(modes, list));
-            let quadruples: Vec<[usize; 4]> = pairs.iter().map(|[j, k]| [*j, *k, *j, *k]).collect();
-            self.pass_elements();
-            let energies = second_order_energies(mesh, materials, shapes.as_ref(), &quadruples)?;
-            self.pass_elements();
-            let forces = second_order_forces(mesh, materials, shapes.as_ref(), &pairs)?;
-            let along = shapes.transpose() * forces;
-            let part = |a: usize, pair: usize| along[(a, pair)].powi(2) / (modes.eigenvalues[list[a]] * energies[pair]);
-            Ok((0..list.len())
-                .flat_map(|a| (0..pairs.len()).map(move |pair| (a, pair)))
-                .map(|(a, p)| part(a, p))
-                .collect())
-        })
-    }
-
-    fn find_second_order(
-        &self,
-        modes: &Modes,
-        shapes: MatRef<'_, f64>,
-        pairs: &[[usize; 2]],
-        quadruples: &[[usize; 4]],
-    ) -> Result<SecondOrder, BuildError> {
-        let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
-        self.pass_elements();
-        let energies = second_order_energies(mesh, materials, shapes, quadruples)?;
-        self.pass_elements();
-        let forces = second_order_forces(mesh, materials, shapes, pairs)?;
-        let responses = self.solve(modes, forces.as_ref(), StaticAccuracy::Shapes)?;
-        Ok(SecondOrder { forces, responses, energies })
-    }
-
-    /// The shapes of large modes and of those that follow them, the body in the extended shapes, and the strain energies.
-    pub fn large_shapes(&self, modes: &Modes, large: &[usize], following: &[usize]) -> Result<Extended, BuildError> {
-        let asked = self.of_held_body("large shapes").with_modes(modes).with("natural", &modes.natural());
-        let asked = asked.with("large", large).with("following", following);
-        self.ask(asked, (modes, large, following), || self.find_large_shapes(modes, large, following))
-    }
-
-    fn find_large_shapes(&self, modes: &Modes, large: &[usize], following: &[usize]) -> Result<Extended, BuildError> {
-        let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
-        let bent = shapes_of(modes, &[large, following].concat());
-        let products = Products { large: large.len(), following: following.len() };
-        let reference = self.reference().map(|reference| reference.displacement.as_ref());
-        let mut known: Vec<Vec<usize>> = (0..products.coordinates()).map(|k| vec![k]).collect();
-        let mut fields = bent.clone();
-        for wanted in [products.second(), products.third()] {
-            let expansion = Expansion { products: &known, fields: fields.as_ref(), reference };
-            self.pass_elements();
-            let forces = expansion.forces(mesh, materials, &wanted)?;
-            let answers = self.solve(modes, forces.as_ref(), StaticAccuracy::Shapes)? * Scale(-1.0);
-            let freed =
-                |of: MatRef<'_, f64>| self.solver()?.freed(answers.as_ref(), of).map_err(|error| self.modal(error));
-            let (of_large, of_all) = (freed(bent.subcols(0, large.len()))?, freed(bent.as_ref())?);
-            let first = fields.ncols();
-            fields = Mat::from_fn(fields.nrows(), first + wanted.len(), |i, j| match j.checked_sub(first) {
-                None => fields[(i, j)],
-                Some(k) if products.follows(&wanted[k]) => of_all[(i, k)],
-                Some(k) => of_large[(i, k)],
-            });
-            known.extend(wanted);
-        }
-        let expansion = Expansion { products: &known, fields: fields.as_ref(), reference };
-        self.pass_elements();
-        let energies = expansion.energies(mesh, materials, &products.of_energy())?;
-        let of_products = fields.get(.., products.coordinates()..);
-        let shapes = self.solver()?.large_shapes(modes.clone(), large, following, of_products);
-        let shapes = shapes.map_err(|error| self.modal(error))?;
-        Ok(Extended { body: self.reduced(&shapes.modes)?, shapes, energies })
-    }
-
     /// Fields (3n×k) without their parts along some modes.
     pub fn without_parts(
         &self,
@@ -520,85 +422,6 @@ impl Structure<'_> {
         let asked = self.of_body("fields without parts").with_modes(modes).with("list", list).with("fields", &fields);
         self.ask(asked, [fields.nrows(), fields.ncols()], || {
             self.solver()?.freed(fields, shapes_of(modes, list).as_ref()).map_err(|error| self.modal(error))
-        })
-    }
-
-    /// Stiffness in the modes (nf×nf) by the stress of each displacement field (3n×k). `known` are those in the first of the
-    /// modes, one for each field, or none.
-    pub fn stress_stiffness(
-        &self,
-        displacements: MatRef<'_, f64>,
-        modes: &Modes,
-        known: &[Mat<f64>],
-    ) -> Result<Vec<Mat<f64>>, BuildError> {
-        let shapes = modes.shapes.as_ref();
-        let asked = self.of_body("initial stress").with("displacements", &displacements).with("shapes", &shapes);
-        self.ask(asked.with("known", known), [displacements.ncols(), shapes.ncols()], || {
-            self.pass_elements();
-            let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
-            let reference = self.reference().map(|reference| reference.displacement.as_ref());
-            Ok(extended_geometric_stiffness(mesh, materials, displacements, shapes, known, reference)?)
-        })
-    }
-
-    /// Where nodal stress is known.
-    pub fn stress_sites(&self) -> Result<&StressSites, BuildError> {
-        Ok(self.recovery()?.sites())
-    }
-
-    /// The stress (6m×k) of displacement fields (3n×k), and of second order of pairs of others (3n×l).
-    pub fn nodal_stress(
-        &self,
-        displacements: MatRef<'_, f64>,
-        others: MatRef<'_, f64>,
-        pairs: &[[usize; 2]],
-    ) -> Result<Mat<f64>, BuildError> {
-        let recovery = self.recovery()?;
-        let asked = self.of_body("nodal stress").with("displacements", &displacements);
-        let size = [6 * recovery.sites().len(), displacements.ncols() + pairs.len()];
-        self.ask(asked.with("others", &others).with("pairs", pairs), size, || {
-            let linear = match self.reference() {
-                Some(Reference { displacement, .. }) => stress_about(recovery, displacement.as_ref(), displacements)?,
-                None => recovery.nodal_stress(displacements)?,
-            };
-            let linear = linear.get(.., ..displacements.ncols()).to_owned();
-            if pairs.is_empty() {
-                return Ok(linear);
-            }
-            let second = recovery.second_order_nodal_stress(others, pairs)?;
-            let first = linear.ncols();
-            let entry = |i: usize, j: usize| if j < first { linear[(i, j)] } else { second[(i, j - first)] };
-            Ok(Mat::from_fn(size[0], size[1], entry))
-        })
-    }
-
-    /// The stress (6m×1) of the bent body that the modes are about; none of the undeformed one.
-    pub fn reference_stress(&self) -> Result<Option<Mat<f64>>, BuildError> {
-        let Some(Reference { displacement, .. }) = self.reference() else { return Ok(None) };
-        let recovery = self.recovery()?;
-        let asked = self.of_body("stress of the reference");
-        let found = self.ask(asked, [6 * recovery.sites().len(), 1], || {
-            Ok(stress_about(recovery, displacement.as_ref(), displacement.get(.., ..0))?)
-        });
-        Ok(Some(found?))
-    }
-
-    /// The stiffness in the modes (nf×nf) by the stress of a reference that K is without; none where it has it.
-    pub fn reference_stiffness(&self, modes: &Modes) -> Result<Option<Mat<f64>>, BuildError> {
-        let Some(tangent) = self.assembled.stress_tangent()? else { return Ok(None) };
-        Ok(Some(modes.shapes.transpose() * (tangent.stiffness() * &modes.shapes)))
-    }
-
-    /// The stress (6m×k) of static responses (3n×k) that modes and static shapes leave out.
-    pub fn stress_beside(&self, modes: &Modes, responses: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
-        let recovery = self.recovery()?;
-        // The coupling of the shapes follows from them.
-        let asked = self.of_body("stress beside modes").with_modes(modes).with("responses", &responses);
-        self.ask(asked, [6 * recovery.sites().len(), responses.ncols()], || {
-            let mut parts = modes.shapes.transpose() * (self.matrices()?.stiffness() * responses);
-            modes.answer(&mut parts).map_err(|error| self.modal(error))?;
-            let rest = responses - &modes.shapes * parts;
-            Ok(recovery.nodal_stress(rest.as_ref())?)
         })
     }
 }
