@@ -119,7 +119,7 @@ class Body:
         the scene: see Results."""
     @property
     def kinds(self) -> list[str]:
-        """Kind of each: "natural mode" or "static shape"."""
+        """Kind of each: "natural mode" or "static shape"; beside the "static answer" to moments, "combination of modes"."""
     @property
     def positions(self) -> NDArray[np.float64]:
         """Nodes of the mesh (n x 3; view); none of a rigid body."""
