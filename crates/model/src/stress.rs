@@ -2,6 +2,7 @@
 
 pub(crate) mod about;
 pub(crate) mod left_out;
+mod mesh_error;
 pub(crate) mod products;
 pub(crate) mod shapes;
 pub(crate) mod site;

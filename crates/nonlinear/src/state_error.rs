@@ -71,7 +71,9 @@ pub struct StateError<'a> {
     pub last_change: f64,
     /// Number of negative eigenvalues of K* at the last factor.
     pub negative_pivots: usize,
-    /// The answer of the linear body to the forces and the inertia of the state (3n).
+    /// The forces of the state less its inertia (3n).
+    pub acting: Vec<f64>,
+    /// The answer of the linear body to them (3n).
     pub linear_answer: Vec<f64>,
     /// The last K*.
     pub tangent: Tangent<'a>,
@@ -125,6 +127,7 @@ pub fn state_error<'a>(
     let acting = sum(&forces.at(body.mesh(), displacement)?, -1.0, &inertia);
     let linear_answer = at_rest.answer(&acting)?;
     let mut stresses = body.strain().linear_stresses(&linear_answer);
+    let of_state = acting.clone();
     let mut acting = acting;
     let mut u = displacement.clone();
     let mut first = Vec::new();
@@ -155,6 +158,7 @@ pub fn state_error<'a>(
                 factors,
                 last_change,
                 negative_pivots,
+                acting: of_state,
                 linear_answer,
                 tangent,
                 stresses,

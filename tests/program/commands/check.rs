@@ -66,6 +66,37 @@ fn a_run_says_how_wrong_it_is_and_the_command_says_more() {
     assert!(String::from_utf8(refused.stderr).unwrap().contains("no row 6, expected a number from 0 to 5"));
 }
 
+/// Conserved: where a rod hardly bends, more modes alone mend what is wrong when a force sets in at once: the error of its static shape is
+/// that of a linear body. It was taken for one of large deflection (60 % of a ring's displacements).
+#[test]
+fn what_modes_leave_out_of_a_sudden_force_is_not_mended_by_large_modes() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path());
+    let (scene, out) = (scene.to_str().unwrap(), folder.path().to_str().unwrap());
+    let set = [
+        "loads[0].amplitude=1e-6",
+        "loads[0].history=\"constant\"",
+        "modes.flexible=1",
+        "modes.static_correction=true",
+        "time.end=0.1",
+        "modes.damping_ratio=0.0",
+        "output.interval=1e-3",
+        "time.step=1e-4",
+    ];
+    let mut arguments = vec!["run", scene, "-o", out, "--no-check"];
+    arguments.extend(set.iter().flat_map(|key| ["--set", key]));
+    done(&arguments);
+    let file = folder.path().join("column.h5");
+    let report = json(&["check", file.to_str().unwrap(), "--rows", "0,1,3"]);
+    for row in report["bodies"][0]["rows"].as_array().unwrap() {
+        let parts = row["parts"].as_array().unwrap();
+        let size = |k: usize| parts[k]["size"].as_f64().unwrap();
+        assert!(size(1) > 0.01, "{row}");
+        assert!(size(0) < 1e-6 && size(2) < 0.1 * size(1), "{row}");
+        assert_eq!(row["mends"].as_array().unwrap(), &["more-modes"], "{row}");
+    }
+}
+
 /// Conserved: where the rod hardly bends, the linear model is right, however it is damped: the forces of its damping are no error.
 #[test]
 fn the_force_of_damping_is_no_error() {

@@ -74,6 +74,27 @@ fn each_fault_of_a_model_stands_first_on_its_card() {
     }
 }
 
+/// Conserved: the error that the mesh makes of a frequency is that of its mode, whatever the state: elements have the stretch of a bar that
+/// spins, and the card had 2e-7 of a frequency where `modes` has 2.6e-4.
+#[test]
+fn a_spin_that_the_elements_have_does_not_make_frequencies_right() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/rotating_bar.msh");
+    let scene = folder.path().join("bar.toml");
+    let text = format!(
+        "title = \"Bar\"\nunits = {{ length = \"mm\", mass = \"Mg\", time = \"s\" }}\n[body]\nmesh = {mesh:?}\n\
+         material = {{ young_modulus = 7e4, poisson_ratio = 0.3, density = 2.7e-9 }}\n[modes]\nflexible = 4\n\
+         [initial]\nangular_velocity = [0.0, 0.0, 50.0]\n[time]\nend = 0.01\ntolerance = 1e-6\n"
+    );
+    fs::write(&scene, text).unwrap();
+    let report = run(folder.path(), &scene, &["--no-check"]);
+    let line = lines(&report).iter().find(|line| line["place"] == "mesh").unwrap();
+    let modes = flexframe(&["modes", scene.to_str().unwrap(), "--json"]);
+    let modes: Value = serde_json::from_slice(&modes.stdout).unwrap();
+    let of_mode = modes["strain_energy"]["mesh_errors"][0].as_f64().unwrap();
+    assert!((line["error"].as_f64().unwrap() / of_mode - 1.0).abs() < 1e-2, "{line} {of_mode}");
+}
+
 /// Conserved: the same card in JSON, in the results file, on its page, and in the summary.
 #[test]
 fn the_card_is_the_same_wherever_it_is_shown() {

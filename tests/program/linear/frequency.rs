@@ -826,4 +826,6 @@ fn sums_of_modes_are_about_the_peaks_of_a_run() {
     };
     assert!(refused(&["--input", "base.acceleration"]).contains("expected one, which follows the table"));
     assert!(refused(&["--input", "base.acceleration.w"]).contains("base.acceleration.w"));
+    let velocities = refused(&["--input", "base.acceleration.y", "--outputs", "tip.velocity"]);
+    assert!(velocities.contains("velocities and rates alone, of which a shock has no sums"), "{velocities}");
 }

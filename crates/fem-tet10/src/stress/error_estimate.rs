@@ -1,11 +1,13 @@
 //! Error of the mesh: the recovered stress against that of the elements (Zienkiewicz and Zhu 1987).
 
-use faer::{ColRef, MatRef};
+use faer::{ColRef, Mat, MatRef};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::{COMPONENTS, StressRecovery};
-use crate::element::deformation::{check_field, displacement_gradients, relative_displacements, strain, stress};
+use crate::element::deformation::{
+    check_field, displacement_gradients, relative_displacements, second_strain, strain, stress,
+};
 use crate::element::shape::shape_functions;
 use crate::error::{AssemblyError, AssemblyFault};
 use crate::material::Material;
@@ -44,23 +46,56 @@ impl StressRecovery<'_> {
         displacement: ColRef<'_, f64>,
         nodal_stress: ColRef<'_, f64>,
     ) -> Result<Vec<StressError>, AssemblyError> {
-        check_field(self.mesh, "displacements", displacement.as_mat())?;
+        self.estimate(displacement.as_mat(), nodal_stress)
+    }
+
+    /// The estimate for each element of a displacement field u whose strain has the product of two others in it, sym(∇u) + sym(∇aᵀ∇b): about a
+    /// body that is bent by a, b is u.
+    ///
+    /// # Errors
+    /// As [`error_estimate`](Self::error_estimate).
+    pub fn error_estimate_of_product(
+        &self,
+        displacement: ColRef<'_, f64>,
+        [a, b]: [ColRef<'_, f64>; 2],
+        nodal_stress: ColRef<'_, f64>,
+    ) -> Result<Vec<StressError>, AssemblyError> {
+        for field in [a, b] {
+            check_field(self.mesh, "fields", field.as_mat())?;
+        }
+        let fields = [displacement, a, b];
+        let fields = Mat::from_fn(displacement.nrows(), fields.len(), |i, k| fields[k][i]);
+        self.estimate(fields.as_ref(), nodal_stress)
+    }
+
+    /// Of one field, or of one and the two of a product.
+    fn estimate(
+        &self,
+        fields: MatRef<'_, f64>,
+        nodal_stress: ColRef<'_, f64>,
+    ) -> Result<Vec<StressError>, AssemblyError> {
+        check_field(self.mesh, "displacements", fields)?;
         let (expected, found) = (6 * self.sites.len(), nodal_stress.nrows());
         if found != expected {
             return Err(AssemblyFault::FieldRows { what: "nodal stress", expected, found }.into());
         }
-        let of = |e: usize| self.of_element(e, displacement.as_mat(), nodal_stress);
+        let of = |e: usize| self.of_element(e, fields, nodal_stress);
         Ok((0..self.mesh.elements().len()).into_par_iter().map(of).collect())
     }
 
-    fn of_element(&self, e: usize, displacement: MatRef<'_, f64>, nodal: ColRef<'_, f64>) -> StressError {
-        let relative = relative_displacements(displacement, &self.mesh.elements()[e]);
-        let mut gradients = Vec::with_capacity(1);
+    fn of_element(&self, e: usize, fields: MatRef<'_, f64>, nodal: ColRef<'_, f64>) -> StressError {
+        let count = fields.ncols();
+        let relative = relative_displacements(fields, &self.mesh.elements()[e]);
+        let mut gradients = Vec::with_capacity(count);
         let points = self.rules.fine_points(&self.mesh.element_positions(e));
         let shapes = self.rules.fine().iter().map(|rule| shape_functions(rule.point.at));
         let of_point = |(point, shapes): (&_, [f64; 10])| {
-            displacement_gradients(&relative, point, 1, &mut gradients);
-            let raw = stress(&self.materials[e], &strain(&gradients[0]));
+            displacement_gradients(&relative, point, count, &mut gradients);
+            let strains = match &gradients[..] {
+                [of_field, a, b] => strain(of_field) + second_strain(a, b),
+                gradients => strain(&gradients[0]),
+            };
+            let raw = stress(&self.materials[e], &strains);
             let mut recovered = Matrix3::zeros();
             for (site, shape) in self.sites.of_element(e).iter().zip(shapes) {
                 for (c, (i, j)) in COMPONENTS.into_iter().enumerate() {

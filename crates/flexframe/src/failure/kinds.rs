@@ -578,7 +578,7 @@ impl Fault for ShockResponseError {
         match self {
             Self::Linearize(_) | Self::Table(_) => Known::default(),
             Self::Linear { scene, .. } => Kind::Refused.of(scene),
-            Self::Inputs { scene, .. } => Kind::Usage.of(scene),
+            Self::Inputs { scene, .. } | Self::Outputs { scene } => Kind::Usage.of(scene),
             Self::Shock { table, .. } => Kind::Input.of(table),
         }
     }

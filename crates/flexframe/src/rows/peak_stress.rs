@@ -1,7 +1,6 @@
 //! The largest von Mises stress of a run, over the whole body and all rows.
 
 use dynamics::Observation;
-use faer::Col;
 use fem_tet10::{StressError, StressRecovery};
 use model::{Meshed, Model, StressPeak};
 use serde::Serialize;
@@ -82,10 +81,8 @@ impl Largest {
 
     fn mesh_error(&self, meshed: &Meshed) -> Option<f64> {
         let elements = meshed.elements.as_ref()?;
-        let displacement = &meshed.modes.shapes * Col::from_iter(self.modal_displacement.iter().copied());
         let recovery = StressRecovery::new(&meshed.mesh, &elements.materials).ok()?;
-        let nodal = recovery.nodal_stress(displacement.as_mat()).ok()?;
-        let of_elements = recovery.error_estimate(displacement.as_ref(), nodal.col(0)).ok()?;
+        let of_elements = meshed.mesh_error_of_state(&recovery, &self.modal_displacement).ok()?;
         Some(of_elements.into_iter().sum::<StressError>().relative())
     }
 }

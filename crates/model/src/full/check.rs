@@ -1,10 +1,10 @@
 //! The check of a model's state by the full body.
 
 use dynamics::{ConservativeBody, History, LoadFrame, MotionState, Observation, PointForce, PointMoment, SharedLoad};
-use faer::Mat;
+use faer::{ColRef, Mat};
 use fem_tet10::{Location, StressRecovery};
 use nalgebra::Vector3;
-use nonlinear::{FullBody, FullState, StateErrorSettings, Tangent, state_error, true_frequencies};
+use nonlinear::{FullBody, FullState, StateError, StateErrorSettings, Tangent, state_error, true_frequencies};
 use scene::Scene;
 use serde::Serialize;
 
@@ -150,7 +150,8 @@ impl<'a> Checker<'a> {
         let share = if size < self.largest { size / self.largest } else { 1.0 };
         let (has_static_shapes, has_large_modes) =
             (self.model.static_shapes() > 0, !self.model.large_modes().is_empty());
-        let parts = parts([within * share, beside * share, linear], has_static_shapes, has_large_modes);
+        let [along, left_out] = self.along_modes(&found).map(|size| share * ratio(size, self.body.mass_norm(&truth)));
+        let parts = parts([along, left_out, beside * share, linear], has_static_shapes, has_large_modes);
         let follows = state.forces.follow();
         let (frequencies, growth) = match frequencies && self.spin_is_held(&state) {
             true => self.frequencies(&moving, motion, &state, &found)?,
@@ -175,6 +176,24 @@ impl<'a> Checker<'a> {
             factors: found.factors,
             is_settled: found.factors == 1 || found.last_change <= settings.settled.max(0.5),
         })
+    }
+
+    /// Sizes of two parts of the error along the modes: that of the model, and that which a linear body has there, too. A static shape is the
+    /// answer to a force that stays; of one that does not, more modes have the difference (K7).
+    fn along_modes(&self, found: &StateError<'_>) -> [f64; 2] {
+        let Some(meshed) = &self.model.meshed else { return [0.0; 2] };
+        let shapes = &meshed.modes.shapes;
+        let along = |v: &[f64]| shapes.transpose() * ColRef::from_slice(v);
+        let error = along(&self.body.momentum(&found.error));
+        let answer = along(&self.body.momentum(&found.linear_answer));
+        let acting = along(&found.acting);
+        let natural = self.model.body.natural_modes;
+        let left_out = |k: usize| match k >= natural && meshed.reference.is_none() {
+            true => answer[k] - acting[k] / meshed.modes.eigenvalues[k],
+            false => 0.0,
+        };
+        let size = |of: &dyn Fn(usize) -> f64| (0..shapes.ncols()).map(|k| of(k).powi(2)).sum::<f64>().sqrt();
+        [size(&|k| error[k] - left_out(k)), size(&left_out)]
     }
 
     /// The state of a motion on all nodes.
@@ -232,7 +251,7 @@ impl<'a> Checker<'a> {
         moving: &ConservativeBody,
         motion: &MotionState,
         state: &FullState,
-        found: &nonlinear::StateError<'_>,
+        found: &StateError<'_>,
     ) -> Result<(Vec<FrequencyCheck>, f64), FullError> {
         let Some(shapes) = self.model.slopes(&motion.modal_displacement) else { return Ok((Vec::new(), 0.0)) };
         let full = true_frequencies(self.body, state, found, shapes.as_ref())?;

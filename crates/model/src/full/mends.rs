@@ -67,10 +67,10 @@ impl ErrorDirection {
     }
 }
 
-/// The parts of an error: along the modes, beside them, and the share of the linear answer in the latter (0 to 1), relative to
-/// the displacements that it is stated against.
+/// The parts of an error: along the modes, along static shapes as a linear body has it, too, beside them, and the share of the linear answer in
+/// the latter (0 to 1), relative to the displacements that it is stated against.
 pub(crate) fn parts(
-    [within, beside, linear]: [f64; 3],
+    [within, left_out, beside, linear]: [f64; 4],
     has_static_shapes: bool,
     has_large_modes: bool,
 ) -> [ErrorPart; 3] {
@@ -79,7 +79,7 @@ pub(crate) fn parts(
     let across = (1.0 - linear * linear).max(0.0).sqrt();
     [
         (ErrorDirection::Modes, within, of_bending),
-        (ErrorDirection::LinearAnswer, beside * linear, of_loads),
+        (ErrorDirection::LinearAnswer, left_out.hypot(beside * linear), of_loads),
         (ErrorDirection::Bending, beside * across, of_bending),
     ]
     .map(|(direction, size, mend)| ErrorPart { direction, size, mend: (size >= SMALL).then_some(mend) })
@@ -102,17 +102,21 @@ mod tests {
 
     #[test]
     fn each_part_of_an_error_has_its_mend() {
-        let mends =
-            |sizes, has_static_shapes, has_large_modes| mends(&parts(sizes, has_static_shapes, has_large_modes));
+        let mends = |[within, beside, linear]: [f64; 3], has_static_shapes, has_large_modes| {
+            mends(&parts([within, 0.0, beside, linear], has_static_shapes, has_large_modes))
+        };
         assert_eq!(mends([1e-4, 1e-4, 1.0], false, false), []);
         assert_eq!(mends([1e-4, 0.1, 1.0], false, false), [Mend::StaticShapes]);
         assert_eq!(mends([1e-4, 0.1, 0.95], true, false), [Mend::MoreModes, Mend::LargeModes]);
         assert_eq!(mends([0.1, 0.02, 0.1], true, false), [Mend::LargeModes]);
         assert_eq!(mends([0.1, 0.02, 0.1], true, true), [Mend::Reference]);
-        let [along, left_out, bending] = parts([2e-3, 0.05, 0.6], false, false);
+        let [along, left_out, bending] = parts([2e-3, 0.0, 0.05, 0.6], false, false);
         assert_eq!([along.mend, left_out.mend], [Some(Mend::LargeModes), Some(Mend::StaticShapes)]);
         // Closed form: 0.05 split by 0.6 and 0.8.
         assert!((left_out.size - 0.03).abs() < 1e-15 && (bending.size - 0.04).abs() < 1e-15);
-        assert_eq!(parts([9e-4, 0.0, 0.0], false, false)[0].mend, None);
+        // Along the static shapes, as of a linear body.
+        let [along, left_out, _] = parts([9e-4, 0.4, 0.5, 0.6], true, false);
+        assert!((left_out.size - 0.5).abs() < 1e-15 && left_out.mend == Some(Mend::MoreModes) && along.mend.is_none());
+        assert_eq!(parts([9e-4, 0.0, 0.0, 0.0], false, false)[0].mend, None);
     }
 }

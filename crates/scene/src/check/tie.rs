@@ -201,7 +201,10 @@ impl Check<'_> {
         }
         self.not_negative(&join(key, "stiffness"), stiffness)?;
         self.not_negative(&join(key, "damping"), damping)?;
-        free_length.map_or(Ok(()), |length| self.not_negative(&join(key, "free_length"), length))?;
+        if let Some(length) = free_length {
+            let help = "give the length at which the spring has no force; leave it out for that at the start";
+            self.require(length >= 0.0, &join(key, "free_length"), "a number of 0 or more", help)?;
+        }
         Ok(Spring { name, between, stiffness, damping, free_length })
     }
 

@@ -148,6 +148,34 @@ fn the_estimate_is_zero_for_a_stress_that_the_elements_have_and_not_for_another(
     assert!(relative[0] < 1e-7 && relative[1] > 1e-5 && relative[1] < 1e-4, "{relative:?}");
 }
 
+/// Conserved: a body that is turned far has the errors of the one that is not, of displacements that are turned with it.
+#[test]
+fn the_estimate_about_a_bent_body_does_not_see_that_it_is_turned() {
+    let mesh = workspace_mesh("plate.msh");
+    let recovery = StressRecovery::new(&mesh, &aluminium()).unwrap();
+    let turn = Rotation3::from_scaled_axis(Vector3::new(0.4, -0.9, 0.7)).into_inner();
+    let bent = |[x, y, z]: [f64; 3]| Vector3::new(x * x * x, y * z * x, 0.0);
+    let fields = columns(&[
+        field(&mesh, |x| bent(x).into()),
+        field(&mesh, |x| (turn * bent(x)).into()),
+        field(&mesh, |x| ((turn - Matrix3::identity()) * Vector3::from(x)).into()),
+    ]);
+    let nodal = recovery.nodal_stress(fields.as_ref()).unwrap();
+    let of_pair = recovery.second_order_nodal_stress(fields.as_ref(), &[[1, 2]]).unwrap();
+    let sum = nodal.col(1) + 2.0 * of_pair.col(0);
+    let straight = recovery.error_estimate(fields.col(0), nodal.col(0)).unwrap();
+    let product = [fields.col(2), fields.col(1)];
+    let turned = recovery.error_estimate_of_product(fields.col(1), product, sum.as_ref()).unwrap();
+    let all = |list: &[StressError]| list.iter().copied().sum::<StressError>();
+    let (straight, turned) = (all(&straight), all(&turned));
+    for (straight, turned) in [(straight.energy, turned.energy), (straight.error, turned.error)] {
+        assert!((turned / straight - 1.0).abs() < 1e-9, "{turned} {straight}");
+    }
+    // Without the product the turning counts as strain.
+    let blind = all(&recovery.error_estimate(fields.col(1), nodal.col(1)).unwrap());
+    assert!((blind.energy / straight.energy - 1.0).abs() > 0.1, "{} {}", blind.energy, straight.energy);
+}
+
 /// Independent reference: ½ uᵀKu of the stiffness matrix.
 #[test]
 fn the_energy_of_the_estimate_is_that_of_the_stiffness_matrix() {

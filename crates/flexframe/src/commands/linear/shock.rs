@@ -53,5 +53,8 @@ pub fn shock(
         ));
     }
     let outputs = peaks.outputs(&model.equations, motion.peak()).map_err(failed)?;
+    if outputs.is_empty() {
+        return Err(ShockResponseError::Outputs { scene: scene.path.clone() });
+    }
     Ok(ShockReport::new(scene, input, &motion, &peaks, outputs, warnings))
 }

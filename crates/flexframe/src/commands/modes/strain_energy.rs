@@ -50,8 +50,7 @@ impl StrainEnergyReport {
             by_group: mesh.groups().iter().cloned().map(part).collect(),
         };
         for shape in modes.shapes.col_iter() {
-            let nodal = recovery.nodal_stress(shape.as_mat())?;
-            let energies = recovery.error_estimate(shape, nodal.col(0))?;
+            let energies = meshed.mesh_error(&recovery, shape)?;
             let whole: StressError = energies.iter().copied().sum();
             let share = |is_in: &dyn Fn(usize) -> bool| {
                 let of = energies.iter().enumerate().filter(|(e, _)| is_in(*e));

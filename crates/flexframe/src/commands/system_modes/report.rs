@@ -1,10 +1,10 @@
 //! Report of the vibrations of a system.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-use dynamics::{Spring, SteadyState, SystemMode, Vibrations};
-use scene::System;
+use dynamics::{Effect, Spring, SteadyState, SystemMode, Vibrations};
+use scene::{Choice, Damping, Scene, System};
 use serde::Serialize;
 
 use super::assembled::TiedMotion;
@@ -18,6 +18,10 @@ const NAMED: f64 = 0.005;
 const SHOWN: usize = 30;
 /// An acceleration, as a part of the size of the system and the square of its lowest frequency, from which it is told.
 const TOLD: f64 = 1e-9;
+/// Part of the elastic energy above which a vibration is that of a body.
+const ITS_OWN: f64 = 0.9;
+/// A damping ratio over that of the modes of the body, below which it is told.
+const LESS: f64 = 0.5;
 
 /// The vibrations of bodies that are tied together.
 #[derive(Debug, Clone)]
@@ -132,6 +136,10 @@ impl SystemModesReport {
         };
         report.warnings.extend(report.unbalance(steady, motion.simulation.size(), &scene.units.length));
         report.warnings.extend(report.growth());
+        let scenes = motion.bodies.iter().map(|body| &system.bodies[*body]);
+        let damping = scenes.zip(&report.bodies).filter_map(|(scene, name)| report.damping(scene, name));
+        let damping: Vec<String> = damping.collect();
+        report.warnings.extend(damping);
         report
     }
 
@@ -151,6 +159,30 @@ impl SystemModesReport {
                 self.bodies[body],
                 quantity(unbalance.accelerations[body].norm()),
                 quantity(unbalance.angular_accelerations[body].norm()),
+            )
+        })
+    }
+
+    /// Tells of a body that damps a vibration of the whole less than its modes.
+    fn damping(&self, scene: &Scene, body: &str) -> Option<String> {
+        let ratio = match &scene.modes.damping {
+            Damping::Uniform(ratio) => *ratio,
+            Damping::List(ratios) => ratios.iter().copied().fold(f64::INFINITY, f64::min),
+            Damping::Table(_) | Damping::Rayleigh(_) => return None,
+        };
+        let is_its_own = |mode: &SystemModeReport| {
+            mode.frequency > 0.0 && mode.strained.iter().any(|share| share.name == body && share.part > ITS_OWN)
+        };
+        let (k, mode) = self.modes.iter().enumerate().find(|(_, mode)| is_its_own(mode))?;
+        let is_less = scene.effects.choices[Effect::Damping] != Choice::Off && mode.damping_ratio < LESS * ratio;
+        is_less.then(|| {
+            let (damped, frequency, unit) = (mode.damping_ratio, quantity(mode.frequency), &self.frequency_unit);
+            let beta = quantity(ratio / (PI * mode.frequency));
+            format!(
+                "mode {} has the damping ratio {damped:.1e}, where body {body} has {ratio}: that is the ratio of its modes without joints and of the \
+                 shapes of its markers, all of which are faster. With rayleigh = {{ alpha = 0.0, beta = {beta} }} in the place of it, the body damps \
+                 {frequency} {unit} by {ratio} however it is held",
+                k + 1
             )
         })
     }
