@@ -47,6 +47,7 @@
 //!     drive_remainder: None,
 //!     backbones: &[],
 //!     manifold: None,
+//!     coupling: None,
 //! };
 //! let effects = EffectMap::all();
 //! assert_eq!(limits(&case, &effects)?, None);

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use dynamics::{DrivenMotion, Effect, EffectMap, LoadedMode, Manifold, SteadySpin};
+use dynamics::{DrivenMotion, Effect, EffectMap, LoadedMode, SteadySpin};
 use nalgebra::Vector3;
 
 use crate::motion::case::{AdviceError, Case};
@@ -181,15 +181,17 @@ pub(crate) fn detuned(case: &Case, k: usize, amplitude: f64) -> Option<Refusal> 
     (amplitude > backbone.largest_amplitude()).then_some(Refusal::Detuned { mode: k + 1, deflection })
 }
 
-/// The refusal of modal displacements with a negative strain energy, which bend large modes by this part of the length, if they have
-/// one. `circular_frequencies` are those of the modes.
-pub(crate) fn impossible(
-    manifold: &Manifold,
-    circular_frequencies: &[f64],
-    q: &[f64],
-    deflection: f64,
-) -> Option<Refusal> {
-    let quadratic: f64 = manifold.bent().iter().map(|k| 0.5 * (circular_frequencies[*k] * q[*k]).powi(2)).sum();
+/// The refusal of modal displacements with a negative strain energy of the modes that bend the body, which bend large ones by this part of
+/// the length, if they have one.
+pub(crate) fn impossible(case: &Case, q: &[f64], deflection: f64) -> Option<Refusal> {
+    let manifold = case.manifold?;
+    let stiffness = |i: usize, j: usize| {
+        let own = if i == j { case.body.circular_frequencies[i].powi(2) } else { 0.0 };
+        own + case.coupling.map_or(0.0, |coupling| coupling[(i, j)])
+    };
+    let bent = manifold.bent();
+    let work = |i: &usize| bent.iter().map(|j| 0.5 * stiffness(*i, *j) * q[*i] * q[*j]).sum::<f64>();
+    let quadratic: f64 = bent.iter().map(work).sum();
     (quadratic + manifold.energy(q) < 0.0).then_some(Refusal::NegativeEnergy { deflection })
 }
 
@@ -209,7 +211,7 @@ fn bent_at_start(case: &Case) -> Option<Refusal> {
     let of_large = || {
         let (manifold, q) = (case.manifold?, &case.initial.modal_displacement);
         let deflection: f64 = manifold.large().iter().map(|k| q[*k].abs() * case.peaks[*k] / case.length).sum();
-        impossible(manifold, &case.body.circular_frequencies, q, deflection)
+        impossible(case, q, deflection)
     };
     deflected(largest).or_else(|| modes.into_iter().find_map(|k| detuned(case, k, amplitude(k)))).or_else(of_large)
 }

@@ -6,3 +6,4 @@ pub(crate) mod excitation;
 pub(crate) mod response;
 pub(crate) mod rigid;
 pub(crate) mod tensor;
+pub(crate) mod turning;

@@ -364,9 +364,7 @@ impl<'a> Review<'a> {
             stopped = far.find_map(|(k, (reach, _))| detuned(&self.case, k, reach));
         }
         let [deflection, of_large, deformation] = sums.map(|sums| (sums[0] + sums[2]) + (sums[1] + sums[3]));
-        if let Some(manifold) = self.case.manifold {
-            stopped = stopped.or_else(|| impossible(manifold, &self.case.body.circular_frequencies, q, of_large));
-        }
+        stopped = stopped.or_else(|| impossible(&self.case, q, of_large));
         if self.stop.is_none() {
             self.stop = stopped.or_else(|| deflected(deflection)).map(|refusal| (time, refusal));
         }

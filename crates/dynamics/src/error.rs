@@ -160,6 +160,11 @@ pub enum StepError {
         "at time {time}: the equations of a step of {step:.3e} could not be solved; take a smaller step, or `tolerance` instead of `step`; where a mechanism passes a singular position, no step may do"
     )]
     Newton { time: f64, step: f64 },
+    /// Newton's method does not converge in a fixed step into stops. `contact`: how long the shortest touch lasts.
+    #[error(
+        "at time {time}: the equations of a step of {step:.3e} could not be solved, in which {joints} goes into its stops: a touch there lasts some {contact:.1e}, and a fixed step is to be at most a quarter of that; take a step of {:.1e}, `tolerance` instead of `step`, or softer stops", 0.25 * contact
+    )]
+    Stops { time: f64, step: f64, joints: Box<str>, contact: f64 },
     /// Joints that lock, and no step goes on.
     #[error(
         "at time {time}: the joints lock: {joints} hold each other, and no motion of the bodies satisfies them all; let the motion stop before it stretches its links there, put a spring or a bushing in place of one of these joints, or let a body bend"

@@ -72,7 +72,7 @@ pub use system::collocation::SystemScheme;
 pub use system::description::System;
 pub use system::element::law::{MarkerForce, MarkerLaw, RelativeMotion};
 pub use system::element::springs::{Bushing, PointSpring};
-pub use system::element::{ForceElement, SetDirection};
+pub use system::element::{ForceElement, SetDirection, Stored};
 pub use system::joint::coordinate::{Coordinate, JointCoordinates};
 pub use system::joint::coupling::{CoupledCoordinate, Coupling};
 pub use system::joint::drive::JointDrive;

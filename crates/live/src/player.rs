@@ -346,7 +346,7 @@ fn body_of_shapes(described: &DescribedBody) -> &ReducedBody {
 
 /// True if the modes of a body are about a bent rest.
 fn is_about_rest(described: &DescribedBody) -> bool {
-    described.physics.reference.as_ref().is_some_and(|of| of.is_about_rest)
+    described.physics.reference.is_some()
 }
 
 /// Work and impulses of a body up to where its motion was made anew, so that its balances go on: what a change of its state gave it

@@ -211,7 +211,6 @@ fn a_body_about_a_bent_rest_has_the_rest_as_a_shape() {
     run.body.physics.reference = Some(ReferenceForces {
         force: vec![0.1, -0.2, 0.3],
         stiffness: Mat::from_fn(3, 3, |i, j| 0.1 * (i + j) as f64),
-        is_about_rest: true,
     });
     let bytes = of_body(run.clone()).to_bytes().unwrap();
     let mut player = Player::new(LiveRun::from_bytes(&bytes).unwrap(), 0.02).unwrap();

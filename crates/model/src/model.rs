@@ -229,6 +229,7 @@ impl Model {
             drive_remainder: self.left_out.of_drive,
             backbones: &self.backbones,
             manifold: self.physics.large_deflection.as_ref(),
+            coupling: self.physics.coupling.as_ref(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Data of a run that are known before it.
 
 use dynamics::{Drive, History, Initial, Manifold, SharedLoad};
+use faer::Mat;
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
@@ -40,6 +41,8 @@ pub struct Case<'a> {
     pub backbones: &'a [Option<Backbone>],
     /// The manifold that the large modes move on, if there is one.
     pub manifold: Option<&'a Manifold>,
+    /// Stiffness between coordinates of the modes that are coupled, beside that of each (nf×nf).
+    pub coupling: Option<&'a Mat<f64>>,
 }
 
 /// The work f·u of a load where its history is 1 and of its whole static response u (`modal::Solver::static_response`).

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Matrix3xX, Vector3};
 
 use crate::motion::case::{Case, StaticCompliance};
 use crate::motion::course::Course;
+use crate::motion::turning::{Histories, Turning};
 use crate::table::relative::relative;
 
 /// A load: its largest forces on the translations, the rotations and each mode where its history is 1.
@@ -17,6 +18,9 @@ pub(crate) struct Source {
     pub modal: Vec<f64>,
     pub modal_at_start: Vec<f64>,
     pub history: History,
+    /// What it does to the rotations where its history is 1: this matrix times its direction, which it has at the beginning in body axes.
+    pub turning: Matrix3<f64>,
+    pub vector: Vector3<f64>,
     /// Displacement of each mode where the load acts (nf).
     shapes: Vec<Vector3<f64>>,
     pub course: Course,
@@ -81,6 +85,12 @@ impl Source {
             modal: moved(&|shape| largest(&[*shape])),
             modal_at_start: moved(&|shape| shape.dot(&vector)),
             history: load.history().cloned().unwrap_or(History::Constant),
+            turning: if is_rounding {
+                Matrix3::zeros()
+            } else {
+                Matrix3::from_columns(&[columns[3], columns[4], columns[5]]).transpose()
+            },
+            vector,
             shapes: columns[6..].to_vec(),
             course: course.clone(),
             dead,
@@ -154,29 +164,30 @@ impl Spin {
         let basis = body.rotation_basis;
         let initial = (basis.transpose() * body.inertia * case.initial.omega).norm();
         let largest_of = |momentum: f64| basis.singular_values().max() * momentum;
+        let histories = Histories::new(case);
         let met = |turn: f64| {
             let sources = Source::all(case, &courses, turn);
-            let momentum = initial + ARMS * sources.iter().map(|s| s.rotation * s.impulse()).sum::<f64>();
-            (sources, momentum)
+            let turning = Turning::new(&sources, &histories, turn);
+            (sources, turning, initial + ARMS * turning.impulse)
         };
         // As long as the body has turned by no more than `turn`, its spin is bounded; where that spin turns it no
         // further to the end, it never gets there.
         let mut turn = 0.0;
-        let (mut sources, mut momentum) = met(turn);
+        let (mut sources, mut turning, mut momentum) = met(turn);
         for _ in 0..TRIES {
             let reached = largest_of(momentum) * case.end;
             if reached <= turn {
                 break;
             }
             turn = 1.05 * reached;
-            (sources, momentum) = met(turn);
+            (sources, turning, momentum) = met(turn);
         }
         if largest_of(momentum) * case.end > turn {
-            (sources, momentum) = met(f64::INFINITY);
+            (sources, turning, momentum) = met(f64::INFINITY);
         }
         let directions = body.motion.rotation_projector();
         let certain = (directions * case.initial.omega).norm();
-        let torque_free = sources.iter().all(|s| s.rotation * s.impulse() <= 1e-12 * initial);
+        let torque_free = turning.impulse <= 1e-12 * initial;
         let omega = case.initial.omega;
         let about_principal =
             (body.inertia * omega).cross(&omega).norm() <= 1e-9 * omega.dot(&(body.inertia * omega)).abs();
@@ -188,15 +199,14 @@ impl Spin {
         } else {
             largest_of(momentum)
         };
-        let pushed: f64 = sources.iter().map(|s| s.rotation * s.course.largest).sum();
         let tumbling = if steady || body.motion.count() < 3 { 0.0 } else { largest * largest };
-        let caused = sources.iter().map(|s| s.rotation * s.impulse()).fold(0.0, f64::max);
+        let caused = sources.iter().map(|s| s.rotation * s.impulse()).fold(0.0, f64::max).min(turning.impulse);
         let spin = Self {
             largest,
             certain,
             momentum,
             certain_momentum: initial.max(0.1 * caused),
-            acceleration: largest_of(pushed) + tumbling,
+            acceleration: largest_of(turning.force) + tumbling,
             directions: if steady && omega.norm() > 0.0 {
                 let axis = omega.normalize();
                 axis * axis.transpose()

@@ -254,7 +254,7 @@ impl<'a> Together<'a> {
 }
 
 /// A part of forces that is rounding where they cancel: a mesh that is symmetric is so to the digits of its nodes.
-const CANCELLED: f64 = 1e-9;
+pub(crate) const CANCELLED: f64 = 1e-9;
 
 /// |z| and |z'| of a mode under a load. With a direction a(t) that turns in the body, |a'| ≤ Ω, by parts:
 /// `|∫ e^{λ(t−s)} h a ds| ≤ sup|z| (1 + ∫|a'|)`, as far back as the mode remembers.

@@ -1,9 +1,10 @@
 //! Models that are known to be wrong.
 
-use advice::{Refusal, RestOfBody, limits};
-use dynamics::{Effect, EffectMap};
+use advice::{Case, Refusal, RestOfBody, limits};
+use dynamics::{Effect, EffectMap, Initial};
+use faer::Mat;
 
-use crate::plate::{plate, spinning};
+use crate::plate::{clamped, plate, spinning};
 
 /// Closed form: across a bending direction the critical speed is ω₁ itself.
 #[test]
@@ -39,4 +40,23 @@ fn the_plate_about_axis_2_is_refused_at_160_without_stiffening_and_not_about_axi
     );
     let text = refusal.with_rest_of_body(RestOfBody::Stable { displacement: 0.25 }).to_string();
     assert!(text.contains("the full body of the mesh has a stable one") && text.contains("0.25"), "{text}");
+}
+
+/// Closed form: ½ qᵀ(Λ + B) q of two large modes with ω₁ q₁ = ±ω₂ q₂ and B₁₂ = −3 ω₁ω₂ is −½ or 2½ times (ω₁ q₁)²; without B it is (ω₁ q₁)².
+#[test]
+fn the_energy_of_large_modes_has_what_couples_them() {
+    let zeta = [0.0; 10];
+    let manifold = clamped().manifold(&[0, 1]);
+    let omega = &clamped().body.circular_frequencies;
+    let coupling = Mat::from_fn(10, 10, |i, j| if i + j == 1 { -3.0 * omega[0] * omega[1] } else { 0.0 });
+    let q = 0.01 * clamped().length / clamped().peaks[0];
+    for (sign, coupling, is_refused) in
+        [(1.0, Some(&coupling), true), (-1.0, Some(&coupling), false), (1.0, None, false)]
+    {
+        let mut initial = Initial::at_rest(10);
+        (initial.modal_displacement[0], initial.modal_displacement[1]) = (q, sign * q * omega[0] / omega[1]);
+        let case = clamped().case(&zeta, &[], &initial, 1e-6);
+        let found = limits(&Case { manifold: Some(&manifold), coupling, ..case }, &EffectMap::all()).unwrap();
+        assert_eq!(matches!(found, Some(Refusal::NegativeEnergy { .. })), is_refused, "{sign}: {found:?}");
+    }
 }

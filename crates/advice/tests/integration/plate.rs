@@ -4,11 +4,12 @@ use std::sync::{Arc, OnceLock};
 
 use advice::Case;
 use dynamics::{
-    EffectMap, History, Initial, Method, Observation, Physics, PointForce, PointShapes, Rows, Setup, SharedLoad,
-    Simulation, StepControl,
+    EffectMap, History, Initial, Manifold, Method, Observation, Physics, PointForce, PointShapes, Rows, Setup,
+    SharedLoad, Simulation, StepControl,
 };
+use faer::Mat;
 use fem_tet10::{Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness};
-use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
+use modal::{BodyPoint, LargeShapes, Modes, Products, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
 use nalgebra::Vector3;
 
 pub struct Plate {
@@ -72,6 +73,19 @@ impl Plate {
         Plate { peaks: (0..10).map(peak).collect(), length: 1001.3, corner_compliance, mesh, modes, body }
     }
 
+    /// A manifold of large modes without any term beyond the linear ones.
+    pub fn manifold(&self, large: &[usize]) -> Manifold {
+        let products = Products { large: large.len(), following: 0 };
+        let shapes = LargeShapes {
+            modes: self.modes.clone(),
+            dynamic: 10,
+            large: large.to_vec(),
+            following: Vec::new(),
+            coefficients: Mat::zeros(10, products.of_displacement().len()),
+        };
+        Manifold::new(self.body.clone(), &shapes, &vec![0.0; products.of_energy().len()]).unwrap()
+    }
+
     pub fn force(&self, at: [f64; 3], force: [f64; 3], history: History) -> SharedLoad {
         let place = self.mesh.locate(at).unwrap();
         let point = BodyPoint::new(&self.modes, self.mesh.positions(), &place.nodes, &place.weights).unwrap();
@@ -95,6 +109,7 @@ impl Plate {
             drive_remainder: None,
             backbones: &[],
             manifold: None,
+            coupling: None,
         }
     }
 }

@@ -231,3 +231,52 @@ fn loads_that_cancel_move_the_modes_together() {
         );
     }
 }
+
+/// Forces on the corners of an end of the plate, and the opposite ones on the other, along z: pairs that twist it and turn nothing.
+const TWIST: [([f64; 3], f64); 4] = [
+    ([500.0, 25.0, 10.0], 1.0),
+    ([500.0, -25.0, 10.0], -1.0),
+    ([-500.0, 25.0, 10.0], -1.0),
+    ([-500.0, -25.0, 10.0], 1.0),
+];
+
+/// Closed form: of moments M and −M that both act from the beginning nothing turns, and of which one comes t₁ later, M t₁ does. Without their
+/// sum the spin was that of each alone, 4 F b T/J, and the centrifugal field of it bent modes that nothing moves.
+#[test]
+fn moments_that_cancel_turn_the_body_together() {
+    let (zeta, initial) = ([0.0; 10], Initial::at_rest(10));
+    let omega = &plate().body.circular_frequencies;
+    let (end, force) = (40.0 / omega[0], 1e-3);
+    let loads = |late: f64| -> Vec<SharedLoad> {
+        let of = |(at, sign): ([f64; 3], f64)| {
+            let history = if at[0] < 0.0 && late > 0.0 { History::Step { at: late } } else { History::Constant };
+            plate().force(at, [0.0, 0.0, sign * force], history)
+        };
+        TWIST.into_iter().map(of).collect()
+    };
+    let twist = loads(0.0);
+    let case = plate().case(&zeta, &twist, &initial, end);
+    let advice = advise(&case, 1e-3).unwrap();
+    let most = advice.modes.iter().map(|mode| mode.displacement).fold(0.0, f64::max);
+    let pushed = |k: usize| {
+        let patterns = twist.iter().map(|load| load.pattern().unwrap());
+        patterns.map(|pattern| pattern.columns[6 + k].dot(&pattern.vector)).sum::<f64>().abs()
+    };
+    let strongest = (0..10).map(pushed).fold(0.0, f64::max);
+    for k in 0..10 {
+        let moved = advice.modes[k].displacement;
+        println!("{k}: force {:.1e}, moved {moved:.1e}", pushed(k));
+        assert!(pushed(k) > 1e-6 * strongest || moved < 1e-6 * most, "{k}: {moved}");
+    }
+    assert!(advice.spin < 1e-9 * most && !advice.effects[Effect::Rotation].on, "{}", advice.spin);
+    // M about x is 2 F b with b = 25 mm.
+    let late = 1.0 / omega[0];
+    let loads = loads(late);
+    let case = plate().case(&zeta, &loads, &initial, end);
+    let found = advise(&case, 1e-3).unwrap().spin;
+    let turned = 50.0 * force * late / case.body.inertia[(0, 0)];
+    let actual = run(&case, EffectMap::all()).iter().map(|x| x.omega_body.norm()).fold(0.0, f64::max);
+    println!("{found:e}, closed form {turned:e}, run {actual:e}");
+    // The bound has the arms of a deformed body, a direction that turns and the axis of least inertia.
+    assert!(found >= turned.max(actual) && found < 2.0 * turned, "{found} {turned} {actual}");
+}

@@ -114,15 +114,16 @@ pub struct Physics {
     /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that
     /// of the modes counts.
     pub large_deflection: Option<Manifold>,
-    /// Forces that hold the bent body that the modes are about, where that is not the undeformed one; or the stiffness that couples
-    /// the coordinates.
+    /// Forces that hold the bent body that the modes are about, where that is not the undeformed one.
     pub reference: Option<ReferenceForces>,
+    /// Stiffness between coordinates that are coupled, as [`modal::Modes::with_answer`] has them, beside that of each (nf×nf, symmetric).
+    #[serde(with = "modal::as_data")]
+    pub coupling: Option<Mat<f64>>,
 }
 
-/// The strain energy g·q + ½ qᵀBq that a body has beside its stiffness and its manifold. Where its modes are about a bent
-/// reference, g are the internal forces there, which loads and spin of the reference balance; B takes from the stiffness what the
-/// stress of these would count twice, and adds the work of g on displacements of second order. Of coordinates that are coupled, as
-/// [`modal::Modes::with_answer`] has them, B is the stiffness between them, and g is zero.
+/// The strain energy g·q + ½ qᵀBq that a body has about a bent reference beside its stiffness and its manifold: g are the internal forces
+/// there, which loads and spin of the reference balance; B takes from the stiffness what the stress of these would count twice, and
+/// adds the work of g on displacements of second order.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct ReferenceForces {
     /// g (nf).
@@ -130,38 +131,38 @@ pub struct ReferenceForces {
     /// B (nf×nf), symmetric.
     #[serde(with = "modal::as_data")]
     pub stiffness: Mat<f64>,
-    /// True if the modes are about a bent reference; otherwise coordinates are coupled.
-    pub is_about_rest: bool,
 }
 
 impl ReferenceForces {
-    /// The stiffness between coordinates that are coupled.
-    pub fn of_coupling(stiffness: Mat<f64>) -> Self {
-        Self { force: vec![0.0; stiffness.nrows()], stiffness, is_about_rest: false }
-    }
-
     /// Refuses sizes other than `nf`, and numbers that are not finite.
     pub(crate) fn check(&self, nf: usize) -> Result<(), SetupError> {
-        let Self { force, stiffness, is_about_rest: _ } = self;
-        for found in [force.len(), stiffness.nrows(), stiffness.ncols()] {
-            if found != nf {
-                return Err(SetupError::Length { what: "the forces of a reference", expected: nf, found });
-            }
+        let Self { force, stiffness } = self;
+        let what = "the forces of a reference";
+        if force.len() != nf {
+            return Err(SetupError::Length { what, expected: nf, found: force.len() });
         }
-        let numbers = force.iter().chain(stiffness.col_iter().flat_map(|column| column.iter()));
-        numbers.copied().try_for_each(|value| finite("a force of a reference", value))
+        force.iter().try_for_each(|value| finite("a force of a reference", *value))?;
+        check_stiffness(what, stiffness, nf)
     }
+}
+
+/// Refuses a stiffness of a size other than `nf`, and numbers that are not finite.
+pub(crate) fn check_stiffness(what: &'static str, stiffness: &Mat<f64>, nf: usize) -> Result<(), SetupError> {
+    for found in [stiffness.nrows(), stiffness.ncols()] {
+        if found != nf {
+            return Err(SetupError::Length { what, expected: nf, found });
+        }
+    }
+    stiffness.col_iter().flat_map(|column| column.iter()).try_for_each(|value| finite(what, *value))
 }
 
 impl Physics {
     /// These circular frequencies; where coordinates are coupled, with the highest of √(Λ + B) in the place of the highest.
     pub fn with_highest(&self, circular_frequencies: &[f64]) -> Vec<f64> {
         let mut frequencies = circular_frequencies.to_vec();
-        // About a bent reference B takes back what the stress of loads adds.
-        let coupled = self.reference.as_ref().filter(|of| !of.is_about_rest);
         let size = frequencies.len();
         let highest = (0..size).max_by(|a, b| frequencies[*a].total_cmp(&frequencies[*b]));
-        if let (Some(ReferenceForces { stiffness, .. }), Some(highest)) = (coupled, highest) {
+        if let (Some(stiffness), Some(highest)) = (&self.coupling, highest) {
             let square = |k: usize| frequencies[k] * frequencies[k];
             let whole = Mat::from_fn(size, size, |i, j| stiffness[(i, j)] + if i == j { square(i) } else { 0.0 });
             let found = whole.self_adjoint_eigenvalues(Side::Lower);
@@ -176,7 +177,14 @@ impl Physics {
 impl Default for Physics {
     /// All effects; nothing drives or stresses the body.
     fn default() -> Self {
-        Self { effects: EffectMap::all(), drive: None, drive_stiffness: None, large_deflection: None, reference: None }
+        Self {
+            effects: EffectMap::all(),
+            drive: None,
+            drive_stiffness: None,
+            large_deflection: None,
+            reference: None,
+            coupling: None,
+        }
     }
 }
 
@@ -200,22 +208,22 @@ impl Keyed for DrivenMotion {
 
 impl Keyed for ReferenceForces {
     fn key(&self, key: Key) -> Key {
-        // The motion is that of these alone.
         key.of("reference forces", 1).with("force", &self.force).with("stiffness", &self.stiffness)
     }
 }
 
 impl Keyed for Physics {
     fn key(&self, key: Key) -> Key {
-        let Self { effects, drive, drive_stiffness, large_deflection, reference } = self;
+        let Self { effects, drive, drive_stiffness, large_deflection, reference, coupling } = self;
         let key = key
             .of("physics", 1)
             .with("effects", effects)
             .with("drive", drive)
             .with("drive stiffness", drive_stiffness)
             .with("large deflection", large_deflection);
-        // Runs without one keep the keys that they had before there was any.
-        reference.iter().fold(key, |key, reference| key.with("reference", reference))
+        // Runs without these keep the keys that they had before there were any.
+        let key = reference.iter().fold(key, |key, reference| key.with("reference", reference));
+        coupling.iter().fold(key, |key, coupling| key.with("coupling", coupling))
     }
 }
 
@@ -227,12 +235,11 @@ mod tests {
     #[test]
     fn coordinates_that_are_coupled_have_a_higher_frequency_than_each_alone() {
         let stiffness = Mat::from_fn(2, 2, |i, j| if i == j { 0.0 } else { 1.2 });
-        let mut physics = Physics { reference: Some(ReferenceForces::of_coupling(stiffness)), ..Physics::default() };
+        let physics = Physics { coupling: Some(stiffness.clone()), ..Physics::default() };
         let found = physics.with_highest(&[2.0, 1.0]);
         assert!(found[1] == 1.0 && (found[0] - (2.5 + 3.69_f64.sqrt()).sqrt()).abs() < 1e-14, "{found:?}");
-        if let Some(reference) = &mut physics.reference {
-            reference.is_about_rest = true;
-        }
-        assert_eq!(physics.with_highest(&[2.0, 1.0]), [2.0, 1.0]);
+        // About a bent reference the stiffness takes back what the stress of loads adds.
+        let reference = Some(ReferenceForces { force: vec![0.0; 2], stiffness });
+        assert_eq!(Physics { reference, ..Physics::default() }.with_highest(&[2.0, 1.0]), [2.0, 1.0]);
     }
 }

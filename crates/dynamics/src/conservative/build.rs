@@ -7,7 +7,7 @@ use rigid_kin::Attitude;
 
 use crate::body::center_of_mass::CenterOfMass;
 use crate::body::effect::{Effect, EffectMap};
-use crate::body::physics::{Drive, DrivenMotion, Physics};
+use crate::body::physics::{Drive, DrivenMotion, Physics, check_stiffness};
 use crate::body::spin_stiffness::SpinStiffness;
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::coordinates::InCoordinates;
@@ -37,9 +37,12 @@ impl ConservativeBody {
     ) -> Result<Self, SetupError> {
         crate::body::model::check_motion(body)?;
         crate::body::model::check_damping(damping_ratios, body.flexible())?;
-        let Physics { effects, drive, drive_stiffness, large_deflection, reference } = physics;
+        let Physics { effects, drive, drive_stiffness, large_deflection, reference, coupling: between } = physics;
         if let Some(reference) = reference {
             reference.check(body.flexible())?;
+        }
+        if let Some(between) = between {
+            check_stiffness("the stiffness between coordinates", between, body.flexible())?;
         }
         let (modes, manifold) = (body, large_deflection.as_ref());
         let body = manifold.map_or(modes, Manifold::body);
@@ -125,7 +128,7 @@ impl ConservativeBody {
             drive_stiffness: drive_stiffness.map(|k| BlockedMatrix::new(k.get(..modes.flexible(), ..modes.flexible()))),
             loads,
             manifold: large_deflection.clone(),
-            reference: reference.as_ref().map(Reference::new),
+            reference: Reference::of(reference.as_ref(), between.as_ref()),
             held: Held::new(body, stiffness.as_ref(), effects),
         })
     }

@@ -1,4 +1,6 @@
-//! The forces of a bent reference that modes are about: `V += g·q + ½ qᵀBq`.
+//! The forces of a bent reference that modes are about, and of coordinates that are coupled: `V += g·q + ½ qᵀBq`.
+
+use faer::Mat;
 
 use crate::body::physics::ReferenceForces;
 use crate::matrix::blocked_matrix::BlockedMatrix;
@@ -12,8 +14,12 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    pub fn new(ReferenceForces { force, stiffness, .. }: &ReferenceForces) -> Self {
-        Self { force: force.clone(), stiffness: BlockedMatrix::new(stiffness.as_ref()) }
+    /// Those of a bent reference, with the stiffness between coordinates that are coupled; `None` without either.
+    pub fn of(reference: Option<&ReferenceForces>, coupling: Option<&Mat<f64>>) -> Option<Self> {
+        let stiffnesses = reference.map(|of| &of.stiffness).into_iter().chain(coupling);
+        let stiffness = stiffnesses.cloned().reduce(|sum, next| sum + next)?;
+        let force = reference.map_or_else(|| vec![0.0; stiffness.nrows()], |of| of.force.clone());
+        Some(Self { force, stiffness: BlockedMatrix::new(stiffness.as_ref()) })
     }
 
     /// Subtracts g + B q from the modal forces.

@@ -3,6 +3,8 @@
 //! States are encoded by serde and postcard. Counts and optional values take the same room whatever they are, so that all
 //! checkpoints of a run are equally long, and a file can have a place for them.
 
+use std::borrow::Borrow;
+
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -90,8 +92,8 @@ pub fn counts(counts: &[u64]) -> Result<(), CheckpointError> {
 ///
 /// # Errors
 /// [`CheckpointError::Value`].
-pub fn finite<'a>(what: &'static str, numbers: impl IntoIterator<Item = &'a f64>) -> Result<(), CheckpointError> {
-    expect(what, numbers.into_iter().all(|number| number.is_finite()))
+pub fn finite<N: Borrow<f64>>(what: &'static str, numbers: impl IntoIterator<Item = N>) -> Result<(), CheckpointError> {
+    expect(what, numbers.into_iter().all(|number| number.borrow().is_finite()))
 }
 
 /// Serde for a count that takes the same room whatever it is.

@@ -34,7 +34,7 @@ use crate::system::simulation::setup::SystemSetup;
 
 /// Name and version of the data, in front of them.
 const NAME: &str = "flexframe run";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// A run with all that it begins with.
 #[derive(Debug, Clone, Serialize, Deserialize)]

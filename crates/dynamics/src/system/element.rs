@@ -13,6 +13,15 @@ use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 /// Takes a direction of an element: its number, its stiffness and damping, and the wrenches of one unit of force along it.
 pub type SetDirection<'a> = dyn FnMut(usize, [f64; 2], &[MarkerWrench]) + 'a;
 
+/// What an element holds and takes at one time.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Stored {
+    /// Energy of its springs.
+    pub energy: f64,
+    /// Power that its dampers take.
+    pub damping_power: f64,
+}
+
 /// A law that puts forces on some markers by their motion.
 ///
 /// Where the wrenches sum to no force and no moment, momenta are kept. What it does is its work, in
@@ -27,6 +36,12 @@ pub trait ForceElement: fmt::Debug + Send + Sync + Any {
 
     /// The element in rows of results, where it is between two markers. A law from outside is in none: it may take long.
     fn observe(&self, _motions: &[MarkerMotion; 2]) -> Option<JointObservation> {
+        None
+    }
+
+    /// The energy of its springs and the power of its dampers, where these are all of it and the energy depends on the places of the markers
+    /// alone. The work of the springs is then the change of the energy, so that balances see what steps make or lose there.
+    fn stored(&self, _motions: &[MarkerMotion]) -> Option<Stored> {
         None
     }
 

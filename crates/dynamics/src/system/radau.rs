@@ -98,8 +98,8 @@ pub struct SystemMotion {
     pub(super) jump_work: f64,
     /// Works of the drives and forces of joints since the beginning.
     pub(super) joint_works: Vec<JointWork>,
-    /// Work of the force elements since the beginning.
-    pub(super) element_work: f64,
+    /// Works of the force elements since the beginning.
+    pub(super) element_works: Vec<JointWork>,
     pub(super) evaluations: u64,
     /// λ of index 1, where they were last asked for.
     pub(super) reactions: Vec<f64>,
@@ -117,8 +117,8 @@ struct Room {
     change: [Vec<f64>; 2],
     /// Impulses of the rows by which velocities were last projected.
     impulses: Vec<f64>,
-    /// Energy of the springs of each joint at the start of a step, where it is known by the coordinates.
-    spring_energies: Vec<Option<f64>>,
+    /// Energy of the springs of each joint, then of each element, at the start of a step.
+    spring_energies: Vec<f64>,
 }
 
 impl SystemMotion {
@@ -140,7 +140,7 @@ impl SystemMotion {
         let time = states.first().map_or(0.0, |state| state.time);
         let stage = Stage::new(&system);
         let (coordinates, rows) = (system.coordinates(), system.rows());
-        let joints = system.connections.joints.len();
+        let [joints, elements] = [system.connections.joints.len(), system.connections.elements.len()];
         let patterns = Patterns::new(&system, &stage.constraints);
         let flexible: Vec<usize> = system.bodies.iter().map(Equations::flexible).collect();
         let multipliers = std::array::from_fn(|_| vec![0.0; rows]);
@@ -163,16 +163,16 @@ impl SystemMotion {
             last: std::array::from_fn(|_| [zeros(), zeros()]),
             last_length: 0.0,
             bend: [zeros(), zeros()],
-            stage_rates: std::array::from_fn(|_| StageRates::new(&flexible, joints)),
+            stage_rates: std::array::from_fn(|_| StageRates::new(&flexible, [joints, elements])),
             matrices: Matrices::new(&system, &patterns),
             room: Room {
                 real: Solution::new(coordinates, &patterns),
                 complex: Solution::new(coordinates, &patterns),
                 y_rates: std::array::from_fn(|_| zeros()),
-                stage_rates: StageRates::new(&flexible, joints),
+                stage_rates: StageRates::new(&flexible, [joints, elements]),
                 change: [zeros(), zeros()],
                 impulses: vec![0.0; rows],
-                spring_energies: vec![None; joints],
+                spring_energies: vec![0.0; joints + elements],
             },
             patterns,
             bodies,
@@ -180,7 +180,7 @@ impl SystemMotion {
             largest_energy: 0.0,
             jump_work: 0.0,
             joint_works: vec![JointWork::default(); joints],
-            element_work: 0.0,
+            element_works: vec![JointWork::default(); elements],
             evaluations: 0,
             reactions: vec![0.0; rows],
         };
@@ -267,9 +267,15 @@ impl SystemMotion {
         self.jump_work + self.joint_works.iter().map(|work| work.drive).sum::<f64>()
     }
 
+    /// Works of a force element since the beginning.
+    pub fn work_of_element(&self, element: usize) -> JointWork {
+        self.element_works[element]
+    }
+
     /// Work of the force elements, and of springs, dampers, stops and friction of joints, since the beginning.
     pub fn element_work(&self) -> f64 {
-        self.element_work + self.joint_works.iter().map(|work| work.spring - work.loss).sum::<f64>()
+        let of_elements = self.element_works.iter().map(|work| work.drive + work.spring - work.loss);
+        of_elements.chain(self.joint_works.iter().map(|work| work.spring - work.loss)).sum()
     }
 
     /// Linear momentum, and angular momentum about the global origin, of all bodies, global.

@@ -23,7 +23,8 @@ pub(super) struct SavedMotion {
     last_length: f64,
     multipliers: Vec<Vec<f64>>,
     joints: Vec<(JointCoordinates, JointWork)>,
-    sums: [f64; 3],
+    elements: Vec<JointWork>,
+    sums: [f64; 2],
     #[serde(with = "fixed_room")]
     evaluations: u64,
 }
@@ -56,7 +57,8 @@ impl SystemMotion {
             last_length: self.last_length,
             multipliers: self.multipliers.to_vec(),
             joints: self.start.joints.iter().copied().zip(self.joint_works.iter().copied()).collect(),
-            sums: [self.largest_energy, self.jump_work, self.element_work],
+            elements: self.element_works.clone(),
+            sums: [self.largest_energy, self.jump_work],
             evaluations: self.evaluations,
         }
     }
@@ -66,7 +68,7 @@ impl SystemMotion {
     /// # Errors
     /// [`CheckpointError`] for lists of other lengths, and numbers that are not finite.
     pub(super) fn take_up(&mut self, saved: SavedMotion) -> Result<(), CheckpointError> {
-        let SavedMotion { time, bodies, last, last_length, multipliers, joints, sums, evaluations } = saved;
+        let SavedMotion { time, bodies, last, last_length, multipliers, joints, elements, sums, evaluations } = saved;
         let lists = [bodies.len(), last.len(), multipliers.len()];
         expect("the number of bodies", lists == [self.bodies.len(), 2 * STAGES, STAGES])?;
         for ((body, state), own) in self.system.bodies.iter().zip(&bodies).zip(&self.bodies) {
@@ -76,9 +78,11 @@ impl SystemMotion {
         expect("the last step", last.iter().all(|list| list.len() == self.system.coordinates()))?;
         expect("the multipliers", multipliers.iter().all(|list| list.len() == self.system.rows()))?;
         expect("the number of joints", joints.len() == self.joint_works.len())?;
-        for (coordinates, JointWork { drive, spring, loss }) in &joints {
-            finite("a joint", coordinates.list().iter().chain([drive, spring, loss]))?;
+        for (coordinates, work) in &joints {
+            finite("a joint", coordinates.list().into_iter().chain(work.list()))?;
         }
+        expect("the number of springs and bushings", elements.len() == self.element_works.len())?;
+        finite("a spring or a bushing", elements.iter().flat_map(JointWork::list))?;
         finite("the motion", last.iter().chain(&multipliers).flatten().chain(&sums).chain([&time, &last_length]))?;
         counts(&[evaluations])?;
         (self.time, self.bodies, self.last_length, self.evaluations) = (time, bodies, last_length, evaluations);
@@ -90,7 +94,8 @@ impl SystemMotion {
         for ((saved, coordinates), work) in joints.into_iter().zip(&mut self.start.joints).zip(&mut self.joint_works) {
             (*coordinates, *work) = saved;
         }
-        [self.largest_energy, self.jump_work, self.element_work] = sums;
+        self.element_works = elements;
+        [self.largest_energy, self.jump_work] = sums;
         Ok(())
     }
 

@@ -5,6 +5,7 @@ mod locked;
 pub(crate) mod observation;
 mod saved;
 pub(crate) mod setup;
+mod stops;
 
 use std::sync::{Arc, Mutex};
 
@@ -570,12 +571,12 @@ impl SystemSimulation {
                 let Some((h, end)) = self.walk.equal.next_step() else { return Ok(None) };
                 let time = self.motion.time();
                 let tried = self.motion.try_step(h, end, EXACT, f64::INFINITY);
-                tried.map(|_| Some(h)).map_err(|failed| self.locked_or(of_step(failed, time, h)))
+                tried.map(|_| Some(h)).map_err(|failed| self.reason_or(of_step(failed, time, h)))
             }
             StepControl::Tolerance(tolerance) => {
                 let mut h = self.walk.next.min(self.walk.longest);
                 let taken = self.motion.try_towards(segment.end, tolerance, &mut h);
-                let taken = taken.map_err(|error| self.locked_or(error))?;
+                let taken = taken.map_err(|error| self.reason_or(error))?;
                 // What only the segment made short says nothing about the next one.
                 if taken.is_none() || h < self.walk.next {
                     self.walk.next = h;
@@ -590,14 +591,21 @@ impl SystemSimulation {
         }
     }
 
-    /// The joints that lock where the motion is, as the reason of a step that could not be done; without them the error as it is.
-    fn locked_or(&mut self, error: StepError) -> StepError {
-        let joints = self.motion.locked_joints(&self.is_implied);
-        if joints.is_empty() {
-            return error;
+    /// The reason of a step that could not be done where it is found: joints that lock where the motion is, or stops that a fixed step goes
+    /// into; otherwise the error as it is.
+    fn reason_or(&mut self, error: StepError) -> StepError {
+        let named =
+            |joints: Vec<String>| joints.iter().map(|joint| format!("\"{joint}\"")).collect::<Vec<_>>().join(", ");
+        let time = self.motion.time();
+        let locked = self.motion.locked_joints(&self.is_implied);
+        if !locked.is_empty() {
+            return StepError::Locked { time, joints: named(locked).into() };
         }
-        let joints: Vec<String> = joints.iter().map(|joint| format!("\"{joint}\"")).collect();
-        StepError::Locked { time: self.motion.time(), joints: joints.join(", ").into() }
+        let StepError::Newton { step, .. } = error else { return error };
+        match self.motion.stops_within(step) {
+            Some((joints, contact)) => StepError::Stops { time, step, joints: named(joints).into(), contact },
+            None => error,
+        }
     }
 
     /// Counts a step that was taken.

@@ -10,9 +10,11 @@ use crate::error::RateError;
 use crate::matrix::lists::larger;
 use crate::system::constraints::{Compliant, Constraints};
 use crate::system::description::System;
+use crate::system::element::Stored;
 use crate::system::elimination::inverse::Inertia;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::force::Forces;
+use crate::system::joint::work::JointWork;
 use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
 use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
 
@@ -74,8 +76,8 @@ pub(crate) struct Stage {
     pub element_forces: Vec<f64>,
     /// Powers of the forces of joints.
     pub joint_powers: Vec<Forces>,
-    /// Power of the force elements.
-    pub element_power: f64,
+    /// Powers of the force elements.
+    pub element_powers: Vec<JointWork>,
     marker_places: Vec<MarkerPlace>,
     marker_motions: Vec<MarkerMotion>,
     wrenches: Vec<MarkerWrench>,
@@ -104,7 +106,7 @@ impl Stage {
             forces: zeros(),
             scratch: zeros(),
             element_forces: zeros(),
-            element_power: 0.0,
+            element_powers: vec![JointWork::default(); system.connections.elements.len()],
             marker_places: Vec::with_capacity(max_markers),
             marker_motions: Vec::with_capacity(max_markers),
             wrenches: Vec::with_capacity(max_markers),
@@ -274,19 +276,19 @@ impl Stage {
 
     /// Adds the forces of the elements and of joints along their coordinates to y'.
     fn add_elements(&mut self, system: &System, times: [f64; 2]) {
-        self.element_power = 0.0;
         if system.connections.elements.is_empty() && self.joint_powers.is_empty() {
             return;
         }
         self.element_forces.fill(0.0);
         self.add_joint_forces(system, times);
-        for element in &system.connections.elements {
+        for (number, element) in system.connections.elements.iter().enumerate() {
             self.find_marker_motions(system, element.markers());
             let Self {
                 marker_places,
                 marker_motions,
                 wrenches,
                 element_forces: forces,
+                element_powers,
                 positions,
                 attitudes,
                 q,
@@ -298,10 +300,10 @@ impl Stage {
             wrenches.clear();
             wrenches.resize(markers.len(), MarkerWrench::default());
             element.apply(times, marker_motions, wrenches);
+            let mut power = 0.0;
             for (k, MarkerWrench { force_global, moment_global }) in wrenches.iter().enumerate() {
                 let motion = &marker_motions[k];
-                self.element_power +=
-                    force_global.dot(&motion.velocity_global) + moment_global.dot(&motion.omega_global);
+                power += force_global.dot(&motion.velocity_global) + moment_global.dot(&motion.omega_global);
                 if let Some(b) = markers[k].body() {
                     markers[k].add_wrench(
                         &marker_places[k],
@@ -311,6 +313,10 @@ impl Stage {
                     );
                 }
             }
+            element_powers[number] = match element.stored(marker_motions) {
+                Some(Stored { damping_power: loss, .. }) => JointWork { drive: 0.0, spring: power + loss, loss },
+                None => JointWork { drive: power, ..JointWork::default() },
+            };
         }
         let Self { element_forces: forces, forces: total, positions, attitudes, .. } = self;
         total.copy_from_slice(forces);
@@ -319,6 +325,13 @@ impl Stage {
             about_global_origin(&mut total[first..first + 6], position, attitude);
         }
         self.y_rates.iter_mut().zip(&*total).for_each(|(rate, force)| *rate += force);
+    }
+
+    /// Energy of the springs of an element, where the bodies have been placed; zero where it is not known.
+    pub fn element_energy(&mut self, system: &System, number: usize) -> f64 {
+        let element = &system.connections.elements[number];
+        self.find_marker_motions(system, element.markers());
+        element.stored(&self.marker_motions).map_or(0.0, |stored| stored.energy)
     }
 
     /// Finds the places and motions of markers.

@@ -73,7 +73,6 @@ fn a_run_through_its_data_is_the_same_with_every_load_and_history() {
     let reference = ReferenceForces {
         force: vec![0.3, -0.2, 0.1],
         stiffness: Mat::from_fn(3, 3, |i, j| 0.5 * (1 + i.max(j)) as f64 - 0.2 * i.min(j) as f64),
-        is_about_rest: true,
     };
     let physics = Physics { reference: Some(reference), ..Physics::default() };
     let mut bent = run(RigidMotion::clamp(Vector3::zeros()), Vec::new(), physics);

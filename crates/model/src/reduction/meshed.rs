@@ -66,7 +66,7 @@ pub(crate) fn reduce(
     let survey = Survey::new(&model, modes, on_all_modes, progress)?;
     let has_statics = survey.statics.any() || survey.of_markers.is_some();
     let decision = Decision::new(scene, &survey);
-    let Reduction { modes, modal: reduced, large, backbones, stress, forces, of_markers, warps, mut advice } =
+    let Reduction { modes, modal: reduced, large, backbones, stress, forces, coupling, of_markers, warps, mut advice } =
         Reduction::new(&model, survey, &decision)?;
     if let Some(proposal) = proposed(&model, &modes, &reduced) {
         let why = &mut advice.effects[Effect::LargeDeflection].why;
@@ -104,6 +104,7 @@ pub(crate) fn reduce(
             drive_stiffness: stress.of_drive,
             large_deflection,
             reference: forces,
+            coupling,
         },
         points,
         markers,

@@ -78,6 +78,7 @@ impl ModalModel {
             drive_remainder: None,
             backbones: &[],
             manifold: None,
+            coupling: None,
         }
     }
 }

@@ -3,7 +3,7 @@
 use advice::{Advice, Backbone, Findings, advise};
 use dynamics::{Effect, ReferenceForces};
 use faer::{Mat, Scale};
-use modal::Modes;
+use modal::{Answer, Modes};
 use scene::key_path;
 
 use crate::error::BuildError;
@@ -32,6 +32,8 @@ pub(crate) struct Reduction {
     pub stress: Stress,
     /// Forces of the bent body that the modes are about.
     pub forces: Option<ReferenceForces>,
+    /// Stiffness between coordinates that are coupled.
+    pub coupling: Option<Mat<f64>>,
     /// Stiffness by the stress of unit forces and moments on the markers (nf×nf each); none where it is left out.
     pub of_markers: Vec<Mat<f64>>,
     /// How the faces of the markers warp; none where the body does not deform.
@@ -129,10 +131,11 @@ impl Reduction {
                 if let Some(by_stress) = model.structure.reference_stiffness(&modes)? {
                     stiffness += by_stress;
                 }
-                Some(ReferenceForces { force: reference.modal_forces(&modes), stiffness, is_about_rest: true })
+                Some(ReferenceForces { force: reference.modal_forces(&modes), stiffness })
             }
-            None => modes.answer.as_ref().map(|answer| ReferenceForces::of_coupling(answer.stiffness())),
+            None => None,
         };
+        let coupling = modes.answer.as_ref().map(Answer::stiffness);
         let of_markers = match &of_markers {
             Some(responses) if physics::may_stress(model.scene) => match &large {
                 // As of loads: the manifold has the stress along the modes that bend the body, and between them.
@@ -162,6 +165,6 @@ impl Reduction {
                 }
             }
         }
-        Ok(Self { modes, modal, large, backbones, stress, forces, of_markers, warps, advice })
+        Ok(Self { modes, modal, large, backbones, stress, forces, coupling, of_markers, warps, advice })
     }
 }

@@ -57,6 +57,7 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
             drive_remainder: None,
             backbones: &[],
             manifold: None,
+            coupling: None,
         },
         scene.effects.tolerance,
     )?;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use rigid_kin::{cross_matrix, f_inverse, half_cotangent_factor, rotation_vector};
 
-use crate::system::element::{ForceElement, SetDirection};
+use crate::system::element::{ForceElement, SetDirection, Stored};
 use crate::system::joint::observation::{JointObservation, LineObservation};
 use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 use crate::system::marker::{Marker, tangent_of};
@@ -54,6 +54,15 @@ impl ForceElement for PointSpring {
         Some(JointObservation { line, ..JointObservation::of_wrench(on_second, &i.axes_global) })
     }
 
+    fn stored(&self, motions: &[MarkerMotion]) -> Option<Stored> {
+        let [i, j] = motions else { return None };
+        let LineObservation { length, rate, .. } = self.line([i, j]).map(|(_, line)| line).unwrap_or_default();
+        Some(Stored {
+            energy: 0.5 * self.stiffness * (length - self.free_length).powi(2),
+            damping_power: self.damping * rate * rate,
+        })
+    }
+
     fn directions(&self) -> usize {
         1
     }
@@ -98,6 +107,19 @@ pub struct Bushing {
     pub damping: [Vector3<f64>; 2],
 }
 
+impl Bushing {
+    /// Displacement and turn of the second marker against the first, and their rates, in the axes of the first.
+    fn path_and_rate([i, j]: [&MarkerMotion; 2]) -> [[Vector3<f64>; 2]; 2] {
+        let line = j.position_global - i.position_global;
+        let velocity = j.velocity_global - i.velocity_global - i.omega_global.cross(&line);
+        let [moved, rate, spin] =
+            [line, velocity, j.omega_global - i.omega_global].map(|vector| i.axes_global.tr_mul(&vector));
+        // A turn by half a turn has no vector: then there is no spring, either.
+        let turned = rotation_vector(&(j.axes_global.transpose() * i.axes_global)).unwrap_or_default();
+        [[moved, turned], [rate, spin]]
+    }
+}
+
 impl ForceElement for Bushing {
     fn markers(&self) -> &[Marker] {
         &self.markers
@@ -106,11 +128,7 @@ impl ForceElement for Bushing {
     fn apply(&self, _: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]) {
         let ([i, j], [on_i, on_j]) = (motions, wrenches) else { return };
         let line = j.position_global - i.position_global;
-        let [moved, rate] = [line, j.velocity_global - i.velocity_global - i.omega_global.cross(&line)]
-            .map(|vector| i.axes_global.tr_mul(&vector));
-        // A turn by half a turn has no vector: then there is no spring, either.
-        let turned = rotation_vector(&(j.axes_global.transpose() * i.axes_global)).unwrap_or_default();
-        let spin = i.axes_global.tr_mul(&(j.omega_global - i.omega_global));
+        let [[moved, turned], [rate, spin]] = Self::path_and_rate([i, j]);
         let [pull, torque] = [(0, moved), (1, turned)].map(|(which, by)| self.stiffness[which].component_mul(&by));
         let law = |spring: Vector3<f64>, which: usize, rate: Vector3<f64>| {
             i.axes_global * (spring + self.damping[which].component_mul(&rate))
@@ -127,6 +145,15 @@ impl ForceElement for Bushing {
         let mut wrenches = [MarkerWrench::default(); 2];
         self.apply([0.0; 2], motions, &mut wrenches);
         Some(JointObservation::of_wrench(wrenches[1], &motions[0].axes_global))
+    }
+
+    fn stored(&self, motions: &[MarkerMotion]) -> Option<Stored> {
+        let [i, j] = motions else { return None };
+        let [path, rate] = Self::path_and_rate([i, j]);
+        let square = |factors: &[Vector3<f64>; 2], of: &[Vector3<f64>; 2]| {
+            factors.iter().zip(of).map(|(factor, of)| factor.component_mul(of).dot(of)).sum::<f64>()
+        };
+        Some(Stored { energy: 0.5 * square(&self.stiffness, &path), damping_power: square(&self.damping, &rate) })
     }
 
     fn directions(&self) -> usize {

@@ -54,8 +54,10 @@ pub struct Friction {
 /// A force, or its power, by what becomes of its work.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Forces {
-    /// Force of springs, stops and the preload: a function of the coordinate.
+    /// Force of springs, stops and the preload: a function of the coordinate whose energy is known.
     pub spring: f64,
+    /// Force of a characteristic, whose energy no formula tells.
+    pub characteristic: f64,
     /// Force of dampers and friction.
     pub friction: f64,
     /// Part of a motor and of laws from outside.
@@ -65,12 +67,17 @@ pub(crate) struct Forces {
 impl Forces {
     /// All of them times a factor.
     pub fn times(&self, factor: f64) -> Self {
-        Self { spring: self.spring * factor, friction: self.friction * factor, motor: self.motor * factor }
+        Self {
+            spring: self.spring * factor,
+            characteristic: self.characteristic * factor,
+            friction: self.friction * factor,
+            motor: self.motor * factor,
+        }
     }
 
     /// Their sum.
     pub fn sum(&self) -> f64 {
-        self.spring + self.friction + self.motor
+        self.spring + self.characteristic + self.friction + self.motor
     }
 }
 
@@ -79,7 +86,8 @@ impl JointForce {
     pub(crate) fn at(&self, [x, rate]: [f64; 2], times: [f64; 2]) -> Forces {
         let of = |amplitude: &Option<JointDrive>, times| amplitude.as_ref().map_or(0.0, |drive| drive.at(times)[0]);
         let mut forces = Forces {
-            spring: self.preload - self.stiffness * (x - self.free) + of(&self.characteristic, [x, x]),
+            spring: self.preload - self.stiffness * (x - self.free),
+            characteristic: of(&self.characteristic, [x, x]),
             friction: -self.damping * rate,
             motor: of(&self.motor, times) + self.laws.iter().map(|law| law.force(times, [x, rate])).sum::<f64>(),
         };
@@ -100,14 +108,10 @@ impl JointForce {
 }
 
 impl JointForce {
-    /// Energy of its spring, its stops and the preload at a coordinate; `None` where a characteristic has more, which no formula
-    /// tells.
-    pub(crate) fn energy(&self, x: f64) -> Option<f64> {
-        if self.characteristic.is_some() {
-            return None;
-        }
+    /// Energy of its spring, its stops and the preload at a coordinate.
+    pub(crate) fn energy(&self, x: f64) -> f64 {
         let beyond = self.stops.and_then(|stops| Some(0.5 * stops.stiffness * stops.depth(x)?.powi(2)));
-        Some(0.5 * self.stiffness * (x - self.free).powi(2) - self.preload * x + beyond.unwrap_or_default())
+        0.5 * self.stiffness * (x - self.free).powi(2) - self.preload * x + beyond.unwrap_or_default()
     }
 
     /// True if a coordinate is beyond a stop.

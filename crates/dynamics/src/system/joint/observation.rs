@@ -6,7 +6,7 @@ use crate::system::joint::coordinate::JointCoordinates;
 use crate::system::joint::work::JointWork;
 use crate::system::marker::motion::MarkerWrench;
 
-/// A joint at one time; or a spring or a bushing, which have no coordinates and no works.
+/// A joint at one time; or a spring or a bushing, which have no coordinates.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct JointObservation {
     /// Where its second marker is against the first.

@@ -19,14 +19,10 @@ impl SystemMotion {
 
     /// Adds their integrals, by the weights of the stages.
     pub(super) fn add_exchange(&mut self, weights: [f64; STAGES]) {
-        let Self { stage_rates, bodies, system, joint_works, element_work, .. } = self;
+        let Self { stage_rates, bodies, system, joint_works, element_works, .. } = self;
         for (rates, weight) in stage_rates.iter().zip(weights) {
-            for (work, power) in joint_works.iter_mut().zip(&rates.joints) {
-                work.drive += weight * power.drive;
-                work.spring += weight * power.spring;
-                work.loss += weight * power.loss;
-            }
-            *element_work += weight * rates.elements;
+            joint_works.iter_mut().zip(&rates.joints).for_each(|(work, power)| work.add(weight, power));
+            element_works.iter_mut().zip(&rates.elements).for_each(|(work, power)| work.add(weight, power));
             for ((body, state), rates) in system.bodies.iter().zip(&mut *bodies).zip(&rates.bodies) {
                 let mut list = body.list_mut(state);
                 let mut slow = *list.slow();
@@ -49,13 +45,17 @@ impl StageRates {
             let drive = of_rows.by_ref().take(joint.row_count()).map(|(lambda, rate)| -lambda * rate).sum();
             *powers = JointWork { drive, ..JointWork::default() };
         }
+        self.springs.fill(0.0);
         for ((joint, ..), power) in system.connections.joint_forces().zip(&stage.joint_powers) {
             let powers = &mut self.joints[joint];
             powers.drive += power.motor;
-            powers.spring += power.spring;
+            powers.spring += power.spring + power.characteristic;
             powers.loss -= power.friction;
+            self.springs[joint] += power.spring;
         }
-        self.elements = stage.element_power;
+        self.elements.copy_from_slice(&stage.element_powers);
+        let of_elements = self.springs.iter_mut().skip(self.joints.len());
+        of_elements.zip(&self.elements).for_each(|(spring, element)| *spring = element.spring);
         stage.find_joint_forces(lambda);
         for (b, rates) in self.bodies.iter_mut().enumerate() {
             rates.copy_from_slice(stage.evaluations[b].rates.slow());
@@ -69,11 +69,12 @@ impl StageRates {
         let of_bodies = self.bodies.iter_mut().flatten().zip(other.bodies.iter().flatten());
         of_bodies.for_each(|(own, other)| mean(own, other));
         self.y.iter_mut().zip(&other.y).for_each(|(own, other)| mean(own, other));
-        for (own, other) in self.joints.iter_mut().zip(&other.joints) {
+        self.springs.iter_mut().zip(&other.springs).for_each(|(own, other)| mean(own, other));
+        let joints = self.joints.iter_mut().zip(&other.joints);
+        for (own, other) in joints.chain(self.elements.iter_mut().zip(&other.elements)) {
             mean(&mut own.drive, &other.drive);
             mean(&mut own.spring, &other.spring);
             mean(&mut own.loss, &other.loss);
         }
-        mean(&mut self.elements, &other.elements);
     }
 }

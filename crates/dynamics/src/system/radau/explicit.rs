@@ -38,7 +38,7 @@ impl SystemMotion {
         let error = self.explicit_error(h, times)?;
         let energy = self.largest_energy;
         self.largest_energy = energy.max(self.first.energy(&self.system, h));
-        let power = |stage: usize, joint: usize, _| self.stage_rates[stage].joints[joint].spring;
+        let power = |stage: usize, joint: usize, _| self.stage_rates[stage].springs[joint];
         let after = |force: usize| self.stages[STAGES - 1].constraints.coordinates[force];
         let error = larger(error, self.stop_error(h, power, after));
         if error <= tolerance {

@@ -13,19 +13,22 @@ pub(in crate::system) struct StageRates {
     pub(super) bodies: Vec<Slow>,
     /// Powers at the joints.
     pub(super) joints: Vec<JointWork>,
-    /// Power of the force elements.
-    pub(super) elements: f64,
+    /// Powers of the force elements.
+    pub(super) elements: Vec<JointWork>,
+    /// Powers of the springs whose energy is known: of each joint, then of each element.
+    pub(super) springs: Vec<f64>,
     /// y', with the forces of the joints.
     pub(super) y: Vec<f64>,
 }
 
 impl StageRates {
-    /// Room for bodies with these numbers of modes, and for the rows of joints.
-    pub(super) fn new(flexible: &[usize], joints: usize) -> Self {
+    /// Room for bodies with these numbers of modes, for the rows of joints, and for elements.
+    pub(super) fn new(flexible: &[usize], [joints, elements]: [usize; 2]) -> Self {
         Self {
             bodies: vec![[0.0; 20]; flexible.len()],
             joints: vec![JointWork::default(); joints],
-            elements: 0.0,
+            elements: vec![JointWork::default(); elements],
+            springs: vec![0.0; joints + elements],
             y: vec![0.0; flexible.iter().map(|modes| 6 + modes).sum()],
         }
     }
@@ -35,15 +38,16 @@ impl StageRates {
         self.bodies.copy_from_slice(&other.bodies);
         self.joints.copy_from_slice(&other.joints);
         self.y.copy_from_slice(&other.y);
-        self.elements = other.elements;
+        self.elements.copy_from_slice(&other.elements);
+        self.springs.copy_from_slice(&other.springs);
     }
 
     /// Refuses those of another system, and numbers that are not finite.
     pub(in crate::system) fn check(&self, own: &Self) -> Result<(), CheckpointError> {
-        let lengths = |of: &Self| [of.bodies.len(), of.joints.len(), of.y.len()];
+        let lengths = |of: &Self| [of.bodies.len(), of.joints.len(), of.elements.len(), of.springs.len(), of.y.len()];
         expect("the rates of the last step", lengths(self) == lengths(own))?;
-        let of_joints = self.joints.iter().flat_map(|JointWork { drive, spring, loss }| [drive, spring, loss]);
-        let numbers = self.bodies.iter().flatten().chain(of_joints).chain(&self.y).chain([&self.elements]);
+        let works = self.joints.iter().chain(&self.elements).flat_map(JointWork::list);
+        let numbers = self.bodies.iter().flatten().chain(&self.y).chain(&self.springs).copied().chain(works);
         finite("the rates of the last step", numbers)
     }
 }

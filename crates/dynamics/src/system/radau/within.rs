@@ -13,8 +13,8 @@ impl SystemMotion {
     pub(in crate::system) fn copy_from(&mut self, other: &Self) {
         self.time = other.time;
         self.bodies.iter_mut().zip(&other.bodies).for_each(|(own, other)| own.copy_from(other));
-        let lists = |of: &Self| -> [f64; 4] { [of.last_length, of.largest_energy, of.jump_work, of.element_work] };
-        [self.last_length, self.largest_energy, self.jump_work, self.element_work] = lists(other);
+        let lists = |of: &Self| -> [f64; 3] { [of.last_length, of.largest_energy, of.jump_work] };
+        [self.last_length, self.largest_energy, self.jump_work] = lists(other);
         for (own, other) in self.last.iter_mut().flatten().zip(other.last.iter().flatten()) {
             own.copy_from_slice(other);
         }
@@ -27,6 +27,7 @@ impl SystemMotion {
         self.stage_rates.iter_mut().zip(&other.stage_rates).for_each(|(own, other)| own.copy_from(other));
         self.start.joints.copy_from_slice(&other.start.joints);
         self.joint_works.copy_from_slice(&other.joint_works);
+        self.element_works.copy_from_slice(&other.element_works);
     }
 
     /// The next step begins without the polynomials of the last.
@@ -48,7 +49,8 @@ impl SystemMotion {
         }
         self.bodies.iter_mut().for_each(|body| body.time = self.time);
         self.joint_works.fill(JointWork::default());
-        [self.jump_work, self.element_work, self.last_length] = [0.0; 3];
+        self.element_works.fill(JointWork::default());
+        [self.jump_work, self.last_length] = [0.0; 2];
         Ok(())
     }
 

@@ -52,6 +52,7 @@ impl SystemMotion {
             let place = marker.place(marker.body().map(|b| first.body_place(system, b)).as_ref());
             first.motion_of(system, marker, &place)
         });
-        element.observe(&motions).unwrap_or_default()
+        let work = self.work_of_element(number);
+        element.observe(&motions).map(|seen| JointObservation { work, ..seen }).unwrap_or_default()
     }
 }

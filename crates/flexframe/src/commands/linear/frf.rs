@@ -18,7 +18,7 @@ use peaks::peaks;
 
 use crate::commands::linear::curves::{self, Answer};
 use crate::commands::linear::frequencies::Frequencies;
-use crate::commands::linear::linearize::{LinearSettings, LinearizeError, linear_model};
+use crate::commands::linear::linearize::{AtOnce, LinearSettings, LinearizeError, linear_model};
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 
@@ -51,6 +51,8 @@ pub struct FrfReport {
     pub files: Vec<PathBuf>,
     /// The highest response of each output to each input.
     pub peaks: Vec<Peak>,
+    /// What outputs see of inputs at once, where they are as many.
+    pub at_once: Option<AtOnce>,
     /// Reservations about the state.
     pub warnings: Vec<String>,
 }
@@ -96,6 +98,7 @@ pub fn frf(
         frequency_unit: unit,
         files: curves::write::<LinearizeError>(folder, NAME, answer)?,
         peaks,
+        at_once: AtOnce::of_equations(equations),
         warnings: model.state.warnings,
     })
 }
@@ -164,6 +167,9 @@ impl fmt::Display for FrfReport {
                 "\n  {output:<28} by {input:<20} {magnitude:.6e} {unit} at {frequency:.6} {}",
                 self.frequency_unit
             )?;
+        }
+        if let Some(words) = self.at_once.as_ref().and_then(AtOnce::in_words) {
+            write!(f, "\n  D        {words}")?;
         }
         for file in &self.files {
             write!(f, "\n  wrote    {}", file.display())?;

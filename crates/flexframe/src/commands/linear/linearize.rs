@@ -1,5 +1,6 @@
 //! `flexframe linearize`: the state space of small motions about rest or a steady spin, for control and for other programs.
 
+mod at_once;
 mod at_time;
 mod channels;
 mod error;
@@ -24,6 +25,7 @@ use model::{BuildProgress, Builder, Model};
 use nalgebra::Vector3;
 use scene::{Scene, System};
 
+pub use at_once::AtOnce;
 use at_time::{moving_modes, states_at};
 pub(super) use channels::{acting_loads, input_channels};
 pub use error::LinearizeError;

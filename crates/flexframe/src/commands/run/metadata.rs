@@ -138,8 +138,10 @@ fn element_metadata(system: &System) -> impl Iterator<Item = JointMetadata> {
         between: between.map(|end| system.name_of(end)),
         parts: parts.iter().map(|part| (*part).to_owned()).collect(),
     };
-    let springs = system.springs.iter().map(move |spring| of(&spring.name, "spring", spring.between, &[part::LINE]));
-    springs.chain(system.bushings.iter().map(move |bushing| of(&bushing.name, "bushing", bushing.between, &[])))
+    let of_spring = [part::LINE, part::SPRING];
+    let springs = system.springs.iter().map(move |spring| of(&spring.name, "spring", spring.between, &of_spring));
+    let of_bushing = [part::SPRING];
+    springs.chain(system.bushings.iter().map(move |of_| of(&of_.name, "bushing", of_.between, &of_bushing)))
 }
 
 /// The labels of a scene's units.

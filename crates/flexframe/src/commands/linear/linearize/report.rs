@@ -9,6 +9,7 @@ use linear::StateSpace;
 use scene::Scene;
 use serde::Serialize;
 
+use super::at_once::AtOnce;
 use super::space::LinearSpace;
 use super::state::in_words;
 use crate::commands::modes::frequency_unit;
@@ -45,6 +46,8 @@ pub struct LinearReport {
     pub hankel_values: Vec<f64>,
     /// Poles, slowest first: one of each conjugate pair.
     pub poles: Vec<Pole>,
+    /// What outputs see of inputs at once, where they are as many.
+    pub at_once: Option<AtOnce>,
     /// Reservations about the state.
     pub warnings: Vec<String>,
 }
@@ -85,6 +88,7 @@ impl LinearReport {
             error_bound: balanced.map(|(bound, _)| *bound),
             hankel_values: balanced.map_or_else(Vec::new, |(_, values)| values.clone()),
             poles: poles.iter().filter(|pole| pole.im >= 0.0).map(pole).collect(),
+            at_once: AtOnce::of(written),
             warnings: state.warnings.clone(),
         }
     }
@@ -112,6 +116,9 @@ impl fmt::Display for LinearReport {
         }
         writeln!(f, "  inputs   {}", self.inputs.join(", "))?;
         writeln!(f, "  outputs  {}", self.outputs.join(", "))?;
+        if let Some(words) = self.at_once.as_ref().and_then(AtOnce::in_words) {
+            writeln!(f, "  D        {words}")?;
+        }
         writeln!(f, "  file     {}", self.file.display())?;
         write!(f, "\n  {:>16}  {:>12}  {:>12}", format!("poles, {}", self.frequency_unit), "damping", "growth")?;
         for pole in self.poles.iter().take(POLES) {
