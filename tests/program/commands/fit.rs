@@ -171,6 +171,13 @@ fn exact_frequencies_give_back_the_numbers_of_bodies_in_joints() {
     for (i, expected) in [1.5e5, 700.0, 65000.0].into_iter().enumerate() {
         assert!((value(&found, i) / expected - 1.0).abs() < 1e-7, "{}", value(&found, i));
     }
+    assert!(!found["warnings"].to_string().contains("still off"), "{found}");
+    // What one stiffness cannot give.
+    let (first, second) = (modes[0]["frequency"].as_f64().unwrap(), modes[1]["frequency"].as_f64().unwrap());
+    std::fs::write(folder.path().join("test.csv"), format!("frequency\n{first:e}\n{:e}\n", 3.0 * second)).unwrap();
+    let found =
+        report(folder.path(), &["fit", "system.toml", "--measured", "test.csv", "--parameters", modulus, "--json"]);
+    assert!(found["warnings"].to_string().contains("still off by"), "{found}");
     std::fs::write(folder.path().join("test.csv"), "frequency,tip.x\n100,1\n200,1\n300,1\n").unwrap();
     let refused = run(folder.path(), &asked);
     assert!(String::from_utf8_lossy(&refused.stderr).contains("matched by their order"));
