@@ -66,7 +66,11 @@ fn intervals_are_those_of_one_parameter_in_closed_form() {
         // Measured frequencies of 1.01 and 0.99 of the model's count by their own size: the slopes are 1 to 2e-4.
         assert!((0.5 * (high / low).ln() / half - 1.0).abs() < 1e-3, "{low} {high} {half}");
         assert!((value(&found, 0) / 70000.0 - 1.0).abs() < 1e-3);
+        assert!(!found["warnings"].to_string().contains("still off"), "{found}");
     }
+    // One modulus does not give these two.
+    measure(folder.path(), &[&format!("{TIP}=1e-12")], &[1.1, 0.9]);
+    assert!(report(folder.path(), &asked)["warnings"].to_string().contains("still off by"));
 }
 
 #[test]
@@ -171,6 +175,12 @@ fn exact_frequencies_give_back_the_numbers_of_bodies_in_joints() {
     for (i, expected) in [1.5e5, 700.0, 65000.0].into_iter().enumerate() {
         assert!((value(&found, i) / expected - 1.0).abs() < 1e-7, "{}", value(&found, i));
     }
+    // The stiffness of the second vibration is not that of the bar: its modulus grows without an end.
+    let [first, second] = [0, 1].map(|k| modes[k]["frequency"].as_f64().unwrap());
+    std::fs::write(folder.path().join("test.csv"), format!("frequency\n{first:e}\n{:e}\n", 3.0 * second)).unwrap();
+    let gone = run(folder.path(), &["fit", "system.toml", "--measured", "test.csv", "--parameters", modulus]);
+    let gone = String::from_utf8_lossy(&gone.stderr).into_owned();
+    assert!(gone.contains("the search has taken bodies.bar.material.young_modulus to where it changes none"), "{gone}");
     std::fs::write(folder.path().join("test.csv"), "frequency,tip.x\n100,1\n200,1\n300,1\n").unwrap();
     let refused = run(folder.path(), &asked);
     assert!(String::from_utf8_lossy(&refused.stderr).contains("matched by their order"));

@@ -303,3 +303,26 @@ fn gltf_has_the_surface_and_an_animation_of_each_mode() {
     let size = 0.08 * (202.07_f64.powi(2) + 200.0).sqrt();
     assert!(largest.iter().all(|length| (size / 3f64.sqrt() * 0.999..size * 1.001).contains(length)), "{largest:?}");
 }
+
+/// Forms for motion do not hold the internal forces of a bent rest: the load of the rest would bend the body once more.
+#[test]
+fn a_bent_rest_is_handed_over_as_matrices_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = crate::program::root().join("crates/verification/meshes/l.msh");
+    let scene = folder.path().join("bracket.toml");
+    let text = format!(
+        "title = \"Bracket\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n[body]\nmesh = {mesh:?}\n\
+         material = {{ young_modulus = 7e10, poisson_ratio = 0.3, density = 2700.0 }}\n[modes]\nflexible = 4\nabout = \"loads\"\n\
+         [effects]\nlarge_deflection = false\n[[constraints]]\nkind = \"clamp\"\ngroup = \"end\"\n[[loads]]\nkind = \"force\"\n\
+         at = [1.0, 0.05, 0.05]\ndirection = [0.0, 1.0, 0.0]\namplitude = 6e4\n[time]\nend = 1e-3\ntolerance = 1e-4\n\
+         [output]\npoints = {{ tip = [1.0, 0.05, 0.05] }}\n"
+    );
+    std::fs::write(&scene, text).unwrap();
+    for (ending, code) in [("fem", 3), ("flex42", 3), ("sid_fem", 3), ("op4", 0)] {
+        let file = folder.path().join(format!("bracket.{ending}"));
+        let done = crate::program::flexframe(&["reduce", scene.to_str().unwrap(), "-o", file.to_str().unwrap()]);
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(code), "{ending}: {said}");
+        assert!(code == 0 || said.contains("`modes.about`: found modes about a bent rest"), "{said}");
+    }
+}

@@ -68,7 +68,7 @@ impl StressRecovery<'_> {
         self.estimate(fields.as_ref(), nodal_stress)
     }
 
-    /// Of one field, or of one and the two of a product.
+    /// The estimate of one field, or of one and the two of a product.
     fn estimate(
         &self,
         fields: MatRef<'_, f64>,

@@ -83,8 +83,14 @@ pub fn hand_over(
     Ok(report)
 }
 
-/// Writes the file; a note where its coordinates are others than markers ask for.
+/// Writes the file, where its form holds what the body is about; a note where its coordinates are others than markers ask for.
 fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<Option<String>, HandOverError> {
+    let is_bent = model.meshed.as_ref().is_some_and(|meshed| meshed.reference.is_some());
+    if is_bent && matches!(form, Form::Mbdyn | Form::Flex42 | Form::Sid) {
+        let found = "modes about a bent rest, whose internal forces this form does not hold: its loads would bend the body a second time";
+        let help = "remove `about`; the matrices of .op4 and .op2 are those of vibrations about the rest";
+        return Err(scene.refuse("modes.about", found, "modes about the undeformed body", help).into());
+    }
     let mut note = None;
     let mut named = |body: &Reduced<'_>| {
         let (matrices, of_markers) = matrices(body);

@@ -525,7 +525,7 @@ impl Fault for FitError {
             Self::SomeDeviations { file, line } => {
                 Kind::Input.with(Details { line: Some(*line), ..Details::of_file(file) })
             }
-            Self::NoInfluence { .. } | Self::Apart { .. } => Kind::Refused.alone(),
+            Self::NoInfluence { .. } | Self::Gone { .. } | Self::Apart { .. } => Kind::Refused.alone(),
             Self::NotFound { .. } => Kind::Run.alone(),
         }
     }

@@ -179,7 +179,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Sizes of two parts of the error along the modes: that of the model, and that which a linear body has there, too. A static shape is the
-    /// answer to a force that stays; of one that does not, more modes have the difference (K7).
+    /// answer to a force that stays; of one that does not, more modes have the difference, Eq. (K7) of `docs/method/check.md`.
     fn along_modes(&self, found: &StateError<'_>) -> [f64; 2] {
         let Some(meshed) = &self.model.meshed else { return [0.0; 2] };
         let shapes = &meshed.modes.shapes;

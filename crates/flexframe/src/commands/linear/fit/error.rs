@@ -56,6 +56,11 @@ pub enum FitError {
         "{name} changes none of the measured frequencies\n = leave it out, or measure modes that it changes: `flexframe gradient` shows them"
     )]
     NoInfluence { name: String },
+    /// A parameter that has lost its influence on the way.
+    #[error(
+        "the search has taken {name} to where it changes none of the measured frequencies: no value of it gives them\n = see whether modes are mistaken for each other, or fit what is wrong in the model"
+    )]
+    Gone { name: String },
     /// Parameters that frequencies do not tell apart.
     #[error("the measured frequencies do not tell {} apart: none of them changes where {}, for any s\n = leave one of them out, or measure a mass or a static displacement", names.join(" and "), parts.join(", "))]
     Apart { names: Vec<String>, parts: Vec<String> },
@@ -75,6 +80,7 @@ impl FitError {
         match fault {
             Fault::Residuals(error) => error,
             Fault::Coordinates(Unseen::NoInfluence(j)) => Self::NoInfluence { name: name(j) },
+            Fault::Coordinates(Unseen::Gone(j)) => Self::Gone { name: name(j) },
             Fault::Coordinates(Unseen::Apart(parts)) => Self::Apart {
                 names: parts.iter().map(|(j, _)| name(*j)).collect(),
                 parts: parts.iter().map(|(j, part)| format!("{} grows by s^{part:.2}", name(*j))).collect(),

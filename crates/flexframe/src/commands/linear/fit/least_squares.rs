@@ -57,6 +57,8 @@ pub(super) enum Fault<E> {
 pub(super) enum Unseen {
     /// One without influence.
     NoInfluence(usize),
+    /// One that has lost its influence on the way.
+    Gone(usize),
     /// Coordinates that go together without a change of the residuals, with their parts.
     Apart(Vec<(usize, f64)>),
     /// No end of the search.
@@ -81,7 +83,10 @@ pub(super) fn solve<E>(
     let first = here.frequencies.clone();
     let mut damping = 0.0;
     for iterations in 0..MAX_STEPS {
-        let Directions { singular, right, along } = directions(&here)?;
+        let Directions { singular, right, along } = directions(&here).map_err(|unseen| match unseen {
+            Unseen::NoInfluence(j) if iterations > 0 => Unseen::Gone(j),
+            unseen => unseen,
+        })?;
         let mut step = vec![0.0; x.len()];
         for (k, s) in singular.iter().enumerate() {
             let part = -along[k] * s / (s * s + damping * singular[0] * singular[0]);

@@ -18,6 +18,8 @@ use crate::report::quantity;
 pub(super) const CONFIDENCE: f64 = 0.95;
 /// A correlation from which two parameters are hard to tell apart.
 const ALIKE: f64 = 0.95;
+/// Part of a frequency from which it is not met.
+const MISSED: f64 = 0.05;
 /// A scatter in stated deviations from which something else is wrong.
 const SCATTERED: f64 = 2.0;
 
@@ -118,6 +120,16 @@ impl FitReport {
             warnings.push(format!(
                 "the frequencies are off by {scatter:.1} times their stated deviations: the model lacks something, modes are mistaken for \
                  each other, or the deviations are larger; the intervals do not have this in them"
+            ));
+        }
+        let off = |mode: &FittedMode| (mode.after / mode.measured - 1.0).abs();
+        if let Some(worst) = modes.iter().max_by(|a, b| off(a).total_cmp(&off(b))).filter(|worst| off(worst) > MISSED) {
+            warnings.push(format!(
+                "mode {} is still off by {:.0} % of what line {} of the table has: these parameters do not give it; see whether modes are \
+                 mistaken for each other, and whether something else is wrong in the model",
+                worst.mode,
+                100.0 * off(worst),
+                worst.line
             ));
         }
         if scatter.is_none() && !is_stated {
