@@ -5,5 +5,6 @@ pub(crate) mod course;
 pub(crate) mod excitation;
 pub(crate) mod response;
 pub(crate) mod rigid;
+pub(crate) mod source;
 pub(crate) mod tensor;
 pub(crate) mod turning;

@@ -6,6 +6,7 @@ use std::time::Duration;
 use memory::Bytes;
 use modal::EngineStats;
 use model::{MatrixChecks, Meshed, Model};
+use results::kind::{COMBINATION, NATURAL_MODE, STATIC_ANSWER, STATIC_SHAPE};
 use serde::{Serialize, Serializer};
 
 /// Reports of the bodies of a scene, in its order. As JSON it is the report of a single body, and otherwise an object with the list
@@ -236,7 +237,7 @@ pub struct BodyReport {
     pub rigid_modes: usize,
     /// Natural frequencies of the flexible modes, cycles per time; after them those of static shapes, which are none.
     pub natural_frequencies: Vec<f64>,
-    /// Kind of each of these: "natural mode" or "static shape".
+    /// Kind of each of these: see [`results::kind`].
     pub kinds: Vec<&'static str>,
     /// Damping ratios.
     pub damping_ratios: Vec<f64>,
@@ -353,19 +354,9 @@ impl BodyReport {
         let of_kinds = self.kinds.iter().zip(&self.natural_frequencies);
         let natural: Vec<f64> = of_kinds.filter(|(kind, _)| **kind == NATURAL_MODE).map(|(_, f)| *f).collect();
         let (Some(first), Some(last)) = (natural.first(), natural.last()) else { return "rigid".to_owned() };
-        let counted =
-            |count: usize, [one, several]: [&str; 2]| format!("{count} {}", if count == 1 { one } else { several });
         let modes = counted(natural.len(), ["flexible mode", "flexible modes"]);
-        let others = [
-            [STATIC_ANSWER, "static answers"],
-            [COMBINATION, "combinations of modes"],
-            [STATIC_SHAPE, "static shapes"],
-        ];
-        let others = others.into_iter().filter_map(|names| {
-            let count = self.kinds.iter().filter(|kind| **kind == names[0]).count();
-            (count > 0).then(|| format!(" and {}", counted(count, names)))
-        });
-        format!("{modes} from {first:.4} to {last:.4} {frequency_unit}{}", others.collect::<String>())
+        let others: String = others_in_words(self.kinds.iter().copied()).map(|words| format!(" and {words}")).collect();
+        format!("{modes} from {first:.4} to {last:.4} {frequency_unit}{others}")
     }
 
     /// The report of a model.
@@ -387,11 +378,19 @@ impl BodyReport {
     }
 }
 
-/// Kind of a coordinate of the body that is a natural mode.
-pub(crate) const NATURAL_MODE: &str = "natural mode";
-const STATIC_SHAPE: &str = "static shape";
-const STATIC_ANSWER: &str = "static answer";
-const COMBINATION: &str = "combination of modes";
+fn counted(count: usize, [one, several]: [&str; 2]) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
+}
+
+/// How many coordinates there are of each kind beside natural modes, such as "4 static shapes".
+pub(crate) fn others_in_words<'a>(kinds: impl Iterator<Item = &'a str> + Clone) -> impl Iterator<Item = String> {
+    let names =
+        [[STATIC_ANSWER, "static answers"], [COMBINATION, "combinations of modes"], [STATIC_SHAPE, "static shapes"]];
+    names.into_iter().filter_map(move |names| {
+        let count = kinds.clone().filter(|kind| *kind == names[0]).count();
+        (count > 0).then(|| counted(count, names))
+    })
+}
 
 /// Kind of each coordinate. Beside a static answer only the large modes are as they were.
 pub(crate) fn kinds(model: &Model) -> Vec<&'static str> {

@@ -35,6 +35,7 @@ mod container;
 mod dimension;
 mod error;
 mod history;
+pub mod kind;
 mod metadata;
 mod paraview;
 mod reader;

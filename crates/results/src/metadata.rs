@@ -2,6 +2,7 @@
 
 use crate::FileError;
 use crate::error::check_length;
+use crate::kind::{NATURAL_MODE, STATIC_SHAPE};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::Path;
@@ -197,8 +198,8 @@ impl BodyProperties {
         let natural = count.saturating_sub(self.static_shapes);
         (0..count).map(move |k| match self.kinds.get(k) {
             Some(kind) => kind,
-            None if k < natural => "natural mode",
-            None => "static shape",
+            None if k < natural => NATURAL_MODE,
+            None => STATIC_SHAPE,
         })
     }
 }

@@ -541,6 +541,12 @@ fn what_springs_and_bushings_do_is_in_the_results() {
         }
     }
     assert!(column("joints/pad/moment y").iter().all(|number| number.abs() < 1e-12));
+    // Closed form: −½ k x² of the pad in the work of its springs; neither moves its dampers.
+    for (row, number) in column("joints/pad/spring_work").into_iter().enumerate() {
+        let fallen = 0.2 * (1.0 - (50.0_f64.sqrt() * 0.5 * row as f64).cos());
+        assert!((number + 50.0 * fallen * fallen).abs() < 1e-4, "{number} {fallen}");
+    }
+    assert!(["wire", "pad"].iter().all(|name| column(&format!("joints/{name}/loss")).iter().all(|loss| *loss < 1e-20)));
     let results = hdf5::File::open(desk.path("out/x.h5")).unwrap();
     let kind = |name: &str| {
         let kind = results.group(&format!("joints/{name}")).unwrap().attr("kind").unwrap();

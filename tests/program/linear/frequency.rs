@@ -29,6 +29,44 @@ fn bar_text(support: &str, history: &str, time: &str) -> String {
 
 const CLAMP: &str = "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"";
 
+/// Closed form: a force moves no displacement at once, and its acceleration by Σ φ² at once. Two accelerations of one place see two forces
+/// there along one direction as one.
+#[test]
+fn what_outputs_see_at_once_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let time = "end = 0.01\ntolerance = 1e-6\n";
+    let scene = bar(folder.path(), CLAMP, "\"constant\"", time);
+    let more = "[[loads]]\nkind = \"force\"\nat = [202.07, 0.0, 0.0]\ndirection = [0, 2, 1.0]\namplitude = 7.0\nhistory = \"constant\"\n";
+    let text = std::fs::read_to_string(&scene).unwrap().replace("[time]", &format!("{more}[time]"));
+    let two = folder.path().join("two.toml");
+    std::fs::write(&two, text).unwrap();
+    let file = folder.path().join("x.mat");
+    let out = folder.path().join("frf");
+    for (scene, outputs, rank, of, words) in [
+        (&scene[..], &["tip.displacement.y"][..], 0, 1, "D        zero: no output sees an input at once"),
+        (&scene, &["tip.acceleration.y"], 1, 1, ""),
+        (
+            two.to_str().unwrap(),
+            &["tip.acceleration.y", "tip.acceleration.z"],
+            1,
+            2,
+            "D        singular, of rank 1 of 2",
+        ),
+    ] {
+        let outputs = outputs.iter().flat_map(|name| ["--outputs", name]);
+        let of_linear = ["linearize", scene, "-o", file.to_str().unwrap(), "--overwrite"];
+        let of_frf = ["frf", scene, "--frequencies", "1:5:3", "-o", out.to_str().unwrap(), "--overwrite"];
+        for command in [&of_linear[..], &of_frf] {
+            let arguments: Vec<&str> = command.iter().copied().chain(outputs.clone()).collect();
+            let found = json(&arguments)["at_once"].clone();
+            assert_eq!((found["rank"].as_u64(), found["of"].as_u64()), (Some(rank), Some(of)), "{found}");
+            let said = flexframe(&arguments).stdout;
+            let said = String::from_utf8_lossy(&said);
+            assert!(if words.is_empty() { !said.contains("D  ") } else { said.contains(words) }, "{said}");
+        }
+    }
+}
+
 /// Closed form: poles −ζω ± iω√(1−ζ²) of the modes, and SciPy reads the matrices of the file.
 #[test]
 fn poles_of_a_clamped_bar_are_those_of_its_modes() {

@@ -156,6 +156,12 @@ fn numbers_of_a_system_have_the_rates_of_central_differences() {
     const STEP: f64 = 1e-3;
     let folder = tempfile::tempdir().unwrap();
     write_system(folder.path(), "");
+    // With a weight, whose forces follow all of the mass.
+    let scene = folder.path().join("system.toml");
+    let weight = "{ kind = \"gravity\", direction = [0.3, 0.2, -1.0], amplitude = 9810.0, history = { kind = \"half-sine\", duration = 0.002 } }";
+    let text = std::fs::read_to_string(&scene).unwrap().replace("}]\nmarkers", &format!("}}, {weight}]\nmarkers"));
+    assert!(text.contains(weight));
+    std::fs::write(&scene, text).unwrap();
     let asked = ["gradient", "system.toml", "--frequencies", "0:600:3", "--overwrite", "--json"];
     let found = report(folder.path(), &asked);
     let parameters = found["parameters"].as_array().unwrap();
@@ -167,8 +173,8 @@ fn numbers_of_a_system_have_the_rates_of_central_differences() {
         [numbers(&report["frequencies"]), responses]
     };
     let here = of(&found);
-    // Two loads and a slide, two points and the slide, three frequencies of two numbers.
-    assert_eq!(here[1].len(), 3 * (2 * 3 + 1) * 3 * 2);
+    // Three loads and a slide, two points and the slide, three frequencies of two numbers.
+    assert_eq!(here[1].len(), 4 * (2 * 3 + 1) * 3 * 2);
     let mut sums = here.each_ref().map(|list| vec![0.0; list.len()]);
     for parameter in parameters {
         let (name, value) = (parameter["name"].as_str().unwrap(), parameter["value"].as_f64().unwrap());

@@ -6,7 +6,8 @@ use nalgebra::Vector3;
 
 use crate::motion::case::Case;
 use crate::motion::course::{Course, Swing};
-use crate::motion::excitation::{Source, Spin};
+use crate::motion::excitation::Spin;
+use crate::motion::source::{CANCELLED, Source};
 use crate::motion::tensor;
 use crate::table::relative::relative;
 
@@ -252,9 +253,6 @@ impl<'a> Together<'a> {
         Course::sum(&parts)
     }
 }
-
-/// A part of forces that is rounding where they cancel: a mesh that is symmetric is so to the digits of its nodes.
-pub(crate) const CANCELLED: f64 = 1e-9;
 
 /// |z| and |z'| of a mode under a load. With a direction a(t) that turns in the body, |a'| ≤ Ω, by parts:
 /// `|∫ e^{λ(t−s)} h a ds| ≤ sup|z| (1 + ∫|a'|)`, as far back as the mode remembers.

@@ -1,8 +1,9 @@
 //! The motion of the body as a whole: what excites it, and how a change of its spin adds up.
 
 use crate::motion::case::Case;
-use crate::motion::excitation::{Source, Spin};
+use crate::motion::excitation::Spin;
 use crate::motion::response::{Response, norm};
+use crate::motion::source::Source;
 use crate::table::estimate::Estimate;
 use crate::table::relative::relative;
 

@@ -1,23 +1,23 @@
-//! What turns the body as a whole: all loads together, which may cancel.
+//! The sum of all loads that turn the body as a whole: they may cancel.
 
 use dynamics::History;
 use nalgebra::{SMatrix, Vector3};
 
 use crate::motion::case::Case;
 use crate::motion::course::Course;
-use crate::motion::excitation::Source;
-use crate::motion::response::CANCELLED;
+use crate::motion::source::{CANCELLED, Source};
 
 /// Courses of the different histories of the loads, in the same samples; none where fewer than two loads are there to cancel.
 pub(crate) struct Histories<'a> {
     courses: Vec<(&'a History, Course)>,
 }
 
-/// Bounds of what turns the body, in the scale of [`Spin::momentum`](crate::motion::excitation::Spin).
+/// Bounds of what turns the body, in the scale of the momentum of a spin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Turning {
-    /// Of the impulse, and of the force at any time.
+    /// Bound of the impulse.
     pub impulse: f64,
+    /// Bound of the force at any time.
     pub force: f64,
 }
 

@@ -14,7 +14,7 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// Those of a bent reference, with the stiffness between coordinates that are coupled; `None` without either.
+    /// Forces of a bent reference, with the stiffness between coordinates that are coupled; `None` without either.
     pub fn of(reference: Option<&ReferenceForces>, coupling: Option<&Mat<f64>>) -> Option<Self> {
         let stiffnesses = reference.map(|of| &of.stiffness).into_iter().chain(coupling);
         let stiffness = stiffnesses.cloned().reduce(|sum, next| sum + next)?;

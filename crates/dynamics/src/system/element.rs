@@ -13,7 +13,7 @@ use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 /// Takes a direction of an element: its number, its stiffness and damping, and the wrenches of one unit of force along it.
 pub type SetDirection<'a> = dyn FnMut(usize, [f64; 2], &[MarkerWrench]) + 'a;
 
-/// What an element holds and takes at one time.
+/// Energy and losses of an element at one time.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Stored {
     /// Energy of its springs.

@@ -248,7 +248,14 @@ impl Named<'_> {
         let modes = &meshed.modes;
         let natural = modes.natural();
         let damping = model.damping_ratios();
-        self.add_shapes("modes", "natural mode", modes, damping, 0..natural);
+        // Beside a static answer only the large modes are as they were.
+        let what = match modes.answer {
+            None => "natural mode",
+            Some(_) => {
+                "coordinate, of which one is a static answer, the large ones are natural modes and the others combinations of these"
+            }
+        };
+        self.add_shapes("modes", what, modes, damping, 0..natural);
         let all = modes.eigenvalues.len();
         self.add_shapes("static_shapes", "static shape (no natural frequency)", modes, damping, natural..all);
         let unit = format!("{}^-0.5", self.scene.units.mass);

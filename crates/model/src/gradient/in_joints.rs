@@ -52,7 +52,7 @@ pub struct RatesInJoints {
     pub markers: Mat<f64>,
     /// Rates of the displacements of each point of the output (3×nf).
     pub points: Vec<Mat<f64>>,
-    /// Rates of the forces of loads on the modes, by their numbers in the scene; weights, which follow the mass, are not among them.
+    /// Rates of the forces of loads on the coordinates, by their numbers in the scene.
     pub loads: BTreeMap<usize, LoadRates>,
 }
 
@@ -292,13 +292,15 @@ impl<'a> Basis<'a> {
         let stiffness = shapes.transpose() * k_rates.subcols(6, flexible)
             + symmetric(self.forces.subcols(6, flexible).transpose() * &shape_rates);
         let of = |forces: &Mat<f64>| forces.transpose() * &shape_rates;
-        let load = |(number, forces): &Numbered| (*number, forces.rates(&shape_rates));
+        let total = self.fields.col(0).transpose() * self.momenta.col(0);
+        let load = |(number, forces): &Numbered| (*number, forces.rates(&shape_rates, &mass, total));
+        let loads = self.loads.iter().map(load).collect();
         Ok(RatesInJoints {
             mass,
             stiffness,
             markers: of(&self.on_markers),
             points: self.points.iter().map(of).collect(),
-            loads: self.loads.iter().map(load).collect(),
+            loads,
         })
     }
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use dynamics::SpinMode;
+use results::kind::{NATURAL_MODE, STATIC_SHAPE};
 use serde::Serialize;
 
 /// |⟨a, b⟩|² of two shapes that are taken for the same without a closer look. Above ½ only one can be.
@@ -30,7 +31,7 @@ impl Branch {
     /// Label in a table or a picture.
     pub(super) fn label(&self) -> String {
         match self.kind {
-            "static shape" => format!("static {}", self.mode),
+            STATIC_SHAPE => format!("static {}", self.mode),
             _ => format!("mode {}", self.mode),
         }
     }
@@ -80,7 +81,7 @@ impl Branches {
         (0..self.modes[0].len())
             .map(|k| Branch {
                 mode: k + 1,
-                kind: if k < natural { "natural mode" } else { "static shape" },
+                kind: if k < natural { NATURAL_MODE } else { STATIC_SHAPE },
                 frequency: of(k, |mode| mode.circular_frequency / TAU),
                 growth: of(k, |mode| mode.growth),
                 whirl: of(k, |mode| mode.whirl),

@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
+use results::kind::NATURAL_MODE;
 use results::{Components, History, Metadata, Results, SystemRow, histories};
 use whole_file::WholeFile;
 
@@ -126,7 +127,7 @@ fn parts<R: SystemRow>(history: History<R>, metadata: &Metadata) -> Vec<Part> {
     let names: Vec<String> = match (column.components(), history.body(metadata)) {
         (Components::Number, _) => vec![String::new()],
         (Components::Modes, Some(body)) => (body.model.kinds().enumerate())
-            .map(|(k, kind)| if kind == "natural mode" { format!("{}", k + 1) } else { format!("{} {kind}", k + 1) })
+            .map(|(k, kind)| if kind == NATURAL_MODE { format!("{}", k + 1) } else { format!("{} {kind}", k + 1) })
             .collect(),
         (components, _) => components.names().iter().map(|name| (*name).to_owned()).collect(),
     };

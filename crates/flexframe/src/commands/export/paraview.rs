@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use results::kind::NATURAL_MODE;
 use results::{Block, Field, PvdEntry, VtkHdf, write_pvd, write_vtu};
 
 use super::Exported;
@@ -151,7 +152,7 @@ fn fields_of_modes(body: &DrawnSurface, motion: &Motion, unit: &str) -> Vec<Fiel
     let model = &body.metadata(motion).model;
     let digits = model.frequencies.len().to_string().len();
     let name = |(k, (kind, frequency)): (usize, (&str, &f64))| match kind {
-        "natural mode" => format!("mode {:0digits$}: {frequency:.4} {}", k + 1, unit.replace('/', " per ")),
+        NATURAL_MODE => format!("mode {:0digits$}: {frequency:.4} {}", k + 1, unit.replace('/', " per ")),
         kind => format!("{kind} {:0digits$}", k + 1),
     };
     let names = model.kinds().zip(&model.frequencies).enumerate().map(name);

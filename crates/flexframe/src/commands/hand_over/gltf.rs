@@ -4,12 +4,13 @@
 
 use model::Model;
 use nalgebra::Vector3;
+use results::kind::NATURAL_MODE;
 use scene::Scene;
 use serde_json::{Value, json};
 
 use super::error::HandOverError;
 use crate::commands::modes::{require_flexible, require_surface};
-use crate::report::{NATURAL_MODE, kinds};
+use crate::report::kinds;
 use crate::surface::Surface;
 
 /// Most morph targets: programs that show such files know eight of them, many not more.

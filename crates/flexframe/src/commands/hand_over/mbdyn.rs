@@ -38,7 +38,7 @@ pub fn text(body: &Reduced<'_>) -> String {
     group(9, "MODAL MASS MATRIX", diagonal(&|_| 1.0));
     group(10, "MODAL STIFFNESS MATRIX", diagonal(&|k| body.omegas[k].powi(2)));
     let mut inertia = vec![numbers([body.mass]), numbers(body.center.iter().copied())];
-    inertia.extend(body.central_inertia().row_iter().map(|row| numbers(row.iter().copied())));
+    inertia.extend(body.central_inertia.row_iter().map(|row| numbers(row.iter().copied())));
     group(12, "RIGID BODY INERTIA MATRIX", inertia);
     group(13, "MODAL DAMPING MATRIX", diagonal(&|k| body.damping(k)));
     // Three rows, columns as the lists say.

@@ -22,6 +22,8 @@ pub struct Reduced<'a> {
     pub center: Vector3<f64>,
     /// Inertia about the origin.
     pub inertia: Matrix3<f64>,
+    /// Inertia about the center of mass.
+    pub central_inertia: Matrix3<f64>,
     /// Mass matrix of the motions of the base.
     pub rigid_mass: Matrix6<f64>,
     /// Circular frequencies (n).
@@ -94,6 +96,7 @@ impl<'a> Reduced<'a> {
             mass: body.mass,
             center: body.center_of_mass - body.origin,
             inertia: body.inertia,
+            central_inertia: body.inertia_about_center(),
             rigid_mass: body.rigid_mass(),
             omegas: &body.circular_frequencies,
             damping_ratios: model.damping_ratios(),
@@ -142,12 +145,6 @@ impl<'a> Reduced<'a> {
     /// Viscous damping 2ζω of a mode.
     pub fn damping(&self, k: usize) -> f64 {
         2.0 * self.damping_ratios[k] * self.omegas[k]
-    }
-
-    /// Inertia about the center of mass.
-    pub fn central_inertia(&self) -> Matrix3<f64> {
-        let c = &self.center;
-        self.inertia - (Matrix3::identity() * c.norm_squared() - c * c.transpose()) * self.mass
     }
 }
 

@@ -51,7 +51,7 @@ pub struct FrfReport {
     pub files: Vec<PathBuf>,
     /// The highest response of each output to each input.
     pub peaks: Vec<Peak>,
-    /// What outputs see of inputs at once, where they are as many.
+    /// Rank of D, where outputs are as many as inputs.
     pub at_once: Option<AtOnce>,
     /// Reservations about the state.
     pub warnings: Vec<String>,

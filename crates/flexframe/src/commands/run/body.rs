@@ -166,5 +166,6 @@ fn restore(results: BodyResults<'_>, row: usize, time: f64, out: &mut BodyRow) -
     Some(Conserved {
         quantities: (out.energy(), vector("momentum/linear")?, vector("momentum/angular")?),
         balances: (number("energy/balance")?, vector("momentum/linear_balance")?, vector("momentum/angular_balance")?),
+        kinetic: out.kinetic_energy,
     })
 }

@@ -127,16 +127,13 @@ impl<'a> Watch<'a> {
     pub fn finish(&mut self, exchanged: f64, longest_step: f64) -> Watched {
         let Self { scene, model, .. } = *self;
         if scene.tied {
-            // A body in joints may turn about a center of mass that rests, under forces that cancel.
-            let linear_momentum = (2.0 * model.body.mass * self.monitor.scales().energy).sqrt();
-            // What moves by less than the error of a step in all of the run rests; its energy is rounding.
             let part = match scene.time.control {
                 StepControl::Tolerance(tolerance) => tolerance,
                 StepControl::Fixed(_) => RESTS,
             };
             let radius_squared = model.body.inertia_about_center().trace() / (2.0 * model.body.mass);
-            let energy = 0.5 * model.body.mass * radius_squared * (part / scene.time.end).powi(2);
-            self.monitor.widen(&Balances { linear_momentum, energy, ..Balances::default() });
+            let at_rest = 0.5 * model.body.mass * radius_squared * (part / scene.time.end).powi(2);
+            self.monitor.in_joints(model.body.mass, at_rest);
         }
         self.monitor.exchanged(exchanged);
         let balances = self.monitor.balances();

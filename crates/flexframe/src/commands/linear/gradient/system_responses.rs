@@ -44,7 +44,7 @@ enum Of {
 struct Followed {
     /// Forces of the port on the coordinates of the body that are none of its markers.
     direct: Vec<f64>,
-    /// Their rates, on the modes.
+    /// Their rates, on the coordinates of the body.
     rates: Vec<f64>,
 }
 
@@ -173,11 +173,13 @@ impl Here<'_> {
             match port.of {
                 Of::Load { body: of, load } if of == body => {
                     let direct = direct();
-                    let rates = rates.loads.get(&load)?.on_modes(&direct);
+                    let rates = rates.loads.get(&load)?.on_coordinates(&direct);
                     Some(Followed { direct, rates })
                 }
                 Of::Point { body: of, point, axis } if of == body => {
-                    let rates = rates.points[point].row(axis).iter().copied().collect();
+                    // Rigid motions move a point as they do, whatever the number.
+                    let own = rates.points[point].row(axis).iter().copied();
+                    let rates = std::iter::repeat_n(0.0, 6).chain(own).collect();
                     Some(Followed { direct: direct(), rates })
                 }
                 _ => Some(Followed { direct: Vec::new(), rates: Vec::new() }),
@@ -209,9 +211,8 @@ impl Change<'_> {
                 let [x, y] = ports.map(|port| &motions[port][..]);
                 let forces = [&first.direct[..], &second.direct[..]];
                 let change = of_body.change(s, [x, y], forces, &of_body.body.rates[*number]);
-                let bent = |motion| of_body.own(motion)[6..].iter();
                 let along = |followed: &Followed, motion| -> c64 {
-                    followed.rates.iter().zip(bent(motion)).map(|(rate, x)| *x * *rate).sum()
+                    followed.rates.iter().zip(of_body.own(motion)).map(|(rate, x)| *x * *rate).sum()
                 };
                 Some(along(first, y) + along(second, x) - change)
             }

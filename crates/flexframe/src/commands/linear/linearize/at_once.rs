@@ -1,4 +1,4 @@
-//! What outputs see of the inputs at once: the rank of D where outputs are as many as inputs.
+//! Rank of D, where outputs are as many as inputs: it tells if each combination of inputs is seen at once.
 
 use faer::Mat;
 use linear::{Channel, SecondOrder, StateSpace};
@@ -13,7 +13,7 @@ const PASSES: usize = 4;
 /// A channel with less than this part of the largest share of a combination is not named.
 const SHARE: f64 = 0.01;
 
-/// What the outputs see of the inputs at once, without a state in between: D, where it is square.
+/// Rank of a square D: of what the outputs see of the inputs at once, without a state in between.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AtOnce {
     /// Rank of D.
@@ -29,7 +29,7 @@ pub struct AtOnce {
 }
 
 impl AtOnce {
-    /// That of a state space; `None` where there are more outputs than inputs, or fewer.
+    /// Rank of a state space; `None` where there are more outputs than inputs, or fewer.
     pub(super) fn of(space: &StateSpace) -> Option<Self> {
         let size = space.inputs.len();
         if size == 0 || space.outputs.len() != size {
@@ -55,7 +55,7 @@ impl AtOnce {
         })
     }
 
-    /// That of equations of second order.
+    /// Rank of equations of second order.
     pub(in crate::commands::linear) fn of_equations(equations: &SecondOrder) -> Option<Self> {
         Self::of(&equations.state_space().ok()?)
     }

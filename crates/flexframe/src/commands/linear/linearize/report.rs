@@ -46,7 +46,7 @@ pub struct LinearReport {
     pub hankel_values: Vec<f64>,
     /// Poles, slowest first: one of each conjugate pair.
     pub poles: Vec<Pole>,
-    /// What outputs see of inputs at once, where they are as many.
+    /// Rank of D, where outputs are as many as inputs.
     pub at_once: Option<AtOnce>,
     /// Reservations about the state.
     pub warnings: Vec<String>,

@@ -8,6 +8,7 @@ use report::{
     Balance, Body, Component, Effect, Fact, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
     Surface, Trust, TrustLine, Units,
 };
+use results::kind::{NATURAL_MODE, STATIC_SHAPE};
 use results::{
     BodyProperties, BodyResults, Components, EffectProperties, History, MeshProperties, Metadata, Results, Scope,
     Shapes, StressShapes, histories,
@@ -17,7 +18,7 @@ use crate::commands::modes::frequency_unit;
 use crate::commands::pictures::html_report::quantities::Quantities;
 use crate::drawn::DrawnBody;
 use crate::files::scene_file;
-use crate::report::quantity;
+use crate::report::{others_in_words, quantity};
 use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;
 use crate::rows::units::UnitLabels;
@@ -122,17 +123,17 @@ fn facts_of_body(body: &BodyProperties, is_drawn: bool, units: &results::Units) 
         }
         None => {}
     }
-    facts.push(match (natural_modes(body), body.static_shapes) {
-        (0, 0) => Fact::new("Shapes", "rigid body".to_owned()),
-        (modes, 0) => Fact::new("Shapes", format!("{modes} modes")),
-        (modes, fixed) => Fact::new("Shapes", format!("{modes} modes, {fixed} static")),
-    });
+    facts.push(Fact::new("Shapes", shapes_in_words(body)));
     facts
 }
 
-/// Number of natural modes, which come before the static shapes.
-fn natural_modes(body: &BodyProperties) -> usize {
-    body.frequencies.len().saturating_sub(body.static_shapes)
+/// How many shapes there are of each kind.
+fn shapes_in_words(body: &BodyProperties) -> String {
+    let natural = body.kinds().filter(|kind| *kind == NATURAL_MODE).count();
+    let modes = (natural > 0).then(|| format!("{natural} {}", if natural == 1 { "mode" } else { "modes" }));
+    let kinds: Vec<&str> = body.kinds().collect();
+    let all: Vec<String> = modes.into_iter().chain(others_in_words(kinds.iter().copied())).collect();
+    if all.is_empty() { "rigid body".to_owned() } else { all.join(", ") }
 }
 
 fn reference(surface: &surface::Surface, body: &BodyProperties) -> Surface {
@@ -149,7 +150,7 @@ fn described(shapes: &Shapes, body: &BodyProperties) -> Vec<Shape> {
     let kinds: Vec<&str> = body.kinds().collect();
     let shape = |(k, displacement): (usize, &Vec<[f64; 3]>)| {
         let (name, kind) = match kinds.get(k) {
-            Some(&"natural mode") => {
+            Some(&NATURAL_MODE) => {
                 let (frequency, damping_ratio) = (body.frequencies[k], body.damping_ratios[k]);
                 (format!("mode {}", k + 1), ShapeKind::Natural { frequency, damping_ratio })
             }
@@ -262,8 +263,11 @@ fn courses(history: History<Row>, results: &Results, quantities: &Quantities<'_>
 
 fn component_name(history: History<Row>, k: usize, run: &Metadata) -> String {
     match (history.column.components(), history.body(run)) {
-        (Components::Modes, Some(body)) if k < natural_modes(&body.model) => format!("{}", k + 1),
-        (Components::Modes, _) => format!("static {}", k + 1),
+        (Components::Modes, Some(body)) => match body.model.kinds().nth(k) {
+            Some(NATURAL_MODE) => format!("{}", k + 1),
+            Some(STATIC_SHAPE) | None => format!("static {}", k + 1),
+            Some(kind) => format!("{kind} {}", k + 1),
+        },
         (components, _) => components.names().get(k).copied().unwrap_or_default().to_owned(),
     }
 }
