@@ -13,9 +13,11 @@ use crate::system::radau::SystemMotion;
 /// Energy that a step makes or loses at a stop over the largest so far, for which it counts as an error of one: a bounce takes some ten
 /// steps, and what it makes or loses is not forgotten.
 const STOP_ERROR: f64 = 0.1;
-/// Rounding of the energy of a spring over the energy: of the places that a step leads to, and of a spring at rest.
+/// Rounding of the energy of a spring over the energy.
 const ROUNDING: f64 = 1e-13;
-const AT_REST: f64 = 1e-14;
+/// Work of a spring in a step over its energy, and change of the energy over it, below which it rests.
+const AT_REST: f64 = 1e-12;
+const UNMOVED: f64 = 1e-9;
 
 impl SystemMotion {
     /// Error of a step of length `h` by the energy that joints make or lose in it at their stops. `power` has that of the springs of a joint at
@@ -106,8 +108,11 @@ impl SystemMotion {
                 }
             };
             let missing = before - after - summed;
-            // Of what rests on its spring, the energy changes by rounding, and that of the body is less.
-            if missing.abs() <= AT_REST * (before.abs() + after.abs()) {
+            // What rests on its spring has less energy than what Newton's method leaves of the spring's.
+            let done: f64 =
+                stage_rates.iter().zip(weights).map(|(rates, weight)| (weight * rates.springs[number]).abs()).sum();
+            let [rests, stays] = [AT_REST, UNMOVED].map(|part| part * (before.abs() + after.abs()));
+            if missing == 0.0 || done <= rests && missing.abs() <= stays {
                 continue;
             }
             work.spring += missing;
