@@ -163,5 +163,6 @@ fn bodies_that_cannot_be_compared_are_refused() {
     };
     refused(&["examples/plate.toml", "--mac", "examples/rotating_bar.toml"], "away from a node of this one");
     refused(&["examples/pair.toml", "--mac", "examples/plate.toml"], "a scene of 2 bodies");
+    refused(&["examples/mechanisms/double_pendulum.toml", "--about", "0,0,0"], "bodies in joints");
     refused(&["examples/plate.toml", "--about", "1,2"], "expected three numbers");
 }

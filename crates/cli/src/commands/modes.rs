@@ -51,15 +51,7 @@ impl Modes {
     pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
         output::require_file("--output", self.output.as_deref())?;
         let mut system = session.read_system(self.scene.scene.clone())?;
-        if self.mac.is_some() && system.bodies.len() > 1 {
-            return Err(CliError::Option {
-                option: "--mac",
-                found: format!("a scene of {} bodies", system.bodies.len()),
-                expected: "a scene of one body, to compare it with another one".to_owned(),
-                help: "name one: --body NAME".to_owned(),
-            }
-            .into());
-        }
+        self.check_one_body(&system)?;
         if let Some(time) = self.time {
             check_time(&system, time)?;
         }
@@ -83,6 +75,19 @@ impl Modes {
             pictures
         };
         if json { Ok(()) } else { output::list(&pictures) }
+    }
+
+    /// Refuses what only one body has.
+    fn check_one_body(&self, system: &System) -> Result<(), CliError> {
+        let bodies = format!("a scene of {} bodies", system.bodies.len());
+        let (option, found, expected) = if self.mac.is_some() && system.bodies.len() > 1 {
+            ("--mac", bodies, "a scene of one body, to compare it with another one")
+        } else if self.about.is_some() && system.has_connections() {
+            ("--about", bodies + " in joints", "a scene of one body, whose base turns about the point")
+        } else {
+            return Ok(());
+        };
+        Err(CliError::Option { option, found, expected: expected.to_owned(), help: "name one: --body NAME".to_owned() })
     }
 
     fn of_bodies(
