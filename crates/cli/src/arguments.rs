@@ -1,10 +1,18 @@
 //! Options that several commands have.
 
-use clap::Args;
-use flexframe::linearize::LinearSettings;
+pub mod values;
 
+use std::error::Error;
+
+use clap::Args;
+use flexframe::campbell::CampbellError;
+use flexframe::linearize::LinearSettings;
+use model::BuildError;
+use scene::{Flexible, SceneError, System};
+
+use crate::arguments::values::{angular_velocity, finite, mode_count};
+use crate::cli_error::CliError;
 use crate::scene_input::SceneInput;
-use crate::values::{angular_velocity, finite};
 
 #[derive(Debug, Args)]
 pub struct SceneArgs {
@@ -13,6 +21,34 @@ pub struct SceneArgs {
     /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
     #[arg(long)]
     pub json: bool,
+}
+
+/// A number of modes in the place of the scene's.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct ModeCountArgs {
+    /// Number of flexible modes, instead of the scene's.
+    #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
+    flexible: Option<usize>,
+}
+
+impl ModeCountArgs {
+    pub fn set(self, system: &mut System) {
+        for scene in &mut system.bodies {
+            scene.modes.flexible = self.flexible.map_or(scene.modes.flexible, Flexible::Count);
+        }
+    }
+
+    /// The refusal of a number of modes, at the option where that has replaced what the scene says.
+    pub fn refusal(self, error: CampbellError) -> Box<dyn Error> {
+        match (error, self.flexible) {
+            (CampbellError::Build(BuildError::Scene(SceneError::Invalid { at, found, expected, help })), Some(_))
+                if at.key == "modes.flexible" =>
+            {
+                CliError::Option { option: "--flexible", found, expected, help }.into()
+            }
+            (error, _) => error.into(),
+        }
+    }
 }
 
 /// The state that a linear model is about.

@@ -15,7 +15,6 @@ mod session;
 mod signals;
 mod solver_input;
 mod threads;
-mod values;
 
 use std::process::ExitCode;
 use std::sync::Arc;

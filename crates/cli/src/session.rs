@@ -3,16 +3,15 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use flexframe::campbell::CampbellError;
 use flexframe::modes;
 use flexframe::outputs::{OutputError, Written, outputs_of_scene};
 use flexframe::plausible;
 use flexframe::run::RunSettings;
-use model::{BuildError, Builder};
-use scene::{Flexible, Scene, SceneError, System};
+use model::Builder;
+use scene::{Scene, System};
 use slepc::files_of_folder;
 
-use crate::cli_error::CliError;
+use crate::arguments::ModeCountArgs;
 use crate::output;
 use crate::progress::Bar;
 use crate::scene_input::SceneInput;
@@ -45,15 +44,13 @@ impl Session {
     }
 
     /// A scene of one body, or of bodies in joints; of several that nothing ties one has to be named.
-    pub fn read_one(&self, input: SceneInput, flexible: Option<usize>) -> Result<System, Box<dyn Error>> {
+    pub fn read_one(&self, input: SceneInput, modes: ModeCountArgs) -> Result<System, Box<dyn Error>> {
         let mut system = input.clone().read_system()?;
         if !system.has_connections() && system.bodies.len() > 1 {
             system = input.read()?.into();
         }
         self.tell_doubts(&system);
-        for scene in &mut system.bodies {
-            scene.modes.flexible = flexible.map_or(scene.modes.flexible, Flexible::Count);
-        }
+        modes.set(&mut system);
         Ok(system)
     }
 
@@ -79,18 +76,6 @@ impl Session {
 
 /// Kind of file that export and report take.
 pub const RESULTS: &str = "a results file of `flexframe run`";
-
-/// The refusal of a number of modes, at the option where that has replaced what the scene says.
-pub fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Error> {
-    match (error, flexible) {
-        (CampbellError::Build(BuildError::Scene(SceneError::Invalid { at, found, expected, help })), Some(_))
-            if at.key == "modes.flexible" =>
-        {
-            CliError::Option { option: "--flexible", found, expected, help }.into()
-        }
-        (error, _) => error.into(),
-    }
-}
 
 /// The folder asked for, or one named after the scene.
 pub fn folder(scene: &Scene, output: Option<PathBuf>) -> Result<PathBuf, OutputError> {

@@ -7,13 +7,12 @@ use clap::Args;
 use flexframe::campbell::{self, AboutRest, CampbellSettings, Speeds, SystemCampbellSettings};
 use flexframe::outputs::outputs_of_scenes;
 use flexframe::run;
-use scene::Flexible;
 
-use crate::arguments::{FileArgs, SceneArgs};
+use crate::arguments::values::{about_rest, axis, positive, speeds};
+use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
 use crate::cli_error::CliError;
 use crate::output;
-use crate::session::{Session, folder, of_option};
-use crate::values::{about_rest, axis, mode_count, positive, speeds};
+use crate::session::{Session, folder};
 
 /// Find natural frequencies against spin speed: table, CSV and Campbell diagram, with critical speeds.
 ///
@@ -50,9 +49,8 @@ pub struct Campbell {
     /// frequency at the highest speed is off by 1 % without), always, or never.
     #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = about_rest)]
     about_rest: AboutRest,
-    /// Number of flexible modes, instead of the scene's.
-    #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
-    flexible: Option<usize>,
+    #[command(flatten)]
+    modes: ModeCountArgs,
     /// Folder for campbell.csv, critical_speeds.csv and the diagram [default: out/<name of the scene file>].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -62,18 +60,10 @@ pub struct Campbell {
 
 impl Campbell {
     pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
-        let Self { scene: SceneArgs { scene, json }, axis, joint, speeds, orders, about_rest, flexible, output, files } =
+        let Self { scene: SceneArgs { scene, json }, axis, joint, speeds, orders, about_rest, modes, output, files } =
             self;
         output::require_file("--output", output.as_deref())?;
-        let mut system = scene.clone().read_system()?;
-        if system.bodies.len() > 1 && !system.has_connections() {
-            system = session.read(scene)?.into();
-        } else {
-            session.tell_doubts(&system);
-        }
-        if let Some(count) = flexible {
-            system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
-        }
+        let system = session.read_one(scene, modes)?;
         let Some(scene) = system.bodies.first() else { return Err(run::RunError::NoBody.into()) };
         let folder = folder(scene, output)?;
         outputs_of_scenes(&system.bodies, &session.builder, files.overwrite).claim(&campbell::files(&folder))?;
@@ -90,7 +80,7 @@ impl Campbell {
             let settings = CampbellSettings { axis, speeds, orders, about_rest };
             campbell::campbell(scene, &session.builder, &folder, &settings, |p| session.bar.campbell(p))
         };
-        let report = report.map_err(|error| of_option(error, flexible))?;
+        let report = report.map_err(|error| modes.refusal(error))?;
         drop(session.bar);
         output::print(&report, json)
     }

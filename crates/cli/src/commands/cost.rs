@@ -8,10 +8,10 @@ use clap::Args;
 use flexframe::cost::{self, CostSettings};
 use flexframe::outputs::outputs_of_scenes;
 
+use crate::arguments::values::{patience, positive};
 use crate::arguments::{FileArgs, SceneArgs};
 use crate::output;
 use crate::session::{Session, folder};
-use crate::values::{patience, positive};
 
 /// Measure error and computing time on a scene, for every scheme at many steps.
 #[derive(Debug, Args)]

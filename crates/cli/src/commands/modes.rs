@@ -10,23 +10,22 @@ use flexframe::report::OfBodies;
 use flexframe::system_modes::{self, ModesOfSystems};
 use flexframe::{figures, mode_shapes, run};
 use model::Model;
-use scene::{Flexible, Scene, System};
+use scene::{Scene, System};
 
-use crate::arguments::{FileArgs, SceneArgs};
+use crate::arguments::values::{at_time, point};
+use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
 use crate::cli_error::CliError;
 use crate::output;
-use crate::session::{Session, of_option};
+use crate::session::Session;
 use crate::solver_input::SolverInput;
-use crate::values::{at_time, mode_count, point};
 
 /// Find natural frequencies and mode shapes of a scene's body.
 #[derive(Debug, Args)]
 pub struct Modes {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Number of flexible modes, instead of the scene's.
-    #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
-    flexible: Option<usize>,
+    #[command(flatten)]
+    modes: ModeCountArgs,
     /// The point that a base turns about, in the frame of the mesh, for effective moments of inertia [default: the support of a
     /// held body, the center of mass of a free one].
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
@@ -55,9 +54,7 @@ impl Modes {
         if let Some(time) = self.time {
             check_time(&system, time)?;
         }
-        if let Some(count) = self.flexible {
-            system.bodies.iter_mut().for_each(|scene| scene.modes.flexible = Flexible::Count(count));
-        }
+        self.modes.set(&mut system);
         if let Some(to) = self.solver.take_of(&system.bodies, &mut session.builder, session.signals.slepc())? {
             return session.write_only(&system.bodies[0], &to, self.files.overwrite);
         }
@@ -122,7 +119,7 @@ impl Modes {
 
     fn of_body(&self, scene: &Scene, session: &mut Session) -> Result<(Model, ModesReport), Box<dyn Error>> {
         modes::modes(scene, &session.builder, self.about, |p| session.bar.build(p))
-            .map_err(|error| of_option(error.into(), self.flexible))
+            .map_err(|error| self.modes.refusal(error.into()))
     }
 
     /// Modes of each system that joints make, and of the bodies that none ties.
@@ -132,7 +129,7 @@ impl Modes {
         session: &mut Session,
     ) -> Result<(ModesOfSystems, Vec<PathBuf>), Box<dyn Error>> {
         let models = system_modes::build(system, &session.builder, |p| session.bar.build(p))
-            .map_err(|error| of_option(error.into(), self.flexible))?;
+            .map_err(|error| self.modes.refusal(error.into()))?;
         let systems = system_modes::system_modes(system, &models, self.time)?;
         let mut pictures = Vec::new();
         if let Some(folder) = &self.output {

@@ -8,9 +8,9 @@ use flexframe::given_file::GivenFile;
 use flexframe::new_scene;
 
 use crate::arguments::FileArgs;
+use crate::arguments::values::positive;
 use crate::output;
 use crate::session::Session;
-use crate::values::positive;
 
 /// Write a first scene of a mesh, with comments, that runs as it is.
 #[derive(Debug, Args)]

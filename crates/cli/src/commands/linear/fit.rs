@@ -8,11 +8,11 @@ use flexframe::fit::{self, FitError, FitSettings};
 use flexframe::outputs::{Written, outputs_of_scenes};
 use scene::{Measured, Scene};
 
-use crate::arguments::{FileArgs, SceneArgs};
+use crate::arguments::values::positive;
+use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
 use crate::cli_error::CliError;
 use crate::output;
-use crate::session::{Session, of_option};
-use crate::values::{mode_count, positive};
+use crate::session::Session;
 
 /// Fit parameters of a body to measured frequencies, with intervals of confidence.
 ///
@@ -33,9 +33,8 @@ pub struct Fit {
     /// Standard deviation of the measured frequencies, relative to each, such as 0.01, of those that have none in the table.
     #[arg(long, value_name = "PART", value_parser = positive)]
     deviation: Option<f64>,
-    /// Number of flexible modes, instead of the scene's.
-    #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
-    flexible: Option<usize>,
+    #[command(flatten)]
+    modes: ModeCountArgs,
     /// The scene with the fitted parameters, in the folder of the scene file [default: what to set is printed].
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -45,9 +44,9 @@ pub struct Fit {
 
 impl Fit {
     pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
-        let Self { scene: SceneArgs { scene, json }, measured, parameters, deviation, flexible, output, files } = self;
+        let Self { scene: SceneArgs { scene, json }, measured, parameters, deviation, modes, output, files } = self;
         output::require_file("--output", output.as_deref())?;
-        let system = session.read_one(scene, flexible)?;
+        let system = session.read_one(scene, modes)?;
         if let Some(output) = &output {
             let mut outputs = outputs_of_scenes(&system.bodies, &session.builder, files.overwrite);
             if let Some(measured) = &measured {
@@ -60,7 +59,7 @@ impl Fit {
         let settings = FitSettings { parameters, measured, deviation };
         let mut report =
             fit::fit(&system, &session.builder, &settings, |p| session.bar.build(p)).map_err(|error| match error {
-                FitError::Build(error) => of_option(error.into(), flexible),
+                FitError::Build(error) => modes.refusal(error.into()),
                 error => error.into(),
             })?;
         if let Some(output) = &output {

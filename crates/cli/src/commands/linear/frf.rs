@@ -8,10 +8,10 @@ use flexframe::frequencies::Frequencies;
 use flexframe::frf::{self, FrfSettings};
 use flexframe::outputs::outputs_of_scenes;
 
+use crate::arguments::values::{frequencies, positive};
 use crate::arguments::{FileArgs, LinearArgs, SceneArgs};
 use crate::output;
 use crate::session::{Session, folder};
-use crate::values::{frequencies, positive};
 
 /// Compute frequency responses of points and joints to loads: table, CSV and chart.
 ///

@@ -8,10 +8,10 @@ use flexframe::frequencies::Frequencies;
 use flexframe::gradient::{self, GradientError, GradientSettings};
 use flexframe::outputs::outputs_of_scenes;
 
-use crate::arguments::{FileArgs, SceneArgs};
+use crate::arguments::values::frequencies;
+use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
 use crate::output;
-use crate::session::{Session, folder, of_option};
-use crate::values::{frequencies, mode_count};
+use crate::session::{Session, folder};
 
 /// Find the rates of frequencies, effective masses and static displacements with the numbers that a body is made with.
 ///
@@ -31,9 +31,8 @@ pub struct Gradient {
     /// count in all. Of one body they are sums over the modes that are kept, with the damping of the scene.
     #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies)]
     frequencies: Option<Frequencies>,
-    /// Number of flexible modes, instead of the scene's.
-    #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
-    flexible: Option<usize>,
+    #[command(flatten)]
+    modes: ModeCountArgs,
     /// Folder for gradient.csv and, of responses, gradient_frf.csv [default: out/<name of the scene file>].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -43,16 +42,16 @@ pub struct Gradient {
 
 impl Gradient {
     pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
-        let Self { scene: SceneArgs { scene, json }, parameters, frequencies, flexible, output, files } = self;
+        let Self { scene: SceneArgs { scene, json }, parameters, frequencies, modes, output, files } = self;
         output::require_file("--output", output.as_deref())?;
-        let system = session.read_one(scene, flexible)?;
+        let system = session.read_one(scene, modes)?;
         let folder = folder(&system.bodies[0], output)?;
         let settings = GradientSettings { parameters, frequencies };
         outputs_of_scenes(&system.bodies, &session.builder, files.overwrite)
             .claim(&gradient::files(&folder, &settings))?;
         let report = gradient::gradient(&system, &session.builder, &folder, &settings, |p| session.bar.build(p));
         let report = report.map_err(|error| match error {
-            GradientError::Build(error) => of_option(error.into(), flexible),
+            GradientError::Build(error) => modes.refusal(error.into()),
             error => error.into(),
         })?;
         drop(session.bar);

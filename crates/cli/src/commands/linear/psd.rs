@@ -8,10 +8,10 @@ use flexframe::given_file::GivenFile;
 use flexframe::outputs::Outputs;
 use flexframe::psd::{self, PsdSettings};
 
+use crate::arguments::values::{band, positive};
 use crate::arguments::{AboutArgs, FileArgs, SceneArgs};
 use crate::output;
 use crate::session::{Session, folder};
-use crate::values::{band, positive};
 
 /// Compute the response to stationary random inputs: root mean squares, apparent frequencies, CSV and chart.
 ///

@@ -10,9 +10,9 @@ use flexframe::outputs::{Outputs, Written};
 use flexframe::srs::{self, SrsSettings};
 
 use crate::arguments::FileArgs;
+use crate::arguments::values::{finite, frequencies};
 use crate::output;
 use crate::session::Session;
-use crate::values::{finite, frequencies};
 
 /// Find shock response spectra of a base motion: CSV, and a diagram (docs/method/shock.md).
 ///

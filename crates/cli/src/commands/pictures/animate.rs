@@ -10,11 +10,11 @@ use flexframe::outputs::{Written, outputs_of_results, outputs_of_scenes};
 use scene::Scene;
 
 use crate::arguments::FileArgs;
+use crate::arguments::values::{finite, view};
 use crate::cli_error::CliError;
 use crate::output;
 use crate::scene_input::SceneInput;
 use crate::session::Session;
-use crate::values::{finite, view};
 
 /// Draw a scene or a results file as a moving picture: a GIF, or a film.
 ///

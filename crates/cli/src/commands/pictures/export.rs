@@ -9,9 +9,9 @@ use flexframe::given_file::GivenFile;
 use flexframe::run::RunProgress;
 
 use crate::arguments::FileArgs;
+use crate::arguments::values::finite;
 use crate::output;
 use crate::session::{RESULTS, Session};
-use crate::values::finite;
 
 /// Write a results file, finished or not, as a table, or as fields for ParaView.
 #[derive(Debug, Args)]
