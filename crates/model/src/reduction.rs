@@ -1,12 +1,9 @@
 //! From the finite-element model of a scene to the reduced body: a survey, a decision, and the reduction.
 
 pub(crate) mod about;
-mod answer;
-pub(crate) mod backbones;
-mod bent;
+pub(crate) mod bent;
 mod damping;
 mod decide;
-pub(crate) mod manifold;
 pub(crate) mod measured;
 pub(crate) mod mesh_model;
 pub(crate) mod meshed;

@@ -31,15 +31,15 @@ struct Group {
 
 impl<'a> Histories<'a> {
     pub fn new(case: &'a Case) -> Self {
+        if case.loads.len() < 2 {
+            return Self { courses: Vec::new() };
+        }
         let mut histories: Vec<&History> = Vec::new();
         for load in case.loads {
             let history = load.history().unwrap_or(&History::Constant);
             if !histories.contains(&history) {
                 histories.push(history);
             }
-        }
-        if case.loads.len() < 2 {
-            return Self { courses: Vec::new() };
         }
         let courses = Course::aligned(&histories, case.end, case.costly_histories());
         Self { courses: histories.into_iter().zip(courses).collect() }

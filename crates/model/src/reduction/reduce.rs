@@ -7,9 +7,9 @@ use modal::{Answer, Modes};
 use scene::key_path;
 
 use crate::error::BuildError;
-use crate::reduction::answer::WithAnswer;
+use crate::reduction::bent::answer::WithAnswer;
+use crate::reduction::bent::manifold::LargeDeflection;
 use crate::reduction::decide::Decision;
-use crate::reduction::manifold::LargeDeflection;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
 use crate::reduction::physics;

@@ -8,7 +8,7 @@ use scene::Choice;
 
 use crate::building::progress::BuildProgress;
 use crate::error::BuildError;
-use crate::reduction::backbones::backbones;
+use crate::reduction::bent::backbones::backbones;
 use crate::reduction::mesh_model::MeshModel;
 use crate::reduction::modal_model::ModalModel;
 use crate::reduction::physics;
