@@ -36,6 +36,14 @@ impl JointCoordinates {
         [self.turn, self.turn_rate, self.slide, self.slide_rate]
     }
 
+    /// One of them, with its rate.
+    pub(crate) fn along(&self, coordinate: Coordinate) -> [f64; 2] {
+        match coordinate {
+            Coordinate::Turn => [self.turn, self.turn_rate],
+            Coordinate::Slide => [self.slide, self.slide_rate],
+        }
+    }
+
     /// The angle at a time after, as far as the rate tells.
     pub(crate) fn turn_after(&self, time: f64) -> f64 {
         self.turn + time * self.turn_rate

@@ -54,8 +54,6 @@ impl StageRates {
             self.springs[joint] += power.spring;
         }
         self.elements.copy_from_slice(&stage.element_powers);
-        let of_elements = self.springs.iter_mut().skip(self.joints.len());
-        of_elements.zip(&self.elements).for_each(|(spring, element)| *spring = element.spring);
         stage.find_joint_forces(lambda);
         for (b, rates) in self.bodies.iter_mut().enumerate() {
             rates.copy_from_slice(stage.evaluations[b].rates.slow());

@@ -95,8 +95,8 @@ impl SystemMotion {
             self;
         let joints = joint_works.len();
         for (number, before) in room.spring_energies.iter().enumerate() {
-            let summed: f64 =
-                stage_rates.iter().zip(weights).map(|(rates, weight)| weight * rates.springs[number]).sum();
+            let works = stage_rates.iter().zip(weights).map(|(rates, weight)| weight * rates.spring(number));
+            let summed: f64 = works.clone().sum();
             let (after, markers, work) = match number.checked_sub(joints) {
                 None => {
                     let joint = &system.connections.joints[number];
@@ -109,8 +109,7 @@ impl SystemMotion {
             };
             let missing = before - after - summed;
             // What rests on its spring has less energy than what Newton's method leaves of the spring's.
-            let done: f64 =
-                stage_rates.iter().zip(weights).map(|(rates, weight)| (weight * rates.springs[number]).abs()).sum();
+            let done: f64 = works.map(f64::abs).sum();
             let [rests, stays] = [AT_REST, UNMOVED].map(|part| part * (before.abs() + after.abs()));
             if missing == 0.0 || done <= rests && missing.abs() <= stays {
                 continue;
@@ -131,7 +130,8 @@ impl SystemMotion {
 /// Energy of the springs of a joint.
 fn energy_of(joint: &Joint, coordinates: &JointCoordinates) -> f64 {
     let of_force = |(coordinate, force): (Coordinate, &JointForce)| {
-        force.energy(if coordinate == Coordinate::Turn { coordinates.turn } else { coordinates.slide })
+        let [x, _] = coordinates.along(coordinate);
+        force.energy(x)
     };
     joint.forces().map(of_force).sum()
 }

@@ -15,7 +15,7 @@ pub(in crate::system) struct StageRates {
     pub(super) joints: Vec<JointWork>,
     /// Powers of the force elements.
     pub(super) elements: Vec<JointWork>,
-    /// Powers of the springs whose energy is known: of each joint, then of each element.
+    /// Powers of the springs of each joint whose energy is known: without characteristics.
     pub(super) springs: Vec<f64>,
     /// y', with the forces of the joints.
     pub(super) y: Vec<f64>,
@@ -28,7 +28,7 @@ impl StageRates {
             bodies: vec![[0.0; 20]; flexible.len()],
             joints: vec![JointWork::default(); joints],
             elements: vec![JointWork::default(); elements],
-            springs: vec![0.0; joints + elements],
+            springs: vec![0.0; joints],
             y: vec![0.0; flexible.iter().map(|modes| 6 + modes).sum()],
         }
     }
@@ -40,6 +40,14 @@ impl StageRates {
         self.y.copy_from_slice(&other.y);
         self.elements.copy_from_slice(&other.elements);
         self.springs.copy_from_slice(&other.springs);
+    }
+
+    /// Power of the springs whose energy is known: of each joint, then of each element.
+    pub(super) fn spring(&self, number: usize) -> f64 {
+        match number.checked_sub(self.joints.len()) {
+            None => self.springs[number],
+            Some(element) => self.elements[element].spring,
+        }
     }
 
     /// Refuses those of another system, and numbers that are not finite.

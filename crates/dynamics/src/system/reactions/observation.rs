@@ -24,9 +24,10 @@ impl SystemMotion {
         let of_rows = self.reactions[rows.clone()].iter().zip(&first.constraints.own_rates[rows]);
         out.drive_power = of_rows.map(|(lambda, rate)| -lambda * rate).sum();
         for (coordinate, force) in joint.forces() {
-            let (at, effort) = match coordinate {
-                Coordinate::Turn => ([coordinates.turn, coordinates.turn_rate], &mut out.turn_effort),
-                Coordinate::Slide => ([coordinates.slide, coordinates.slide_rate], &mut out.slide_effort),
+            let at = coordinates.along(coordinate);
+            let effort = match coordinate {
+                Coordinate::Turn => &mut out.turn_effort,
+                Coordinate::Slide => &mut out.slide_effort,
             };
             let forces = force.at(at, times);
             *effort = forces.sum();

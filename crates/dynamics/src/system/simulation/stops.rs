@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use crate::system::joint::coordinate::Coordinate;
 use crate::system::radau::SystemMotion;
 
 impl SystemMotion {
@@ -14,11 +13,7 @@ impl SystemMotion {
         let Self { first, system, start, .. } = self;
         let (mut names, mut shortest) = (Vec::new(), f64::INFINITY);
         for (number, (joint, coordinate, force)) in system.connections.joint_forces().enumerate() {
-            let at = &start.joints[joint];
-            let [x, rate] = match coordinate {
-                Coordinate::Turn => [at.turn, at.turn_rate],
-                Coordinate::Slide => [at.slide, at.slide_rate],
-            };
+            let [x, rate] = start.joints[joint].along(coordinate);
             let Some(stops) = force.stops.filter(|_| [x, x + h * rate].iter().any(|x| force.is_at_stop(*x))) else {
                 continue;
             };
