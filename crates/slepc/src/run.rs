@@ -49,7 +49,9 @@ pub(crate) fn drive(
 ) -> Result<(), SlepcError> {
     let (mpirun, python) = (named(MPIRUN, "mpirun"), named(PYTHON, "python3"));
     let mut program = ForeignProgram::new(&mpirun, folder).args(["-n", &ranks.to_string()]).arg(&python);
-    program = program.arg(folder.join(DRIVER_FILE));
+    // Open MPI keeps its own files in a folder that all runs of a user share, and a run that ends may remove it under one that
+    // begins.
+    program = program.arg(folder.join(DRIVER_FILE)).env("TMPDIR", folder);
     if std::env::var_os("OMP_NUM_THREADS").is_none() {
         // The ranks are the parallelism.
         program = program.env("OMP_NUM_THREADS", "1");

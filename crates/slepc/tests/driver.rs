@@ -41,7 +41,9 @@ fn solve(eigenvalues: &[f64], modes: usize) -> (Vec<f64>, Value) {
     fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/driver.py"), folder.path().join("driver.py")).unwrap();
     let python = std::env::var("FLEXFRAME_MPI_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let mut command = Command::new("mpirun");
-    let output = command.args(["-n", "2", &python]).arg(folder.path().join("driver.py")).output().unwrap();
+    // A folder of its own for the files of Open MPI, as the library gives it: the tests run at the same time.
+    command.args(["-n", "2", &python]).arg(folder.path().join("driver.py")).env("TMPDIR", folder.path());
+    let output = command.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let answer: Value = serde_json::from_slice(&fs::read(folder.path().join("modes.json")).unwrap()).unwrap();
     let found = answer["eigenvalues"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
