@@ -82,6 +82,11 @@ pub enum SetupError {
         "the joints cannot be closed at the beginning: \"{joint}\" stays open by {left:.3e} and its rate by {rate:.3e}; put its bodies so that its markers meet, give velocities that the joints allow, or remove a joint that contradicts the others"
     )]
     NotAssembled { joint: Box<str>, left: f64, rate: f64 },
+    /// An equation of a joint from outside whose derivatives are not its own.
+    #[error(
+        "at the beginning a derivative of the equation {equation} of the joint \"{joint}\" is {found:e}, and its differences give {expected:e}; let `by_position` and `by_turn` be the derivatives of `residual`, in the axes of the first marker"
+    )]
+    NotItsDerivative { joint: Box<str>, equation: Box<str>, found: f64, expected: f64 },
     /// Bodies that find no shape for a start without ringing.
     #[error("at the relaxed start: {0}; or take `relaxed = false`")]
     NotRelaxed(#[from] SteadyError),

@@ -76,6 +76,7 @@ pub use system::element::{ForceElement, SetDirection, Stored};
 pub use system::joint::coordinate::{Coordinate, JointCoordinates};
 pub use system::joint::coupling::{CoupledCoordinate, Coupling};
 pub use system::joint::drive::JointDrive;
+pub use system::joint::equation::{EquationValue, JointEquation, JointEquationFn, RelativePlace};
 pub use system::joint::force::{Friction, JointForce, Stops};
 pub use system::joint::law::{JointLaw, JointLawFn};
 pub use system::joint::observation::{JointObservation, LineObservation};

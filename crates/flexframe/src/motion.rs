@@ -11,7 +11,7 @@ use dynamics::{
 };
 use scene::Scene;
 
-pub use beginning::{BeginError, Beginning, BodyForces, JointForces, MarkerForces, Moving, begin};
+pub use beginning::{BeginError, Beginning, BodyForces, JointForces, MarkerForces, Moving, OwnEquation, begin};
 
 /// A motion with steps of its own.
 #[derive(Debug, Clone)]

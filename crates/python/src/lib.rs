@@ -36,6 +36,8 @@ mod _flexframe {
     #[pymodule_export]
     use super::linear::linearized;
     #[pymodule_export]
+    use super::motion::joint_equation::JointEquation;
+    #[pymodule_export]
     use super::motion::joint_force::JointForce;
     #[pymodule_export]
     use super::motion::load::{Force, ModalForce};

@@ -124,6 +124,55 @@ def test_a_load_on_a_body_of_a_system_is_a_law():
     assert seen and pushed["joints/shoulder/angle"][-1] == pytest.approx(0.5 * first * 0.1**2, rel=1e-2)
 
 
+def off_the_point(axis):
+    def equation(position, rotation):
+        return position[axis], np.eye(3)[axis]
+
+    return equation
+
+
+def off_the_axis(axis):
+    def equation(position, rotation):
+        return rotation[2, axis], np.zeros(3), np.cross(rotation[:, axis], [0, 0, 1])
+
+    return equation
+
+
+# Independent reference: the hinge of the scene.
+def test_equations_of_a_joint_do_what_a_hinge_does():
+    own = arm()
+    own["joints"][1] = {"name": "elbow", "locked": [], "between": ["upper.tip", "fore.root"], "axis": [0, 0, 1]}
+    equations = [off_the_point(axis) for axis in range(3)] + [off_the_axis(axis) for axis in range(2)]
+    equations = [flexframe.JointEquation("elbow", equation) for equation in equations]
+    found = flexframe.Simulation(flexframe.System(flexframe.Scene(own)), joint_equations=equations).run()
+    expected = flexframe.Simulation(flexframe.System(flexframe.Scene(arm()))).run()
+    assert np.ptp(expected["joints/elbow/angle"]) > 1.0
+    for path in ["bodies/fore/position", "bodies/fore/angular_velocity"]:
+        assert found[path] == pytest.approx(expected[path], abs=1e-5)
+    # The reaction of the equations is that of the hinge.
+    assert found["joints/elbow/force"] == pytest.approx(expected["joints/elbow/force"], abs=1e-3)
+
+
+def test_equations_that_do_not_fit_are_refused():
+    own = arm(end=0.2)
+    own["joints"][1] = {"name": "elbow", "locked": [], "between": ["upper.tip", "fore.root"], "axis": [0, 0, 1]}
+    system = flexframe.System(flexframe.Scene(own))
+
+    def broken(position, rotation):
+        raise ValueError("no wire")
+
+    for equation, words in [
+        (lambda position, rotation: (position[0], [0, 1, 0]), "by_position"),
+        (lambda position, rotation: position[0], "a residual and its derivative"),
+        (lambda position, rotation: (position[0], [1, 0]), "derivative by the position"),
+        (broken, "no wire"),
+    ]:
+        with pytest.raises((flexframe.InputError, ValueError), match=words):
+            flexframe.Simulation(system, joint_equations=[flexframe.JointEquation("elbow", equation)])
+    with pytest.raises(flexframe.InputError, match="wrist"):
+        flexframe.Simulation(system, joint_equations=[flexframe.JointEquation("wrist", off_the_point(0))])
+
+
 def drifting(elements, end=1.0):
     """Two links that drift apart and tumble, with a spring or a bushing of the scene."""
     scene = arm(end=end, loads=()) | {"joints": []} | elements

@@ -5,7 +5,7 @@ pub mod drag;
 pub mod magnet;
 pub mod midpoint;
 pub mod peak;
-pub mod slot;
+pub mod wire;
 
 #[cfg(test)]
 mod body {

@@ -167,8 +167,11 @@ impl RunDescription {
                     return Err(DescriptionError::Element { element: format!("{element:?}") });
                 }
                 let has_law = |joint: &&Joint| joint.forces().any(|(_, force)| !force.laws.is_empty());
-                match run.joints.iter().find(has_law) {
-                    Some(joint) => Err(DescriptionError::Law { joint: joint.name.clone() }),
+                if let Some(joint) = run.joints.iter().find(has_law) {
+                    return Err(DescriptionError::Law { joint: joint.name.clone() });
+                }
+                match run.joints.iter().find(|joint| joint.equations().next().is_some()) {
+                    Some(joint) => Err(DescriptionError::Equation { joint: joint.name.clone() }),
                     None => Ok(()),
                 }
             }

@@ -12,7 +12,9 @@ use crate::system::element::ForceElement;
 use crate::system::joint::Joint;
 use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::coupling::Coupling;
+use crate::system::joint::equation::JointEquation;
 use crate::system::joint::law::JointLaw;
+use crate::system::joint::row::Row;
 use crate::system::marker::Marker;
 
 /// Bodies and what connects them.
@@ -99,6 +101,19 @@ impl System {
             Coordinate::Slide => &mut joint.slide_force,
         };
         force.get_or_insert_default().laws.push(law);
+        Ok(self)
+    }
+
+    /// The same with one more equation at a joint.
+    ///
+    /// # Errors
+    /// [`SetupError`] for a joint that is not there.
+    pub fn with_equation(mut self, joint: usize, equation: Arc<dyn JointEquation>) -> Result<Self, SetupError> {
+        let Some(joint) = self.connections.joints.get_mut(joint) else {
+            let what = "the number of the joint of an equation";
+            return Err(SetupError::Value { what, found: joint as f64, expected: "that of a joint, from 0" });
+        };
+        joint.rows.push(Row::Outside(equation));
         Ok(self)
     }
 

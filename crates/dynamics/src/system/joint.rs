@@ -4,6 +4,7 @@ pub(crate) mod change;
 pub(crate) mod coordinate;
 pub(crate) mod coupling;
 pub(crate) mod drive;
+pub(crate) mod equation;
 pub(crate) mod force;
 pub(crate) mod law;
 pub(crate) mod observation;
@@ -11,9 +12,12 @@ pub(crate) mod row;
 pub(crate) mod work;
 pub(crate) mod wrench;
 
+use std::sync::Arc;
+
 use crate::history::History;
 use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::drive::JointDrive;
+use crate::system::joint::equation::JointEquation;
 use crate::system::joint::force::JointForce;
 use crate::system::joint::row::Row;
 use crate::system::marker::Marker;
@@ -136,6 +140,13 @@ impl Joint {
         Self { drive: Some(drive), ..self }
     }
 
+    /// The same joint with one more equation, from outside.
+    #[must_use]
+    pub fn with_equation(mut self, equation: Arc<dyn JointEquation>) -> Self {
+        self.rows.push(Row::Outside(equation));
+        self
+    }
+
     /// The same joint with a moment about its z axis, or a force along it.
     #[must_use]
     pub fn with_force(mut self, along: Coordinate, force: JointForce) -> Self {
@@ -154,10 +165,21 @@ impl Joint {
             .flatten()
     }
 
+    /// True if its drive turns it.
+    pub fn is_turned_by_drive(&self) -> bool {
+        self.rows.iter().any(|row| matches!(row, Row::DrivenRotation))
+    }
+
     /// Histories over time: of its drive and its motors.
     pub fn histories(&self) -> impl Iterator<Item = &History> {
         let motors = self.forces().filter_map(|(_, force)| force.motor.as_ref());
         self.drive.iter().chain(motors).map(|drive| &drive.history)
+    }
+
+    /// Its equations from outside, with the markers of each.
+    pub(crate) fn equations(&self) -> impl Iterator<Item = (&[Marker; 2], &dyn JointEquation)> {
+        self.groups()
+            .flat_map(|(markers, rows)| rows.iter().filter_map(Row::outside).map(move |equation| (markers, equation)))
     }
 
     /// Number of its rows: on its markers, then on its parts.

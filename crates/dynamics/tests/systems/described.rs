@@ -15,7 +15,7 @@ use crate::flexible::rod;
 
 /// A flexible rod on a hinge with a spring, and a rigid rod on a second one, which a gear couples with the first; a spring and a
 /// bushing to the ground.
-fn run() -> RunOfSystem {
+pub fn run() -> RunOfSystem {
     let conrod = rod();
     let inertia = Matrix3::from_diagonal(&Vector3::new(1e-3, 1.0 / 12.0, 1.0 / 12.0));
     let rod = ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();

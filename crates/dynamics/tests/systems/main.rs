@@ -5,6 +5,7 @@ mod coordinates;
 mod dense;
 mod described;
 mod elements;
+mod equation;
 mod flexible;
 mod hard;
 mod linear;

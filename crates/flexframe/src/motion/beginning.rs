@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use dynamics::{
-    Coordinate, DescribedBody, ForceElement, JointLaw, MarkerForce, MarkerLaw, Method, Physics, PointShapes, Rows,
-    RunOfBody, RunOfSystem, Setup, SharedLoad, Simulation, StepControl, SystemScheme, SystemSimulation,
+    Coordinate, DescribedBody, ForceElement, JointEquation, JointLaw, MarkerForce, MarkerLaw, Method, Physics,
+    PointShapes, Rows, RunOfBody, RunOfSystem, Setup, SharedLoad, Simulation, StepControl, SystemScheme,
+    SystemSimulation,
 };
 use model::{BuildError, Model, StartError, Tied, tie_models};
 use scene::{End, Scene, System};
@@ -45,6 +46,15 @@ pub struct MarkerForces {
     pub law: Arc<dyn MarkerLaw>,
 }
 
+/// An equation from outside at a joint, by the number of the joint in the scene.
+#[derive(Debug, Clone)]
+pub struct OwnEquation {
+    /// The joint.
+    pub joint: usize,
+    /// The equation.
+    pub equation: Arc<dyn JointEquation>,
+}
+
 /// How the motions of a scene begin: at first as the scene says.
 #[derive(Debug, Clone)]
 pub struct Beginning {
@@ -64,6 +74,8 @@ pub struct Beginning {
     pub bodies: Vec<BodyForces>,
     /// Laws from outside at joints.
     pub laws: Vec<JointForces>,
+    /// Equations from outside at joints.
+    pub equations: Vec<OwnEquation>,
     /// Laws from outside between markers.
     pub marker_laws: Vec<MarkerForces>,
     /// True if all bodies are stepped as one system, also those that nothing ties; laws between markers want that, too.
@@ -101,6 +113,7 @@ impl Beginning {
             tied_rows: Rows::Interval(RowTimes::new(&system.bodies[0]).of(1)),
             bodies: models.iter().map(forces).collect(),
             laws: Vec::new(),
+            equations: Vec::new(),
             marker_laws: Vec::new(),
             together: false,
         })
@@ -151,12 +164,17 @@ fn elements_in_rows(system: &System, tied: &Tied) -> Vec<usize> {
 /// # Errors
 /// [`BuildError`], also for laws at joints and markers that are not there.
 pub(super) fn tied(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Vec<Tied>, BuildError> {
-    let Beginning { laws, marker_laws, together, .. } = beginning;
+    let Beginning { laws, equations, marker_laws, together, .. } = beginning;
     let all = tie_models(system, models, *together || !marker_laws.is_empty())?;
     let with_laws = |mut tied: Tied| -> Result<Tied, BuildError> {
         for JointForces { joint, along, law } in laws {
             if let Some(here) = tied.joints.iter().position(|number| number == joint) {
                 tied.system = tied.system.with_law(here, *along, Arc::clone(law))?;
+            }
+        }
+        for OwnEquation { joint, equation } in equations {
+            if let Some(here) = tied.joints.iter().position(|number| number == joint) {
+                tied.system = tied.system.with_equation(here, Arc::clone(equation))?;
             }
         }
         let mut elements = tied.system.elements().to_vec();

@@ -13,6 +13,7 @@ from flexframe import _flexframe
 from flexframe._flexframe import (
     Body,
     Force,
+    JointEquation,
     JointForce,
     MarkerForce,
     ModalForce,
@@ -47,6 +48,7 @@ __all__ = [
     "Force",
     "Gradient",
     "InputError",
+    "JointEquation",
     "JointForce",
     "LinearModel",
     "MarkerForce",

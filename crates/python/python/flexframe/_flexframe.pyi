@@ -13,6 +13,7 @@ __all__ = [
     "VERSION",
     "Body",
     "Force",
+    "JointEquation",
     "JointForce",
     "MarkerForce",
     "ModalForce",
@@ -257,6 +258,25 @@ class System:
         """Names of its joints."""
 
 @final
+class JointEquation:
+    """One more equation of a joint: a point on a wire, a cam, a rod of one length. The joint keeps it at zero, beside what it holds
+    otherwise (`locked = []` holds nothing).
+
+    `equation` is a function of the place of the second end as the first sees it, in the axes of the first: the position (3), and
+    the matrix that takes components along the axes of the second end to those along the axes of the first (3x3). It returns the
+    residual, a length or an angle; its derivative by the position (3); and, if it depends on the axes, its derivative by a small turn
+    of the second end (3). The three are compared at the beginning. It must depend on nothing but the place.
+    """
+
+    def __new__(
+        cls,
+        joint: str,
+        equation: Callable[[NDArray[np.float64], NDArray[np.float64]], Any],
+        *,
+        name: str | None = None,
+    ) -> JointEquation: ...
+
+@final
 class JointForce:
     """A moment about the turn of a joint, or a force along its slide, by a law: a function of the time, the coordinate (rad or a
     length) and its rate that returns a number. It is positive on the second body along the coordinate, as the motor of a scene.
@@ -315,8 +335,9 @@ class MarkerForce:
 class Simulation:
     """A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
 
-    For a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, `marker_forces` one of
-    MarkerForce, and states are dicts from names of bodies; all bodies are stepped together, also those that nothing ties.
+    For a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, `joint_equations` one of
+    JointEquation, `marker_forces` one of MarkerForce, and states are dicts from names of bodies; all bodies are stepped together, also
+    those that nothing ties.
 
     An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event ends the
     run at the end of the step. Ctrl-C raises KeyboardInterrupt within some thousand steps, and the simulation may go on.
@@ -336,6 +357,7 @@ class Simulation:
         loads: Sequence[Force | ModalForce] | dict[str, Sequence[Force | ModalForce]] | None = None,
         *,
         joint_forces: Sequence[JointForce] | None = None,
+        joint_equations: Sequence[JointEquation] | None = None,
         marker_forces: Sequence[MarkerForce] | None = None,
         scene: Scene | None = None,
     ) -> Simulation: ...

@@ -56,12 +56,7 @@ impl JointForce {
 impl JointForce {
     /// The law at a joint of a system.
     pub(crate) fn of(&self, py: Python<'_>, system: &scene::System, faults: &Faults) -> PyResult<JointForces> {
-        let names = || system.joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>().join(", ");
-        let Some(number) = system.joints.iter().position(|joint| joint.name == self.joint) else {
-            let expected = if system.joints.is_empty() { "none: there are no joints".to_owned() } else { names() };
-            let help = "name a joint of [[joints]]";
-            return Err(wrong_input(py, "joint", &format!("`{}`", self.joint), &format!("one of {expected}"), help));
-        };
+        let number = joint_number(py, &self.joint, system)?;
         let known = system.joints[number].kind.coordinates();
         let along = match (self.along, known) {
             (None, [only]) => *only,
@@ -89,6 +84,15 @@ impl JointForce {
         };
         Ok(JointForces { joint: number, along, law: Arc::new(law) })
     }
+}
+
+/// The number of a joint of a system, by its name.
+pub(crate) fn joint_number(py: Python<'_>, name: &str, system: &scene::System) -> PyResult<usize> {
+    let names = || system.joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>().join(", ");
+    system.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
+        let expected = if system.joints.is_empty() { "none: there are no joints".to_owned() } else { names() };
+        wrong_input(py, "joint", &format!("`{name}`"), &format!("one of {expected}"), "name a joint of [[joints]]")
+    })
 }
 
 struct PythonLaw {

@@ -19,6 +19,7 @@ use pyo3::types::PyDict;
 use crate::body::Body;
 use crate::errors::{add_note, exception, exception_of, wrong_input};
 use crate::motion::faults::Faults;
+use crate::motion::joint_equation::JointEquation;
 use crate::motion::joint_force::JointForce;
 use crate::motion::load::{listed, load_of};
 use crate::motion::marker_force::MarkerForce;
@@ -64,8 +65,9 @@ impl Reached {
 
 /// A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
 ///
-/// For a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, `marker_forces` one of
-/// MarkerForce, and states are dicts from names of bodies; all bodies are stepped together, also those that nothing ties.
+/// For a System, `loads` is a dict from names of bodies to lists, `joint_forces` a list of JointForce, `joint_equations` one of
+/// JointEquation, `marker_forces` one of MarkerForce, and states are dicts from names of bodies; all bodies are stepped together, also
+/// those that nothing ties.
 ///
 /// An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event
 /// ends the run at the end of the step. Ctrl-C raises KeyboardInterrupt within some thousand steps, and the simulation
@@ -302,12 +304,13 @@ fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
 #[pymethods]
 impl Simulation {
     #[new]
-    #[pyo3(signature = (body, loads=None, *, joint_forces=None, marker_forces=None, scene=None))]
+    #[pyo3(signature = (body, loads=None, *, joint_forces=None, joint_equations=None, marker_forces=None, scene=None))]
     fn new(
         py: Python<'_>,
         body: Bound<'_, PyAny>,
         loads: Option<Bound<'_, PyAny>>,
         joint_forces: Option<Vec<Py<JointForce>>>,
+        joint_equations: Option<Vec<Py<JointEquation>>>,
         marker_forces: Option<Vec<Py<MarkerForce>>>,
         scene: Option<Py<Scene>>,
     ) -> PyResult<Self> {
@@ -359,6 +362,9 @@ impl Simulation {
                 }
             }
             beginning.laws.push(of);
+        }
+        for equation in joint_equations.unwrap_or_default() {
+            beginning.equations.push(equation.get().of(py, &system, &faults)?);
         }
         for force in marker_forces.unwrap_or_default() {
             beginning.marker_laws.push(force.get().of(py, &system, &faults)?);

@@ -107,7 +107,6 @@ impl Check<'_> {
         let key = join(key, "locked");
         let (expected, help) =
             ("some of \"x\", \"y\", \"z\", \"rx\", \"ry\" and \"rz\", each once", "e.g. `locked = [\"x\", \"rz\"]`");
-        self.require(!names.is_empty(), &key, expected, help)?;
         let mut all = [false; 6];
         for (i, name) in names.iter().enumerate() {
             let axis = NAMES.iter().position(|known| known == name);

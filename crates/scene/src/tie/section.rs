@@ -88,7 +88,7 @@ pub(crate) struct JointSection {
     pub name: Option<String>,
     /// The kind: the motions that it leaves free.
     pub kind: Option<JointKind>,
-    /// Motions that a joint without a kind holds: some of "x", "y", "z", "rx", "ry", "rz".
+    /// Motions that a joint without a kind holds: some of "x", "y", "z", "rx", "ry", "rz"; `[]` holds nothing.
     pub locked: Option<Vec<String>>,
     /// Two ends: "BODY.MARKER", "ground.MARKER" or "ground".
     pub between: Vec<String>,

@@ -87,6 +87,13 @@ fn joints_without_a_kind_and_couplings_are_read_and_refused() {
     let system = parse(&text).unwrap();
     let locked = Locked { displacements: [true; 3], turns: [true, true, false] };
     assert_eq!((system.joints[0].kind, JointKind::Revolute.locked()), (JointKind::Other(locked), locked));
+    let nothing = parse(&format!(
+        "{HEAD}[bodies.hub]\n{RIGID}markers = {{ left = {{ at = [0, 0, 0] }} }}\n\
+         [[joints]]\nlocked = []\nbetween = ['ground', 'hub.left']\naxis = [0, 0, 1]\n{TIME}"
+    ))
+    .unwrap();
+    let none = Locked { displacements: [false; 3], turns: [false; 3] };
+    assert_eq!((nothing.joints[0].kind, nothing.joints[0].kind.coordinates()), (JointKind::Other(none), &[][..]));
     assert_eq!(system.couplings[0].kind, CouplingKind::Rack { joints: [0, 1], radius: 0.5 });
     let [rack, screw] = [0, 1].map(|i| &*system.couplings[i].name);
     assert_eq!(

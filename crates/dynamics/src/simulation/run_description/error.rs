@@ -20,6 +20,11 @@ pub enum DescriptionError {
         "the joint \"{joint}\" has a law that only its program knows; only its springs, dampers, stops, friction and motors can be written as data"
     )]
     Law { joint: String },
+    /// An equation of one's own.
+    #[error(
+        "the joint \"{joint}\" has an equation that only its program knows; only joints of a kind can be written as data"
+    )]
+    Equation { joint: String },
     /// A speed that a program adds to a drive.
     #[error("the drive has a speed that its program adds; only its own history can be written as data")]
     AddedSpeed,

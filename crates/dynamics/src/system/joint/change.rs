@@ -3,9 +3,12 @@
 //! Eqs. (L5) of `docs/method/systems.md`: an axis a of a marker that turns by ψ (global) changes by ψ×a.
 
 use nalgebra::Vector3;
+use rigid_kin::transformation_matrix;
 
 use crate::system::joint::coordinate::{Coordinate, SHORT};
+use crate::system::joint::equation::{DIFFERENCE, JointEquation, frame, length_of, wrench_between};
 use crate::system::joint::row::Row;
+use crate::system::joint::wrench::RowWrench;
 use crate::system::marker::MarkerPlace;
 
 /// A small displacement and a small turn of a marker, global.
@@ -44,6 +47,27 @@ impl WrenchChange {
         Self::turning(0.5 * (cross_change(a, b) - cross_change(c, d)))
     }
 
+    /// Of an equation from outside: by differences of fourth order.
+    fn of_equation(equation: &dyn JointEquation, places: [&MarkerPlace; 2], changes: [&FrameChange; 2]) -> Self {
+        let frames = places.map(frame);
+        let length = length_of(&(frames[1].0 - frames[0].0));
+        let size = |change: &FrameChange| (change.displacement.norm() / length).max(change.turn.norm());
+        let step = DIFFERENCE / size(changes[0]).max(size(changes[1])).max(f64::MIN_POSITIVE);
+        let at = |factor: f64| {
+            let moved = |k: usize| {
+                let ((position, axes), FrameChange { displacement, turn }) = (frames[k], changes[k]);
+                (position + displacement * factor, transformation_matrix(&(turn * -factor)) * axes)
+            };
+            wrench_between(equation, [moved(0), moved(1)])
+        };
+        let [near, far] = [step, 2.0 * step].map(|by| [at(by), at(-by)]);
+        let slope = |of: &dyn Fn(&RowWrench) -> Vector3<f64>| {
+            let [near, far] = [&near, &far].map(|[after, before]| of(after) - of(before));
+            (near * 8.0 - far) / (12.0 * step)
+        };
+        Self { force: slope(&|wrench| wrench.force), moments: [0, 1].map(|k| slope(&|wrench| wrench.moments[k])) }
+    }
+
     /// On i and on j: forces and moments.
     pub fn on_both(&self) -> [[Vector3<f64>; 2]; 2] {
         [[-self.force, self.moments[0]], [self.force, self.moments[1]]]
@@ -62,14 +86,15 @@ fn cross_change([a, da]: Axis, [b, db]: Axis) -> Vector3<f64> {
 impl Row {
     /// How its wrench changes, with the value of the joint's drive as it is.
     pub(crate) fn wrench_change(
-        self,
+        &self,
         places: [&MarkerPlace; 2],
         driven: f64,
         changes: [&FrameChange; 2],
     ) -> WrenchChange {
         let of_i = |axis: usize| axis_of(places[0], changes[0], axis);
         let of_j = |axis: usize| axis_of(places[1], changes[1], axis);
-        match self {
+        match *self {
+            Self::Outside(ref equation) => WrenchChange::of_equation(&**equation, places, changes),
             Self::Point { of, axis } => WrenchChange::along(places, changes, of, axis),
             Self::Perpendicular(i, j) => WrenchChange::turning(cross_change(of_i(i), of_j(j))),
             Self::Rotation(axis) => {

@@ -11,8 +11,11 @@ use crate::scheme::mode_limit::stable_step_of_modes;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
+use crate::system::joint::equation::misfit;
 use crate::system::radau::SystemMotion;
 use crate::system::relaxed::RelaxError;
+use crate::vibration::system::CommonSpin;
+use crate::vibration::system::configuration::Configuration;
 
 /// Residuals of positions beyond this part of the size of the system are not closed.
 const CLOSED: f64 = 1e-9;
@@ -115,6 +118,7 @@ pub(super) fn assemble(
     relaxed: bool,
     [size, end]: [f64; 2],
 ) -> Result<Vec<Assembled>, SetupError> {
+    refuse_wrong_derivatives(motion)?;
     let open = motion.largest_gap().map_err(|_| SINGULAR)?;
     let done = if relaxed { motion.relax() } else { motion.assemble().map_err(RelaxError::from) };
     let [left, rates] = match (done, open) {
@@ -143,4 +147,20 @@ pub(super) fn assemble(
         })
     };
     states.iter().enumerate().map(changed).collect()
+}
+
+/// Refuses equations from outside whose derivatives are not theirs.
+fn refuse_wrong_derivatives(motion: &SystemMotion) -> Result<(), SetupError> {
+    let joints = motion.system().joints();
+    let outside = joints.iter().flat_map(|joint| joint.equations().map(move |equation| (joint, equation)));
+    let mut outside = outside.peekable();
+    if outside.peek().is_none() {
+        return Ok(());
+    }
+    let at = Configuration::of(motion, &CommonSpin::REST);
+    outside.try_for_each(|(joint, (markers, equation))| {
+        let Some([found, expected]) = misfit(equation, at.places(markers).each_ref()) else { return Ok(()) };
+        let (joint, equation) = (joint.name.as_str().into(), format!("{equation:?}").into());
+        Err(SetupError::NotItsDerivative { joint, equation, found, expected })
+    })
 }

@@ -134,7 +134,7 @@ fn axis_of(motion: &TiedMotion, settings: &SystemCampbellSettings) -> Result<Axi
     let joints = of_motion.system().joints();
     let is_meant = |joint: &dynamics::Joint| match &settings.joint {
         Some(name) => joint.name == *name,
-        None => joint.rows.contains(&dynamics::Row::DrivenRotation),
+        None => joint.is_turned_by_drive(),
     };
     let meant: Vec<usize> = (0..joints.len()).filter(|number| is_meant(&joints[*number])).collect();
     match (&settings.axis, &settings.joint, &meant[..]) {

@@ -1,6 +1,6 @@
 //! The common spin of bodies in joints: that which is asked for, or that of the drive that turns all of them.
 
-use dynamics::{CommonSpin, Row, SteadyError, SteadyState, SystemMotion};
+use dynamics::{CommonSpin, SteadyError, SteadyState, SystemMotion};
 use nalgebra::Vector3;
 
 /// The spin that equations are about.
@@ -52,7 +52,7 @@ impl SystemSpin {
 fn of_drives(motion: &SystemMotion) -> Vec<(String, CommonSpin)> {
     let joints = motion.system().joints().iter().enumerate();
     joints
-        .filter(|(_, joint)| joint.rows.contains(&Row::DrivenRotation))
+        .filter(|(_, joint)| joint.is_turned_by_drive())
         .filter_map(|(number, joint)| {
             let drive = joint.drive.as_ref()?;
             let time = motion.time();
