@@ -47,7 +47,7 @@ impl WrenchChange {
         Self::turning(0.5 * (cross_change(a, b) - cross_change(c, d)))
     }
 
-    /// Of an equation from outside: by differences of fourth order.
+    /// The change of an equation from outside, by differences of fourth order.
     fn of_equation(equation: &dyn JointEquation, places: [&MarkerPlace; 2], changes: [&FrameChange; 2]) -> Self {
         let frames = places.map(frame);
         let length = length_of(&(frames[1].0 - frames[0].0));

@@ -20,7 +20,7 @@ pub struct RelativePlace {
 /// An equation of a joint where its markers are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EquationValue {
-    /// What the joint keeps at zero. It should be a length or an angle, so that its rounding is that of other joints.
+    /// The value that the joint keeps at zero. It should be a length or an angle, so that its rounding is that of other joints.
     pub residual: f64,
     /// Its derivative by the position of the second marker.
     pub by_position: Vector3<f64>,
@@ -108,7 +108,8 @@ pub(crate) fn misfit(equation: &dyn JointEquation, places: [&MarkerPlace; 2]) ->
     let pairs: [[f64; 2]; 6] = std::array::from_fn(pair);
     let off = |[stated, differences]: &[f64; 2]| (stated - differences).abs();
     let scale = pairs.iter().flatten().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-    pairs.into_iter().filter(|pair| !(off(pair) <= FITS * scale)).max_by(|a, b| off(a).total_cmp(&off(b)))
+    let fits = |pair: &[f64; 2]| off(pair) <= FITS * scale;
+    pairs.into_iter().filter(|pair| !fits(pair)).max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
 /// Part of the largest derivative by which one may differ from its difference.
