@@ -27,7 +27,7 @@ pub struct Modes {
     #[command(flatten)]
     modes: ModeCountArgs,
     /// The point that a base turns about, in the frame of the mesh, for effective moments of inertia [default: the support of a
-    /// held body, the center of mass of a free one].
+    /// held body, the center of mass of a free one]; of bodies in joints a global one [default: the first place on the ground].
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     about: Option<[f64; 3]>,
     /// Compare the shapes with those of another body in the same place (MAC): a scene, a body file, or another mesh for this scene.
@@ -77,14 +77,11 @@ impl Modes {
     /// Refuses what only one body has.
     fn check_one_body(&self, system: &System) -> Result<(), CliError> {
         let bodies = format!("a scene of {} bodies", system.bodies.len());
-        let (option, found, expected) = if self.mac.is_some() && system.bodies.len() > 1 {
-            ("--mac", bodies, "a scene of one body, to compare it with another one")
-        } else if self.about.is_some() && system.has_connections() {
-            ("--about", bodies + " in joints", "a scene of one body, whose base turns about the point")
-        } else {
+        if self.mac.is_none() || system.bodies.len() == 1 {
             return Ok(());
-        };
-        Err(CliError::Option { option, found, expected: expected.to_owned(), help: "name one: --body NAME".to_owned() })
+        }
+        let (expected, help) = ("a scene of one body, to compare it with another one", "name one: --body NAME");
+        Err(CliError::Option { option: "--mac", found: bodies, expected: expected.to_owned(), help: help.to_owned() })
     }
 
     fn of_bodies(
@@ -130,7 +127,7 @@ impl Modes {
     ) -> Result<(ModesOfSystems, Vec<PathBuf>), Box<dyn Error>> {
         let models = system_modes::build(system, &session.builder, |p| session.bar.build(p))
             .map_err(|error| self.modes.refusal(error.into()))?;
-        let systems = system_modes::system_modes(system, &models, self.time)?;
+        let systems = system_modes::system_modes(system, &models, self.time, self.about)?;
         let mut pictures = Vec::new();
         if let Some(folder) = &self.output {
             make_folder(folder)?;

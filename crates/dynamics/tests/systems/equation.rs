@@ -103,7 +103,7 @@ fn a_free_pair_on_a_rod_keeps_momenta_and_energy() {
     assert!((distance - 0.8).abs() < 1e-11, "{distance}");
 }
 
-/// Second implementation: a screw as an equation of a cylindrical joint between two tumbling bodies, and as a coupling.
+/// Independent reference: another implementation: a screw as an equation of a cylindrical joint between two tumbling bodies, and as a coupling.
 #[test]
 fn an_equation_of_turns_does_what_a_screw_does() {
     let lead = 0.5;

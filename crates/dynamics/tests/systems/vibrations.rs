@@ -50,6 +50,56 @@ fn a_double_pendulum_has_its_two_frequencies() {
     }
 }
 
+/// Closed form: in a push of the ground along x two hanging rods carry pᵀM⁻¹p of their 2m, p = (3/2, 1/2) m l and M as above; in a turn
+/// of the ground about the hinge all of their inertia; along the rods nothing.
+#[test]
+fn a_double_pendulum_carries_its_part_of_the_mass() {
+    let mut mechanism = Mechanism::default();
+    let [upper, lower] = [0.0, -1.0].map(|top| mechanism.link(rod(0.3, top, 1.0)));
+    mechanism.hinge([None, Some(upper)], [0.3, 0.0]);
+    mechanism.hinge([Some(upper), Some(lower)], [0.3, -1.0]);
+    let motion = mechanism.rests();
+    let steady = motion.steady_state(&CommonSpin::REST).unwrap();
+    let found = steady.participation(&motion, None).unwrap().unwrap();
+    assert_eq!(found.participation.about, Vector3::new(0.3, 0.0, 0.0));
+    for (omega, sign) in found.circular_frequencies.iter().zip([-1.0, 1.0]) {
+        near(omega.powi(2), 3.0 * (1.0 + sign * 2.0 / 7f64.sqrt()) * GRAVITY, 1e-12);
+    }
+    let carried = |i: usize| found.participation.effective_masses().iter().map(|of| of[i]).sum::<f64>();
+    // det M = 4/9 − 1/4 = 7/36 and pᵀ adj(M) p = 9/4·1/3 − 2·3/4·1/2 + 1/4·4/3 = 1/3.
+    near(carried(0), 36.0 / 21.0, 1e-12);
+    assert!(carried(1) < 1e-20 && found.participation.rigid == [0.0; 6]);
+    near(found.participation.whole[0], 2.0, 1e-14);
+    // About the hinge: 1/3 of the upper rod, 1/12 + (3/2)² of the lower one.
+    near(found.participation.whole[5], 1.0 / 3.0 + 1.0 / 12.0 + 2.25, 1e-12);
+    near(carried(5), found.participation.whole[5], 1e-12);
+    near(1.0 - found.participation.missed()[0], 36.0 / 42.0, 1e-12);
+}
+
+/// Closed form: a system that the ground does not hold has no part in its motions; one on a ball that nothing resists moves apart from its
+/// vibrations.
+#[test]
+fn motions_that_nothing_resists_carry_mass_apart_from_the_vibrations() {
+    let mut free = Mechanism::default();
+    let [first, second] = [0.0, -1.0].map(|top| free.link(rod(0.0, top, 1.0)));
+    free.hinge([Some(first), Some(second)], [0.0, -1.0]);
+    let motion = free.rests();
+    let steady = motion.steady_state(&CommonSpin::REST).unwrap();
+    assert_eq!(steady.participation(&motion, None).unwrap(), None);
+    // Without weight a rod on a hinge has no vibration: 3/4 of its mass stay behind in a push along x.
+    let mut held = Mechanism::default();
+    let rod = held.link(Link { loads: Vec::new(), ..rod(0.0, 0.0, 1.0) });
+    held.hinge([None, Some(rod)], [0.0; 2]);
+    let motion = held.rests();
+    let steady = motion.steady_state(&CommonSpin::REST).unwrap();
+    let found = steady.participation(&motion, Some(Vector3::new(0.0, -1.0, 0.0))).unwrap().unwrap();
+    assert!(found.circular_frequencies.is_empty() && found.participation.factors.is_empty());
+    near(found.participation.rigid[0], 0.75, 1e-12);
+    // About its end: the turn of the ground moves the hinge along by −1 as well; (1/3 − 1/2)²/(1/3) of 1/3.
+    near(found.participation.whole[5], 1.0 / 3.0, 1e-12);
+    near(found.participation.rigid[5], (1.0_f64 / 6.0).powi(2) * 3.0, 1e-12);
+}
+
 /// Closed form: two cranks of mass m and length l with a coupler of mass M, which goes without turning:
 /// ω² = (m + M)/(2m/3 + M) g/l.
 #[test]

@@ -8,10 +8,12 @@ mod report;
 mod shape;
 mod stiffening;
 
-use dynamics::CommonSpin;
+use dynamics::{CommonSpin, SteadyError, SteadyState};
 use model::{BuildError, BuildProgress, Builder, Model};
+use nalgebra::Vector3;
 use scene::System;
 
+use crate::commands::modes::CarriedReport;
 pub use advice::{AdviceOnSystems, SystemAdvice};
 use assembled::tied_motions_at;
 pub(crate) use assembled::{TiedMotion, tied_motions};
@@ -35,7 +37,8 @@ pub fn build(
 }
 
 /// Finds the vibrations of all bodies of a scene that joints, springs or bushings tie together, at rest where they stand at the
-/// start, or where a run has them at a time; the bodies are deformed as their loads ask, and drives hold still.
+/// start, or where a run has them at a time; the bodies are deformed as their loads ask, and drives hold still. Rotations of the ground,
+/// for effective moments of inertia, are `about` a global point, or about the first place that the ground holds.
 ///
 /// # Errors
 /// [`SystemModesError`].
@@ -43,12 +46,20 @@ pub fn system_modes(
     system: &System,
     models: &[Model],
     time: Option<f64>,
+    about: Option<[f64; 3]>,
 ) -> Result<Vec<SystemModes>, SystemModesError> {
     let motions = match time {
         Some(time) if time > 0.0 => tied_motions_at(system, models, time)?,
         _ => tied_motions(system, models)?,
     };
-    motions.iter().map(|motion| of_motion(system, motion)).collect()
+    let of_system = |motion: &TiedMotion| {
+        let (mut modes, steady) = of_motion(system, motion)?;
+        let participation = steady.participation(motion.simulation.motion(), about.map(Vector3::from));
+        let participation = participation.map_err(|source| failed(system, motion, source))?;
+        modes.report.carried = participation.map(|found| CarriedReport::of_system(found, about.is_some()));
+        Ok(modes)
+    };
+    motions.iter().map(of_system).collect()
 }
 
 /// Advice on the systems of a scene: by their vibrations at rest, and by what the forces of the start do to these.
@@ -62,7 +73,7 @@ pub fn system_advice(
 ) -> Result<Vec<SystemAdvice>, SystemModesError> {
     let models = build(system, builder, progress)?;
     let of_system = |motion: &TiedMotion| {
-        let modes = of_motion(system, motion)?;
+        let (modes, _) = of_motion(system, motion)?;
         let flexible = motion.bodies.iter().copied().filter(|body| models[*body].body.flexible() > 0);
         let flexible = body_names(system, &flexible.collect::<Vec<_>>());
         let scene = &system.bodies[motion.bodies[0]];
@@ -72,11 +83,14 @@ pub fn system_advice(
     tied_motions(system, &models)?.iter().map(of_system).collect()
 }
 
-fn of_motion(system: &System, motion: &TiedMotion) -> Result<SystemModes, SystemModesError> {
-    let scene = &system.bodies[motion.bodies[0]];
-    let failed = |source| SystemModesError::Steady { scene: scene.path.clone(), source };
+fn of_motion(system: &System, motion: &TiedMotion) -> Result<(SystemModes, SteadyState), SystemModesError> {
+    let failed = |source| failed(system, motion, source);
     let steady = motion.simulation.motion().steady_state(&CommonSpin::REST).map_err(failed)?;
     let vibrations = steady.linear.vibrations().map_err(failed)?;
     let report = SystemModesReport::new(system, motion, &steady, &vibrations);
-    Ok(SystemModes { bodies: motion.bodies.clone(), states: steady.states(), vibrations, report })
+    Ok((SystemModes { bodies: motion.bodies.clone(), states: steady.states(), vibrations, report }, steady))
+}
+
+fn failed(system: &System, motion: &TiedMotion, source: SteadyError) -> SystemModesError {
+    SystemModesError::Steady { scene: system.bodies[motion.bodies[0]].path.clone(), source }
 }

@@ -129,7 +129,7 @@ impl Linearization {
     }
 
     /// Orthonormal bases of the coordinates that are not rigid motions without forces, and of those that are.
-    fn without_rigid(&self) -> Result<(Mat<f64>, Mat<f64>), SteadyError> {
+    pub(crate) fn without_rigid(&self) -> Result<(Mat<f64>, Mat<f64>), SteadyError> {
         let (size, count) = (self.size(), self.rigid);
         if count == 0 {
             return Ok((Mat::identity(size, size), Mat::zeros(size, 0)));

@@ -8,7 +8,7 @@ use scene::{Choice, Damping, Scene, System};
 use serde::Serialize;
 
 use super::assembled::TiedMotion;
-use crate::commands::modes::{ModesReport, frequency_unit};
+use crate::commands::modes::{CarriedReport, ModesReport, frequency_unit};
 use crate::files::json;
 use crate::report::quantity;
 
@@ -68,6 +68,9 @@ pub struct SystemModesReport {
     pub warnings: Vec<String>,
     /// Vibrations, slowest first.
     pub modes: Vec<SystemModeReport>,
+    /// The mass that each carries in a motion of the ground, if that holds the system.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub carried: Option<CarriedReport>,
 }
 
 /// One vibration.
@@ -129,6 +132,7 @@ impl SystemModesReport {
             mechanisms: steady.linear.rigid,
             rigid_modes,
             warnings: Vec::new(),
+            carried: None,
             modes: found.modes.iter().map(mode).collect(),
             elements: motion.elements.clone(),
             bodies,
@@ -287,6 +291,7 @@ impl fmt::Display for SystemModesReport {
             let more = self.modes.len() - SHOWN;
             writeln!(f, "  {more} more, most of them of static shapes; --json has them all")?;
         }
+        self.carried.iter().try_for_each(|carried| write!(f, "{carried}"))?;
         self.warnings.iter().try_for_each(|warning| write!(f, "\n  warning  {warning}"))
     }
 }
