@@ -221,6 +221,12 @@ impl<'d> Node<'d> {
         self.children().find(leads_there)
     }
 
+    /// Keys that a table of `bodies` has in the text, and that belong to other tables in a scene of one body.
+    pub fn keys_of_others(&self) -> impl Iterator<Item = &'static str> {
+        let is_of_several = self.document.body.is_some() && self.path == "body";
+        OF_A_BODY.into_iter().chain(OUTPUT_OF_A_BODY).filter(move |_| is_of_several)
+    }
+
     /// The last key without quotes; empty for the root and for entries of a list.
     pub fn name(&self) -> &'d str {
         self.key.map_or("", |key| key.get_ref())

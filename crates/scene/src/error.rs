@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::document::NotToml;
+use crate::document::{NotToml, OF_A_BODY};
 use crate::text::example::example;
 use crate::text::place::Place;
 use crate::text::shorten::shorten;
@@ -113,8 +113,8 @@ impl SceneError {
             Self::TooLarge { .. } => Some(TOO_LARGE_CURE.to_owned()),
             Self::NotUtf8 { .. } => Some(NOT_UTF8_CURE.to_owned()),
             Self::Syntax { message, .. } => Some(syntax_help(message).to_owned()),
-            Self::UnknownKey { key: found, known, .. } | Self::UnknownName { found, known, .. } => {
-                Some(unknown_help(found, known))
+            Self::UnknownKey { at, key: found, known } | Self::UnknownName { at, found, known } => {
+                Some(unknown_help(at, found, known))
             }
             Self::MissingKey { at, .. } => Some(missing_help(at)),
             Self::Invalid { help, .. } => Some(help.clone()),
@@ -138,11 +138,24 @@ impl From<NotToml> for SceneError {
 
 fn show_unknown(at: &Place, what: &str, found: &str, known: &[&str]) -> String {
     let shown = shorten(found);
-    let question = nearest(found, known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-    at.show(&format!("unknown {what} `{shown}`{question}"), &unknown_help(found, known))
+    let near = nearest(found, known).filter(|_| !stands_beside_the_body(at, found));
+    let question = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    at.show(&format!("unknown {what} `{shown}`{question}"), &unknown_help(at, found, known))
 }
 
-fn unknown_help(found: &str, known: &[&str]) -> String {
+/// True for a table in `[body]` that is one of the scene.
+fn stands_beside_the_body(at: &Place, found: &str) -> bool {
+    OF_A_BODY.contains(&found) && at.key.strip_prefix("body.") == Some(found)
+}
+
+fn unknown_help(at: &Place, found: &str, known: &[&str]) -> String {
+    if stands_beside_the_body(at, found) {
+        let is_list = ["constraints", "loads"].contains(&found);
+        let table = if is_list { format!("[[{found}]]") } else { format!("[{found}]") };
+        return format!(
+            "write it beside [body], as {table}; only bodies of several, [bodies.NAME], have it themselves"
+        );
+    }
     match nearest(found, known) {
         Some(near) => format!("rename it to `{near}` (possible here: {})", list(known)),
         None if known.contains(&"expression") => format!(

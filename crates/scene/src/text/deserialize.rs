@@ -106,7 +106,7 @@ fn refuse_unknown_keys(table: &Node, known: &[&'static str]) -> Result<(), Scene
         Some(child) => Err(SceneError::UnknownKey {
             at: child.place_of_key().into(),
             key: child.name().to_owned(),
-            known: known.to_vec(),
+            known: known.iter().copied().chain(table.keys_of_others()).collect(),
         }),
     }
 }

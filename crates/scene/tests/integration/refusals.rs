@@ -51,6 +51,21 @@ fn keys_like_no_other() {
 }
 
 #[test]
+fn tables_beside_the_body_and_in_a_body_of_several() {
+    for (table, help) in [("modes", "as [modes]"), ("loads", "as [[loads]]")] {
+        let body = format!("[body]\n{table} = 1\n");
+        let words = [&format!("unknown key `{table}`\n"), "write it beside [body]", help];
+        refused("[body]\n", &body, table, &format!("body.{table}"), &words);
+    }
+    let text = "title = 'two'\nunits = { length = 'm', mass = 'kg', time = 's' }\n[bodies.arm]\nmesh = 'arm.msh'\nspeed = 1\n\
+                [time]\nend = 1.0\nstep = 0.1\n";
+    let error = scene::System::parse(text, "two.toml").unwrap_err().to_string();
+    for words in ["`bodies.arm.speed`: unknown key `speed`", "`markers`, `modes`", "`loads`", "`points`"] {
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+#[test]
 fn misspelt_names() {
     for (from, to, mark, key, near, known) in [
         ("\"force\"", "\"forse\"", "\"forse\"", "loads[0].kind", "force", "`force`"),
