@@ -91,6 +91,8 @@ fn bad_tables_are_refused_in_words() {
     refused("frequency,damping\n3\n", &["1 field(s) in the line", "2, one for each column"]);
     refused("frequency\n3\n2\n", &["the frequency 2.0 after 3.0", "rise"]);
     refused("frequency\n1\n2\n3\n4\n5\n6\n", &["6 entries"]);
+    // In rad/s.
+    refused("frequency\n8108.4\n", &["8108.4 in line 2, for mode 1", "off by less than 3 times", "cycles per time"]);
     refused("frequency,tip.y\n3,0\n", &["a shape of zeros"]);
     refused("frequency,nose.y\n3,1\n", &["a shape at the point `nose`", "tip"]);
     refused("frequency,tip.x,middle.x,root.x\n3,1,-3,1\n", &["MAC with the mode most like it"]);

@@ -11,6 +11,8 @@ const KEY: &str = "modes.measured";
 const ALIKE: f64 = 0.6;
 /// Least displacement of a mode at the places that are measured, relative to its largest.
 const SEEN: f64 = 0.01;
+/// A measured frequency that is this many times that of its mode is of another mode, or in other units.
+const OFF: f64 = 3.0;
 /// Rigid shapes at a point, before the flexible ones.
 const RIGID: usize = 6;
 
@@ -101,6 +103,16 @@ pub(crate) fn as_measured(
     let modes = matched(scene, measured, &seen)?;
     let mut circular_frequencies = body.circular_frequencies.clone();
     for (k, mode) in modes.into_iter().zip(&measured.modes) {
+        let (of_model, line) = (circular_frequencies[k] / std::f64::consts::TAU, mode.line);
+        let ratio = mode.frequency / of_model;
+        if !(1.0 / OFF..OFF).contains(&ratio) {
+            let (frequency, number) = (mode.frequency, k + 1);
+            let found = format!("{frequency} in line {line}, for mode {number} of the model, which has {of_model:.6}");
+            let help = "give cycles per time and not rad, let lines follow the order of the modes or have shapes, or mend the model";
+            return Err(scene
+                .refuse(KEY, found, format!("a frequency that is off by less than {OFF} times"), help)
+                .into());
+        }
         circular_frequencies[k] = std::f64::consts::TAU * mode.frequency;
         if let Some(ratio) = mode.damping_ratio {
             damping_ratios[k] = ratio;
