@@ -50,6 +50,33 @@ fn a_double_pendulum_has_its_two_frequencies() {
     }
 }
 
+/// Closed form: a rod that hangs swings with ω² = 3/2 g/l; a fast part on it that its damper keeps from swinging comes after that.
+#[test]
+fn a_fast_part_that_does_not_swing_comes_after_the_slow_vibrations() {
+    let mut mechanism = Mechanism::default();
+    let long = mechanism.link(rod(0.0, 0.0, 1.0));
+    let part = mechanism.link(Link {
+        mass: 1e-6,
+        inertia: Vector3::new(1e-9, 1e-9, 1e-9),
+        center: [0.0, -0.5],
+        angle: 0.0,
+        loads: Vec::new(),
+    });
+    mechanism.hinge([None, Some(long)], [0.0; 2]);
+    mechanism.hinge([Some(long), Some(part)], [0.0, -0.5]);
+    // 1e4 rad/s, damped three times as much as it needs not to swing.
+    let (omega, inertia) = (1e4_f64, 1e-9);
+    let (stiffness, damping) = (inertia * omega.powi(2), 6.0 * inertia * omega);
+    mechanism.with_force(JointForce { stiffness, damping, ..JointForce::default() });
+    let (_, found) = modes(&mechanism.rests(), &CommonSpin::REST);
+    assert_eq!(found.len(), 3);
+    near(found[0].circular_frequency(), (1.5 * GRAVITY).sqrt(), 1e-5);
+    for (mode, root) in found[1..].iter().zip([3.0 - 8f64.sqrt(), 3.0 + 8f64.sqrt()]) {
+        assert_eq!(mode.circular_frequency(), 0.0);
+        near(mode.growth(), -root * omega, 1e-5);
+    }
+}
+
 /// Closed form: in a push of the ground along x two hanging rods carry pᵀM⁻¹p of their 2m, p = (3/2, 1/2) m l and M as above; in a turn
 /// of the ground about the hinge all of their inertia; along the rods nothing.
 #[test]

@@ -16,7 +16,8 @@ pub struct Vibrations {
     pub rigid: Mat<f64>,
     /// Eigenvalues that are zero beside those, each of them half a motion.
     pub zeros: usize,
-    /// All others, slowest first.
+    /// All others, slowest first, by the magnitude of the eigenvalue: so shapes that damping keeps from swinging are where they would be
+    /// without it.
     pub modes: Vec<SystemMode>,
 }
 
@@ -96,9 +97,8 @@ impl Linearization {
             modes.push(self.mode(eigenvalue, coordinates));
         }
         modes.sort_by(|a, b| {
-            (a.eigenvalue.im, a.eigenvalue.norm())
-                .partial_cmp(&(b.eigenvalue.im, b.eigenvalue.norm()))
-                .unwrap_or(std::cmp::Ordering::Equal)
+            let (a, b) = (a.eigenvalue, b.eigenvalue);
+            a.norm().total_cmp(&b.norm()).then(a.im.total_cmp(&b.im))
         });
         Ok(Vibrations { rigid: &self.basis * rigid, zeros, modes })
     }
