@@ -106,6 +106,7 @@ pub fn main() -> ExitCode {
         }
     }
 }
+
 fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Error>> {
     let cache = if cli.no_cache { Cache::none() } else { Cache::of_user() };
     let builder = Builder { cache: cache.clone(), solver: None, trust_geometry: cli.trust_geometry };

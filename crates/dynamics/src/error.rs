@@ -84,9 +84,14 @@ pub enum SetupError {
     NotAssembled { joint: Box<str>, left: f64, rate: f64 },
     /// An equation of a joint from outside whose derivatives are not its own.
     #[error(
-        "at the beginning a derivative of the equation {equation} of the joint \"{joint}\" is {found:e}, and its differences give {expected:e}; let `by_position` and `by_turn` be the derivatives of `residual`, in the axes of the first marker"
+        "at the beginning {name} of the equation {equation} of the joint \"{joint}\" is {found}, and differences of its residual give {expected}; let `by_position` and `by_turn` be the derivatives of `residual`, in the axes of the first marker"
     )]
-    NotItsDerivative { joint: Box<str>, equation: Box<str>, found: f64, expected: f64 },
+    NotItsDerivative { joint: Box<str>, equation: Box<str>, name: &'static str, found: f64, expected: f64 },
+    /// An equation of a joint from outside that holds nothing where it begins.
+    #[error(
+        "at the beginning all derivatives of the equation {equation} of the joint \"{joint}\" are zero, so that it holds nothing; write it with a residual that changes there: an equation for each direction in the place of a sum of squares"
+    )]
+    NoDerivative { joint: Box<str>, equation: Box<str> },
     /// Bodies that find no shape for a start without ringing.
     #[error("at the relaxed start: {0}; or take `relaxed = false`")]
     NotRelaxed(#[from] SteadyError),

@@ -137,6 +137,11 @@ impl System {
         &self.connections.elements
     }
 
+    /// The radius of gyration of the body of a marker; of the ground, zero.
+    pub(crate) fn length_at(&self, marker: &Marker) -> f64 {
+        marker.body().map_or(0.0, |body| self.bodies[body].radius_of_gyration())
+    }
+
     /// Number of coordinates of all bodies.
     pub(crate) fn coordinates(&self) -> usize {
         self.first[self.bodies.len()]

@@ -168,6 +168,66 @@ fn a_body_on_a_rod_has_the_frequencies_of_a_double_pendulum() {
     assert!(found.iter().zip(&expected).all(|(found, expected)| (found / expected - 1.0).abs() < 1e-9));
 }
 
+/// Closed form: a bead at the lowest point of a wire of radius r swings with √(g/r), also where its markers meet but for rounding.
+#[test]
+fn a_bead_at_the_lowest_point_of_its_wire_has_its_frequency() {
+    let radius = 0.7;
+    let wire = move |RelativePlace { position, .. }: &RelativePlace| EquationValue {
+        residual: position.z - position.x.powi(2) / (2.0 * radius),
+        by_position: Vector3::new(-position.x / radius, 0.0, 1.0),
+        by_turn: Vector3::zeros(),
+    };
+    let place = [0.3, -0.1, 0.7];
+    // About (0.3, −0.1, 0.7), but for rounding.
+    let marker = [0.1 + 0.2 - 0.3, 0.0, 1e-17];
+    let markers = [Marker::on_ground(place.into(), Matrix3::identity()), on(0, marker, skew())];
+    let joint = Joint::locked("wire", markers, [false, true, false], [true; 3])
+        .with_equation(Arc::new(JointEquationFn::new("wire", wire)));
+    let turned =
+        MotionState { attitude: Attitude::from_global_to_body(&skew()).unwrap(), ..state(place, [0.0; 3], [0.0; 3]) };
+    let motion = SystemMotion::new(System::new(vec![body(GRAVITY)], vec![joint]).unwrap(), &[turned]).unwrap();
+    let found = motion.steady_state(&CommonSpin::REST).unwrap().linear.vibrations().unwrap().modes;
+    assert_eq!(found.len(), 1);
+    assert!((found[0].circular_frequency() / (GRAVITY / radius).sqrt() - 1.0).abs() < 1e-9, "{found:?}");
+}
+
+/// Independent reference: another implementation: a hinge by five equations between two moving bodies, and the hinge that is there: the
+/// frequencies of a double pendulum.
+#[test]
+fn a_hinge_of_equations_between_moving_bodies_has_the_frequencies_of_a_hinge() {
+    let about_y = || Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0);
+    let top = |body| [Marker::on_ground(Vector3::zeros(), about_y()), on(body, [0.0, 0.0, 0.4], about_y())];
+    let knee = || [on(0, [0.1, 0.0, -0.4], about_y()), on(1, [0.0, 0.0, 0.3], about_y())];
+    let mut own = Joint::new("knee", knee(), Vec::new());
+    for axis in 0..3 {
+        own = own.with_equation(Arc::new(JointEquationFn::new("point", move |place: &RelativePlace| EquationValue {
+            residual: place.position[axis],
+            by_position: Vector3::ith(axis, 1.0),
+            by_turn: Vector3::zeros(),
+        })));
+    }
+    for axis in 0..2 {
+        own = own.with_equation(Arc::new(JointEquationFn::new("axis", move |place: &RelativePlace| {
+            let column: Vector3<f64> = place.axes.column(axis).into();
+            EquationValue { residual: column.z, by_position: Vector3::zeros(), by_turn: column.cross(&Vector3::z()) }
+        })));
+    }
+    let frequencies = [own, Joint::revolute("knee", knee())].map(|knee| {
+        let joints = vec![Joint::revolute("top", top(0)), knee];
+        let system = System::new(vec![body(GRAVITY); 2], joints).unwrap();
+        // The centers hang below each other, the upper body with its knee beside its own line.
+        let states = [state([0.0, 0.0, -0.4], [0.0; 3], [0.0; 3]), state([0.1, 0.0, -1.1], [0.0; 3], [0.0; 3])];
+        let mut motion = SystemMotion::new(system, &states).unwrap();
+        motion.assemble().unwrap();
+        let found = motion.steady_state(&CommonSpin::REST).unwrap().linear.vibrations().unwrap();
+        found.modes.iter().map(|mode| mode.circular_frequency()).collect::<Vec<f64>>()
+    });
+    println!("{frequencies:?}");
+    let [own, known] = &frequencies;
+    assert_eq!((own.len(), known.len()), (2, 2));
+    assert!(own.iter().zip(known).all(|(own, known)| (own / known - 1.0).abs() < 1e-9), "{frequencies:?}");
+}
+
 fn simulated(joint: Joint, start: MotionState) -> Result<SystemSimulation, SetupError> {
     SystemSimulation::new(SystemSetup {
         system: System::new(vec![body(GRAVITY)], vec![joint]).unwrap(),
@@ -196,11 +256,26 @@ fn derivatives_that_do_not_fit_are_refused() {
     let start = || state([0.5, 0.0, 0.25], [0.0; 3], [0.0; 3]);
     assert!(simulated(parabola(2.0), start()).is_ok());
     let error = simulated(parabola(1.0), start()).unwrap_err();
-    let SetupError::NotItsDerivative { found, expected, .. } = &error else { panic!("{error}") };
-    assert!((expected / found - 2.0).abs() < 1e-6, "{error}");
+    let SetupError::NotItsDerivative { name, found, expected, .. } = &error else { panic!("{error}") };
+    assert_eq!((*name, *found), ("by_position.x", -0.5));
+    assert!((expected + 1.0).abs() < 1e-6, "{error}");
     for words in ["\"wire\"", "parabola", "by_position"] {
         assert!(error.to_string().contains(words), "{error}");
     }
+}
+
+/// Bad input: an equation that is the square of a distance, which holds nothing where it is zero.
+#[test]
+fn an_equation_without_derivatives_is_refused() {
+    let square = |RelativePlace { position, .. }: &RelativePlace| EquationValue {
+        residual: position.x.powi(2) + position.y.powi(2),
+        by_position: Vector3::new(2.0 * position.x, 2.0 * position.y, 0.0),
+        by_turn: Vector3::zeros(),
+    };
+    let joint = Joint::new("axis", [ground(), on(0, [0.0; 3], skew())], Vec::new())
+        .with_equation(Arc::new(JointEquationFn::new("square", square)));
+    let error = simulated(joint, state([0.0; 3], [0.0; 3], [0.0; 3])).unwrap_err();
+    assert!(matches!(error, SetupError::NoDerivative { .. }) && error.to_string().contains("\"axis\""), "{error}");
 }
 
 /// Bad input: an equation that is not a number at some place ends the run there, and cannot be written as data.

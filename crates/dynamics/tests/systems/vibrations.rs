@@ -77,6 +77,33 @@ fn a_fast_part_that_does_not_swing_comes_after_the_slow_vibrations() {
     }
 }
 
+/// Closed form: a turntable that only a damper resists, with a small part on a spring: in a turn of the ground about its axis the table's
+/// motion, which has no frequency, carries all but what swings: nothing of the inertia moves with the ground.
+#[test]
+fn what_only_a_damper_resists_carries_mass_apart_from_the_vibrations() {
+    let mut mechanism = Mechanism::default();
+    let link = |inertia: f64, x: f64| Link {
+        mass: 1.0,
+        inertia: Vector3::new(0.3, 0.2, inertia),
+        center: [x, 0.0],
+        angle: 0.0,
+        loads: Vec::new(),
+    };
+    let [table, part] = [(0.5, 0.0), (0.2, 0.0)].map(|(inertia, x)| mechanism.link(link(inertia, x)));
+    mechanism.hinge([None, Some(table)], [0.0; 2]);
+    mechanism.with_force(JointForce { damping: 0.1, ..JointForce::default() });
+    mechanism.hinge([Some(table), Some(part)], [0.0; 2]);
+    mechanism.with_force(JointForce { stiffness: 1e8, ..JointForce::default() });
+    let motion = mechanism.rests();
+    let steady = motion.steady_state(&CommonSpin::REST).unwrap();
+    let found = steady.participation(&motion, None).unwrap().unwrap();
+    assert_eq!(found.circular_frequencies.len(), 1, "{found:?}");
+    near(found.circular_frequencies[0].powi(2), 1e8 * (1.0 / 0.5 + 1.0 / 0.2), 1e-12);
+    let participation = &found.participation;
+    near(participation.rigid[5], 0.7, 1e-12);
+    assert!(participation.factors[0][5].powi(2) < 1e-20 && participation.missed()[5] < 1e-12, "{participation:?}");
+}
+
 /// Closed form: in a push of the ground along x two hanging rods carry pᵀM⁻¹p of their 2m, p = (3/2, 1/2) m l and M as above; in a turn
 /// of the ground about the hinge all of their inertia; along the rods nothing.
 #[test]

@@ -60,7 +60,7 @@ impl StressRecovery<'_> {
         [a, b]: [ColRef<'_, f64>; 2],
         nodal_stress: ColRef<'_, f64>,
     ) -> Result<Vec<StressError>, AssemblyError> {
-        for field in [a, b] {
+        for field in [displacement, a, b] {
             check_field(self.mesh, "fields", field.as_mat())?;
         }
         let fields = [displacement, a, b];

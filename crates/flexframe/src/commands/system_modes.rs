@@ -48,18 +48,31 @@ pub fn system_modes(
     time: Option<f64>,
     about: Option<[f64; 3]>,
 ) -> Result<Vec<SystemModes>, SystemModesError> {
-    let motions = match time {
-        Some(time) if time > 0.0 => tied_motions_at(system, models, time)?,
-        _ => tied_motions(system, models)?,
-    };
     let of_system = |motion: &TiedMotion| {
         let (mut modes, steady) = of_motion(system, motion)?;
-        let participation = steady.participation(motion.simulation.motion(), about.map(Vector3::from));
-        let participation = participation.map_err(|source| failed(system, motion, source))?;
-        modes.report.carried = participation.map(|found| CarriedReport::of_system(found, about.is_some()));
+        let found = steady.participation(motion.simulation.motion(), about.map(Vector3::from));
+        let found = found.map_err(|source| failed(system, motion, source))?;
+        modes.report.carried =
+            found.map(|found| CarriedReport::of_system(found, about.is_some(), &modes.report.frequency_unit));
         Ok(modes)
     };
-    motions.iter().map(of_system).collect()
+    motions_at(system, models, time)?.iter().map(of_system).collect()
+}
+
+/// The vibrations of a scene as [`system_modes`] has them, without what they carry: for pictures.
+///
+/// # Errors
+/// [`SystemModesError`].
+pub(crate) fn vibrations(system: &System, models: &[Model]) -> Result<Vec<SystemModes>, SystemModesError> {
+    let of_system = |motion: &TiedMotion| of_motion(system, motion).map(|(modes, _)| modes);
+    motions_at(system, models, None)?.iter().map(of_system).collect()
+}
+
+fn motions_at(system: &System, models: &[Model], time: Option<f64>) -> Result<Vec<TiedMotion>, SystemModesError> {
+    match time {
+        Some(time) if time > 0.0 => tied_motions_at(system, models, time),
+        _ => tied_motions(system, models),
+    }
 }
 
 /// Advice on the systems of a scene: by their vibrations at rest, and by what the forces of the start do to these.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use dynamics::{
     Coordinate, DescribedBody, ForceElement, JointEquation, JointLaw, MarkerForce, MarkerLaw, Method, Physics,
-    PointShapes, Rows, RunOfBody, RunOfSystem, Setup, SharedLoad, Simulation, StepControl, SystemScheme,
+    PointShapes, Rows, RunOfBody, RunOfSystem, Setup, SetupError, SharedLoad, Simulation, StepControl, SystemScheme,
     SystemSimulation,
 };
 use model::{BuildError, Model, StartError, Tied, tie_models};
@@ -162,10 +162,17 @@ fn elements_in_rows(system: &System, tied: &Tied) -> Vec<usize> {
 /// The systems of a scene, with the laws from outside.
 ///
 /// # Errors
-/// [`BuildError`], also for laws at joints and markers that are not there.
+/// [`BuildError`], also for laws and equations at joints and markers that are not there.
 pub(super) fn tied(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Vec<Tied>, BuildError> {
     let Beginning { laws, equations, marker_laws, together, .. } = beginning;
     let all = tie_models(system, models, *together || !marker_laws.is_empty())?;
+    let named = laws.iter().map(|law| law.joint).chain(equations.iter().map(|own| own.joint));
+    if let Some(joint) = named.into_iter().find(|joint| all.iter().all(|tied| !tied.joints.contains(joint))) {
+        let what = "the number of the joint of a law or an equation";
+        return Err(
+            SetupError::Value { what, found: joint as f64, expected: "that of a joint of the scene, from 0" }.into()
+        );
+    }
     let with_laws = |mut tied: Tied| -> Result<Tied, BuildError> {
         for JointForces { joint, along, law } in laws {
             if let Some(here) = tied.joints.iter().position(|number| number == joint) {

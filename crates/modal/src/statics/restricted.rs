@@ -12,7 +12,7 @@ const DEPENDENT: f64 = 1e-9;
 impl Modes {
     /// The Rayleigh–Ritz vectors of those combinations of the modes and static shapes whose amplitudes q keep `rows` q = 0 (m×nf): exact
     /// for static responses where these span the responses to the forces that hold the rows. As many of them as before, at most, are
-    /// called natural.
+    /// called natural; of modes that are combined with a static response, none.
     ///
     /// # Errors
     /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::DenseEigen`].

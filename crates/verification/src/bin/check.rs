@@ -8,8 +8,8 @@ use whole_file::{Outputs, write_whole};
 
 fn main() -> ExitCode {
     let (options, arguments): (Vec<String>, Vec<String>) =
-        std::env::args().skip(1).partition(|argument| argument == "--overwrite");
-    let [path] = arguments.as_slice() else {
+        std::env::args().skip(1).partition(|argument| argument.starts_with('-'));
+    let (true, [path]) = (options.iter().all(|option| option == "--overwrite"), arguments.as_slice()) else {
         eprintln!("usage: check FILE [--overwrite]");
         return ExitCode::FAILURE;
     };

@@ -14,8 +14,8 @@ const STIFFENED: &str = "[effects]\nlarge_deflection = false\nrefuse = false";
 
 fn main() -> ExitCode {
     let (options, arguments): (Vec<String>, Vec<String>) =
-        std::env::args().skip(1).partition(|argument| argument == "--overwrite");
-    let [directory] = arguments.as_slice() else {
+        std::env::args().skip(1).partition(|argument| argument.starts_with('-'));
+    let (true, [directory]) = (options.iter().all(|option| option == "--overwrite"), arguments.as_slice()) else {
         eprintln!("usage: nonlinear DIRECTORY [--overwrite]");
         return ExitCode::FAILURE;
     };

@@ -3,10 +3,9 @@
 //! Eqs. (L5) of `docs/method/systems.md`: an axis a of a marker that turns by ψ (global) changes by ψ×a.
 
 use nalgebra::Vector3;
-use rigid_kin::transformation_matrix;
 
 use crate::system::joint::coordinate::{Coordinate, SHORT};
-use crate::system::joint::equation::{DIFFERENCE, JointEquation, frame, length_of, wrench_between};
+use crate::system::joint::equation::{self, JointEquation, RelativePlace, derivative_changes};
 use crate::system::joint::row::Row;
 use crate::system::joint::wrench::RowWrench;
 use crate::system::marker::MarkerPlace;
@@ -47,25 +46,24 @@ impl WrenchChange {
         Self::turning(0.5 * (cross_change(a, b) - cross_change(c, d)))
     }
 
-    /// The change of an equation from outside, by differences of fourth order.
-    fn of_equation(equation: &dyn JointEquation, places: [&MarkerPlace; 2], changes: [&FrameChange; 2]) -> Self {
-        let frames = places.map(frame);
-        let length = length_of(&(frames[1].0 - frames[0].0));
-        let size = |change: &FrameChange| (change.displacement.norm() / length).max(change.turn.norm());
-        let step = DIFFERENCE / size(changes[0]).max(size(changes[1])).max(f64::MIN_POSITIVE);
-        let at = |factor: f64| {
-            let moved = |k: usize| {
-                let ((position, axes), FrameChange { displacement, turn }) = (frames[k], changes[k]);
-                (position + displacement * factor, transformation_matrix(&(turn * -factor)) * axes)
-            };
-            wrench_between(equation, [moved(0), moved(1)])
-        };
-        let [near, far] = [step, 2.0 * step].map(|by| [at(by), at(-by)]);
-        let slope = |of: &dyn Fn(&RowWrench) -> Vector3<f64>| {
-            let [near, far] = [&near, &far].map(|[after, before]| of(after) - of(before));
-            (near * 8.0 - far) / (12.0 * step)
-        };
-        Self { force: slope(&|wrench| wrench.force), moments: [0, 1].map(|k| slope(&|wrench| wrench.moments[k])) }
+    /// The change of an equation from outside. `length` is that of the bodies.
+    fn of_equation(
+        equation: &dyn JointEquation,
+        [i, j]: [&MarkerPlace; 2],
+        [of_i, of_j]: [&FrameChange; 2],
+        length: f64,
+    ) -> Self {
+        let d = j.position - i.position;
+        let moved = of_j.displacement - of_i.displacement;
+        let RowWrench { force, moments: [_, moment], .. } = equation::wrench(equation, [i, j]);
+        // As i sees it.
+        let displacement = i.axes.tr_mul(&(moved - of_i.turn.cross(&d)));
+        let turn = i.axes.tr_mul(&(of_j.turn - of_i.turn));
+        let place = RelativePlace::between([i, j]);
+        let [by_position, by_turn] = derivative_changes(equation, &place, [&displacement, &turn], length);
+        let d_force = of_i.turn.cross(&force) + i.axes * by_position;
+        let d_moment = of_i.turn.cross(&moment) + i.axes * by_turn;
+        Self { force: d_force, moments: [d_force.cross(&d) + force.cross(&moved) - d_moment, d_moment] }
     }
 
     /// On i and on j: forces and moments.
@@ -84,17 +82,18 @@ fn cross_change([a, da]: Axis, [b, db]: Axis) -> Vector3<f64> {
 }
 
 impl Row {
-    /// How its wrench changes, with the value of the joint's drive as it is.
+    /// How its wrench changes, with the value of the joint's drive as it is. `length` is that of the bodies, for equations from outside.
     pub(crate) fn wrench_change(
         &self,
         places: [&MarkerPlace; 2],
         driven: f64,
         changes: [&FrameChange; 2],
+        length: f64,
     ) -> WrenchChange {
         let of_i = |axis: usize| axis_of(places[0], changes[0], axis);
         let of_j = |axis: usize| axis_of(places[1], changes[1], axis);
         match *self {
-            Self::Outside(ref equation) => WrenchChange::of_equation(&**equation, places, changes),
+            Self::Outside(ref equation) => WrenchChange::of_equation(&**equation, places, changes, length),
             Self::Point { of, axis } => WrenchChange::along(places, changes, of, axis),
             Self::Perpendicular(i, j) => WrenchChange::turning(cross_change(of_i(i), of_j(j))),
             Self::Rotation(axis) => {

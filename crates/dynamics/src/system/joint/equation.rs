@@ -73,64 +73,90 @@ impl<F> fmt::Debug for JointEquationFn<F> {
 }
 
 impl RelativePlace {
-    fn between([i, j]: [Frame; 2]) -> Self {
-        Self { position: i.1.tr_mul(&(j.0 - i.0)), axes: i.1.tr_mul(&j.1) }
+    pub(crate) fn between([i, j]: [&MarkerPlace; 2]) -> Self {
+        Self { position: i.axes.tr_mul(&(j.position - i.position)), axes: i.axes.tr_mul(&j.axes) }
+    }
+
+    /// The place after a displacement and a turn of the second marker.
+    fn moved(&self, displacement: &Vector3<f64>, turn: &Vector3<f64>) -> Self {
+        Self { position: self.position + displacement, axes: transformation_matrix(&-turn) * self.axes }
     }
 }
 
-/// Position and axes of a marker, global.
-pub(crate) type Frame = (Vector3<f64>, Matrix3<f64>);
-
 /// The wrenches of an equation. With d from i to j in the axes of i, the rate of g(d, R) is ∂g/∂d·(ḋ − ω_i×d) + ∂g/∂φ·(ω_j − ω_i).
-pub(crate) fn wrench(equation: &dyn JointEquation, places: [&MarkerPlace; 2]) -> RowWrench {
-    wrench_between(equation, places.map(frame))
+pub(crate) fn wrench(equation: &dyn JointEquation, [i, j]: [&MarkerPlace; 2]) -> RowWrench {
+    let EquationValue { residual, by_position, by_turn } = equation.value(&RelativePlace::between([i, j]));
+    let [force, moment] = [by_position, by_turn].map(|vector| i.axes * vector);
+    let arm = j.position - i.position;
+    RowWrench { residual, own_rate: 0.0, force, moments: [force.cross(&arm) - moment, moment] }
 }
 
-/// The derivatives of an equation that are farthest from its differences, and these; `None` where all fit.
-pub(crate) fn misfit(equation: &dyn JointEquation, places: [&MarkerPlace; 2]) -> Option<[f64; 2]> {
-    let at = RelativePlace::between(places.map(frame));
-    let length = length_of(&at.position);
-    let found = equation.value(&at);
-    let slope = |by: f64, moved: &dyn Fn(f64) -> RelativePlace| {
-        let [after, before] = [by, -by].map(|by| equation.value(&moved(by)).residual);
-        (after - before) / (2.0 * by)
-    };
-    let pair = |k: usize| {
-        let axis = Vector3::ith(k % 3, 1.0);
-        if k < 3 {
-            let moved = |by: f64| RelativePlace { position: at.position + axis * by, ..at };
-            [found.by_position[k] * length, slope(DIFFERENCE * length, &moved) * length]
-        } else {
-            let turned = |by: f64| RelativePlace { axes: transformation_matrix(&(axis * -by)) * at.axes, ..at };
-            [found.by_turn[k - 3], slope(DIFFERENCE, &turned)]
-        }
-    };
-    let pairs: [[f64; 2]; 6] = std::array::from_fn(pair);
-    let off = |[stated, differences]: &[f64; 2]| (stated - differences).abs();
-    let scale = pairs.iter().flatten().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-    let fits = |pair: &[f64; 2]| off(pair) <= FITS * scale;
-    pairs.into_iter().filter(|pair| !fits(pair)).max_by(|a, b| off(a).total_cmp(&off(b)))
+/// How the derivatives of an equation change by a small displacement and a small turn of the second marker as the first sees it: by
+/// differences of fourth order. `length` is that of the bodies.
+pub(crate) fn derivative_changes(
+    equation: &dyn JointEquation,
+    place: &RelativePlace,
+    [displacement, turn]: [&Vector3<f64>; 2],
+    length: f64,
+) -> [Vector3<f64>; 2] {
+    let size = (displacement.norm() / scale(place, length)).max(turn.norm());
+    if size == 0.0 {
+        return [Vector3::zeros(); 2];
+    }
+    let step = FOURTH_ORDER / size;
+    let at = |factor: f64| equation.value(&place.moved(&(displacement * factor), &(turn * factor)));
+    let [near, far] = [step, 2.0 * step].map(|by| [at(by), at(-by)]);
+    [|value: &EquationValue| value.by_position, |value: &EquationValue| value.by_turn].map(|of| {
+        let [near, far] = [&near, &far].map(|[after, before]| of(after) - of(before));
+        (near * 8.0 - far) / (12.0 * step)
+    })
 }
 
+/// Steps of differences of first derivatives, and of second ones by first ones, relative to a length or in rad: where truncation and
+/// rounding are small.
+const SECOND_ORDER: f64 = 1e-5;
+const FOURTH_ORDER: f64 = 1e-4;
 /// Part of the largest derivative by which one may differ from its difference.
 const FITS: f64 = 1e-4;
 
-/// Differences of places, relative to the distance of the markers, and of angles.
-pub(crate) const DIFFERENCE: f64 = 1e-4;
-
-/// The scale of differences of positions.
-pub(crate) fn length_of(arm: &Vector3<f64>) -> f64 {
-    if arm.norm() > 0.0 { arm.norm() } else { 1.0 }
+/// The length of differences of positions. Far from the first marker, it is not below their rounding.
+fn scale(place: &RelativePlace, length: f64) -> f64 {
+    length.max(1e-3 * place.position.norm())
 }
 
-pub(crate) fn frame(place: &MarkerPlace) -> Frame {
-    (place.position, place.axes)
+/// A derivative of an equation that is not its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Misfit {
+    /// By its name: what is stated, and what differences give.
+    Differs { name: &'static str, stated: f64, difference: f64 },
+    /// All are zero.
+    Nothing,
 }
 
-/// The wrenches of an equation between two frames.
-pub(crate) fn wrench_between(equation: &dyn JointEquation, [i, j]: [Frame; 2]) -> RowWrench {
-    let arm = j.0 - i.0;
-    let EquationValue { residual, by_position, by_turn } = equation.value(&RelativePlace::between([i, j]));
-    let [force, moment] = [by_position, by_turn].map(|vector| i.1 * vector);
-    RowWrench { residual, own_rate: 0.0, force, moments: [force.cross(&arm) - moment, moment] }
+/// The derivative that is farthest from its difference; `None` where all fit. `length` is that of the bodies.
+pub(crate) fn misfit(equation: &dyn JointEquation, places: [&MarkerPlace; 2], length: f64) -> Option<Misfit> {
+    const NAMES: [&str; 6] = ["by_position.x", "by_position.y", "by_position.z", "by_turn.x", "by_turn.y", "by_turn.z"];
+    let place = RelativePlace::between(places);
+    let length = scale(&place, length);
+    let found = equation.value(&place);
+    let pairs: [[f64; 2]; 6] = std::array::from_fn(|k| {
+        let axis = Vector3::ith(k % 3, 1.0);
+        let (stated, step) =
+            if k < 3 { (found.by_position[k], SECOND_ORDER * length) } else { (found.by_turn[k - 3], SECOND_ORDER) };
+        let [after, before] = [step, -step].map(|by| {
+            let [moved, turned] = if k < 3 { [axis * by, Vector3::zeros()] } else { [Vector3::zeros(), axis * by] };
+            equation.value(&place.moved(&moved, &turned)).residual
+        });
+        [stated, (after - before) / (2.0 * step)]
+    });
+    let weight = |k: usize| if k < 3 { length } else { 1.0 };
+    let off = |k: &usize| weight(*k) * (pairs[*k][0] - pairs[*k][1]).abs();
+    let largest = |of: usize| (0..6).map(|k| weight(k) * pairs[k][of].abs()).fold(0.0, f64::max);
+    if largest(0) == 0.0 && largest(1) <= FITS * length {
+        return Some(Misfit::Nothing);
+    }
+    let fits = |k: &usize| off(k) <= FITS * largest(0).max(largest(1));
+    let worst = (0..6).filter(|k| !fits(k)).max_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let [stated, difference] = pairs[worst];
+    Some(Misfit::Differs { name: NAMES[worst], stated, difference })
 }

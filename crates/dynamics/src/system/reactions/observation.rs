@@ -44,6 +44,7 @@ impl SystemMotion {
         }
         out
     }
+
     /// Observes a force element, after [`Self::find_reactions`]; zeros of one that does not show what it does.
     pub fn observe_element(&self, number: usize) -> JointObservation {
         let Self { system, first, .. } = self;

@@ -11,7 +11,8 @@ use crate::scheme::mode_limit::stable_step_of_modes;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
-use crate::system::joint::equation::misfit;
+use crate::system::joint::Joint;
+use crate::system::joint::equation::{Misfit, misfit};
 use crate::system::radau::SystemMotion;
 use crate::system::relaxed::RelaxError;
 use crate::vibration::system::CommonSpin;
@@ -151,16 +152,25 @@ pub(super) fn assemble(
 
 /// Refuses equations from outside whose derivatives are not theirs.
 fn refuse_wrong_derivatives(motion: &SystemMotion) -> Result<(), SetupError> {
-    let joints = motion.system().joints();
-    let outside = joints.iter().flat_map(|joint| joint.equations().map(move |equation| (joint, equation)));
-    let mut outside = outside.peekable();
-    if outside.peek().is_none() {
+    let system = motion.system();
+    let of_joint = |joint: &'_ Joint| joint.equations().next().is_some();
+    if !system.joints().iter().any(of_joint) {
         return Ok(());
     }
     let at = Configuration::of(motion, &CommonSpin::REST);
-    outside.try_for_each(|(joint, (markers, equation))| {
-        let Some([found, expected]) = misfit(equation, at.places(markers).each_ref()) else { return Ok(()) };
-        let (joint, equation) = (joint.name.as_str().into(), format!("{equation:?}").into());
-        Err(SetupError::NotItsDerivative { joint, equation, found, expected })
-    })
+    for joint in system.joints() {
+        for (markers, equation) in joint.equations() {
+            let length = markers.iter().map(|marker| system.length_at(marker)).fold(0.0, f64::max);
+            let misfit = misfit(equation, at.places(markers).each_ref(), length);
+            let (joint, named) = (joint.name.as_str().into(), format!("{equation:?}").into());
+            match misfit {
+                None => {}
+                Some(Misfit::Nothing) => return Err(SetupError::NoDerivative { joint, equation: named }),
+                Some(Misfit::Differs { name, stated: found, difference: expected }) => {
+                    return Err(SetupError::NotItsDerivative { joint, equation: named, name, found, expected });
+                }
+            }
+        }
+    }
+    Ok(())
 }

@@ -16,8 +16,7 @@ pub struct Vibrations {
     pub rigid: Mat<f64>,
     /// Eigenvalues that are zero beside those, each of them half a motion.
     pub zeros: usize,
-    /// All others, slowest first, by the magnitude of the eigenvalue: so shapes that damping keeps from swinging are where they would be
-    /// without it.
+    /// All others, slowest first, by the magnitude of the eigenvalue.
     pub modes: Vec<SystemMode>,
 }
 
@@ -135,9 +134,8 @@ impl Linearization {
             return Ok((Mat::identity(size, size), Mat::zeros(size, 0)));
         }
         let all = [&self.stiffness, &self.damping];
-        // Where no force acts, all terms of a motion as a whole are rounding: those are judged by the slowest vibration of the bodies.
-        let slowest = self.strain.iter().copied().filter(|strain| *strain > 0.0).fold(f64::INFINITY, f64::min);
-        let floors = if slowest.is_finite() { [slowest, slowest.sqrt()] } else { [0.0; 2] };
+        let slowest = self.slowest_strain();
+        let floors = [slowest, slowest.sqrt()];
         let weights: [f64; 2] = std::array::from_fn(|which| {
             let magnitude = self.magnitudes[which].max(f64::EPSILON / ROUNDING * floors[which]);
             if magnitude > 0.0 { 1.0 / magnitude } else { 0.0 }
@@ -159,6 +157,18 @@ impl Linearization {
         });
         let rigid = Mat::from_fn(size, loose, |i, j| if i < count { v[(i, tied + j)] } else { 0.0 });
         Ok((rest, rigid))
+    }
+
+    /// The rounding of K in the coordinates that deform no body.
+    pub(crate) fn rounding_of_stiffness(&self) -> f64 {
+        ROUNDING * self.magnitudes[0].max(f64::EPSILON / ROUNDING * self.slowest_strain())
+    }
+
+    /// Λ of the slowest vibration of the bodies; zero without any. Where no force acts, all terms of a motion as a whole are rounding, and
+    /// are judged by this.
+    fn slowest_strain(&self) -> f64 {
+        let slowest = self.strain.iter().copied().filter(|strain| *strain > 0.0).fold(f64::INFINITY, f64::min);
+        if slowest.is_finite() { slowest } else { 0.0 }
     }
 
     /// A mode with the energies of its bodies and springs, its largest velocity at unit kinetic energy.

@@ -38,31 +38,32 @@ impl SteadyState {
         let size = rest.ncols();
         let stiffness = rest.transpose() * (&linear.stiffness * &rest);
         let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (stiffness[(i, j)] + stiffness[(j, i)]));
-        let eigen = symmetric.self_adjoint_eigen(Side::Lower).map_err(|_| SteadyError::Numbers)?;
-        let squares: Vec<f64> = eigen.S().column_vector().iter().copied().collect();
-        // What falls over has no frequency: it goes with the motions that nothing resists.
-        let falling = squares.iter().filter(|square| **square <= 0.0).count();
+        let modes = graded_modes(&symmetric)?;
+        // What falls over, or only a damper resists, has no frequency: it goes with the motions that nothing resists.
+        let rounding = linear.rounding_of_stiffness();
+        let vibrates = |mode: &&(f64, Vec<f64>)| mode.0 > rounding;
         // Γ = (N y)ᵀ M r for each motion r of the ground.
         let mut whole = [0.0; 6];
-        let mut of_loose = [0.0; 6];
-        let mut factors = vec![[0.0; 6]; size];
+        let mut rigid = [0.0; 6];
+        let mut factors = vec![[0.0; 6]; modes.iter().filter(vibrates).count()];
         for (i, motion) in self.motions_of_ground(&about).iter().enumerate() {
             let momenta = self.momenta(motion);
-            whole[i] = momenta.iter().zip(motion).map(|(momentum, velocity)| momentum * velocity).sum();
+            whole[i] = dot(&momenta, motion);
             let along = linear.project(&momenta);
-            let part = |basis: &Mat<f64>, column: usize| -> f64 {
-                along.iter().enumerate().map(|(row, along)| basis[(row, column)] * along).sum()
+            let parts = |basis: &Mat<f64>| -> Vec<f64> {
+                let part =
+                    |column: usize| along.iter().enumerate().map(|(row, along)| basis[(row, column)] * along).sum();
+                (0..basis.ncols()).map(part).collect()
             };
-            of_loose[i] = (0..loose.ncols()).map(|column| part(&loose, column).powi(2)).sum();
-            let of_rest: Vec<f64> = (0..size).map(|column| part(&rest, column)).collect();
-            for (k, factors) in factors.iter_mut().enumerate() {
-                factors[i] = of_rest.iter().enumerate().map(|(row, part)| eigen.U()[(row, k)] * part).sum();
+            let (of_loose, of_rest) = (parts(&loose), parts(&rest));
+            let stays = modes.iter().filter(|mode| !vibrates(mode)).map(|(_, shape)| dot(shape, &of_rest));
+            rigid[i] = of_loose.into_iter().chain(stays).map(|part| part * part).sum();
+            for ((_, shape), factors) in modes.iter().filter(vibrates).zip(&mut factors) {
+                factors[i] = dot(shape, &of_rest);
             }
         }
-        let vibrating = factors.split_off(falling);
-        let rigid = std::array::from_fn(|i| of_loose[i] + factors.iter().map(|of| of[i] * of[i]).sum::<f64>());
-        let circular_frequencies = squares[falling..].iter().map(|square| square.sqrt()).collect();
-        let participation = Participation { about, whole, rigid, factors: vibrating };
+        let circular_frequencies = modes.iter().filter(vibrates).map(|(square, _)| square.sqrt()).collect();
+        let participation = Participation { about, whole, rigid, factors };
         Ok(Some(SystemParticipation { circular_frequencies, participation }))
     }
 
@@ -90,5 +91,56 @@ impl SteadyState {
             (0..mass.nrows()).map(row).collect::<Vec<f64>>()
         };
         bodies.flat_map(of_body).collect()
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// An eigenvalue below this part of the largest is found anew among its like: the solver knows it to rounding of the largest only.
+const SLOW: f64 = 1e-6;
+
+/// Eigenvalues of a symmetric matrix, smallest magnitudes exact beside large ones, with their unit vectors; they rise.
+fn graded_modes(matrix: &Mat<f64>) -> Result<Vec<(f64, Vec<f64>)>, SteadyError> {
+    let eigen = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| SteadyError::Numbers)?;
+    let values = eigen.S().column_vector();
+    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let (slow, fast): (Vec<usize>, Vec<usize>) = (0..values.nrows()).partition(|k| values[*k].abs() < SLOW * largest);
+    let shape = |k: usize| (0..matrix.nrows()).map(|i| eigen.U()[(i, k)]).collect::<Vec<f64>>();
+    let mut modes: Vec<(f64, Vec<f64>)> = fast.into_iter().map(|k| (values[k], shape(k))).collect();
+    if !slow.is_empty() {
+        // Their part of the matrix has no rounding of the fast ones: these hardly move in them, and quadratically less in it.
+        let basis = Mat::from_fn(matrix.nrows(), slow.len(), |i, k| eigen.U()[(i, slow[k])]);
+        let part = basis.transpose() * (matrix * &basis);
+        for (value, of_slow) in graded_modes(&part)? {
+            let shape = (0..matrix.nrows())
+                .map(|i| of_slow.iter().enumerate().map(|(k, part)| basis[(i, k)] * part).sum())
+                .collect();
+            modes.push((value, shape));
+        }
+    }
+    modes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(modes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Closed form: a slow vibration √(k/M) beside a fast one, turned into each other: masses 1 and springs of 1e14 and 1e-6.
+    #[test]
+    fn slow_vibrations_are_found_beside_fast_ones() {
+        let (sine, cosine) = (1e-10_f64, (1.0 - 1e-20_f64).sqrt());
+        let squares = [1e14, 1e-6, 3e-6];
+        // K = T diag T', with a turn of the first two that is as small as those of Linearization are.
+        let turn = [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]];
+        let entry = |i: usize, j: usize| (0..3).map(|k| turn[i][k] * squares[k] * turn[j][k]).sum::<f64>();
+        let found: Vec<f64> =
+            graded_modes(&Mat::from_fn(3, 3, entry)).unwrap().into_iter().map(|(square, _)| square).collect();
+        println!("{found:?}");
+        for (found, expected) in found.iter().zip([1e-6, 3e-6, 1e14]) {
+            assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+        }
     }
 }

@@ -24,6 +24,8 @@ const ROUNDING: f64 = 1e-6;
 #[derive(Debug, Clone)]
 pub(crate) struct Tie {
     ends: Vec<Option<TieEnd>>,
+    /// The largest radius of gyration of the bodies.
+    length: f64,
     wrenches: Vec<[Vector3<f64>; 2]>,
     /// Velocities and angular velocities of the markers.
     velocities: Vec<f64>,
@@ -78,7 +80,9 @@ impl Tie {
         };
         let mut ends = Vec::new();
         let mut velocities = Vec::new();
+        let mut length = 0.0_f64;
         for marker in markers {
+            length = length.max(system.length_at(marker));
             let end = end(marker);
             velocities.extend((0..6).map(|i| {
                 end.as_ref().map_or(0.0, |(end, velocity, omega)| {
@@ -96,6 +100,7 @@ impl Tie {
             by_motion: Mat::zeros(size, size),
             by_velocity: Mat::zeros(size, size),
             ends,
+            length,
         }
     }
 
@@ -134,9 +139,10 @@ impl Tie {
 
     /// Rows of a joint, driven to this value with this rate, with these multipliers.
     pub fn add_rows(&mut self, rows: &[Row], places: &[MarkerPlace; 2], driven: [f64; 2], multipliers: &[f64]) {
+        let length = self.length;
         for (row, multiplier) in rows.iter().zip(multipliers) {
             let wrench = row.wrench(places.each_ref(), driven);
-            let change = |changes: [&FrameChange; 2]| row.wrench_change(places.each_ref(), driven[0], changes);
+            let change = |changes: [&FrameChange; 2]| row.wrench_change(places.each_ref(), driven[0], changes, length);
             self.add_scalar(&wrench, change, *multiplier, [0.0; 2]);
         }
     }

@@ -29,11 +29,14 @@ pub struct CarriedReport {
     /// Frequencies of a system without damping, cycles per time, in the order of the lists; a body has them apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Vec<f64>>,
+    /// Unit of these frequencies.
+    #[serde(skip)]
+    unit: String,
     /// Motions of the base, in words.
     pub motions: [&'static str; 6],
     /// Mass of the whole, three times, and its moments of inertia about the point.
     pub whole: OfBase,
-    /// Effective masses of the rigid motions that the support leaves, together.
+    /// Effective masses of the rigid motions that the support leaves, together; of a system, of those that nothing resists or that fall.
     pub rigid: OfBase,
     /// Participation factors of each mode, whose modal mass is 1.
     pub factors: Vec<OfBase>,
@@ -61,10 +64,10 @@ impl CarriedReport {
     }
 
     /// The report of a system; `is_asked`: the point is that of a user.
-    pub fn of_system(found: SystemParticipation, is_asked: bool) -> Self {
+    pub fn of_system(found: SystemParticipation, is_asked: bool, unit: &str) -> Self {
         let point = if is_asked { "the point asked for" } else { "the first place on the ground" };
         let frequencies = found.circular_frequencies.iter().map(|omega| omega / TAU).collect();
-        Self::of(found.participation, point, Some(frequencies), false)
+        Self { unit: unit.to_owned(), ..Self::of(found.participation, point, Some(frequencies), false) }
     }
 
     fn of(participation: Participation, point: &'static str, frequencies: Option<Vec<f64>>, is_free: bool) -> Self {
@@ -79,6 +82,7 @@ impl CarriedReport {
             about: about.into(),
             point,
             frequencies,
+            unit: String::new(),
             motions: MOTIONS,
             whole,
             rigid,
@@ -136,7 +140,8 @@ impl fmt::Display for CarriedReport {
                 of.iter().try_for_each(|part| write!(f, "  {:>7.2}", if *part < 5e-5 { 0.0 } else { 100.0 * part }))?;
                 writeln!(f)
             };
-            write!(f, "  {:>width$}", if self.frequencies.is_some() { "frequency" } else { "mode" })?;
+            let head = if self.frequencies.is_some() { format!("frequency, {}", self.unit) } else { "mode".to_owned() };
+            write!(f, "  {head:>width$}")?;
             MOTIONS.iter().try_for_each(|motion| write!(f, "  {motion:>7}"))?;
             writeln!(f)?;
             let rigid = parts(&self.rigid, &self.whole);

@@ -178,7 +178,9 @@ impl SystemModesReport {
             mode.frequency > 0.0 && mode.strained.iter().any(|share| share.name == body && share.part > ITS_OWN)
         };
         let (k, mode) = self.modes.iter().enumerate().find(|(_, mode)| is_its_own(mode))?;
-        let is_less = scene.effects.choices[Effect::Damping] != Choice::Off && mode.damping_ratio < LESS * ratio;
+        let is_less = scene.effects.choices[Effect::Damping] != Choice::Off
+            && mode.growth <= 0.0
+            && mode.damping_ratio < LESS * ratio;
         is_less.then(|| {
             let (damped, frequency, unit) = (mode.damping_ratio, quantity(mode.frequency), &self.frequency_unit);
             let beta = quantity(ratio / (PI * mode.frequency));

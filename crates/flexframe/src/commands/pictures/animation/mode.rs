@@ -39,7 +39,7 @@ pub fn animate_mode(
     let index = number.wrapping_sub(1);
     if system.has_connections() {
         let models = system_modes::build(system, builder, |p| progress(RunProgress::Build(p)))?;
-        let found = system_modes::system_modes(system, &models, None, None)?;
+        let found = system_modes::vibrations(system, &models)?;
         let [modes] = &found[..] else {
             return Err(AnimationError::SeveralMotions { scene: scene.path.clone(), count: found.len() });
         };
