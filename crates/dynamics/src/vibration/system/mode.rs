@@ -16,7 +16,7 @@ pub struct Vibrations {
     pub rigid: Mat<f64>,
     /// Eigenvalues that are zero beside those, each of them half a motion.
     pub zeros: usize,
-    /// All others, slowest first.
+    /// All others, slowest first: by the magnitude of the eigenvalue, so that what is stiff and does not swing comes behind what swings.
     pub modes: Vec<SystemMode>,
 }
 
@@ -95,11 +95,7 @@ impl Linearization {
                 (0..self.size()).map(|i| of_rest.iter().enumerate().map(|(j, x)| *x * rest[(i, j)]).sum()).collect();
             modes.push(self.mode(eigenvalue, coordinates));
         }
-        modes.sort_by(|a, b| {
-            (a.eigenvalue.im, a.eigenvalue.norm())
-                .partial_cmp(&(b.eigenvalue.im, b.eigenvalue.norm()))
-                .unwrap_or(std::cmp::Ordering::Equal)
-        });
+        modes.sort_by(|a, b| a.eigenvalue.norm().total_cmp(&b.eigenvalue.norm()));
         Ok(Vibrations { rigid: &self.basis * rigid, zeros, modes })
     }
 
