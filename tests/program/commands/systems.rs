@@ -148,6 +148,31 @@ fn joints_lower_the_damping_of_modes_and_that_is_told() {
     assert!(line["kind"] == "natural mode" && (swings - 1.0).abs() < 1e-3, "{line}");
 }
 
+/// Outputs that damping makes go with velocities are left out of the sums of a shock, and that is told.
+#[test]
+fn a_shock_tells_which_outputs_it_leaves_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = welded_bar(folder.path());
+    let table = folder.path().join("pulse.csv");
+    std::fs::write(&table, "0,0\n0.01,1\n0.02,0\n").unwrap();
+    let load =
+        "bodies.bar.loads=[{kind=\"force\",at=[100,0,0],direction=[0,0,1],amplitude=1.0,history={kind=\"step\",at=1}}]";
+    let told = |damping: &str| {
+        let tip = "bodies.bar.points={tip=[100,0,0]}";
+        let shock =
+            ["shock", &scene, "--table", table.to_str().unwrap(), "--input", "bar.loads[0].force", "--spin", "0,0,0"];
+        let more = ["--outputs", "bar.tip.displacement.z,weld.force.z", "--set", load, "--set", tip, "--set", damping];
+        json(&[&shock[..], &more].concat())
+    };
+    let free = told("bodies.bar.modes.damping_ratio=0.0");
+    assert_eq!((free["outputs"].as_array().unwrap().len(), &free["warnings"]), (2, &serde_json::json!([])));
+    let damped = told("bodies.bar.modes.rayleigh={alpha=0.0,beta=1e-5}");
+    let [output] = &damped["outputs"].as_array().unwrap()[..] else { panic!("{damped}") };
+    assert_eq!(output["output"], "bar.tip.displacement.z");
+    let warnings = damped["warnings"].to_string();
+    assert!(warnings.contains("left out are weld.force.z: with damping"), "{warnings}");
+}
+
 /// Closed form: flapping about a hinge at the distance e with first and second moments S and I of what is outside of it has the
 /// frequency Ω √(1 + e S/I), as at the head of `examples/mechanisms/rotor_blade.toml`.
 #[test]
