@@ -26,7 +26,7 @@ pub struct ShockOutput {
     pub largest_mode: Option<usize>,
 }
 
-/// Whether an output goes with places, velocities or accelerations.
+/// True where an output goes with places, velocities or accelerations.
 fn sees(output: &Output, which: usize) -> bool {
     output.rows[which].iter().any(|entry| *entry != 0.0)
 }
