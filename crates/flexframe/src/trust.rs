@@ -28,9 +28,14 @@ pub(crate) fn of_run(
 ) -> TrustCard {
     let name = |number: usize| reports.get(number).filter(|_| reports.len() > 1).map(|report| report.name.clone());
     let mut lines = Vec::new();
+    let deformations = reports.iter().zip(models).enumerate().filter_map(|(number, (report, model))| {
+        steps::largest_deformation(model, results, number).map(|size| (size, report.name.as_str()))
+    });
+    let least = deformations.min_by(|a, b| a.0.total_cmp(&b.0));
     for ((number, model), scene) in models.iter().enumerate().zip(&system.bodies) {
         let scene_file = scene.path.file_name().unwrap_or_default().to_string_lossy();
-        lines.extend(reports.get(number).map(|report| steps::line(scene, report, &scene_file).of(name(number))));
+        let of_steps = reports.get(number).map(|report| steps::line(scene, report, least, &scene_file));
+        lines.extend(of_steps.map(|line| line.of(name(number))));
         lines.push(mesh::line(model, results, number, &scene_file).of(name(number)));
         let of_body = check.map(|check| check.bodies.get(number));
         lines.extend(full::lines(model.body.flexible() == 0, of_body, file).map(|line| line.of(name(number))));

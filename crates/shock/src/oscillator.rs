@@ -1,7 +1,7 @@
 //! Exact steps of an oscillator under an acceleration of its base that is straight in time.
 //!
-//! With the answer g to a unit impulse, `g(τ) = exp(−ζωτ) sin(ω_d τ)/ω_d`, a step of length h under a = a₀ + s t is
-//! Eq. (R3):
+//! With the answer g to a unit impulse, `g(τ) = exp(−ζωτ) sin(ω_d τ)/ω_d`, or sinh where ζ is more than 1, a step of length h under
+//! a = a₀ + s t is Eq. (R3):
 //!
 //! ```text
 //! z(h)  = c z + g v − a₀ ∫g dτ − s ∫g (h − τ) dτ
@@ -11,6 +11,10 @@
 //! with c = g' + 2ζω g. The integrals are those of Gauss with five points: no difference of large numbers is taken, so that slow
 //! oscillators and short steps keep their digits.
 
+use std::f64::consts::TAU;
+
+/// Phase after which a strongly damped oscillator is still.
+const STILL: f64 = 40.0;
 /// Points and weights of Gauss on −1 … 1.
 const GAUSS: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
@@ -48,18 +52,39 @@ pub(crate) struct Step {
 }
 
 impl Oscillator {
-    /// ω_d.
-    pub fn damped(&self) -> f64 {
-        self.omega * (1.0 - self.zeta * self.zeta).sqrt()
+    /// Its fastest rate: ω where it swings, else that of the faster of its two decays.
+    pub fn fastest(&self) -> f64 {
+        self.omega * (self.zeta + (self.zeta * self.zeta - 1.0).max(0.0).sqrt()).max(1.0)
     }
 
-    /// A step of length h, which is short beside a period.
+    /// The time after which it has shown an extreme of each sign: a period, or where it is still.
+    pub fn period(&self) -> f64 {
+        let damped = (1.0 - self.zeta * self.zeta).max(0.0).sqrt();
+        (TAU / damped).min(STILL) / self.omega
+    }
+
+    /// The answer to a unit impulse, and its rate.
+    fn impulse(&self, tau: f64) -> [f64; 2] {
+        let Self { omega, zeta } = *self;
+        let apart = omega * (zeta * zeta - 1.0).abs().sqrt();
+        if zeta < 1.0 {
+            let (sine, cosine) = (apart * tau).sin_cos();
+            let decay = (-zeta * omega * tau).exp();
+            return [decay * sine / apart, decay * (cosine - zeta * omega * sine / apart)];
+        }
+        // The slower of two decays, as a quotient: ζ − √(ζ² − 1) would lose its digits.
+        let slow = omega * omega / self.fastest();
+        let decay = (-slow * tau).exp();
+        let between = 2.0 * apart * tau;
+        let g = if between > 0.0 { -decay * (-between).exp_m1() / (2.0 * apart) } else { decay * tau };
+        [g, decay * (-between).exp() - slow * g]
+    }
+
+    /// A step of length h, which is short beside its fastest rate.
     pub fn step(&self, h: f64) -> Step {
         let Self { omega, zeta } = *self;
-        let damped = self.damped();
-        let impulse = |tau: f64| (-zeta * omega * tau).exp() * (damped * tau).sin() / damped;
-        let g = impulse(h);
-        let g_rate = (-zeta * omega * h).exp() * (damped * h).cos() - zeta * omega * g;
+        let [g, g_rate] = self.impulse(h);
+        let impulse = |tau: f64| self.impulse(tau)[0];
         let points = GAUSS.map(|(x, weight)| (0.5 * h * (1.0 + x), 0.5 * h * weight));
         Step {
             h,

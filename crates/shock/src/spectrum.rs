@@ -13,8 +13,6 @@ use crate::oscillator::{Oscillator, Step, Swing};
 const STEPS: f64 = 64.0;
 /// Most cycles of an oscillator in a base motion.
 const MAX_CYCLES: f64 = 1e6;
-/// Phase after which a strongly damped oscillator is still.
-const STILL: f64 = 40.0;
 
 /// Peaks of an oscillator during a base motion and in the free vibration after it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,15 +89,16 @@ impl BaseMotion {
             let expected = "a positive number of cycles per time";
             return Err(ShockError::Value { what: "a frequency", found: frequency, expected });
         }
-        if !(0.0..1.0).contains(&damping_ratio) {
-            let expected = "0 or more, and less than 1";
+        if !(damping_ratio >= 0.0 && damping_ratio.is_finite()) {
+            let expected = "0 or more";
             return Err(ShockError::Value { what: "the damping ratio", found: damping_ratio, expected });
         }
-        let cycles = frequency * self.duration();
+        let oscillator = Oscillator { omega: TAU * frequency, zeta: damping_ratio };
+        let cycles = oscillator.fastest() / TAU * self.duration();
         if cycles > MAX_CYCLES {
             return Err(ShockError::Cycles { frequency, cycles, most: MAX_CYCLES });
         }
-        Ok(Oscillator { omega: TAU * frequency, zeta: damping_ratio })
+        Ok(oscillator)
     }
 
     /// Leads an oscillator through the motion and a period after it.
@@ -108,9 +107,8 @@ impl BaseMotion {
             watch.pass(duration, base);
         }
         // Free: an extreme of each sign comes within a period.
-        let Oscillator { omega, .. } = watch.oscillator;
         let work = watch.work;
-        watch.pass((TAU / watch.oscillator.damped()).min(STILL / omega), [0.0; 2]);
+        watch.pass(watch.oscillator.period(), [0.0; 2]);
         watch.work = work;
     }
 
@@ -184,7 +182,7 @@ impl Watch {
 
     /// A piece of the base motion.
     fn pass(&mut self, duration: f64, base: [f64; 2]) {
-        let count = (duration * self.oscillator.omega / TAU * STEPS).ceil().max(1.0);
+        let count = (duration * self.oscillator.fastest() / TAU * STEPS).ceil().max(1.0);
         let h = duration / count;
         let step = match self.step {
             Some((length, step)) if length == h => step,

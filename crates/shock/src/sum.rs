@@ -57,8 +57,8 @@ fn check(peak: &ModalPeak, sum: Sum) -> Result<(), ShockError> {
     if !(peak.frequency.is_finite() && peak.frequency > 0.0) {
         return refuse("the frequency of a mode", peak.frequency, "a positive number");
     }
-    if !(0.0..1.0).contains(&peak.damping_ratio) {
-        return refuse("the damping ratio of a mode", peak.damping_ratio, "0 or more, and less than 1");
+    if !(peak.damping_ratio >= 0.0 && peak.damping_ratio.is_finite()) {
+        return refuse("the damping ratio of a mode", peak.damping_ratio, "0 or more");
     }
     Ok(())
 }

@@ -109,7 +109,9 @@ fn by_runge_kutta(rows: &[(f64, f64)], frequency: f64, zeta: f64) -> [f64; 3] {
 fn uneven_tables_agree_with_runge_kutta() {
     let rows = [(0.0, 0.0), (0.13, 4.0), (0.2, -1.0), (0.55, 2.5), (0.6, -3.0), (1.1, 0.7)];
     let motion = BaseMotion::new(rows.map(|row| row.0).to_vec(), rows.map(|row| row.1).to_vec()).unwrap();
-    for (frequency, zeta) in [(0.4, 0.02), (2.3, 0.0), (2.3, 0.1), (7.0, 0.7)] {
+    for (frequency, zeta) in
+        [(0.4, 0.02), (2.3, 0.0), (2.3, 0.1), (7.0, 0.7), (2.3, 1.0), (2.3, 1.0 + 1e-9), (2.3, 1.3), (2.3, 4.0)]
+    {
         let [displacement, largest, least] = by_runge_kutta(&rows, frequency, zeta);
         let peaks = motion.peaks(frequency, zeta).unwrap();
         close(peaks.displacement, displacement, 2e-6);
@@ -131,7 +133,9 @@ fn the_correlation_is_that_of_white_noise() {
         let b = (w1 * w1 - w2 * w2) / (2.0 * decay);
         1.0 / (2.0 * decay * (2.0 * z2 * w2 * b + w2 * w2) + b * (w1 * w1 - w2 * w2))
     };
-    for (w1, z1, w2, z2) in [(1.0, 0.05, 1.1, 0.05), (3.0, 0.01, 2.0, 0.2), (1.0, 0.3, 5.0, 0.02)] {
+    for (w1, z1, w2, z2) in
+        [(1.0, 0.05, 1.1, 0.05), (3.0, 0.01, 2.0, 0.2), (1.0, 0.3, 5.0, 0.02), (1.0, 0.02, 5.0, 3.0)]
+    {
         let own = covariance(w1, z1, w1, z1) * covariance(w2, z2, w2, z2);
         close(correlation(&mode(w1, z1, 1.0), &mode(w2, z2, 1.0)), covariance(w1, z1, w2, z2) / own.sqrt(), 1e-12);
     }
@@ -173,7 +177,7 @@ fn bad_input_is_told_with_its_row() {
     let motion = BaseMotion::new(vec![0.0, 1.0], vec![1.0, 1.0]).unwrap();
     for (frequency, zeta, expected) in [
         (0.0, 0.1, "a frequency"),
-        (1.0, 1.0, "the damping ratio"),
+        (1.0, -0.1, "the damping ratio"),
         (1.0, f64::NAN, "the damping ratio"),
         (1e9, 0.1, "cycles"),
     ] {

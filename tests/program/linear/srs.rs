@@ -67,6 +67,6 @@ fn bad_tables_and_ranges_are_told_with_their_place() {
     bad("0,1\n0,2\n", &range, 3, &["bad.csv:2", "rise"]);
     bad("0,1\n", &range, 3, &["bad.csv", "two or more"]);
     bad("0,1\n1,2\n", &["--frequencies", "0:10:5"], 2, &["0 < start"]);
-    bad("0,1\n1,2\n", &["--frequencies", "1:10:5", "--damping", "1"], 2, &["damping ratio", "less than 1"]);
+    bad("0,1\n1,2\n", &["--frequencies", "1:10:5", "--damping", "-1"], 2, &["damping ratio", "0 or more"]);
     bad("0,1\n1,2\n", &["--frequencies", "1:1e9:5"], 2, &["cycles", "cut the base motion"]);
 }

@@ -1,12 +1,17 @@
 //! The error of the steps, from their bound or their estimate and from the balance of energy.
 
+use model::Model;
+use results::Results;
 use scene::{Scene, StepControl};
 
 use super::card::{Line, Place, SMALL, percent};
 use crate::commands::run::body_report::BodyRunReport;
 
-/// The line of a body.
-pub(super) fn line(scene: &Scene, report: &BodyRunReport, scene_file: &str) -> Line {
+/// A bound over the largest deformation above which it is told that it is none of deformation and stress.
+const COARSE: f64 = 1e-2;
+
+/// The line of a body. `deformation`: the largest of the body that bends the least, over its size, with its name.
+pub(super) fn line(scene: &Scene, report: &BodyRunReport, deformation: Option<(f64, &str)>, scene_file: &str) -> Line {
     let measured = format!("`flexframe cost {scene_file}` measures it");
     let expected = match scene.time.control {
         StepControl::Tolerance(tolerance) => Some((tolerance, "bounded by `tolerance`")),
@@ -21,24 +26,34 @@ pub(super) fn line(scene: &Scene, report: &BodyRunReport, scene_file: &str) -> L
         StepControl::Tolerance(_) => "a smaller `tolerance`",
         StepControl::Fixed(_) => "a shorter `step`, or `tolerance` in its place",
     };
-    let next = |error: f64| if error >= SMALL { format!("{shorter}; {measured}") } else { String::new() };
+    // The bound of a body in joints is over its size, which says little of one that hardly bends.
+    let coarse = deformation.filter(|(size, _)| scene.tied && expected.is_some_and(|(error, _)| error > COARSE * size));
+    let is_small = |error: f64| error < SMALL && coarse.is_none();
+    let next = |error: f64| if is_small(error) { String::new() } else { format!("{shorter}; {measured}") };
+    let beside = match coarse {
+        Some((deformation, body)) => format!(
+            "; velocities, accelerations, deformation and stress may be off by more: the largest deformation of {body} is {} of its size",
+            percent(deformation)
+        ),
+        None if scene.tied => "; velocities and accelerations may be off by more".to_owned(),
+        None => String::new(),
+    };
     let closed = open.map_or_else(String::new, |open| format!("; the energy is closed to {open:.1e}"));
     match (expected, open) {
         (Some((error, how)), open) if open.is_none_or(|open| open <= error) => {
             let most = if matches!(scene.time.control, StepControl::Tolerance(_)) { "at most " } else { "about " };
             // In joints the bound is that of each step, over the size of the bodies.
-            let (of_what, beside) = if scene.tied {
-                ("the size of the bodies in a step", "; velocities and accelerations may be off by more")
-            } else {
-                ("its largest", "")
-            };
+            let of_what = if scene.tied { "the size of the bodies in a step" } else { "its largest" };
             let meaning = format!("motion off by {most}{} of {of_what}", percent(error));
             Place::Steps.known(error, meaning, format!("{how}{beside}{closed}"), next(error))
         }
         (_, Some(open)) => {
             let meaning = format!("energy off by {} of what there was or came and went", percent(open));
             let known = match expected {
-                Some((error, how)) => format!("measured by its balance, though {how} to {}", percent(error)),
+                Some((error, how)) => {
+                    let beside = if coarse.is_some() { &beside } else { "" };
+                    format!("measured by its balance, though {how} to {}{beside}", percent(error))
+                }
                 None => "measured by its balance alone".to_owned(),
             };
             Place::Steps.known(open, meaning, known, if expected.is_none() { measured } else { next(open) })
@@ -46,4 +61,12 @@ pub(super) fn line(scene: &Scene, report: &BodyRunReport, scene_file: &str) -> L
         // The first arm takes an error without a balance.
         (_, None) => Place::Steps.not_known("fixed steps that nothing was compared with", measured),
     }
+}
+
+/// The largest deformation of a body in a row over its size, both as root mean squares over its mass; `None` of one that does not bend.
+pub(super) fn largest_deformation(model: &Model, results: &Results, body: usize) -> Option<f64> {
+    let rows = results.bodies().nth(body)?.table("modal/displacement")?;
+    let squares = (0..rows.rows()).filter_map(|row| rows.row(row)).map(|q| q.iter().map(|x| x * x).sum::<f64>());
+    let largest = squares.fold(0.0, f64::max);
+    (largest > 0.0).then(|| (largest / (0.5 * model.body.inertia.trace())).sqrt())
 }

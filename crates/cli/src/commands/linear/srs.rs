@@ -26,7 +26,7 @@ pub struct Srs {
     /// Frequencies in cycles per time, at equal ratios: from start to end, both included, count in all.
     #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies, allow_hyphen_values = true)]
     frequencies: Frequencies,
-    /// Damping ratios, 0 to less than 1: a spectrum for each.
+    /// Damping ratios, 0 or more: a spectrum for each.
     #[arg(long, value_name = "ZETA,ZETA,…", value_delimiter = ',', default_values_t = [0.05], value_parser = finite, allow_hyphen_values = true)]
     damping: Vec<f64>,
     /// Folder for srs.csv, the diagram and the page [default: out/<name of the table>].

@@ -63,7 +63,9 @@ impl Branches {
         }
         modes.reverse();
         let mut order: Vec<usize> = (0..modes[0].len()).collect();
-        order.sort_by(|&a, &b| modes[0][a].circular_frequency.total_cmp(&modes[0][b].circular_frequency));
+        // What is stiff and damped so much that it does not swing comes behind what swings.
+        let fast = |k: usize| modes[0][k].circular_frequency.hypot(modes[0][k].growth);
+        order.sort_by(|&a, &b| fast(a).total_cmp(&fast(b)));
         let modes = modes.into_iter().map(|here| order.iter().map(|&k| here[k].clone()).collect()).collect();
         Ok(Self { speeds, modes })
     }

@@ -56,5 +56,13 @@ pub fn shock(
     if outputs.is_empty() {
         return Err(ShockResponseError::Outputs { scene: scene.path.clone() });
     }
+    let mixed = peaks::mixed(&model.equations);
+    if !mixed.is_empty() {
+        warnings.push(format!(
+            "left out are {}: with damping they go with velocities, too, of which a shock has no sums; take a run with the table as the \
+             history of the load, or no damping",
+            mixed.join(", ")
+        ));
+    }
     Ok(ShockReport::new(scene, input, &motion, &peaks, outputs, warnings))
 }

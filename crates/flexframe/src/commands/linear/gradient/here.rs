@@ -46,7 +46,8 @@ impl<'a> Here<'a> {
         let linear = &steady.linear;
         let failed = |source| SystemModesError::Steady { scene: system.bodies[0].path.clone(), source };
         let Vibrations { rigid, zeros, modes } = linear.vibrations().map_err(failed)?;
-        let modes = modes.into_iter().filter(|mode| mode.circular_frequency() > 0.0).collect();
+        let mut modes: Vec<SystemMode> = modes.into_iter().filter(|mode| mode.circular_frequency() > 0.0).collect();
+        modes.sort_by(|a, b| a.circular_frequency().total_cmp(&b.circular_frequency()));
         for matrix in [&linear.stiffness, &linear.damping] {
             if (matrix - matrix.transpose()).norm_max() > ROUNDING * matrix.norm_max() {
                 return Err(GradientError::Loaded { scene: system.bodies[0].path.clone() });

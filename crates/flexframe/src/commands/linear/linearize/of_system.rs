@@ -1,6 +1,6 @@
 //! Small motions of free bodies, and of bodies in joints, about rest or a steady spin.
 
-use dynamics::{Coordinate, MotionState, Row, SteadyState, SystemMotion};
+use dynamics::{Coordinate, Linearization, MotionState, Row, SteadyState, SystemMotion};
 use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
@@ -18,6 +18,8 @@ use crate::rows::units::UnitLabels;
 
 /// An acceleration beside ω² times the size of the bodies that is more than rounding.
 const UNSTEADY: f64 = 1e-6;
+/// The same at rest, to the square of a frequency.
+const ROUNDING: f64 = 1e-12;
 
 /// The equations, with the state that they are about.
 pub(super) fn of_system(
@@ -201,18 +203,27 @@ fn driven_unit(row: &Row) -> Option<&'static str> {
     }
 }
 
+/// An angular acceleration at rest that is no more than rounding: to the square of the slowest frequency of what deforms bodies, of rigid ones to
+/// that of the stiffest spring.
+fn rounding_at_rest(linear: &Linearization) -> f64 {
+    let of = |i: usize| linear.stiffness[(i, i)].abs();
+    let slowest = (linear.rigid..linear.stiffness.nrows()).map(of).reduce(f64::min);
+    let scale = slowest.unwrap_or_else(|| (0..linear.rigid).map(of).fold(0.0, f64::max));
+    if scale > 0.0 { ROUNDING * scale } else { f64::EPSILON }
+}
+
 /// Reservations about a state that does more than stand or spin.
 fn unsteady(motion: &SystemMotion, steady: &SteadyState, omega: &Vector3<f64>) -> Vec<String> {
     let turning = steady.unbalance.angular_accelerations.iter().map(Vector3::norm).fold(0.0, f64::max);
     let moving = steady.unbalance.accelerations.iter().map(Vector3::norm).fold(0.0, f64::max);
     let mut warnings = Vec::new();
-    let rounding = if omega.norm() > 0.0 { UNSTEADY * omega.norm_squared() } else { f64::EPSILON };
+    let rounding = if omega.norm() > 0.0 { UNSTEADY * omega.norm_squared() } else { rounding_at_rest(&steady.linear) };
     if turning > rounding {
         warnings.push(format!(
             "the state is not steady: a body is accelerated by {turning:.3e} rad per time squared; the equations hold for the instant"
         ));
     }
-    if moving > f64::EPSILON * motion.center_of_mass().norm().max(1.0) && omega.norm() == 0.0 && turning == 0.0 {
+    if moving > f64::EPSILON * motion.center_of_mass().norm().max(1.0) && omega.norm() == 0.0 && turning <= rounding {
         warnings.push(format!(
             "the bodies are accelerated as a whole by {moving:.3e} at the start; the equations are about that motion"
         ));

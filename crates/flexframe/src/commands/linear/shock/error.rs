@@ -22,7 +22,7 @@ pub enum ShockResponseError {
     #[error("{}: the inputs {found}: expected one, which follows the table\n = name it whole, such as --input base.acceleration.z", scene.display())]
     Inputs { scene: PathBuf, found: String },
     /// No output with a spectrum.
-    #[error("{}: velocities and rates alone, of which a shock has no sums\n = ask for displacements, accelerations, coordinates of joints, stresses or reactions", scene.display())]
+    #[error("{}: velocities and rates alone, of which a shock has no sums\n = ask for displacements, accelerations, coordinates of joints or stresses, or for reactions of joints where nothing is damped", scene.display())]
     Outputs { scene: PathBuf },
     /// The linear model has no real modes.
     #[error("{}: {source}", scene.display())]

@@ -26,6 +26,17 @@ pub struct ShockOutput {
     pub largest_mode: Option<usize>,
 }
 
+/// True where an output goes with places, velocities or accelerations.
+fn sees(output: &Output, which: usize) -> bool {
+    output.rows[which].iter().any(|entry| *entry != 0.0)
+}
+
+/// Names of the outputs that go with velocities beside places and accelerations.
+pub(super) fn mixed(equations: &SecondOrder) -> Vec<String> {
+    let mixed = equations.outputs.iter().filter(|output| sees(output, 1) && (sees(output, 0) || sees(output, 2)));
+    mixed.map(|output| output.channel.name.clone()).collect()
+}
+
 /// The peaks of each mode.
 pub(super) struct ModePeaks {
     /// Frequencies, cycles per time.
@@ -55,11 +66,8 @@ impl ModePeaks {
     /// The sums of each output that sees places or accelerations, Eqs. (R6) to (R9); velocities have no spectrum. `largest`: the
     /// largest magnitude of the table.
     pub fn outputs(&self, equations: &SecondOrder, largest: f64) -> Result<Vec<ShockOutput>, ShockError> {
-        let is_seen = |output: &&Output| {
-            let [_, of_velocity, _] = &output.rows;
-            of_velocity.iter().all(|entry| *entry == 0.0)
-        };
-        equations.outputs.iter().filter(is_seen).map(|output| self.output(output, largest)).collect()
+        let seen = equations.outputs.iter().filter(|output| !sees(output, 1));
+        seen.map(|output| self.output(output, largest)).collect()
     }
 
     fn output(&self, output: &Output, largest: f64) -> Result<ShockOutput, ShockError> {
