@@ -244,3 +244,21 @@ fn a_mode_that_stretches_the_body_is_not_large_by_itself() {
     let frequency = model.loaded_modes(&scene).unwrap()[0].circular_frequency / std::f64::consts::TAU;
     assert!((frequency / 29.0332 - 1.0).abs() < 5e-4, "{frequency}");
 }
+
+/// Independent reference: 157.2063 and 158.0044 Hz of the nonlinear finite elements of `verification::nonlinear` (`a_closed_tube_stiffens_under_inner_pressure_as_the_whole_mesh`),
+/// 156.9388 Hz without pressure. The walls bulge as large modes by themselves: with their stress alone the tube had a quarter of the shift.
+#[test]
+fn the_walls_of_a_tube_are_large_by_themselves() {
+    let tube = Body { mesh: "tube", tip: [1.0, 0.0, 0.0], axis: [0.0, 0.0, 1.0] };
+    for (pressure, expected) in [(5e5, 157.2063), (2e6, 158.0044)] {
+        let load = format!("[[loads]]\nkind = \"pressure\"\ngroup = \"inside\"\namplitude = {pressure:e}\n");
+        let mut scene = tube.scene("", &load);
+        scene.effects.tolerance = 1e-9;
+        scene.modes.flexible = Flexible::Count(20);
+        scene.modes.static_correction = Choice::Off;
+        let model = built(&scene);
+        assert_eq!(model.large_modes(), [5]);
+        let frequency = model.loaded_modes(&scene).unwrap()[0].circular_frequency / std::f64::consts::TAU;
+        assert!((frequency - expected).abs() < 0.01 * (expected - 156.9388), "{frequency}");
+    }
+}
