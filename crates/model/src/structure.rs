@@ -421,7 +421,8 @@ impl Structure<'_> {
     ) -> Result<Mat<f64>, BuildError> {
         let asked = self.of_body("fields without parts").with_modes(modes).with("list", list).with("fields", &fields);
         self.ask(asked, [fields.nrows(), fields.ncols()], || {
-            self.solver()?.freed(fields, shapes_of(modes, list).as_ref()).map_err(|error| self.modal(error))
+            let shapes = shapes_of(modes, list);
+            self.solver()?.freed(fields, shapes.as_ref(), shapes.as_ref()).map_err(|error| self.modal(error))
         })
     }
 }

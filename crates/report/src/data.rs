@@ -13,7 +13,7 @@ use crate::report::{
 };
 use crate::thin::{Thinning, spread};
 
-/// The crate `live` for a browser, which `just live-page` builds.
+/// The crate `live` for a browser, which `./dev live-page` builds.
 const PROGRAM: &[u8] = include_bytes!("../web/live.wasm.gz");
 
 /// Bytes of the rows of the motion, before base64.

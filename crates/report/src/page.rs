@@ -8,7 +8,7 @@ use crate::check::check;
 use crate::data::Data;
 use crate::{Report, ReportError};
 
-/// The page that `just report-page` builds from `web/src`.
+/// The page that `./dev report-page` builds from `web/src`.
 const PAGE: &str = include_str!("../web/page.html");
 
 /// Where the data stand in the page.

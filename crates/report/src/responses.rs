@@ -8,7 +8,7 @@ use whole_file::write_whole;
 use crate::numbers::Numbers;
 use crate::{Fact, ReportError};
 
-/// The page that `just report-page` builds from `web/src/responses`.
+/// The page that `./dev report-page` builds from `web/src/responses`.
 const PAGE: &str = include_str!("../web/responses.html");
 
 /// Where the data stand in the page.

@@ -1,4 +1,4 @@
-//! Products with the matrices of a body in the two layouts, against faer and plain rows: `just layouts` measures them in turn and
+//! Products with the matrices of a body in the two layouts, against faer and plain rows: `./dev layouts` measures them in turn and
 //! prints the table of `docs/evidence/layouts.md`.
 
 use std::hint::black_box;

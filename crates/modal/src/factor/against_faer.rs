@@ -1,4 +1,4 @@
-//! The factor of K + sM and its substitution against faer's supernodal LLᵀ of the same matrix: `just factor` measures them in turn
+//! The factor of K + sM and its substitution against faer's supernodal LLᵀ of the same matrix: `./dev factor` measures them in turn
 //! and prints the table of `docs/evidence/factor.md`.
 
 use std::time::{Duration, Instant};

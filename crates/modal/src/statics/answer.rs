@@ -8,7 +8,7 @@
 //! The rest are Rayleigh–Ritz vectors of what is left. So only t is coupled to them by K, and the kept modes to none.
 
 use faer::linalg::solvers::Solve;
-use faer::{Mat, Side};
+use faer::{Mat, Scale, Side};
 
 use crate::error::ModalError;
 use crate::input::check_finite_entries;
@@ -67,6 +67,22 @@ impl Modes {
             answer: Some(Answer { place, coupling, natural: self.natural() }),
             stats: self.stats,
         }))
+    }
+
+    /// The shapes (N×k) of a list of modes; a static answer among them with so much of the modes that are not in the list that K couples it
+    /// to none of these. Its part along itself stays one.
+    pub fn uncoupled(&self, list: &[usize]) -> Mat<f64> {
+        let mut shapes = Mat::from_fn(self.shapes.nrows(), list.len(), |i, j| self.shapes[(i, list[j])]);
+        let place = self.answer.as_ref().and_then(|answer| list.iter().position(|k| *k == answer.place));
+        if let (Some(Answer { coupling, .. }), Some(column)) = (&self.answer, place) {
+            for (k, (between, eigenvalue)) in coupling.iter().zip(&self.eigenvalues).enumerate() {
+                if *between != 0.0 && !list.contains(&k) {
+                    let mut column = shapes.col_mut(column);
+                    column += self.shapes.col(k) * Scale(-between / eigenvalue);
+                }
+            }
+        }
+        shapes
     }
 
     /// Lets `shapes` that have more columns take the place of its own, with `eigenvalues` of those that follow, to which K couples none.
@@ -140,6 +156,21 @@ mod tests {
     }
 
     /// Conserved: M and K of the same motions.
+    /// Closed form: of K = diag(1, 4, 9) the vector that K couples to nothing across (1, 1, 1)/√3 and the first axis is K⁻¹ times what is left of the
+    /// former, (0, 1/4, 1/9).
+    #[test]
+    fn an_answer_is_uncoupled_by_parts_of_the_other_modes() {
+        let found = modes(&[1.0, 4.0, 9.0]).with_answer(&[1.0, 1.0, 1.0], &[0], 1e-3).unwrap().unwrap();
+        let uncoupled = found.uncoupled(&[0, 1]);
+        let (kept, answer) = (uncoupled.col(0), uncoupled.col(1));
+        assert!((kept[0] - 1.0).abs() + kept[1].abs() + kept[2].abs() < 1e-15);
+        assert!(answer[0].abs() < 1e-15 && (answer[1] / answer[2] - 9.0 / 4.0).abs() < 1e-14, "{answer:?}");
+        // Its part along the answer is one.
+        assert!((answer[1] + answer[2] - 2.0_f64.sqrt()).abs() < 1e-14, "{answer:?}");
+        // With all modes in the list there is nothing to take.
+        assert_eq!(found.uncoupled(&[0, 1, 2]), found.shapes);
+    }
+
     #[test]
     fn the_answer_and_what_is_kept_are_coordinates() {
         let eigenvalues = [1.0, 4.0, 9.0, 25.0, 400.0];

@@ -2,12 +2,14 @@
 //!
 //! ```text
 //! u = Ψ q + Σ_α u_α q^α      α: products of two or three large modes, of a large and a following one, of two following ones
-//! K u_α = −g_α,  then freed of its parts along the large modes, those with a following factor along these, too
+//! K u_α = −g_α,  then freed of its parts along the large modes, those with a following factor along these, too:
+//! u_α ← u_α − W ΨᵀM u_α,  ΨᵀM W = 1;  of two factors: W without coupling by K to the other modes
 //! Ψ_ext = [Ψ, H]      u_α = Ψ_ext a_α,  a_α = Ψ_extᵀ M u_α
 //! ```
 //!
 //! g_α are the forces of lower products (`fem_tet10::Expansion`), H M-orthonormal vectors of what the u_α have beside the modes
-//! Ψ. To free them is a choice of what the coordinates mean.
+//! Ψ. To free them is a choice of what the coordinates mean. W are the modes themselves, but for a static answer
+//! ([`Modes::uncoupled`]): then the other modes have no energy with a product, as K u_α is against what they have with its strain.
 
 use faer::{Mat, MatRef};
 
@@ -103,14 +105,21 @@ impl LargeShapes {
 }
 
 impl Solver<'_> {
-    /// Fields (N×k) without their parts along M-orthonormal `shapes` (N×s).
+    /// Fields (N×k) without their parts along M-orthonormal `shapes` (N×s), by taking off as much `of` other shapes (N×s), whose parts along
+    /// these are 1: the shapes themselves, as a rule.
     ///
     /// # Errors
     /// [`ModalError::Size`].
-    pub fn freed(&self, fields: MatRef<'_, f64>, shapes: MatRef<'_, f64>) -> Result<Mat<f64>, ModalError> {
+    pub fn freed(
+        &self,
+        fields: MatRef<'_, f64>,
+        shapes: MatRef<'_, f64>,
+        of: MatRef<'_, f64>,
+    ) -> Result<Mat<f64>, ModalError> {
         check_rows("fields", fields.nrows(), shapes.nrows())?;
+        check_rows("what is taken off", of.nrows(), shapes.nrows())?;
         let parts = tall::inner(shapes, self.mass.product(fields).as_ref());
-        Ok(fields - shapes * parts)
+        Ok(fields - of * parts)
     }
 
     /// The shapes of the `large` ones of `modes` and of those that follow them, by the `fields` (N×products) of

@@ -44,13 +44,13 @@ pub struct ErrorPart {
     pub mend: Option<Mend>,
 }
 
-/// Directions of an error, at right angles to each other.
+/// Directions of an error. Those beside the modes are at right angles to each other and to the modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ErrorDirection {
-    /// Along the modes: their stiffness is wrong.
+    /// Along the modes, less what a linear body has there, too: their stiffness is wrong.
     Modes,
-    /// Beside the modes, along what they leave of the linear answer to the forces.
+    /// Left out of the linear answer to the forces by modes and static shapes: beside the modes, and along the static shapes.
     LinearAnswer,
     /// Beside the modes in other directions, as the foreshortening of a body that bends far.
     Bending,
