@@ -155,7 +155,6 @@ mod tests {
         }
     }
 
-    /// Conserved: M and K of the same motions.
     /// Closed form: of K = diag(1, 4, 9) the vector that K couples to nothing across (1, 1, 1)/√3 and the first axis is K⁻¹ times what is left of the
     /// former, (0, 1/4, 1/9).
     #[test]
@@ -171,6 +170,7 @@ mod tests {
         assert_eq!(found.uncoupled(&[0, 1, 2]), found.shapes);
     }
 
+    /// Conserved: M and K of the same motions.
     #[test]
     fn the_answer_and_what_is_kept_are_coordinates() {
         let eigenvalues = [1.0, 4.0, 9.0, 25.0, 400.0];
