@@ -30,8 +30,9 @@ const OUTWEIGHED: f64 = 1e-3;
 const COARSE: f64 = 1e-2;
 /// Errors above this multiple of the reference's own are free of it.
 const FAR_ABOVE: f64 = 100.0;
-/// Errors below this may be rounding, of a million steps.
-const ROUNDED: f64 = 1e-10;
+/// Errors below this may be rounding, in a run of few steps and in each of many.
+const ROUNDED: f64 = 1e-11;
+const ROUNDED_IN_A_STEP: f64 = 1e-16;
 
 /// The runs of a method.
 #[derive(Debug, Clone, Serialize)]
@@ -358,9 +359,11 @@ fn slowest_order(rows: &[LadderRun], limit: &Errors) -> Option<f64> {
     let quantities: [fn(&Errors) -> Option<f64>; 5] =
         [|e| Some(e.attitude), |e| e.modal, |e| e.displacement, |e| e.velocity, |e| e.acceleration];
     let orders = quantities.into_iter().filter_map(|quantity| {
-        let above = ROUNDED.max(FAR_ABOVE * quantity(limit)?);
+        let of_reference = FAR_ABOVE * quantity(limit)?;
         let mut points = rows.iter().rev().filter_map(|row| {
-            let error = quantity(&row.measured()?.step_errors?)?;
+            let run = row.measured()?;
+            let error = quantity(&run.step_errors?)?;
+            let above = of_reference.max(ROUNDED).max(ROUNDED_IN_A_STEP * run.steps as f64);
             (error > above && error < COARSE).then(|| (row.setting.value().ln(), error.ln()))
         });
         let (fine, coarse) = (points.next()?, points.next()?);
@@ -454,7 +457,10 @@ mod tests {
         assert_eq!(slowest_order(&rows[..2], &limit), None);
         // Nor are those of rounding, which a run of half a million steps has more of: an order of 0.5 was told.
         let free = Errors::default();
-        let rounded = [row(2e-3, 3.0 * 2e-3_f64.powi(4), 1.0), row(1e-3, 1.3e-11, 1.0)];
+        let mut rounded = [row(2e-3, 3.0 * 2e-3_f64.powi(4), 1.0), row(1e-3, 1.3e-11, 1.0)];
+        assert!(slowest_order(&rounded, &free).unwrap() < 3.0);
+        let Outcome::Ran(run) = &mut rounded[1].outcome else { panic!("it ran") };
+        run.steps = 500_000;
         assert!((slowest_order(&[&rows[1..5], &rounded].concat(), &free).unwrap() - 4.0).abs() < 1e-9);
     }
 }
