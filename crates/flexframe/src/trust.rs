@@ -28,7 +28,9 @@ pub(crate) fn of_run(
 ) -> TrustCard {
     let name = |number: usize| reports.get(number).filter(|_| reports.len() > 1).map(|report| report.name.clone());
     let mut lines = Vec::new();
-    let deformations = reports.iter().zip(models).enumerate().filter_map(|(number, (report, model))| {
+    // Of bodies in joints alone: others have bounds of their own, and long tables need not be read for them.
+    let tied = system.bodies.iter().zip(reports).zip(models).enumerate().filter(|(_, ((scene, _), _))| scene.tied);
+    let deformations = tied.filter_map(|(number, ((_, report), model))| {
         steps::largest_deformation(model, results, number).map(|size| (size, report.name.as_str()))
     });
     let least = deformations.min_by(|a, b| a.0.total_cmp(&b.0));

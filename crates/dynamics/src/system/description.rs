@@ -92,10 +92,7 @@ impl System {
     /// # Errors
     /// [`SetupError`] for a joint that is not there.
     pub fn with_law(mut self, joint: usize, along: Coordinate, law: Arc<dyn JointLaw>) -> Result<Self, SetupError> {
-        let Some(joint) = self.connections.joints.get_mut(joint) else {
-            let what = "the number of the joint of a law";
-            return Err(SetupError::Value { what, found: joint as f64, expected: "that of a joint, from 0" });
-        };
+        let joint = self.joint_mut(joint, "the number of the joint of a law")?;
         let force = match along {
             Coordinate::Turn => &mut joint.turn_force,
             Coordinate::Slide => &mut joint.slide_force,
@@ -109,12 +106,14 @@ impl System {
     /// # Errors
     /// [`SetupError`] for a joint that is not there.
     pub fn with_equation(mut self, joint: usize, equation: Arc<dyn JointEquation>) -> Result<Self, SetupError> {
-        let Some(joint) = self.connections.joints.get_mut(joint) else {
-            let what = "the number of the joint of an equation";
-            return Err(SetupError::Value { what, found: joint as f64, expected: "that of a joint, from 0" });
-        };
+        let joint = self.joint_mut(joint, "the number of the joint of an equation")?;
         joint.rows.push(Row::Outside(equation));
         Ok(self)
+    }
+
+    fn joint_mut(&mut self, joint: usize, what: &'static str) -> Result<&mut Joint, SetupError> {
+        let refusal = SetupError::Value { what, found: joint as f64, expected: "that of a joint, from 0" };
+        self.connections.joints.get_mut(joint).ok_or(refusal)
     }
 
     /// The bodies.

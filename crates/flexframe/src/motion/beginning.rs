@@ -166,8 +166,8 @@ fn elements_in_rows(system: &System, tied: &Tied) -> Vec<usize> {
 pub(super) fn tied(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Vec<Tied>, BuildError> {
     let Beginning { laws, equations, marker_laws, together, .. } = beginning;
     let all = tie_models(system, models, *together || !marker_laws.is_empty())?;
-    let named = laws.iter().map(|law| law.joint).chain(equations.iter().map(|own| own.joint));
-    if let Some(joint) = named.into_iter().find(|joint| all.iter().all(|tied| !tied.joints.contains(joint))) {
+    let mut named = laws.iter().map(|law| law.joint).chain(equations.iter().map(|own| own.joint));
+    if let Some(joint) = named.find(|joint| all.iter().all(|tied| !tied.joints.contains(joint))) {
         let what = "the number of the joint of a law or an equation";
         return Err(
             SetupError::Value { what, found: joint as f64, expected: "that of a joint of the scene, from 0" }.into()

@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use flexframe::dynamics::{self, EquationValue, RelativePlace};
 use flexframe::motion::OwnEquation;
-use flexframe::nalgebra::{Matrix3, Vector3};
+use flexframe::nalgebra::Vector3;
 use flexframe::scene;
-use numpy::ndarray::ArrayView2;
-use numpy::{PyArray1, PyArray2};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::errors::{add_note, wrong_input};
+use crate::errors::wrong_input;
 use crate::motion::faults::Faults;
 use crate::motion::joint_force::joint_number;
 use crate::motion::load::Law;
+use crate::values::arrays::matrix;
 use crate::values::numbers::{described, vector};
 
 /// One more equation of a joint: a point on a wire, a cam, a rod of one length. The joint keeps it at zero, beside what it holds
@@ -64,9 +64,8 @@ struct PythonEquation {
 
 impl PythonEquation {
     fn asked(&self, py: Python<'_>, place: &RelativePlace) -> PyResult<EquationValue> {
-        let rows: [[f64; 3]; 3] = Matrix3::from(place.axes.transpose()).into();
         let position = PyArray1::from_slice(py, place.position.as_slice());
-        let value = self.function.bind(py).call1((position, PyArray2::from_array(py, &ArrayView2::from(&rows))))?;
+        let value = self.function.bind(py).call1((position, matrix(py, &place.axes)))?;
         let of = |what: &str| format!("the {what} of the equation `{}`", self.name);
         let (count @ (2 | 3), Ok(residual)) =
             (value.len().unwrap_or(0), value.get_item(0).and_then(|first| first.extract::<f64>()))
@@ -95,21 +94,11 @@ impl fmt::Debug for PythonEquation {
 
 impl dynamics::JointEquation for PythonEquation {
     fn value(&self, place: &RelativePlace) -> EquationValue {
-        let none = EquationValue {
+        let asked = self.faults.ask(|| format!("in the equation `{}`", self.name), |py| self.asked(py, place));
+        asked.unwrap_or(EquationValue {
             residual: f64::NAN,
             by_position: Vector3::repeat(f64::NAN),
             by_turn: Vector3::repeat(f64::NAN),
-        };
-        if self.faults.any() {
-            return none;
-        }
-        let asked = Python::attach(|py| {
-            let note = || format!("in the equation `{}`", self.name);
-            self.asked(py, place).inspect_err(|error| add_note(py, error, &note()))
-        });
-        asked.unwrap_or_else(|error| {
-            self.faults.put(error);
-            none
         })
     }
 }

@@ -8,7 +8,7 @@ use flexframe::motion::JointForces;
 use flexframe::scene;
 use pyo3::prelude::*;
 
-use crate::errors::{add_note, wrong_input};
+use crate::errors::wrong_input;
 use crate::motion::faults::Faults;
 use crate::motion::load::Law;
 use crate::values::numbers::described;
@@ -110,24 +110,18 @@ impl fmt::Debug for PythonLaw {
 
 impl JointLaw for PythonLaw {
     fn force(&self, [time, _]: [f64; 2], [coordinate, rate]: [f64; 2]) -> f64 {
-        if self.faults.any() {
-            return f64::NAN;
-        }
-        let asked = Python::attach(|py| {
-            let value = self.function.bind(py).call1((time, coordinate, rate));
-            let number = value.and_then(|value| {
+        let asked = self.faults.ask(
+            || format!("in the law `{}` at time {time}", self.name),
+            |py| {
+                let value = self.function.bind(py).call1((time, coordinate, rate))?;
                 value.extract::<f64>().map_err(|_| {
                     let help = "return the force or the moment";
                     let what = format!("the force of the law `{}`", self.name);
                     wrong_input(py, &what, &described(&value), "a number", help)
                 })
-            });
-            number.inspect_err(|error| add_note(py, error, &format!("in the law `{}` at time {time}", self.name)))
-        });
-        asked.unwrap_or_else(|error| {
-            self.faults.put(error);
-            f64::NAN
-        })
+            },
+        );
+        asked.unwrap_or(f64::NAN)
     }
 
     fn discontinuities(&self) -> Vec<f64> {

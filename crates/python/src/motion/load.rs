@@ -7,7 +7,7 @@ use flexframe::nalgebra::Vector3;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use crate::errors::{add_note, wrong_input};
+use crate::errors::wrong_input;
 use crate::motion::faults::Faults;
 use crate::motion::seen::{Motion, Points, point_number};
 use crate::values::numbers::{numbers, vector};
@@ -69,20 +69,9 @@ impl Law {
     ) -> SharedLoad {
         let (function, name, faults) = (self.function.clone_ref(py), self.name.clone(), faults.clone());
         let law = move |motion: &Kinematics<'_>, applied: &mut Applied<'_>| {
-            if faults.any() {
-                return apply(None, motion, applied);
-            }
-            let value = Python::attach(|py| {
-                evaluate(function.bind(py), motion)
-                    .inspect_err(|error| add_note(py, error, &format!("in the load `{name}` at time {}", motion.time)))
-            });
-            match value {
-                Ok(value) => apply(Some(&value), motion, applied),
-                Err(error) => {
-                    faults.put(error);
-                    apply(None, motion, applied);
-                }
-            }
+            let note = || format!("in the load `{name}` at time {}", motion.time);
+            let value = faults.ask(note, |py| evaluate(function.bind(py), motion));
+            apply(value.as_deref(), motion, applied);
         };
         let load = LoadFn::new(self.name.clone(), law).with_discontinuities(self.discontinuities.clone());
         match self.longest_step {

@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use flexframe::dynamics::{self, MarkerLaw};
 use flexframe::motion::MarkerForces;
-use flexframe::nalgebra::{Matrix3, Vector3};
+use flexframe::nalgebra::Vector3;
 use flexframe::scene;
-use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::errors::{add_note, wrong_input};
+use crate::errors::wrong_input;
 use crate::motion::faults::Faults;
 use crate::motion::load::Law;
+use crate::values::arrays::matrix;
 use crate::values::numbers::{described, vector};
 
 /// A force and a moment on the second of two markers, and the same the other way round on the first, by a law: a function of the time
@@ -95,8 +95,7 @@ impl RelativeMotion {
     /// Matrix that takes components along the axes of the second marker to those along the axes of the first (3x3).
     #[getter]
     fn rotation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        let rows: [[f64; 3]; 3] = Matrix3::from(self.0.axes.transpose()).into();
-        PyArray2::from_array(py, &ArrayView2::from(&rows))
+        matrix(py, &self.0.axes)
     }
 
     /// Angular velocity of the second marker less that of the first (3).
@@ -142,20 +141,11 @@ impl fmt::Debug for PythonLaw {
 
 impl MarkerLaw for PythonLaw {
     fn force_and_moment(&self, [time, _]: [f64; 2], motion: &dynamics::RelativeMotion) -> [Vector3<f64>; 2] {
-        let none = [Vector3::repeat(f64::NAN); 2];
-        if self.faults.any() {
-            return none;
-        }
-        let asked = Python::attach(|py| {
-            let value = self.function.bind(py).call1((time, RelativeMotion(*motion)));
-            value
-                .and_then(|value| self.returned(&value))
-                .inspect_err(|error| add_note(py, error, &format!("in the law `{}` at time {time}", self.name)))
-        });
-        asked.unwrap_or_else(|error| {
-            self.faults.put(error);
-            none
-        })
+        let asked = self.faults.ask(
+            || format!("in the law `{}` at time {time}", self.name),
+            |py| self.returned(&self.function.bind(py).call1((time, RelativeMotion(*motion)))?),
+        );
+        asked.unwrap_or([Vector3::repeat(f64::NAN); 2])
     }
 
     fn discontinuities(&self) -> Vec<f64> {

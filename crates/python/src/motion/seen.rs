@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use flexframe::dynamics::{Kinematics, PointShapes};
 use flexframe::nalgebra::{Matrix3, Vector3};
-use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use crate::errors::wrong_input;
+use crate::values::arrays::matrix;
 
 /// The points of a run, by name.
 pub(crate) type Points = Arc<Vec<(String, PointShapes)>>;
@@ -77,9 +77,7 @@ impl Motion {
     /// Matrix that takes body components to global ones (3x3).
     #[getter]
     fn rotation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        // By columns, the entries of A are by rows those of its transpose.
-        let rows: [[f64; 3]; 3] = self.body_from_global.into();
-        PyArray2::from_array(py, &ArrayView2::from(&rows))
+        matrix(py, &self.body_from_global.transpose())
     }
 
     /// Position of the origin of the body frame, global (3).

@@ -6,7 +6,7 @@ use flexframe::faer::MatRef;
 use flexframe::model::Model;
 use flexframe::nalgebra::Matrix3;
 use numpy::ndarray::{ArrayView, ArrayView2, ArrayView3, Dimension, ShapeBuilder};
-use numpy::{Element, PyArray, PyArrayMethods};
+use numpy::{Element, PyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
 /// The base of an array that looks into a model: a share of the model.
@@ -55,4 +55,11 @@ fn columns3(slice: &[f64]) -> Option<ArrayView2<'_, f64>> {
 /// A list of lists of N numbers as a table.
 pub(crate) fn table<T, const N: usize>(list: &[[T; N]]) -> ArrayView2<'_, T> {
     ArrayView2::from(list)
+}
+
+/// A small matrix as an array of its own (3x3): a copy.
+pub(crate) fn matrix<'py>(py: Python<'py>, matrix: &Matrix3<f64>) -> Bound<'py, PyArray2<f64>> {
+    // nalgebra has columns where numpy has rows.
+    let rows: [[f64; 3]; 3] = matrix.transpose().into();
+    PyArray2::from_array(py, &table(&rows))
 }

@@ -11,7 +11,6 @@ use crate::scheme::mode_limit::stable_step_of_modes;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
-use crate::system::joint::Joint;
 use crate::system::joint::equation::{Misfit, misfit};
 use crate::system::radau::SystemMotion;
 use crate::system::relaxed::RelaxError;
@@ -153,8 +152,7 @@ pub(super) fn assemble(
 /// Refuses equations from outside whose derivatives are not theirs.
 fn refuse_wrong_derivatives(motion: &SystemMotion) -> Result<(), SetupError> {
     let system = motion.system();
-    let of_joint = |joint: &'_ Joint| joint.equations().next().is_some();
-    if !system.joints().iter().any(of_joint) {
+    if system.joints().iter().all(|joint| joint.equations().next().is_none()) {
         return Ok(());
     }
     let at = Configuration::of(motion, &CommonSpin::REST);

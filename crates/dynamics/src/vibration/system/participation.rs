@@ -4,6 +4,7 @@ use faer::{Mat, Side};
 use modal::Participation;
 use nalgebra::Vector3;
 
+use crate::matrix::lists::dot;
 use crate::system::radau::SystemMotion;
 use crate::vibration::system::configuration::{BodyConfiguration, CommonSpin};
 use crate::vibration::system::error::SteadyError;
@@ -92,10 +93,6 @@ impl SteadyState {
         };
         bodies.flat_map(of_body).collect()
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// An eigenvalue below this part of the largest is found anew among its like: the solver knows it to rounding of the largest only.

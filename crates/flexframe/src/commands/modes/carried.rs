@@ -131,16 +131,17 @@ impl fmt::Display for CarriedReport {
             // What is zero but for rounding is shown as zero.
             let size = self.about.iter().fold(self.radius(), |most: f64, x| most.max(x.abs()));
             let [x, y, z] = self.about.map(|x| quantity(if x.abs() < 1e-12 * size { 0.0 } else { x }));
-            let whole = if self.frequencies.is_some() { "system's, without damping" } else { "body's" };
+            let (whole, head, width) = match self.frequencies {
+                None => ("body's", "mode".to_owned(), 5),
+                Some(_) => ("system's, without damping", format!("frequency, {}", self.unit), 14),
+            };
             writeln!(f, "\n  effective mass, % of the {whole}; rotations about {} at [{x}, {y}, {z}]", self.point)?;
-            let width = if self.frequencies.is_some() { 14 } else { 5 };
             let row = |f: &mut fmt::Formatter<'_>, name: &str, of: &OfBase| {
                 write!(f, "  {name:>width$}")?;
                 // What is zero but for rounding is shown as zero.
                 of.iter().try_for_each(|part| write!(f, "  {:>7.2}", if *part < 5e-5 { 0.0 } else { 100.0 * part }))?;
                 writeln!(f)
             };
-            let head = if self.frequencies.is_some() { format!("frequency, {}", self.unit) } else { "mode".to_owned() };
             write!(f, "  {head:>width$}")?;
             MOTIONS.iter().try_for_each(|motion| write!(f, "  {motion:>7}"))?;
             writeln!(f)?;
