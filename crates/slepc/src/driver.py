@@ -35,8 +35,6 @@ FOLDER = Path(FOLDER)
 # below this part of the eigenvalue.
 SPARE = 4
 GAP = 1e-6
-# Searches, each beside what the ones before have found.
-SEARCHES = 4
 # Iterations of a static response, and its residual in the norm of (K + sM)^-1, relative to that of the force.
 ITERATIONS = 300
 STATIC_TOLERANCE = 1e-13
@@ -208,27 +206,34 @@ class Driver:
     # Modes
 
     def modes(self):
+        """Searches on beside the eigenpairs found so far until a count of the eigenvalues says that none is missing. How many
+        copies of a repeated eigenvalue one search finds is a matter of rounding, so the number of searches has no bound; a
+        search that finds none of the missing ones ends them."""
         rigid, available = self.problem["rigid"], self.problem["available"]
-        found, missing, searches = [], self.problem["modes"], 0
+        eps, found, searches, below, missing = self.solver(), [], 0, None, self.problem["modes"]
         while True:
-            if searches == SEARCHES or len(found) == available > 0:
-                raise Refused(
-                    f"{len(found)} eigenvalues found in {searches} searches, up to {found[-1][0]:.6e} (rad/time)^2, and more by a "
-                    "count of the pivots below them",
-                    "is the stiffness not positive semi-definite? `flexframe modes` without --solver says more, on a coarser mesh",
-                )
-            searches += 1
-            found += self.search(min(missing + SPARE, available - len(found)), found)
+            found += self.search(eps, min(missing + SPARE, available - len(found)), found)
             found.sort(key=lambda pair: pair[0])
-            below, inside = self.gap([value for value, _, _ in found])
-            if inside is None:
-                missing = len(found)
-                continue
-            with self.timed("count"):
-                counted = self.count_below(below)
-            missing = counted - rigid - inside
+            searches += 1
+            if below is None:
+                below = self.gap([value for value, _, _ in found])
+                if below is None:
+                    missing = len(found)
+                    continue
+                with self.timed("count"):
+                    counted = self.count_below(below)
+                missing = counted - rigid
+            inside = sum(value < below for value, _, _ in found)
+            before, missing = missing, counted - rigid - inside
             if missing <= 0:
                 break
+            if missing == before or len(found) == available:
+                raise Refused(
+                    f"{inside} eigenvalues found below {below:.6e} (rad/time)^2 in {searches} searches, none by the last, and "
+                    f"{missing} more by a count of the pivots",
+                    "is the stiffness not positive semi-definite? `flexframe modes` without --solver says more, on a coarser mesh",
+                )
+        eps.destroy()
         self.leave(
             "modes",
             [vector for _, vector, _ in found[:inside]],
@@ -239,15 +244,13 @@ class Driver:
             searches=searches,
         )
 
-    def search(self, count, found):
-        """Pairs with the smallest eigenvalues beside the rigid motions and those found: by shift-invert at -s, the largest
-        mu = 1 / (lambda + s). Of each the eigenvalue, the vector, and |(K + sM)^-1 M x - mu x|_M / mu."""
+    def solver(self):
+        """Shift-invert at -s, with the factor of K + sM: the largest mu = 1 / (lambda + s) are the smallest eigenvalues."""
         SLEPc = self.SLEPc
         eps = SLEPc.EPS().create()
         eps.setOperators(self.K, self.M)
         eps.setProblemType(SLEPc.EPS.ProblemType.GHEP)
         eps.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
-        eps.setDimensions(count)
         eps.setTolerances(self.problem["tolerance"], 1000)
         eps.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
         eps.setTarget(-self.problem["shift"])
@@ -257,12 +260,20 @@ class Driver:
         ksp = st.getKSP()
         ksp.setType("preonly")
         self.prepare(ksp.getPC())
+        eps.setDimensions(self.problem["modes"])
+        with self.timed("factor"):
+            self.factored(ksp.getPC(), eps.setUp, ksp.setUp)
+        return eps
+
+    def search(self, eps, count, found):
+        """Pairs with the smallest eigenvalues beside the rigid motions and those found: of each the eigenvalue, the vector, and
+        |(K + sM)^-1 M x - mu x|_M / mu."""
+        eps.setDimensions(count)
         eps.setDeflationSpace(self.rigid + [vector for _, vector, _ in found])
         of = self.problem["modes"]
         already = len(found)
+        eps.cancelMonitor()
         eps.setMonitor(lambda _eps, _step, done, _values, _errors: self.say(converged=min(already + done, of), of=of))
-        with self.timed("factor"):
-            self.factored(ksp.getPC(), eps.setUp, ksp.setUp)
         with self.timed("search"):
             eps.solve()
             if eps.getConverged() < count:
@@ -270,9 +281,7 @@ class Driver:
                     f"{eps.getConverged()} of {count} eigenpairs converged in {eps.getIterationNumber()} restarts",
                     "ask for fewer modes",
                 )
-            pairs = [self.pair(eps, st, i) for i in range(count)]
-        eps.destroy()
-        return pairs
+            return [self.pair(eps, eps.getST(), i) for i in range(count)]
 
     def pair(self, eps, st, i):
         vector, answer = self.K.createVecs()
@@ -294,13 +303,14 @@ class Driver:
         return max(vector.dot(self.M * vector), 0.0) ** 0.5
 
     def gap(self, values):
-        """Where the eigenvalues are to be counted, in the widest gap after the wanted ones, and how many are below it; none
-        where there is no gap."""
+        """Where the eigenvalues are to be counted: in the widest gap after the wanted ones; none where there is no gap yet."""
         wanted = self.problem["modes"]
         if len(values) == self.problem["available"]:
-            return 2.0 * values[-1], len(values)
+            return 2.0 * values[-1]
+        if len(values) <= wanted:
+            return None
         width, place = max((values[i] - values[i - 1], i) for i in range(wanted, len(values)))
-        return values[place] - 0.5 * width, place if width > GAP * abs(values[place]) else None
+        return values[place] - 0.5 * width if width > GAP * abs(values[place]) else None
 
     # Static responses
 
