@@ -31,6 +31,8 @@ pub struct Limits {
     pub time: Option<Duration>,
     /// Bytes in its private folder; any if not given.
     pub bytes: Option<u64>,
+    /// Bytes of the address space of each of its processes; any if not given. Only Linux has this limit.
+    pub memory: Option<u64>,
 }
 
 /// The program that an environment variable names, or the usual one. A relative path is one from the current folder, and not
@@ -98,7 +100,7 @@ impl ForeignProgram {
         mut hear: impl FnMut(Stream, String),
     ) -> Result<ExitStatus, ProgramError> {
         self.command.env(MARK, &self.folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut running = Running::start(&mut self.command, &self.folder)?;
+        let mut running = Running::start(&mut self.command, &self.folder, limits.memory)?;
         let (send, receive) = sync_channel(WAITING);
         if let Some(pipe) = running.child().stdout.take() {
             listen(pipe, Stream::Output, send.clone()).map_err(ProgramError::Start)?;

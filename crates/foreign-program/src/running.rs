@@ -20,10 +20,12 @@ pub(crate) struct Running {
 }
 
 impl Running {
-    pub(crate) fn start(command: &mut Command, folder: &Path) -> Result<Self, ProgramError> {
+    pub(crate) fn start(command: &mut Command, folder: &Path, memory: Option<u64>) -> Result<Self, ProgramError> {
         let mut child = command.process_group(0).spawn().map_err(ProgramError::Start)?;
+        let id = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
+        limit_memory(id, memory);
         match Guard::over(child.id(), folder) {
-            Ok(guard) => Ok(Self { id: i32::try_from(child.id()).ok().and_then(Pid::from_raw), child, guard }),
+            Ok(guard) => Ok(Self { id, child, guard }),
             Err(error) => {
                 let _ = child.kill();
                 let _ = child.wait();
@@ -64,6 +66,18 @@ impl Running {
         status
     }
 }
+
+/// Limits the address space of a process and of those that it starts from now on. One that has ended needs no limit.
+#[cfg(target_os = "linux")]
+fn limit_memory(id: Option<Pid>, memory: Option<u64>) {
+    use rustix::process::{Resource, Rlimit, getrlimit, prlimit};
+    let hard = getrlimit(Resource::As).maximum;
+    let Some(limit) = memory.map(|memory| hard.map_or(memory, |hard| hard.min(memory))) else { return };
+    let _ = id.map(|id| prlimit(Some(id), Resource::As, Rlimit { current: Some(limit), maximum: Some(limit) }));
+}
+
+#[cfg(not(target_os = "linux"))]
+fn limit_memory(_: Option<Pid>, _: Option<u64>) {}
 
 /// Ends it, with all that it has started, unless it has been finished.
 impl Drop for Running {

@@ -18,7 +18,7 @@ fn shell(folder: &Path, script: &str, limits: Limits) -> (Result<ExitStatus, Pro
     (ended, said)
 }
 
-const UNLIMITED: Limits = Limits { time: None, bytes: None };
+const UNLIMITED: Limits = Limits { time: None, bytes: None, memory: None };
 
 /// True if a process is there, and is no zombie.
 fn is_alive(pid: &str) -> bool {
@@ -65,7 +65,7 @@ fn who_holds_its_pipes_and_who_floods_them_keep_nobody_waiting() {
         "setsid sh -c 'echo $$ > pid; exec sleep 600' & while ! [ -s pid ]; do sleep 0.01; done; echo done",
     ] {
         let _ = fs::remove_file(&pid);
-        let (ended, said) = shell(folder.path(), script, Limits { time: Some(Duration::from_secs(50)), bytes: None });
+        let (ended, said) = shell(folder.path(), script, Limits { time: Some(Duration::from_secs(50)), ..UNLIMITED });
         assert!(ended.unwrap().success(), "{script}");
         assert!(said.contains(&(Stream::Output, "done".to_owned())), "{script}");
         until("it is still there", || !is_alive(&read(&pid)));
@@ -83,14 +83,22 @@ fn it_may_be_stopped_and_ended_for_its_time_and_for_its_bytes() {
         fs::create_dir(&path).unwrap();
         path
     };
-    let (ended, _) = shell(&private(), script, Limits { time: Some(Duration::from_millis(300)), bytes: None });
+    let (ended, _) = shell(&private(), script, Limits { time: Some(Duration::from_millis(300)), ..UNLIMITED });
     assert!(matches!(ended, Err(ProgramError::Time(_))), "{ended:?}");
     let other = folder.path().join("other");
     until("it is still there", || !is_alive(&read(&pid)) && !is_alive(&read(&other)));
     assert!(!private_is_left(folder.path()));
     let script = "while :; do cat /proc/self/maps >> much; done";
-    let (ended, _) = shell(&private(), script, Limits { time: None, bytes: Some(10_000) });
+    let (ended, _) = shell(&private(), script, Limits { bytes: Some(10_000), ..UNLIMITED });
     assert!(matches!(ended, Err(ProgramError::Bytes { most: 10_000, .. })), "{ended:?}");
+    if cfg!(target_os = "linux") {
+        // Its memory has a limit from soon after its start on; the Python there needs some megabytes itself.
+        let script = "sleep 0.3; exec python3 -c 'len(bytes(1 << 30)); print(1)'";
+        let some = Limits { memory: Some(512 << 20), ..UNLIMITED };
+        assert!(shell(&private(), script, UNLIMITED).0.unwrap().success());
+        assert!(!shell(folder.path(), script, some).0.unwrap().success());
+    }
+    fs::remove_dir_all(folder.path().join("private")).unwrap();
     let asked = Cell::new(0);
     let stop = || {
         asked.set(asked.get() + 1);

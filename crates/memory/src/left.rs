@@ -26,7 +26,7 @@ pub enum Left {
 
 impl Left {
     /// The less of what the machine and the control group have.
-    pub(crate) fn of_machine() -> Option<Self> {
+    pub fn of_machine() -> Option<Self> {
         let machine = read_to_string("/proc/meminfo").ok().and_then(|text| available(&text)).map(Self::Machine);
         [machine, of_group().map(Self::Group)].into_iter().flatten().min_by_key(|left| left.bytes())
     }

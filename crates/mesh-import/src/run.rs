@@ -7,6 +7,7 @@ use std::process::ExitStatus;
 use std::time::Duration;
 
 use foreign_program::{ForeignProgram, Limits, ProgramError, Stream, named};
+use memory::Left;
 use serde::Deserialize;
 use whole_file::TemporaryFolder;
 
@@ -24,7 +25,7 @@ const PYTHON: &str = "FLEXFRAME_PYTHON";
 const GMSH: &str = "FLEXFRAME_GMSH";
 
 /// A mesh that takes longer, or is larger, is none for which anybody waits here.
-const LIMITS: Limits = Limits { time: Some(Duration::from_secs(12 * 3600)), bytes: Some(64 << 30) };
+const LIMITS: Limits = Limits { time: Some(Duration::from_secs(12 * 3600)), bytes: Some(64 << 30), memory: None };
 const TOO_MUCH: &str = "mesh it yourself with gmsh -3 -order 2 -format msh41, and name that mesh";
 /// Lines that are kept of what a program says.
 const KEPT: usize = 100;
@@ -184,7 +185,9 @@ impl Said {
             lines.push_back((stream, line.trim().to_owned()));
         };
         let [source_name, program] = [source.as_os_str(), program].map(|name| name.to_string_lossy().into_owned());
-        match command.run(LIMITS, || false, hear) {
+        // One that wants more than there is ends itself, and not others.
+        let memory = Left::of_machine().and_then(|left| left.bytes()).map(|bytes| bytes as u64);
+        match command.run(Limits { memory, ..LIMITS }, || false, hear) {
             Ok(status) => Ok(Self { status, first_errors, lines }),
             Err(ProgramError::Start(cause)) => Err(ImportError::NoReader { source_name, reader, program, cause, help }),
             Err(cause) => Err(ImportError::TooMuch { source_name, program, cause, help: TOO_MUCH }),

@@ -4,7 +4,7 @@
 //! a temporary file in the same folder, which takes the place of the file in one step once it is complete and safe on
 //! the disk. Whatever happens, the old file or the new one is there.
 //!
-//! * The file keeps the permissions of the one before; a new one gets those that the user's mask leaves.
+//! * The file keeps the permissions and the owner of the one before; a new one gets the permissions that the user's mask leaves.
 //! * A file that may not be written is not replaced.
 //! * A symbolic link stays: the file that it points to is replaced. A link that points to nothing is an error.
 //! * A device or a pipe, such as /dev/stdout, cannot be replaced and is written in place.
@@ -54,21 +54,13 @@ impl WholeFile {
     /// Errors of the system, also where the file that is there may not be written.
     pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
         let path = path.as_ref();
-        let permissions = match OpenOptions::new().write(true).open(path) {
-            Ok(old) => {
-                let old_is = old.metadata()?;
-                if !old_is.is_file() {
-                    return Ok(Self { file: BufWriter::new(old), place: None });
-                }
-                Some(old_is.permissions())
-            }
-            Err(error) if error.kind() == io::ErrorKind::NotFound && !path.is_symlink() => None,
+        match OpenOptions::new().write(true).open(path) {
+            Ok(old) if !old.metadata()?.is_file() => return Ok(Self { file: BufWriter::new(old), place: None }),
+            Ok(_) => {}
+            Err(error) if error.kind() == io::ErrorKind::NotFound && !path.is_symlink() => {}
             Err(error) => return Err(error),
-        };
-        let (file, temporary) = TemporaryFile::beside(path, "")?;
-        if let Some(permissions) = permissions {
-            file.set_permissions(permissions)?;
         }
+        let (file, temporary) = TemporaryFile::beside(path, "")?;
         Ok(Self { file: BufWriter::new(file), place: Some((temporary, path.to_owned())) })
     }
 
@@ -159,6 +151,14 @@ mod tests {
         // A file that is put into its place otherwise, such as one of HDF5.
         TemporaryFile::beside(&place("link"), "").unwrap().1.put(&place("link"), true).unwrap();
         assert!(place("link").is_symlink() && fs::read(place("page")).unwrap() == b"");
+        assert_eq!(mode(&place("page")), 0o640);
+        // The superuser can give a file away, and it keeps its owner.
+        if std::os::unix::fs::chown(place("page"), Some(12345), Some(54321)).is_ok() {
+            TemporaryFile::beside(&place("page"), ".h5").unwrap().1.put(&place("page"), true).unwrap();
+            let page = fs::metadata(place("page")).unwrap();
+            assert_eq!((page.uid(), page.gid(), page.mode() & 0o777), (12345, 54321, 0o640));
+            std::os::unix::fs::chown(place("page"), Some(0), Some(0)).unwrap();
+        }
         assert!(TemporaryFile::beside(Path::new("/dev/null"), "").is_err());
         fs::set_permissions(place("page"), PermissionsExt::from_mode(0o640)).unwrap();
         symlink("nothing", place("dangling")).unwrap();
@@ -175,6 +175,8 @@ mod tests {
         fs::set_permissions(place("page"), PermissionsExt::from_mode(0o440)).unwrap();
         if OpenOptions::new().write(true).open(place("page")).is_err() {
             assert_eq!(write_whole(place("page"), "newer").unwrap_err().kind(), io::ErrorKind::PermissionDenied);
+            let other = TemporaryFile::beside(&place("page"), ".h5").unwrap_err();
+            assert_eq!(other.kind(), io::ErrorKind::PermissionDenied);
         }
     }
 }

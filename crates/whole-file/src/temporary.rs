@@ -3,7 +3,7 @@
 //! A temporary file is removed when it is dropped. A signal ends a program without dropping anything, so all that are there are
 //! listed here, and [`remove_temporaries`] removes them.
 
-use std::fs::{self, File};
+use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
@@ -100,16 +100,23 @@ pub struct NoTemporaries {
 pub struct TemporaryFile(Option<TempPath>);
 
 impl TemporaryFile {
-    /// Makes a file in the folder of `path`, whose place it is to take, with the permissions of any new file. Its name is
-    /// `.flexframe-`, six letters and `suffix`. Where `path` is a symbolic link, the folder is that of the file it leads to.
+    /// Makes a file in the folder of `path`, whose place it is to take, with the permissions and the owner of the file there, or the
+    /// permissions of any new file. Its name is `.flexframe-`, six letters and `suffix`. Where `path` is a symbolic link, the
+    /// folder is that of the file it leads to.
     ///
     /// # Errors
-    /// Errors of the system; a folder, a device or a pipe that has this name.
+    /// Errors of the system, also where the file there may not be written, or belongs to another user, who would lose it; a folder,
+    /// a device or a pipe that has this name.
     pub fn beside(path: &Path, suffix: &str) -> io::Result<(File, Self)> {
         let path = followed(path)?;
         if path.exists() && !path.is_file() {
             return Err(io::Error::other("this is no file, and nothing is put in its place"));
         }
+        let old = match OpenOptions::new().write(true).open(&path) {
+            Ok(old) => Some(old.metadata()?),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(error) => return Err(error),
+        };
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut builder = Builder::new();
         builder.prefix(PREFIX).suffix(suffix);
@@ -118,7 +125,13 @@ impl TemporaryFile {
         let mut there = there();
         let made = builder.tempfile_in(folder).map_err(without_a_path);
         let (file, path) = listed(made, |made| made.path(), &mut there)?.into_parts();
-        Ok((file, Self(Some(path))))
+        drop(there);
+        let temporary = Self(Some(path));
+        if let Some(old) = old {
+            keep_owner(&file, &old)?;
+            file.set_permissions(old.permissions())?;
+        }
+        Ok((file, temporary))
     }
 
     /// Moves the file into a place, where it stays. A file that was there is replaced, or else, unless `replace`, in the way; a
@@ -200,6 +213,27 @@ impl Drop for TemporaryFolder {
             unlist(&path);
         }
     }
+}
+
+/// Gives a file the owner and the group of another.
+#[cfg(unix)]
+fn keep_owner(file: &File, old: &fs::Metadata) -> io::Result<()> {
+    use std::os::unix::fs::{MetadataExt, fchown};
+    let new = file.metadata()?;
+    if (new.uid(), new.gid()) == (old.uid(), old.gid()) {
+        return Ok(());
+    }
+    fchown(file, Some(old.uid()), Some(old.gid())).map_err(|error| match error.kind() {
+        io::ErrorKind::PermissionDenied => {
+            io::Error::new(error.kind(), "it belongs to another user or group, who would lose it; name another file")
+        }
+        _ => error,
+    })
+}
+
+#[cfg(not(unix))]
+fn keep_owner(_: &File, _: &fs::Metadata) -> io::Result<()> {
+    Ok(())
 }
 
 /// The file that a symbolic link leads to; any other path as it is.

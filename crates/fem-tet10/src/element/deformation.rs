@@ -30,6 +30,7 @@ pub(crate) fn check_field(mesh: &Mesh, what: &'static str, field: MatRef<'_, f64
 }
 
 /// Displacements of the nodes 1 to 9 of an element against node 0: by node, then axis, then column of `fields`.
+#[inline]
 pub(crate) fn relative_displacements(fields: MatRef<'_, f64>, nodes: &[u32; 10]) -> Vec<f64> {
     let first = 3 * nodes[0] as usize;
     let mut relative = Vec::with_capacity(3 * OTHERS * fields.ncols());
@@ -43,6 +44,7 @@ pub(crate) fn relative_displacements(fields: MatRef<'_, f64>, nodes: &[u32; 10])
 }
 
 /// ∇u of each field at a point, `(∇u)_ab = ∂u_a/∂x_b`. `relative` is by node, then axis, then field.
+#[inline]
 pub(crate) fn displacement_gradients(
     relative: &[f64],
     point: &IntegrationPoint,
@@ -63,14 +65,17 @@ pub(crate) fn displacement_gradients(
     }
 }
 
+#[inline]
 pub(crate) fn strain(gradient: &Matrix3<f64>) -> Matrix3<f64> {
     0.5 * (gradient + gradient.transpose())
 }
 
+#[inline]
 pub(crate) fn second_strain(a: &Matrix3<f64>, b: &Matrix3<f64>) -> Matrix3<f64> {
     strain(&(a.transpose() * b))
 }
 
+#[inline]
 pub(crate) fn stress(material: &Material, strain: &Matrix3<f64>) -> Matrix3<f64> {
     let (lambda, mu) = material.lame();
     lambda * strain.trace() * Matrix3::identity() + 2.0 * mu * strain

@@ -7,6 +7,7 @@ mod strain_energy;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use model::{BuildError, BuildProgress, Builder, Model};
 use scene::Scene;
@@ -97,7 +98,9 @@ pub fn modes(
     let mut report = ModesReport::new(&scene, &model);
     if let Some(meshed) = model.meshed.as_ref().filter(|_| model.body.flexible() > 0) {
         report.carried = Some(CarriedReport::new(&model, about));
+        let start = Instant::now();
         report.strain_energy = StrainEnergyReport::new(meshed)?;
+        report.times.add("mesh error", start.elapsed());
     }
     Ok((model, report))
 }

@@ -53,8 +53,9 @@ fn errors(meshed: &Meshed, results: &Results, body: usize) -> Option<[f64; 2]> {
     let elements = meshed.elements.as_ref()?;
     let recovery = StressRecovery::new(&meshed.mesh, &elements.materials).ok()?;
     let of_state = part(&meshed.mesh_error_of_state(&recovery, q).ok()?)?;
-    let of_mode = part(&meshed.mesh_error(&recovery, meshed.modes.shapes.col(0)).ok()?)?;
-    Some([of_state, 0.5 * of_mode])
+    let mut of_mode = None;
+    meshed.mesh_errors(&recovery, meshed.modes.shapes.subcols(0, 1), |_, errors| of_mode = part(errors)).ok()?;
+    Some([of_state, 0.5 * of_mode?])
 }
 
 /// The energy of the error over that of the stress.

@@ -3,32 +3,40 @@
 //! About a bent rest u₀ the strain of a small displacement u is sym(F₀ᵀ∇u), F₀ = 1 + ∇u₀. sym(∇u) alone would have the turning of u₀ in it,
 //! which strains nothing.
 
-use faer::{Col, ColRef};
+use faer::{Col, MatRef};
 use fem_tet10::{AssemblyError, StressError, StressRecovery};
 
 use crate::model::Meshed;
 use crate::stress::about::stress_about;
 
+/// Displacement fields whose stress is recovered at once, which bounds the room for it.
+const BLOCK: usize = 8;
+
 impl Meshed {
-    /// The error in each element of a small displacement (3n) from the rest of the modes.
+    /// The error in each element of small displacements (3n×k) from the rest of the modes: `see` is given blocks of displacements one
+    /// after another: their number, and the errors by element, then by displacement.
     ///
     /// # Errors
     /// [`AssemblyError`].
-    pub fn mesh_error(
+    pub fn mesh_errors(
         &self,
         recovery: &StressRecovery<'_>,
-        displacement: ColRef<'_, f64>,
-    ) -> Result<Vec<StressError>, AssemblyError> {
-        match &self.reference {
-            None => {
-                let nodal = recovery.nodal_stress(displacement.as_mat())?;
-                recovery.error_estimate(displacement, nodal.col(0))
-            }
-            Some(reference) => {
-                let nodal = stress_about(recovery, reference.as_ref(), displacement.as_mat())?;
-                recovery.error_estimate_of_product(displacement, [reference.col(0), displacement], nodal.col(0))
-            }
+        displacements: MatRef<'_, f64>,
+        mut see: impl FnMut(usize, &[StressError]),
+    ) -> Result<(), AssemblyError> {
+        for first in (0..displacements.ncols()).step_by(BLOCK) {
+            let count = BLOCK.min(displacements.ncols() - first);
+            let block = displacements.subcols(first, count);
+            let errors = match &self.reference {
+                None => recovery.error_estimate(block, recovery.nodal_stress(block)?.as_ref())?,
+                Some(reference) => {
+                    let nodal = stress_about(recovery, reference.as_ref(), block)?;
+                    recovery.error_estimate_of_product(block, (reference.col(0), block), nodal.subcols(0, count))?
+                }
+            };
+            see(count, &errors);
         }
+        Ok(())
     }
 
     /// The error in each element of a state: of the rest of the modes and small modal displacements from it.
@@ -41,13 +49,16 @@ impl Meshed {
         modal_displacement: &[f64],
     ) -> Result<Vec<StressError>, AssemblyError> {
         let displacement = &self.modes.shapes * Col::from_iter(modal_displacement.iter().copied());
-        let Some(reference) = &self.reference else { return self.mesh_error(recovery, displacement.as_ref()) };
+        let displacement = displacement.as_mat();
+        let Some(reference) = &self.reference else {
+            return recovery.error_estimate(displacement, recovery.nodal_stress(displacement)?.as_ref());
+        };
         // E(u₀) + sym(F₀ᵀ∇u) = sym ∇(u₀ + u) + sym(∇u₀ᵀ∇(½u₀ + u)).
         let rest = reference.col(0);
-        let whole = Col::from_fn(rest.nrows(), |i| rest[i] + displacement[i]);
-        let half = Col::from_fn(rest.nrows(), |i| 0.5 * rest[i] + displacement[i]);
-        let of_both = stress_about(recovery, reference.as_ref(), displacement.as_mat())?;
+        let whole = Col::from_fn(rest.nrows(), |i| rest[i] + displacement[(i, 0)]);
+        let half = Col::from_fn(rest.nrows(), |i| 0.5 * rest[i] + displacement[(i, 0)]);
+        let of_both = stress_about(recovery, reference.as_ref(), displacement)?;
         let nodal = of_both.col(0) + of_both.col(1);
-        recovery.error_estimate_of_product(whole.as_ref(), [rest, half.as_ref()], nodal.as_ref())
+        recovery.error_estimate_of_product(whole.as_mat(), (rest, half.as_mat()), nodal.as_mat())
     }
 }

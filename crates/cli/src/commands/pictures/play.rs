@@ -5,6 +5,7 @@ use std::error::Error;
 use clap::Args;
 use flexframe::html_report;
 use flexframe::run::{self, RunSettings};
+use whole_file::TemporaryFolder;
 
 use crate::cli_error::CliError;
 use crate::output;
@@ -27,7 +28,7 @@ impl Play {
         let Self { scene, port } = self;
         let system = session.read_system(scene)?;
         let served = Served::new(port)?;
-        let folder = tempfile::tempdir().map_err(CliError::Folder)?;
+        let folder = TemporaryFolder::new().map_err(CliError::Folder)?;
         let settings = RunSettings { check: false, ..session.settings(true) };
         let (_, report) = run::run(&system, folder.path(), &settings, |p| {
             session.signals.heard(p);
@@ -35,8 +36,9 @@ impl Play {
         })?;
         let contents = html_report::live_contents(&report.results, &session.builder, |p| session.bar.build(p))?;
         let page = html_report::page(&contents)?;
-        drop((session.bar, contents));
+        // The page has all that it shows: nothing is left on the disk while it is there.
+        drop((session.bar, contents, report, folder));
         output::line(&format!("  page     {} (Ctrl-C ends it)", served.address()))?;
-        Ok(served.serve(&page, &session.signals.stop())?)
+        Ok(served.serve(page, &session.signals.stop())?)
     }
 }

@@ -49,21 +49,26 @@ impl StrainEnergyReport {
             by_material: materials.iter().map(|(name, _)| part(name.clone())).collect(),
             by_group: mesh.groups().iter().cloned().map(part).collect(),
         };
-        for shape in modes.shapes.col_iter() {
-            let energies = meshed.mesh_error(&recovery, shape)?;
-            let whole: StressError = energies.iter().copied().sum();
-            let share = |is_in: &dyn Fn(usize) -> bool| {
-                let of = energies.iter().enumerate().filter(|(e, _)| is_in(*e));
-                of.map(|(_, energy)| energy.energy).sum::<f64>() / whole.energy
-            };
-            report.mesh_errors.push(0.5 * whole.error / whole.energy);
-            for ((_, material), part) in materials.iter().zip(&mut report.by_material) {
-                part.parts.push(share(&|e| of_elements[e] == *material));
+        let groups: Vec<Vec<bool>> = (0..mesh.groups().len())
+            .map(|group| (0..of_elements.len()).map(|e| mesh.element_groups(e).contains(&group)).collect())
+            .collect();
+        meshed.mesh_errors(&recovery, modes.shapes.as_ref(), |count, energies| {
+            for k in 0..count {
+                let of_shape = || energies.iter().skip(k).step_by(count);
+                let whole: StressError = of_shape().copied().sum();
+                let share = |is_in: &dyn Fn(usize) -> bool| {
+                    let of = of_shape().enumerate().filter(|(e, _)| is_in(*e));
+                    of.map(|(_, energy)| energy.energy).sum::<f64>() / whole.energy
+                };
+                report.mesh_errors.push(0.5 * whole.error / whole.energy);
+                for ((_, material), part) in materials.iter().zip(&mut report.by_material) {
+                    part.parts.push(share(&|e| of_elements[e] == *material));
+                }
+                for (group, part) in groups.iter().zip(&mut report.by_group) {
+                    part.parts.push(share(&|e| group[e]));
+                }
             }
-            for (group, part) in report.by_group.iter_mut().enumerate() {
-                part.parts.push(share(&|e| mesh.element_groups(e).contains(&group)));
-            }
-        }
+        })?;
         Ok(Some(report))
     }
 }

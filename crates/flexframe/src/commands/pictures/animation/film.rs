@@ -12,7 +12,7 @@ use whole_file::{TemporaryFolder, write_whole};
 /// Names ffmpeg, where it is not `ffmpeg`.
 const FFMPEG: &str = "FLEXFRAME_FFMPEG";
 /// The most time, and the most bytes of pictures and film, of anything that anybody waits for.
-const LIMITS: Limits = Limits { time: Some(Duration::from_secs(6 * 3600)), bytes: Some(64 << 30) };
+const LIMITS: Limits = Limits { time: Some(Duration::from_secs(6 * 3600)), bytes: Some(64 << 30), memory: None };
 
 /// A film that could not be made.
 #[derive(Debug, thiserror::Error)]
