@@ -166,6 +166,20 @@ impl Collocation {
         })
     }
 
+    /// Factors of the increments at the stages in their rate at a time, both counted in steps.
+    pub fn rates_at(&self, time: f64) -> [f64; STAGES] {
+        std::array::from_fn(|i| {
+            let [j, k] = [(i + 1) % STAGES, (i + 2) % STAGES];
+            let [at, other, third] = [i, j, k].map(|stage| self.times[stage]);
+            let [first, second] = [time - other, time - third];
+            let scale = ((at - other) * (at - third)).recip();
+            if self.is_explicit {
+                return scale * first * second;
+            }
+            scale / at * (first * second + time * (first + second))
+        })
+    }
+
     /// The polynomial of fourth degree whose rate, counted in steps, is 1 at the start and 0 at the stages. It is 0 at both ends.
     pub fn bend(&self, time: f64) -> f64 {
         if self.is_explicit {
@@ -256,6 +270,22 @@ mod tests {
             }
             assert!(scheme.weights_to(1.0).iter().zip(scheme.weights).all(|(b, whole)| (b - whole).abs() < 1e-14));
         }
+    }
+
+    /// Closed form: the rate of a polynomial of third degree; of explicit steps, whose increments are rates, one of the second.
+    #[test]
+    fn rates_are_those_of_the_polynomials() {
+        for scheme in [Collocation::radau(), Collocation::gauss()] {
+            let (x, rate) = (|t: f64| t - 0.3 * t * t + 2.0 * t.powi(3), |t: f64| 1.0 - 0.6 * t + 6.0 * t * t);
+            for time in [0.0, 0.3, 1.0] {
+                let found: f64 = scheme.rates_at(time).iter().zip(scheme.times).map(|(f, c)| f * x(c)).sum();
+                assert!((found - rate(time)).abs() < 1e-13);
+            }
+        }
+        let scheme = Collocation::rkmk4();
+        let rate = |t: f64| 1.0 - 0.6 * t + 6.0 * t * t;
+        let found: f64 = scheme.rates_at(0.7).iter().zip(scheme.times).map(|(f, c)| f * rate(c)).sum();
+        assert!((found - rate(0.7)).abs() < 1e-13);
     }
 
     /// Closed form: with its rate at the start, a polynomial of degree 4 is found from its rates at the stages.

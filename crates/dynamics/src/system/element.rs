@@ -45,6 +45,12 @@ pub trait ForceElement: fmt::Debug + Send + Sync + Any {
         None
     }
 
+    /// A continuous function that changes its sign where the law has a kink or a jump: the gap of a contact, the slack of a cable. Under
+    /// step control steps end there. Without one, the work of the law shows that there is something, and steps grow short.
+    fn switch(&self, _times: [f64; 2], _motions: &[MarkerMotion]) -> Option<f64> {
+        None
+    }
+
     /// Times at which the law or one of its rates jumps, rising. Steps end there.
     fn discontinuities(&self) -> Vec<f64> {
         Vec::new()

@@ -10,6 +10,8 @@
 mod end;
 mod exchange;
 mod explicit;
+mod law_work;
+mod laws;
 mod newton;
 mod springs;
 pub(in crate::system) mod stage_rates;
@@ -34,6 +36,7 @@ use crate::system::elimination::patterns::Patterns;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::coupling::CoupledCoordinate;
 use crate::system::joint::work::JointWork;
+use crate::system::radau::law_work::LawWork;
 use crate::system::radau::stage_rates::StageRates;
 use crate::system::stage::{BodyStart, Stage, Start};
 
@@ -51,6 +54,8 @@ pub struct Tried {
     pub error: f64,
     /// Passes of Newton's method.
     pub passes: usize,
+    /// Length of the step to the first kink of a law within it, which such a step ends before. Looked for under a tolerance.
+    pub kink: Option<f64>,
 }
 
 /// A step that was not done.
@@ -92,6 +97,9 @@ pub struct SystemMotion {
     pub(super) stage_rates: [StageRates; STAGES],
     pub(super) matrices: Matrices,
     room: Room,
+    law_work: LawWork,
+    /// Time over which errors are shared; infinite where it is not known.
+    pub(in crate::system) span: f64,
     /// The largest energy so far.
     pub(super) largest_energy: f64,
     /// Work of the drives of joints where their rates jumped.
@@ -145,6 +153,7 @@ impl SystemMotion {
         let flexible: Vec<usize> = system.bodies.iter().map(Equations::flexible).collect();
         let multipliers = std::array::from_fn(|_| vec![0.0; rows]);
         let zeros = || vec![0.0; coordinates];
+        let law_work = LawWork::new(&system, &stage);
         let coordinates_of_joints = vec![JointCoordinates::default(); joints];
         let mut motion = Self {
             scheme: Collocation::radau(),
@@ -174,6 +183,8 @@ impl SystemMotion {
                 impulses: vec![0.0; rows],
                 spring_energies: vec![0.0; joints + elements],
             },
+            law_work,
+            span: f64::INFINITY,
             patterns,
             bodies,
             system,
@@ -215,6 +226,7 @@ impl SystemMotion {
             let sum = coupling.terms.iter().map(of_term).sum();
             coupling.sum.get_or_insert(sum);
         }
+        self.law_work.find_first(&self.system, &self.start);
         // With rates, if bodies that are as they should not be have any: steps tell of those that have none.
         if self.evaluate_first(self.time).is_ok() {
             for joint in 0..self.start.joints.len() {
@@ -358,18 +370,32 @@ impl SystemMotion {
     /// # Errors
     /// [`Failed`]; the state stays.
     pub fn try_step(&mut self, h: f64, end: f64, exactness: f64, tolerance: f64) -> Result<Tried, Failed> {
+        self.try_step_over_kinks(h, end, [exactness, tolerance], false)
+    }
+
+    /// The same; a step over a kink that a law tells is not taken under a tolerance, unless it is to be.
+    pub(super) fn try_step_over_kinks(
+        &mut self,
+        h: f64,
+        end: f64,
+        [exactness, tolerance]: [f64; 2],
+        over_kinks: bool,
+    ) -> Result<Tried, Failed> {
+        let over_kinks = over_kinks || !tolerance.is_finite();
         self.begin();
         let branch_time = self.time + 0.5 * h;
         self.evaluate_first(branch_time)?;
         if self.scheme.is_explicit {
-            return self.try_explicit_step(h, [end, branch_time], tolerance);
+            return self.try_explicit_step(h, [end, branch_time], tolerance, over_kinks);
         }
         self.predict(h);
         let energy = self.largest_energy;
-        let tried = self
-            .newton(h, exactness)
-            .map(|passes| Tried { error: larger(self.error(h), self.stop_error_of_stages(h)), passes });
-        let is_taken = tried.as_ref().is_ok_and(|tried| tried.error <= tolerance);
+        let tried = self.newton(h, exactness).map(|passes| Tried {
+            error: larger(self.error(h), self.energy_error_in_run(h)),
+            passes,
+            kink: if over_kinks { None } else { self.length_to_kink(h) },
+        });
+        let is_taken = tried.as_ref().is_ok_and(|tried| tried.error <= tolerance && tried.kink.is_none());
         if !is_taken {
             // That of a step that is too long says nothing about a shorter one.
             self.largest_energy = energy;

@@ -114,6 +114,7 @@ impl SystemSimulation {
         let shape_limit = setup.shape_limit();
         let SystemSetup { system, states, relaxed, scheme, control, end, rows, points } = setup;
         let mut motion = SystemMotion::new(system, &states)?.with_scheme(scheme);
+        motion.span = end;
         let size = size(motion.system(), &states);
         let assembled = assemble(&mut motion, &states, relaxed, [size, end])?;
         let is_implied = motion.implied_rows();

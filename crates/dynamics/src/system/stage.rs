@@ -16,7 +16,7 @@ use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::force::Forces;
 use crate::system::joint::work::JointWork;
 use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
-use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
+use crate::system::marker::{BodyPlace, Marker, MarkerPlace, tangent_of};
 
 /// The start of a step: the numbers that its increments are counted from.
 #[derive(Debug, Clone)]
@@ -274,6 +274,80 @@ impl Stage {
         }
     }
 
+    /// Takes the motion to where increments at three stages lead by these factors, and gives it the rates that they have there by those.
+    pub fn follow(&mut self, system: &System, start: &Start, increments: [&[f64]; 3], [to, rates]: [[f64; 3]; 2]) {
+        let [a, b, c] = increments;
+        let of = |factors: [f64; 3], k: usize| factors[0] * a[k] + factors[1] * b[k] + factors[2] * c[k];
+        (0..self.x.len()).for_each(|k| self.x[k] = of(to, k));
+        self.place(system, start);
+        (0..self.velocities.len()).for_each(|k| self.velocities[k] = of(rates, k));
+        for (attitude, first) in self.attitudes.iter().zip(&system.first) {
+            let velocity = attitude * vector(&self.velocities, *first);
+            // ω = T(θ)ᵀ θ', the inverse of `f_inverse`.
+            let omega = tangent_of(&vector(&self.x, first + 3)).tr_mul(&vector(&self.velocities, first + 3));
+            put(&mut self.velocities, *first, &velocity);
+            put(&mut self.velocities, first + 3, &omega);
+        }
+    }
+
+    /// Finds the powers of the forces of joints and of elements that have work which only sums tell, where the bodies have been placed and
+    /// move with the velocities.
+    pub fn find_powers(&mut self, system: &System, start: &Start, times: [f64; 2]) {
+        for (number, (joint, coordinate, force)) in system.connections.joint_forces().enumerate() {
+            if force.has_work() {
+                let at = self.coordinate_of(system, start, (joint, coordinate), times[0]);
+                self.constraints.coordinates[number] = at[0];
+                self.joint_powers[number] = force.at(at, times).times(at[1]);
+            }
+        }
+        for number in 0..system.connections.elements.len() {
+            self.find_marker_motions(system, system.connections.elements[number].markers());
+            self.apply_element(system, number, times);
+        }
+    }
+
+    /// Finds the functions that change their signs at kinks of the forces of joints and of elements, in the order of these.
+    pub fn find_switches(&mut self, system: &System, start: &Start, times: [f64; 2], out: &mut Vec<f64>) {
+        out.clear();
+        for (joint, coordinate, force) in system.connections.joint_forces() {
+            if force.stops.is_some() || !force.laws.is_empty() {
+                out.extend(force.switches(self.coordinate_of(system, start, (joint, coordinate), times[0]), times));
+            }
+        }
+        for element in &system.connections.elements {
+            self.find_marker_motions(system, element.markers());
+            out.extend(element.switch(times, &self.marker_motions));
+        }
+    }
+
+    /// A coordinate of a joint, and its rate.
+    fn coordinate_of(
+        &self,
+        system: &System,
+        start: &Start,
+        (joint, coordinate): (usize, Coordinate),
+        time: f64,
+    ) -> [f64; 2] {
+        self.joint_coordinates(system, joint, start.turn(joint, time)).along(coordinate)
+    }
+
+    /// Finds the wrenches of an element and their power, where the motions of its markers have been found.
+    fn apply_element(&mut self, system: &System, number: usize, times: [f64; 2]) {
+        let element = &system.connections.elements[number];
+        let Self { marker_motions, wrenches, element_powers, .. } = self;
+        wrenches.clear();
+        wrenches.resize(marker_motions.len(), MarkerWrench::default());
+        element.apply(times, marker_motions, wrenches);
+        let of_marker = |(MarkerWrench { force_global, moment_global }, motion): (&MarkerWrench, &MarkerMotion)| {
+            force_global.dot(&motion.velocity_global) + moment_global.dot(&motion.omega_global)
+        };
+        let power: f64 = wrenches.iter().zip(&*marker_motions).map(of_marker).sum();
+        element_powers[number] = match element.stored(marker_motions) {
+            Some(Stored { damping_power: loss, .. }) => JointWork { drive: 0.0, spring: power + loss, loss },
+            None => JointWork { drive: power, ..JointWork::default() },
+        };
+    }
+
     /// Adds the forces of the elements and of joints along their coordinates to y'.
     fn add_elements(&mut self, system: &System, times: [f64; 2]) {
         if system.connections.elements.is_empty() && self.joint_powers.is_empty() {
@@ -283,27 +357,12 @@ impl Stage {
         self.add_joint_forces(system, times);
         for (number, element) in system.connections.elements.iter().enumerate() {
             self.find_marker_motions(system, element.markers());
-            let Self {
-                marker_places,
-                marker_motions,
-                wrenches,
-                element_forces: forces,
-                element_powers,
-                positions,
-                attitudes,
-                q,
-                evaluations,
-                ..
-            } = self;
+            self.apply_element(system, number, times);
+            let Self { marker_places, wrenches, element_forces: forces, positions, attitudes, q, evaluations, .. } =
+                self;
             let places = Places { system, positions, attitudes, q, evaluations };
             let markers = element.markers();
-            wrenches.clear();
-            wrenches.resize(markers.len(), MarkerWrench::default());
-            element.apply(times, marker_motions, wrenches);
-            let mut power = 0.0;
             for (k, MarkerWrench { force_global, moment_global }) in wrenches.iter().enumerate() {
-                let motion = &marker_motions[k];
-                power += force_global.dot(&motion.velocity_global) + moment_global.dot(&motion.omega_global);
                 if let Some(b) = markers[k].body() {
                     markers[k].add_wrench(
                         &marker_places[k],
@@ -313,10 +372,6 @@ impl Stage {
                     );
                 }
             }
-            element_powers[number] = match element.stored(marker_motions) {
-                Some(Stored { damping_power: loss, .. }) => JointWork { drive: 0.0, spring: power + loss, loss },
-                None => JointWork { drive: power, ..JointWork::default() },
-            };
         }
         let Self { element_forces: forces, forces: total, positions, attitudes, .. } = self;
         total.copy_from_slice(forces);

@@ -177,7 +177,7 @@ fn a_bushing_between_free_bodies_keeps_their_momenta() {
 
 /// Conserved: the energy of two bodies that whirl about each other on a stiff spring, and of a pair on a bushing, both without dampers, at rough
 /// tolerances. What the steps lose is open in the balance: energy less all work is what the energy with the springs' closed form has changed
-/// by. The sums over the stages, which a law from outside has, see a small part of it.
+/// by. So it is of a law from outside, whose energy nobody tells.
 #[test]
 fn balances_see_what_steps_lose_in_springs() {
     let whirling = [
@@ -227,7 +227,8 @@ fn balances_see_what_steps_lose_in_springs() {
                 of_law.advance(3.0, tolerance, &mut 1e-2).unwrap();
                 let summed = of_law.energy().unwrap() - kinetic - of_law.element_work();
                 println!("a law: open by {summed:.1e} of {:.1e}", total(&of_law) - start);
-                assert!(summed.abs() < 0.1 * (total(&of_law) - start).abs(), "{summed:e}");
+                let drift = total(&of_law) - start;
+                assert!((summed - drift).abs() < 0.02 * drift.abs(), "{summed:e} {drift:e}");
                 assert!(of_law.work_of_element(0).drive == of_law.element_work(), "{:?}", of_law.work_of_element(0));
             }
         }

@@ -8,6 +8,7 @@ mod elements;
 mod equation;
 mod flexible;
 mod hard;
+mod laws;
 mod linear;
 mod mechanism;
 mod rigid;

@@ -98,7 +98,9 @@ fn stiff_elements_take_steps_of_a_weld() {
         for (name, joint, element) in cases {
             let (found, angle, missing) = fall(falling(joint, vec![element]));
             println!("{name} {stiffness:e}: {found} steps, {steps} of a weld; {:e} off, {missing:e} J", angle - turn);
-            assert!(found <= steps * if name.ends_with("strut") { 5 } else { 10 } / 4, "{found} {steps}");
+            // Of laws whose energy nobody tells, what rings at first is the whole motion.
+            let parts = if name.starts_with("law") { 40 } else { 10 };
+            assert!(found <= steps * if name == "strut" { 5 } else { parts } / 4, "{found} {steps}");
             assert!((angle - turn).abs() < 1e-4 && missing.abs() < 1e-3, "{angle} {turn} {missing}");
         }
     }

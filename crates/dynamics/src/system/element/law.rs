@@ -30,6 +30,13 @@ pub trait MarkerLaw: fmt::Debug + Send + Sync {
     /// taken as they are at `times[1]`.
     fn force_and_moment(&self, times: [f64; 2], motion: &RelativeMotion) -> [Vector3<f64>; 2];
 
+    /// A continuous function that changes its sign where the law has a kink or a jump: the gap of a contact, the slack of a cable. Under
+    /// step control steps end there. Without one, the work of the law shows that there is something, and steps grow short.
+    fn switch(&self, times: [f64; 2], motion: &RelativeMotion) -> Option<f64> {
+        let _ = (times, motion);
+        None
+    }
+
     /// Times at which the law or one of its rates jumps, rising. Steps end there.
     fn discontinuities(&self) -> Vec<f64> {
         Vec::new()
@@ -112,6 +119,11 @@ impl ForceElement for MarkerForce {
         let line = j.position_global - i.position_global;
         (on_j.force_global, on_j.moment_global) = (force, moment);
         (on_i.force_global, on_i.moment_global) = (-force, -moment - line.cross(&force));
+    }
+
+    fn switch(&self, times: [f64; 2], motions: &[MarkerMotion]) -> Option<f64> {
+        let [i, j] = motions else { return None };
+        self.law.switch(times, &RelativeMotion::between([i, j]))
     }
 
     fn discontinuities(&self) -> Vec<f64> {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::system::joint::drive::JointDrive;
 use crate::system::joint::law::JointLaw;
+use crate::system::joint::work::JointWork;
 
 /// A force along the slide of a joint, or a moment about its turn; positive on the second marker along the coordinate.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -75,6 +76,11 @@ impl Forces {
         }
     }
 
+    /// Powers of the forces whose energy no formula tells.
+    pub fn of_laws(&self) -> JointWork {
+        JointWork { drive: self.motor, spring: self.characteristic, loss: -self.friction }
+    }
+
     /// Their sum.
     pub fn sum(&self) -> f64 {
         self.spring + self.characteristic + self.friction + self.motor
@@ -117,6 +123,19 @@ impl JointForce {
     /// True if a coordinate is beyond a stop.
     pub(crate) fn is_at_stop(&self, x: f64) -> bool {
         self.stops.is_some_and(|stops| stops.depth(x).is_some())
+    }
+
+    /// True if it has work that only sums tell: of dampers, friction, motors, characteristics, stops or laws from outside.
+    pub(crate) fn has_work(&self) -> bool {
+        let Self { damping, characteristic, stops, friction, motor, laws, .. } = self;
+        let is_damped = *damping != 0.0 || friction.is_some() || stops.is_some();
+        is_damped || characteristic.is_some() || motor.is_some() || !laws.is_empty()
+    }
+
+    /// Functions that change their signs where the force has kinks: the gap to the nearest stop, and those of laws from outside.
+    pub(crate) fn switches(&self, at: [f64; 2], times: [f64; 2]) -> impl Iterator<Item = f64> {
+        let gap = |Stops { limits: [low, high], .. }: Stops| (at[0] - low).min(high - at[0]);
+        self.stops.map(gap).into_iter().chain(self.laws.iter().filter_map(move |law| law.switch(times, at)))
     }
 
     /// How much the force falls by the coordinate and by its rate; nothing where it rises.

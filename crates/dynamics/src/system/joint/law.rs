@@ -19,6 +19,13 @@ pub trait JointLaw: fmt::Debug + Send + Sync {
         [slope(&|x| [x, rate], x), slope(&|rate| [x, rate], rate)]
     }
 
+    /// A continuous function that changes its sign where the law has a kink or a jump: a gap that closes, a limit that is reached. Under
+    /// step control steps end there. Without one, the work of the law shows that there is something, and steps grow short.
+    fn switch(&self, times: [f64; 2], coordinate_and_rate: [f64; 2]) -> Option<f64> {
+        let _ = (times, coordinate_and_rate);
+        None
+    }
+
     /// Times at which the law or one of its rates jumps, rising. Steps end there.
     fn discontinuities(&self) -> Vec<f64> {
         Vec::new()
@@ -39,13 +46,17 @@ const DIFFERENCE: f64 = 1e-6;
 pub struct JointLawFn<F> {
     name: String,
     discontinuities: Vec<f64>,
+    switch: Option<Box<Switch>>,
     law: F,
 }
+
+/// A function of the time, the coordinate and its rate.
+type Switch = dyn Fn(f64, f64, f64) -> f64 + Send + Sync;
 
 impl<F: Fn(f64, f64, f64) -> f64 + Send + Sync> JointLawFn<F> {
     /// A law with a name for messages.
     pub fn new(name: impl Into<String>, law: F) -> Self {
-        Self { name: name.into(), discontinuities: Vec::new(), law }
+        Self { name: name.into(), discontinuities: Vec::new(), switch: None, law }
     }
 
     /// Names the times at which the law or one of its rates jumps, so that steps end there.
@@ -54,11 +65,22 @@ impl<F: Fn(f64, f64, f64) -> f64 + Send + Sync> JointLawFn<F> {
         self.discontinuities = discontinuities;
         self
     }
+
+    /// Names a function that changes its sign where the law has a kink: see [`JointLaw::switch`].
+    #[must_use]
+    pub fn with_switch(mut self, switch: impl Fn(f64, f64, f64) -> f64 + Send + Sync + 'static) -> Self {
+        self.switch = Some(Box::new(switch));
+        self
+    }
 }
 
 impl<F: Fn(f64, f64, f64) -> f64 + Send + Sync> JointLaw for JointLawFn<F> {
     fn force(&self, [time, _]: [f64; 2], [x, rate]: [f64; 2]) -> f64 {
         (self.law)(time, x, rate)
+    }
+
+    fn switch(&self, [time, _]: [f64; 2], [x, rate]: [f64; 2]) -> Option<f64> {
+        self.switch.as_ref().map(|switch| switch(time, x, rate))
     }
 
     fn discontinuities(&self) -> Vec<f64> {

@@ -21,6 +21,11 @@ impl JointWork {
         self.loss += factor * other.loss;
     }
 
+    /// Work on the bodies.
+    pub(crate) fn given(&self) -> f64 {
+        self.drive + self.spring - self.loss
+    }
+
     /// Its numbers.
     pub(crate) fn list(&self) -> [f64; 3] {
         [self.drive, self.spring, self.loss]

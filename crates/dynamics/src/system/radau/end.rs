@@ -37,6 +37,7 @@ impl SystemMotion {
         self.end(times, h)?;
         self.add_exchange(weights);
         self.settle_springs(weights);
+        self.settle_laws(weights);
         Ok(())
     }
 

@@ -46,11 +46,12 @@ impl StageRates {
             *powers = JointWork { drive, ..JointWork::default() };
         }
         self.springs.fill(0.0);
+        self.laws.fill(JointWork::default());
         for ((joint, ..), power) in system.connections.joint_forces().zip(&stage.joint_powers) {
-            let powers = &mut self.joints[joint];
-            powers.drive += power.motor;
-            powers.spring += power.spring + power.characteristic;
-            powers.loss -= power.friction;
+            let of_laws = power.of_laws();
+            self.laws[joint].add(1.0, &of_laws);
+            self.joints[joint].add(1.0, &of_laws);
+            self.joints[joint].spring += power.spring;
             self.springs[joint] += power.spring;
         }
         self.elements.copy_from_slice(&stage.element_powers);
@@ -68,7 +69,7 @@ impl StageRates {
         of_bodies.for_each(|(own, other)| mean(own, other));
         self.y.iter_mut().zip(&other.y).for_each(|(own, other)| mean(own, other));
         self.springs.iter_mut().zip(&other.springs).for_each(|(own, other)| mean(own, other));
-        let joints = self.joints.iter_mut().zip(&other.joints);
+        let joints = self.joints.iter_mut().zip(&other.joints).chain(self.laws.iter_mut().zip(&other.laws));
         for (own, other) in joints.chain(self.elements.iter_mut().zip(&other.elements)) {
             mean(&mut own.drive, &other.drive);
             mean(&mut own.spring, &other.spring);

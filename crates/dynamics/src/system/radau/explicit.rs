@@ -3,7 +3,6 @@
 //! Eqs. (J18) of `docs/method/systems.md`.
 
 use crate::matrix::lists::larger;
-use crate::system::collocation::STAGES;
 use crate::system::elimination::newton::sizes;
 use crate::system::radau::stage_rates::StageRates;
 use crate::system::radau::{Failed, SystemMotion, Tried};
@@ -29,7 +28,13 @@ const PLACES: [Place; 3] = [
 
 impl SystemMotion {
     /// Tries a step from where the first stage has been evaluated, at whose end and by whose branches the times are.
-    pub(super) fn try_explicit_step(&mut self, h: f64, times: [f64; 2], tolerance: f64) -> Result<Tried, Failed> {
+    pub(super) fn try_explicit_step(
+        &mut self,
+        h: f64,
+        times: [f64; 2],
+        tolerance: f64,
+        over_kinks: bool,
+    ) -> Result<Tried, Failed> {
         let [end, branch_time] = times;
         self.first_rates(h, branch_time)?;
         for place in PLACES {
@@ -38,10 +43,9 @@ impl SystemMotion {
         let error = self.explicit_error(h, times)?;
         let energy = self.largest_energy;
         self.largest_energy = energy.max(self.first.energy(&self.system, h));
-        let power = |stage: usize, joint: usize, _| self.stage_rates[stage].springs[joint];
-        let after = |force: usize| self.stages[STAGES - 1].constraints.coordinates[force];
-        let error = larger(error, self.stop_error(h, power, after));
-        if error <= tolerance {
+        let error = larger(error, self.energy_error_in_run(h));
+        let kink = if over_kinks { None } else { self.length_to_kink(h) };
+        if error <= tolerance && kink.is_none() {
             self.last_length = h;
             let weights = self.scheme.weights.map(|weight| h * weight);
             self.land([end, branch_time], h, weights)?;
@@ -52,7 +56,7 @@ impl SystemMotion {
         if error.is_nan() {
             return Err(Failed::Newton);
         }
-        Ok(Tried { error, passes: 1 })
+        Ok(Tried { error, passes: 1, kink })
     }
 
     /// Rates at the start of the step.

@@ -10,69 +10,11 @@ use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::force::JointForce;
 use crate::system::radau::SystemMotion;
 
-/// Energy that a step makes or loses at a stop over the largest so far, for which it counts as an error of one: a bounce takes some ten
-/// steps, and what it makes or loses is not forgotten.
-const STOP_ERROR: f64 = 0.1;
-/// Rounding of the energy of a spring over the energy.
-const ROUNDING: f64 = 1e-13;
 /// Work of a spring in a step over its energy, and change of the energy over it, below which it rests.
 const AT_REST: f64 = 1e-12;
 const UNMOVED: f64 = 1e-9;
 
 impl SystemMotion {
-    /// Error of a step of length `h` by the energy that joints make or lose in it at their stops. `power` has that of the springs of a joint at
-    /// a stage, by the numbers of the joint and of its first force; `after` the coordinate of a force at the end of the step.
-    pub(super) fn stop_error(
-        &self,
-        h: f64,
-        power: impl Fn(usize, usize, usize) -> f64,
-        after: impl Fn(usize) -> f64,
-    ) -> f64 {
-        let (mut made, mut first) = (0.0, 0);
-        for (number, joint) in self.system.connections.joints.iter().enumerate() {
-            let own = first..first + joint.forces().count();
-            first = own.end;
-            let forces = || joint.forces().map(|(_, force)| force).zip(own.clone());
-            if forces().all(|(force, _)| force.stops.is_none()) {
-                continue;
-            }
-            let before = |force: usize| self.first.constraints.coordinates[force];
-            let is_touched = |(force, at): (&JointForce, usize)| {
-                let within = self.stages.iter().map(|stage| stage.constraints.coordinates[at]);
-                within.chain([before(at), after(at)]).any(|x| force.is_at_stop(x))
-            };
-            if !forces().any(is_touched) {
-                continue;
-            }
-            let energy = |at: &dyn Fn(usize) -> f64| forces().map(|(force, own)| force.energy(at(own))).sum::<f64>();
-            let [start, end] = [energy(&before), energy(&after)];
-            let work: f64 =
-                (0..STAGES).map(|stage| self.scheme.weights[stage] * h * power(stage, number, own.start)).sum();
-            let missing = (end - start + work).abs();
-            if missing > ROUNDING * (start.abs() + end.abs()) || missing.is_nan() {
-                made += missing;
-            }
-        }
-        if made == 0.0 { 0.0 } else { made / (STOP_ERROR * self.largest_energy) }
-    }
-
-    /// The same of a step by collocation, whose stages are known.
-    pub(super) fn stop_error_of_stages(&self, h: f64) -> f64 {
-        let coordinate = |stage: usize, force: usize| self.stages[stage].constraints.coordinates[force];
-        let after = |force: usize| {
-            let before = self.first.constraints.coordinates[force];
-            let to_end = |factors: [f64; STAGES]| {
-                (0..STAGES).map(|stage| factors[stage] * (coordinate(stage, force) - before)).sum::<f64>() + before
-            };
-            self.scheme.at_end.map_or_else(|| coordinate(STAGES - 1, force), to_end)
-        };
-        let power = |stage: usize, joint: usize, first: usize| {
-            let count = self.system.connections.joints[joint].forces().count();
-            self.stages[stage].joint_powers[first..first + count].iter().map(|power| power.spring).sum()
-        };
-        self.stop_error(h, power, after)
-    }
-
     /// Keeps the energy of the springs at the start of a step.
     pub(super) fn keep_spring_energies(&mut self) {
         let Self { system, start, first, room, .. } = self;

@@ -17,6 +17,8 @@ pub(in crate::system) struct StageRates {
     pub(super) elements: Vec<JointWork>,
     /// Powers of the springs of each joint whose energy is known: without characteristics.
     pub(super) springs: Vec<f64>,
+    /// Powers at each joint of the forces along its coordinates whose energy no formula tells.
+    pub(super) laws: Vec<JointWork>,
     /// y', with the forces of the joints.
     pub(super) y: Vec<f64>,
 }
@@ -29,6 +31,7 @@ impl StageRates {
             joints: vec![JointWork::default(); joints],
             elements: vec![JointWork::default(); elements],
             springs: vec![0.0; joints],
+            laws: vec![JointWork::default(); joints],
             y: vec![0.0; flexible.iter().map(|modes| 6 + modes).sum()],
         }
     }
@@ -40,6 +43,7 @@ impl StageRates {
         self.y.copy_from_slice(&other.y);
         self.elements.copy_from_slice(&other.elements);
         self.springs.copy_from_slice(&other.springs);
+        self.laws.copy_from_slice(&other.laws);
     }
 
     /// Power of the springs whose energy is known: of each joint, then of each element.
@@ -52,9 +56,12 @@ impl StageRates {
 
     /// Refuses those of another system, and numbers that are not finite.
     pub(in crate::system) fn check(&self, own: &Self) -> Result<(), CheckpointError> {
-        let lengths = |of: &Self| [of.bodies.len(), of.joints.len(), of.elements.len(), of.springs.len(), of.y.len()];
+        let lengths = |of: &Self| {
+            let works = [&of.joints, &of.elements, &of.laws].map(Vec::len);
+            (works, [of.bodies.len(), of.springs.len(), of.y.len()])
+        };
         expect("the rates of the last step", lengths(self) == lengths(own))?;
-        let works = self.joints.iter().chain(&self.elements).flat_map(JointWork::list);
+        let works = self.joints.iter().chain(&self.elements).chain(&self.laws).flat_map(JointWork::list);
         let numbers = self.bodies.iter().flatten().chain(&self.y).chain(&self.springs).copied().chain(works);
         finite("the rates of the last step", numbers)
     }

@@ -8,6 +8,9 @@ use crate::system::radau::{Failed, SystemMotion, Tried};
 /// much costs a fifth less work, but the multipliers of stiff bodies, and the work of drives, are then off by per cents.
 pub(in crate::system) const EXACTNESS: f64 = 1e-3;
 
+/// Tries of a step to end at a kink of a law, before it goes over one.
+const KINK_TRIES: usize = 3;
+
 impl SystemMotion {
     /// Goes to `end` with steps whose estimated error is at most `tolerance`; `h` is the first try, and the next one after.
     /// Returns the number of steps. Where a load or a drive jumps, end a call there.
@@ -37,12 +40,22 @@ impl SystemMotion {
         let parts = (left / *h).ceil().max(1.0);
         let length = if *h * 1.01 >= left { left } else { left / parts };
         let to = if length == left { end } else { self.time + length };
-        let mut taken = None;
-        match self.try_step(length, to, EXACTNESS * tolerance, tolerance) {
-            Ok(Tried { error, passes }) => {
+        let (mut length, mut to, mut taken, mut is_cut) = (length, to, None, false);
+        let mut tried = self.try_step(length, to, EXACTNESS * tolerance, tolerance);
+        for cut in 1..=KINK_TRIES {
+            let Ok(Tried { kink: Some(before), .. }) = tried else { break };
+            (length, to, is_cut) = (before, self.time + before, true);
+            tried = self.try_step_over_kinks(length, to, [EXACTNESS * tolerance, tolerance], cut == KINK_TRIES);
+        }
+        match tried {
+            Ok(Tried { error, passes, .. }) => {
                 let mut factor = (0.9 * (tolerance / error.max(1e-300)).powf(0.25)).clamp(0.2, 4.0);
                 if error <= tolerance {
                     taken = Some(length);
+                    if is_cut {
+                        // Beyond the kink the polynomials do not go on.
+                        self.forget_last_step();
+                    }
                     if passes > 7 {
                         factor = factor.min(0.7);
                     } else if passes > 5 {

@@ -5,6 +5,7 @@ use crate::conservative::{get, part, set};
 use crate::equations::Equations;
 use crate::error::SetupError;
 use crate::system::joint::work::JointWork;
+use crate::system::radau::law_work::Path;
 use crate::system::radau::{Failed, SystemMotion};
 use crate::system::stage::vector;
 
@@ -80,6 +81,9 @@ impl SystemMotion {
         }
         stage.evaluate(&self.system, &self.start, times)?;
         self.evaluations += 1;
+        let Self { system, start, scheme, law_work, .. } = self;
+        let increments = after.last.each_ref().map(|[x, _]| &x[..]);
+        law_work.find(&Path { system, start, scheme, increments, h }, fraction);
         let weights = self.scheme.weights_to(fraction).map(|weight| h * weight);
         self.land(times, h, weights)?;
         // Momenta that bend have impulses that do.
