@@ -1,5 +1,6 @@
 //! Scenes, meshes, matrices and paths that the program is given, and what it says of them.
 
+pub(crate) mod canary;
 pub(crate) mod children;
 pub(crate) mod command_line;
 pub(crate) mod failures;

@@ -49,6 +49,25 @@ pub enum SceneError {
 }
 
 impl SceneError {
+    /// The error of a scene that another file names, in which nothing of its text is shown: the other file may come from elsewhere and
+    /// name any file of the user's.
+    #[must_use]
+    pub fn without_text(self) -> Self {
+        const HELP: &str = "`flexframe modes` of that file shows its line";
+        match self {
+            Self::Unreadable { .. } | Self::TooLarge { .. } | Self::NotUtf8 { .. } => self,
+            Self::Syntax { at, .. } => at.hidden().refuse("no TOML", "a scene", HELP),
+            Self::UnknownKey { at, known, .. } => {
+                at.hidden().refuse("a key that is not known", format!("one of {}", list(&known)), HELP)
+            }
+            Self::UnknownName { at, known, .. } => {
+                at.hidden().refuse("a value that is not known", format!("one of {}", list(&known)), HELP)
+            }
+            Self::MissingKey { at, key } => Self::MissingKey { at: at.hidden().into(), key },
+            Self::Invalid { at, expected, .. } => at.hidden().refuse("another value", expected, HELP),
+        }
+    }
+
     /// Where in the scene file; `None` if it could not be read as text, or is too long.
     pub fn place(&self) -> Option<&Place> {
         match self {

@@ -57,6 +57,15 @@ impl Measured {
     }
 }
 
+/// A field in messages: a number. Other words are not shown, since a scene from elsewhere may name any file of the user's.
+fn shown(field: &str) -> String {
+    match field.parse::<f64>() {
+        Ok(number) => number.to_string(),
+        Err(_) if field.is_empty() => "that is not there".to_owned(),
+        Err(_) => "that is no number".to_owned(),
+    }
+}
+
 /// The modes of a CSV text, whose first line names the columns; empty lines and those that begin with `#` are left out.
 fn parse(text: &str, file: &Path) -> Result<Measured, SceneError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -79,7 +88,10 @@ fn parse(text: &str, file: &Path) -> Result<Measured, SceneError> {
                     places.push(place);
                     Column::Shape(places.len() - 1)
                 }
-                _ => return refuse(line, format!("the column `{name}`"), HEAD, "name the columns in the first line"),
+                _ => {
+                    let found = format!("another name of the column {}", columns.len() + 1);
+                    return refuse(line, found, HEAD, "name the columns in the first line");
+                }
             });
         }
         let count = |is: fn(&Column) -> bool| columns.iter().filter(|column| is(column)).count();
@@ -91,7 +103,7 @@ fn parse(text: &str, file: &Path) -> Result<Measured, SceneError> {
         {
             return refuse(
                 line,
-                format!("the columns `{head}`"),
+                "a column that is there twice, or no `frequency`".to_owned(),
                 HEAD,
                 "name each column once, and `frequency` always",
             );
@@ -113,7 +125,7 @@ fn parse(text: &str, file: &Path) -> Result<Measured, SceneError> {
                 (Column::Frequency, _) => {
                     return refuse(
                         line,
-                        format!("the frequency `{field}`"),
+                        format!("the frequency {}", shown(field)),
                         "a number above 0, cycles per time",
                         "correct it",
                     );
@@ -122,17 +134,22 @@ fn parse(text: &str, file: &Path) -> Result<Measured, SceneError> {
                 (Column::Deviation, Some(deviation)) if deviation > 0.0 => mode.deviation = Some(deviation),
                 (Column::Deviation, _) => {
                     let expected = "a standard deviation of the frequency above 0, cycles per time, or nothing";
-                    return refuse(line, format!("the deviation `{field}`"), expected, "correct it");
+                    return refuse(line, format!("the deviation {}", shown(field)), expected, "correct it");
                 }
                 (Column::Damping, None) if field.is_empty() => {}
                 (Column::Damping, Some(ratio)) if ratio >= 0.0 => mode.damping_ratio = Some(ratio),
                 (Column::Damping, _) => {
                     let expected = "a fraction of critical damping, 0 or more, or nothing for that of the scene";
-                    return refuse(line, format!("the damping `{field}`"), expected, "correct it");
+                    return refuse(line, format!("the damping {}", shown(field)), expected, "correct it");
                 }
                 (Column::Shape(place), Some(value)) => mode.shape[*place] = value,
                 (Column::Shape(_), None) => {
-                    return refuse(line, format!("the entry `{field}` of a shape"), "a finite number", "correct it");
+                    return refuse(
+                        line,
+                        format!("the entry {} of a shape", shown(field)),
+                        "a finite number",
+                        "correct it",
+                    );
                 }
             }
         }

@@ -54,6 +54,11 @@ impl Place {
         Self { file: file.to_owned(), line, column: 1, key, excerpt: None, mark: 0..0 }
     }
 
+    /// The same place without its key and its line.
+    pub(crate) fn hidden(self) -> Self {
+        Self { key: String::new(), excerpt: None, ..self }
+    }
+
     /// The place, the headline, the line with what is meant underlined, and help.
     pub fn show(&self, headline: &str, help: &str) -> String {
         let line = self.line.to_string();

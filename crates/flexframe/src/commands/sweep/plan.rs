@@ -103,7 +103,7 @@ impl Plan {
             SceneError::Unreadable { path, cause, .. } => SceneError::Unreadable { path, cause, help: SCENE_CURE },
             other => other,
         };
-        let unreadable = |error| SweepError::Scene { key: None, source: of_scene(error) };
+        let unreadable = |error| SweepError::Scene { key: None, source: of_scene(error).without_text() };
         let of_all = text_of(&scene_path).map_err(unreadable)?;
         let system = System::parse(&of_all, &scene_path).map_err(unreadable)?;
 
