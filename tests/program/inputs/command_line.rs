@@ -405,4 +405,6 @@ fn what_is_wrong_is_said_with_file_line_key_and_help() {
 fn it_says_its_name_and_version() {
     let output = flexframe(&["--version"]);
     assert_eq!(String::from_utf8(output.stdout).unwrap(), concat!("flexframe ", env!("CARGO_PKG_VERSION"), "\n"));
+    let changes = include_str!("../../../CHANGELOG.md").lines().find_map(|line| line.strip_prefix("## ")).unwrap();
+    assert!(changes.starts_with(concat!(env!("CARGO_PKG_VERSION"), " – ")), "{changes}");
 }
