@@ -1,5 +1,6 @@
 //! Standard output and standard error, either of which may be full or closed.
 
+use std::borrow::Cow;
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
@@ -12,10 +13,26 @@ use serde::Serialize;
 
 use crate::cli_error::CliError;
 
+/// A text as a terminal may have it: names that come from files may hold characters that move its cursor, change its colours or turn
+/// the direction of writing.
+fn for_terminal(text: &str) -> Cow<'_, str> {
+    let is_plain = |letter: char| match letter {
+        '\n' | '\t' => true,
+        '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => false,
+        letter => !letter.is_control(),
+    };
+    if text.chars().all(is_plain) {
+        return text.into();
+    }
+    let escaped =
+        |letter: char| if is_plain(letter) { letter.to_string() } else { letter.escape_unicode().to_string() };
+    text.chars().map(escaped).collect::<String>().into()
+}
+
 /// Prints a summary.
 pub fn print<R: Serialize + Display>(report: &R, json: bool) -> Result<(), Box<dyn Error>> {
-    let text = if json { serde_json::to_string_pretty(report).map_err(CliError::from)? } else { report.to_string() };
-    Ok(line(&text)?)
+    let report = if json { serde_json::to_string_pretty(report).map_err(CliError::from)? } else { report.to_string() };
+    Ok(if json { text(&format!("{report}\n"))? } else { line(&report)? })
 }
 
 /// Stands for standard output, where a file is written that is text.
@@ -48,7 +65,7 @@ pub fn text(text: &str) -> Result<(), CliError> {
 pub fn doubts(doubts: impl IntoIterator<Item = impl Display>) {
     for doubt in doubts {
         // Where it cannot be written, nothing is lost: the summary has it, too.
-        let _ = writeln!(io::stderr(), "warning: {doubt}");
+        let _ = writeln!(io::stderr(), "warning: {}", for_terminal(&doubt.to_string()));
     }
 }
 
@@ -78,12 +95,12 @@ pub fn notes(notes: &CacheNotes) {
     };
     for text in used.iter().chain(notes.warnings.iter()) {
         // Where it cannot be written, nothing is lost but words.
-        let _ = writeln!(io::stderr(), "note: {text}");
+        let _ = writeln!(io::stderr(), "note: {}", for_terminal(text));
     }
 }
 
 pub fn line(line: &str) -> Result<(), CliError> {
-    written(writeln!(io::stdout(), "{line}"))
+    written(writeln!(io::stdout(), "{}", for_terminal(line)))
 }
 
 /// Result of a write to standard output. A reader such as `head` that has had enough is no error.
@@ -97,6 +114,19 @@ pub fn written(result: io::Result<()>) -> Result<(), CliError> {
 /// Tells of a failure on standard error: as a message, or as a line of JSON.
 pub fn report(report: &FailureReport, json: bool) {
     let text = if json { serde_json::to_string(report).unwrap_or_default() } else { report.to_string() };
+    let text = if json { text.into() } else { for_terminal(&text) };
     // Where it cannot be written, the exit code still tells.
     let _ = writeln!(io::stderr(), "{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::for_terminal;
+
+    #[test]
+    fn foreign_names_do_not_steer_a_terminal() {
+        let plain = "  Körper 1\n\tµm, 5 °\n";
+        assert_eq!(for_terminal(plain), plain);
+        assert_eq!(for_terminal("a\u{1b}[2Jb\r\u{9b}c\u{202e}d\u{7f}"), r"a\u{1b}[2Jb\u{d}\u{9b}c\u{202e}d\u{7f}");
+    }
 }

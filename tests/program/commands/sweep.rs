@@ -368,6 +368,12 @@ fn what_a_sweep_cannot_be_is_refused() {
     fs::write(case.path("sweep.toml"), "scene = \"nowhere.toml\"\n[parameters]\n\"time.step\" = [1e-5]\n[results]\n")
         .unwrap();
     assert!(case.run(false).unwrap_err().contains("nowhere.toml"));
+    fs::write(
+        case.path("sweep.toml"),
+        "scene = \"blade.toml\"\n[parameters]\n\"time.step\" = [1e-5]\n[results]\n\"x\\n=1+1\" = \"frequencies\"\n",
+    )
+    .unwrap();
+    assert!(case.run(false).unwrap_err().contains(r#"found "x\n=1+1", expected names of results on one line"#));
     // A column that is not there fails each row, in words.
     fs::write(
         case.path("sweep.toml"),

@@ -120,6 +120,12 @@ impl Plan {
                 "what to keep of each row, such as tip = { final = \"position\" } or f = \"frequencies\"",
             ));
         }
+        // They become heads of a table, which spreadsheets read.
+        let is_head = |name: &str| !name.starts_with(['=', '+', '-', '@']) && !name.contains(char::is_control);
+        if let Some(name) = file.results.keys().find(|name| !is_head(name)) {
+            let expected = "names of results on one line that do not begin with =, +, - or @";
+            return Err(invalid("results", format!("{name:?}"), expected));
+        }
         let lists: Vec<(String, Vec<Value>)> = file
             .parameters
             .into_iter()
