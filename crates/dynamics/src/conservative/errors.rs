@@ -25,8 +25,11 @@ impl ConservativeBody {
         let natural = 0..self.natural_modes;
         let modal: f64 = natural.clone().map(|k| (rates[k] + self.linear_rate(k, q[k], p[k])).powi(2)).sum();
         let forces: f64 = natural.map(|k| rates[k].powi(2)).sum();
+        // What laws of the motion push has no scale but the motion that they have given it.
+        let given =
+            if self.has_own_loads() { 0.5 * get(list.slow(), part::IMPULSE).norm_squared() / self.mass } else { 0.0 };
         Sizes {
-            energy: self.internal_energy(state, e),
+            energy: self.internal_energy(state, e) + given,
             displacement: q.iter().map(|q| q * q).sum(),
             acceleration: rigid + modal.max(forces),
         }

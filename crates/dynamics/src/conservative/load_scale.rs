@@ -18,7 +18,8 @@ impl ConservativeBody {
     pub(super) fn largest_by_loads(&self, end: f64) -> Sizes {
         let lowest = self.circular_frequencies.iter().copied().reduce(f64::min);
         let period = lowest.map_or(end, |omega| (std::f64::consts::TAU / omega).min(end));
-        let mut sizes = Sizes { energy: self.energy_of_drive(end), ..Sizes::default() };
+        let energy = self.energy_of_drive(end) + self.least_energy(end);
+        let mut sizes = Sizes { energy, ..Sizes::default() };
         for (load, history) in self.with_history() {
             let largest = history.largest(end);
             let whole_impulse = history.magnitude_integral(end);
@@ -65,6 +66,20 @@ impl ConservativeBody {
             LoadCoupling::new(history.clone(), of_modes)
         };
         stressed.map(coupling).collect()
+    }
+
+    /// True if a load is a law of the motion.
+    pub(super) fn has_own_loads(&self) -> bool {
+        self.loads.iter().any(|load| load.history().is_none())
+    }
+
+    /// The energy of a body that moves by its radius of gyration until `end`, or turns by as much: where laws of the motion may push it, what
+    /// is less than the tolerance of it is not seen.
+    fn least_energy(&self, end: f64) -> f64 {
+        if !self.is_free() || !self.has_own_loads() {
+            return 0.0;
+        }
+        0.5 * self.mass * (self.radius_of_gyration() / end).powi(2)
     }
 
     /// Loads with a history: one without is a law of the motion, and from rest has no scale of its own.

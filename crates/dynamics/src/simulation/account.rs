@@ -107,6 +107,11 @@ impl EnergyAccount {
         finite("the account of the energy", [scale, largest_exchange, of_loads])
     }
 
+    /// The motion has had this energy at a time.
+    pub(crate) fn raise_scale(&mut self, energy: f64) {
+        self.scale = self.scale.max(energy);
+    }
+
     /// Takes a step into account, after which work and dissipation since the beginning are these.
     pub(crate) fn exchange(&mut self, done: [f64; 2]) {
         self.exchanged.add(done);

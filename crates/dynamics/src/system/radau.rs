@@ -35,6 +35,7 @@ use crate::system::elimination::newton::Solution;
 use crate::system::elimination::patterns::Patterns;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::coupling::CoupledCoordinate;
+use crate::system::joint::force::FrictionSlope;
 use crate::system::joint::work::JointWork;
 use crate::system::radau::law_work::LawWork;
 use crate::system::radau::stage_rates::StageRates;
@@ -102,12 +103,16 @@ pub struct SystemMotion {
     pub(in crate::system) span: f64,
     /// The largest energy so far.
     pub(super) largest_energy: f64,
+    /// The same of the motion alone: kinetic and strain energy where steps began.
+    pub(super) largest_moving: f64,
     /// Work of the drives of joints where their rates jumped.
     pub(super) jump_work: f64,
     /// Works of the drives and forces of joints since the beginning.
     pub(super) joint_works: Vec<JointWork>,
     /// Works of the force elements since the beginning.
     pub(super) element_works: Vec<JointWork>,
+    /// Time and path for which the friction of each force of a joint has held.
+    pub(super) held: Vec<[f64; 2]>,
     pub(super) evaluations: u64,
     /// λ of index 1, where they were last asked for.
     pub(super) reactions: Vec<f64>,
@@ -125,6 +130,8 @@ struct Room {
     change: [Vec<f64>; 2],
     /// Impulses of the rows by which velocities were last projected.
     impulses: Vec<f64>,
+    /// Coordinates of the forces of joints, with their rates, at the start of a step.
+    coordinates: Vec<[f64; 2]>,
     /// Energy of the springs of each joint, then of each element, at the start of a step.
     spring_energies: Vec<f64>,
 }
@@ -154,6 +161,7 @@ impl SystemMotion {
         let multipliers = std::array::from_fn(|_| vec![0.0; rows]);
         let zeros = || vec![0.0; coordinates];
         let law_work = LawWork::new(&system, &stage);
+        let held = vec![[0.0; 2]; stage.joint_powers.len()];
         let coordinates_of_joints = vec![JointCoordinates::default(); joints];
         let mut motion = Self {
             scheme: Collocation::radau(),
@@ -181,6 +189,7 @@ impl SystemMotion {
                 stage_rates: StageRates::new(&flexible, [joints, elements]),
                 change: [zeros(), zeros()],
                 impulses: vec![0.0; rows],
+                coordinates: held.clone(),
                 spring_energies: vec![0.0; joints + elements],
             },
             law_work,
@@ -189,9 +198,11 @@ impl SystemMotion {
             bodies,
             system,
             largest_energy: 0.0,
+            largest_moving: 0.0,
             jump_work: 0.0,
             joint_works: vec![JointWork::default(); joints],
             element_works: vec![JointWork::default(); elements],
+            held,
             evaluations: 0,
             reactions: vec![0.0; rows],
         };
@@ -277,6 +288,13 @@ impl SystemMotion {
     /// Work of the drives and motors of joints since the beginning.
     pub fn drive_work(&self) -> f64 {
         self.jump_work + self.joint_works.iter().map(|work| work.drive).sum::<f64>()
+    }
+
+    /// Joints whose friction has held, each with the time for which it has, and the path by which it has crept in that time (rad, or a
+    /// length): friction holds by a small rate.
+    pub fn held(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let forces = self.system.connections.joint_forces().zip(&self.held);
+        forces.filter(|(_, [time, _])| *time > 0.0).map(|((joint, ..), held)| (joint, *held))
     }
 
     /// Works of a force element since the beginning.
@@ -390,7 +408,12 @@ impl SystemMotion {
         }
         self.predict(h);
         let energy = self.largest_energy;
-        let tried = self.newton(h, exactness).map(|passes| Tried {
+        let mut passes = self.newton(h, exactness, FrictionSlope::Tangent);
+        if passes == Err(Failed::Newton) && self.law_work.has_friction {
+            self.predict(h);
+            passes = self.newton(h, exactness, FrictionSlope::Secant);
+        }
+        let tried = passes.map(|passes| Tried {
             error: larger(self.error(h), self.energy_error_in_run(h)),
             passes,
             kink: if over_kinks { None } else { self.length_to_kink(h) },

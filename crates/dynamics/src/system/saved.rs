@@ -24,7 +24,8 @@ pub(super) struct SavedMotion {
     multipliers: Vec<Vec<f64>>,
     joints: Vec<(JointCoordinates, JointWork)>,
     elements: Vec<JointWork>,
-    sums: [f64; 2],
+    held: Vec<[f64; 2]>,
+    sums: [f64; 3],
     #[serde(with = "fixed_room")]
     evaluations: u64,
 }
@@ -58,7 +59,8 @@ impl SystemMotion {
             multipliers: self.multipliers.to_vec(),
             joints: self.start.joints.iter().copied().zip(self.joint_works.iter().copied()).collect(),
             elements: self.element_works.clone(),
-            sums: [self.largest_energy, self.jump_work],
+            held: self.held.clone(),
+            sums: [self.largest_energy, self.largest_moving, self.jump_work],
             evaluations: self.evaluations,
         }
     }
@@ -68,7 +70,8 @@ impl SystemMotion {
     /// # Errors
     /// [`CheckpointError`] for lists of other lengths, and numbers that are not finite.
     pub(super) fn take_up(&mut self, saved: SavedMotion) -> Result<(), CheckpointError> {
-        let SavedMotion { time, bodies, last, last_length, multipliers, joints, elements, sums, evaluations } = saved;
+        let SavedMotion { time, bodies, last, last_length, multipliers, joints, elements, held, sums, evaluations } =
+            saved;
         let lists = [bodies.len(), last.len(), multipliers.len()];
         expect("the number of bodies", lists == [self.bodies.len(), 2 * STAGES, STAGES])?;
         for ((body, state), own) in self.system.bodies.iter().zip(&bodies).zip(&self.bodies) {
@@ -81,6 +84,8 @@ impl SystemMotion {
         for (coordinates, work) in &joints {
             finite("a joint", coordinates.list().into_iter().chain(work.list()))?;
         }
+        expect("the number of forces of joints", held.len() == self.held.len())?;
+        finite("the time for which friction has held", held.iter().flatten())?;
         expect("the number of springs and bushings", elements.len() == self.element_works.len())?;
         finite("a spring or a bushing", elements.iter().flat_map(JointWork::list))?;
         finite("the motion", last.iter().chain(&multipliers).flatten().chain(&sums).chain([&time, &last_length]))?;
@@ -95,7 +100,8 @@ impl SystemMotion {
             (*coordinates, *work) = saved;
         }
         self.element_works = elements;
-        [self.largest_energy, self.jump_work] = sums;
+        self.held = held;
+        [self.largest_energy, self.largest_moving, self.jump_work] = sums;
         Ok(())
     }
 

@@ -262,6 +262,7 @@ impl SystemSimulation {
             sum.work += out.work.work;
             sum.dissipation += out.work.dissipation;
         }
+        self.account.raise_scale(motion.energy_scale());
         self.account.check_beyond(unseen, &sum, 0.0, step)?;
         let Self { points, looked_at, observers, .. } = self;
         observers.observed(&mut StepEnd {

@@ -13,7 +13,7 @@ use crate::system::description::System;
 use crate::system::element::Stored;
 use crate::system::elimination::inverse::Inertia;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
-use crate::system::joint::force::Forces;
+use crate::system::joint::force::{Forces, FrictionSlope};
 use crate::system::joint::work::JointWork;
 use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
 use crate::system::marker::{BodyPlace, Marker, MarkerPlace, tangent_of};
@@ -185,8 +185,8 @@ impl Stage {
         Ok(())
     }
 
-    /// Kinetic and strain energy, or that which the forces give bodies at rest within a time, whichever is larger.
-    pub fn energy(&mut self, system: &System, time: f64) -> f64 {
+    /// Kinetic and strain energy, and that which the forces give bodies at rest within a time if no joint holds them.
+    pub fn energies(&mut self, system: &System, time: f64) -> [f64; 2] {
         let (mut moving, mut pushed) = (0.0, 0.0);
         for (b, body) in system.bodies.iter().enumerate() {
             let own = system.first[b]..system.first[b + 1];
@@ -205,7 +205,7 @@ impl Stage {
             let power = impulse[own.clone()].iter().zip(&force[own]).map(|(v, f)| v * f).sum::<f64>();
             pushed += 0.5 * time * time * power;
         }
-        f64::max(moving, pushed)
+        [moving, pushed]
     }
 
     /// Turns changes of x and y to the axes and origins of the bodies.
@@ -405,13 +405,13 @@ impl Stage {
     }
 
     /// Finds what Newton's method is to know of the forces of joints and of elements, where the stage has been evaluated.
-    pub fn linearize(&mut self, system: &System, times: [f64; 2]) {
+    pub fn linearize(&mut self, system: &System, times: [f64; 2], by: FrictionSlope) {
         let mut number = 0;
         for (_, _, force) in system.connections.joint_forces() {
             let mut rate = 0.0;
             let constraints = &mut self.constraints;
             constraints.compliant_ends()[number].iter().for_each(|end| end.add_rate(1.0, &self.velocities, &mut rate));
-            let [stiffness, damping] = force.stiffness_and_damping([constraints.coordinates[number], rate], times);
+            let [stiffness, damping] = force.stiffness_and_damping([constraints.coordinates[number], rate], times, by);
             constraints.compliant[number] = Compliant { stiffness, damping };
             number += 1;
         }

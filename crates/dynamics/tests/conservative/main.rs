@@ -13,6 +13,7 @@ mod dalembert;
 mod limits;
 mod modes;
 mod order;
+mod own_loads;
 mod pulse;
 mod reaction;
 mod rigid;

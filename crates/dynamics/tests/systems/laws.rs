@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use dynamics::{
-    ConservativeBody, Coordinate, Joint, JointForce, JointLawFn, Marker, MarkerForce, MarkerLaw, MotionState, Physics,
-    RelativeMotion, Stops, System, SystemMotion, SystemScheme,
+    ConservativeBody, Coordinate, Friction, History, Joint, JointForce, JointLawFn, Marker, MarkerForce, MarkerLaw,
+    MotionState, Observation, Physics, PointForce, PointShapes, Reached, RelativeMotion, Rows, SharedLoad, StepControl,
+    Stops, System, SystemMotion, SystemScheme, SystemSetup, SystemSimulation,
 };
-use modal::{ReducedBody, RigidMotion};
+use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::mechanism::at_rest;
@@ -138,5 +139,83 @@ fn a_jump_that_nobody_tells_costs_no_energy() {
         ];
         println!("{scheme:?} {steps} steps, {} evaluations: {off:?}", motion.evaluations());
         assert!(off.iter().all(|off| off.abs() < 1e-5), "{off:?}");
+    }
+}
+
+/// Closed form: an arm that friction holds at 95 % of its limit creeps by v₀ artanh 0.95, in as many steps whatever v₀ is, and this is told.
+#[test]
+fn friction_holds_near_its_limit_in_few_steps() {
+    let (mass, arm) = (2.0, 0.5);
+    let inertia = Matrix3::identity() / 6.0;
+    let reduced = ReducedBody::rigid(mass, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
+    let body = ConservativeBody::new(&reduced, &[], vec![weight(mass)], &Physics::default()).unwrap();
+    for rate_scale in [1e-3, 1e-4, 1e-5, 1e-6] {
+        let force = mass * GRAVITY * arm / 0.95;
+        let friction = JointForce { friction: Some(Friction { force, rate_scale }), ..JointForce::default() };
+        let axes = Matrix3::identity();
+        let markers = [Marker::on_ground(Vector3::zeros(), axes), Marker::on_rigid(0, Vector3::x() * -arm, axes)];
+        let hinge = Joint::revolute("hinge", markers).with_force(Coordinate::Turn, friction);
+        let system = System::new(vec![body.clone()], vec![hinge]).unwrap();
+        let mut motion = SystemMotion::new(system, &[at_rest(Vector3::x() * arm)]).unwrap();
+        let steps = motion.advance(1.0, 1e-4, &mut 1e-3).unwrap();
+        let turn = motion.joint_coordinates(0).turn;
+        let creep = -rate_scale * 0.95_f64.atanh();
+        let held: Vec<_> = motion.held().collect();
+        println!(
+            "{rate_scale:e}: {steps} steps, {} evaluations, {:.1e} off, {held:?}",
+            motion.evaluations(),
+            turn / creep - 1.0
+        );
+        assert!((turn / creep - 1.0).abs() < 0.05, "{turn:e} {creep:e}");
+        assert!(steps < 150, "{steps}");
+        let [(0, [time, path])] = held[..] else { panic!("{held:?}") };
+        assert!(time > 0.9 && (path - turn.abs()).abs() < 0.1 * path, "{time} {path} {turn}");
+    }
+}
+
+/// Conserved: three stiff and damped arms that a force bends come to rest, and the account of their energy closes until the end.
+#[test]
+fn stiff_arms_come_to_rest_and_live() {
+    let inertia = Matrix3::from_diagonal(&Vector3::new(0.1, 1.1, 1.1));
+    let reduced = ReducedBody::rigid(20.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
+    let tip = PointShapes::new(&reduced, &BodyPoint::rigid(Vector3::x() * 0.4));
+    let load: SharedLoad = Arc::new(PointForce::dead(tip, Vector3::y() * -1000.0, History::Constant));
+    let body = |loads: Vec<SharedLoad>| ConservativeBody::new(&reduced, &[], loads, &Physics::default()).unwrap();
+    let spring = || JointForce { stiffness: 1e8, damping: 123_935.0, ..JointForce::default() };
+    let axes = Matrix3::identity();
+    let on = |body: usize, x: f64| Marker::on_rigid(body, Vector3::x() * x, axes);
+    let hinge =
+        |name: &str, markers: [Marker; 2]| Joint::revolute(name, markers).with_force(Coordinate::Turn, spring());
+    for (tolerance, bound) in [(1e-2, 0.05), (1e-4, 0.01), (1e-6, 1e-3)] {
+        let joints = vec![
+            hinge("first", [Marker::on_ground(Vector3::zeros(), axes), on(0, -0.4)]),
+            hinge("second", [on(0, 0.4), on(1, -0.4)]),
+            hinge("third", [on(1, 0.4), on(2, -0.4)]),
+        ];
+        let bodies = vec![body(vec![]), body(vec![]), body(vec![Arc::clone(&load)])];
+        let mut simulation = SystemSimulation::new(SystemSetup {
+            system: System::new(bodies, joints).unwrap(),
+            states: [0.4, 1.2, 2.0].map(|x| at_rest(Vector3::x() * x)).to_vec(),
+            relaxed: false,
+            scheme: SystemScheme::Radau,
+            control: StepControl::Tolerance(tolerance),
+            end: 2.0,
+            rows: Rows::Interval(0.1),
+            points: vec![Vec::new(); 3],
+        })
+        .unwrap();
+        let (mut rows, mut open) = (0, 0.0_f64);
+        while simulation.advance(u64::MAX).unwrap() != Reached::End {
+            let mut row: Vec<Observation> = (0..3).map(|body| simulation.room(body)).collect();
+            simulation.observe(&mut row).unwrap();
+            rows += 1;
+            open = row.iter().map(Observation::energy_balance).sum::<f64>().abs().max(open);
+        }
+        // Each joint bends by its moment over its stiffness.
+        let turn = simulation.motion().joint_coordinates(0).turn;
+        let work = 1000.0 * 1000.0 * (2.4 * 2.4 + 1.6 * 1.6 + 0.8 * 0.8) / 1e8;
+        println!("{tolerance:e}: open by {:.1e} in {} steps", open / work, simulation.stats().accepted);
+        assert!(rows == 20 && (turn / (-2400.0 / 1e8) - 1.0).abs() < 1e-4, "{rows} {turn}");
+        assert!(open < bound * work, "{tolerance}: {open:e} {work:e}");
     }
 }

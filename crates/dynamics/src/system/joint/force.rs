@@ -87,6 +87,15 @@ impl Forces {
     }
 }
 
+/// How Newton's method takes dry friction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FrictionSlope {
+    /// By its slope: what is held converges at once, near the limit of the friction too.
+    Tangent,
+    /// By the friction over the rate: what slides fast comes to rest, which the slope has nothing to slow down by.
+    Secant,
+}
+
 impl JointForce {
     /// The force at a coordinate and its rate, at a time by the branch of another.
     pub(crate) fn at(&self, [x, rate]: [f64; 2], times: [f64; 2]) -> Forces {
@@ -120,6 +129,11 @@ impl JointForce {
         0.5 * self.stiffness * (x - self.free).powi(2) - self.preload * x + beyond.unwrap_or_default()
     }
 
+    /// True if its friction holds at a rate: it does not slide.
+    pub(crate) fn holds(&self, rate: f64) -> bool {
+        self.friction.is_some_and(|Friction { rate_scale, .. }| rate.abs() <= HELD * rate_scale)
+    }
+
     /// True if a coordinate is beyond a stop.
     pub(crate) fn is_at_stop(&self, x: f64) -> bool {
         self.stops.is_some_and(|stops| stops.depth(x).is_some())
@@ -139,13 +153,17 @@ impl JointForce {
     }
 
     /// How much the force falls by the coordinate and by its rate; nothing where it rises.
-    pub(crate) fn stiffness_and_damping(&self, [x, rate]: [f64; 2], times: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn stiffness_and_damping(&self, [x, rate]: [f64; 2], times: [f64; 2], by: FrictionSlope) -> [f64; 2] {
         let slope = self.characteristic.as_ref().map_or(0.0, |of| of.at([x, x])[1]);
         let (mut stiffness, mut damping) = (self.stiffness - slope, self.damping);
         if let Some(Friction { force, rate_scale }) = self.friction {
-            // The secant: with the tangent, which has nothing to slow down what slides fast, Newton's method does not find rest.
             let x = rate / rate_scale;
-            damping += force / rate_scale * if x.abs() < 1e-8 { 1.0 } else { x.tanh() / x };
+            damping += force / rate_scale
+                * match by {
+                    FrictionSlope::Tangent => x.cosh().powi(-2),
+                    FrictionSlope::Secant if x.abs() < 1e-8 => 1.0,
+                    FrictionSlope::Secant => x.tanh() / x,
+                };
         }
         if let Some(stops) = self.stops
             && stops.depth(x).is_some()
@@ -187,6 +205,8 @@ impl JointForce {
     }
 }
 
+/// Rate over the scale of friction up to which it holds: there it is at 99.5 % of its limit.
+const HELD: f64 = 3.0;
 /// Differences of coordinates and rates, relative to these or to 1.
 const DIFFERENCE: f64 = 1e-6;
 

@@ -7,6 +7,7 @@ use crate::error::RateError;
 use crate::matrix::lists::larger;
 use crate::state::attitude_at;
 use crate::system::collocation::STAGES;
+use crate::system::joint::force::FrictionSlope;
 use crate::system::radau::{Failed, SystemMotion};
 use crate::system::stage::{about_global_origin, put, vector};
 
@@ -34,7 +35,10 @@ impl SystemMotion {
             stage_rates.iter().zip(weights).map(|(rates, weight)| weight * rates.y[k]).sum::<f64>()
         });
         self.keep_spring_energies();
+        self.keep_coordinates();
+        let since = self.time;
         self.end(times, h)?;
+        self.count_held(self.time - since);
         self.add_exchange(weights);
         self.settle_springs(weights);
         self.settle_laws(weights);
@@ -47,7 +51,7 @@ impl SystemMotion {
         let Self { stages: [.., last], system, start, matrices, patterns, room, scheme, .. } = self;
         last.place(system, start);
         last.find_constraints(system, start, times);
-        last.linearize(system, times);
+        last.linearize(system, times, FrictionSlope::Secant);
         matrices.compliant.copy_from_slice(&last.constraints.compliant);
         if !matrices.factor_real(system, patterns, last, scheme.real / h) {
             return Err(Failed::Rates(RateError::Inertia));

@@ -42,7 +42,7 @@ impl SystemMotion {
         }
         let error = self.explicit_error(h, times)?;
         let energy = self.largest_energy;
-        self.largest_energy = energy.max(self.first.energy(&self.system, h));
+        self.raise_energies(h);
         let error = larger(error, self.energy_error_in_run(h));
         let kink = if over_kinks { None } else { self.length_to_kink(h) };
         if error <= tolerance && kink.is_none() {

@@ -39,6 +39,7 @@ pub(in crate::system) struct LawWork {
     stored: Vec<Option<f64>>,
     switches: [Vec<f64>; 2],
     pub(super) has_work: bool,
+    pub(super) has_friction: bool,
     has_switches: bool,
 }
 
@@ -77,6 +78,7 @@ impl LawWork {
             stored: vec![None; joints],
             switches: [Vec::new(), Vec::new()],
             has_work: connections.joint_forces().any(|(.., force)| force.has_work()) || elements > 0,
+            has_friction: connections.joint_forces().any(|(.., force)| force.friction.is_some()),
             has_switches: true,
         }
     }
@@ -191,6 +193,12 @@ impl LawWork {
             if difference <= ROUNDING * size { 0.0 } else { difference }
         };
         self.differences.iter().map(seen).sum()
+    }
+
+    /// Energy that has come and gone at laws in the step.
+    pub(super) fn exchanged(&self) -> f64 {
+        // Of the finer rule and of the stages.
+        0.5 * self.differences.iter().map(|[_, size]| size).sum::<f64>()
     }
 
     /// The part of a step after which a law has its first kink of those that laws tell; none without.

@@ -22,12 +22,25 @@ impl SystemMotion {
         (Path { system, start, scheme, increments, h }, law_work)
     }
 
-    /// Energy that the step makes or loses at laws over twice the largest so far. The works of the laws are then known.
+    /// The energy that there has been or that has come and gone: the largest of the motion, or all works at joints and elements.
+    pub(in crate::system) fn energy_scale(&self) -> f64 {
+        let works = self.joint_works.iter().chain(&self.element_works).flat_map(JointWork::list);
+        self.largest_moving.max(works.map(f64::abs).sum())
+    }
+
+    /// Energy that the step makes or loses at laws over twice the largest so far, from rest that which the step makes. The works of the laws are
+    /// then known.
     pub(super) fn energy_error(&mut self, h: f64) -> f64 {
         let (path, works) = self.path(h);
         works.find(&path, 1.0);
         let made = works.made(&path);
-        if made == 0.0 { 0.0 } else { 0.5 * made / self.largest_energy }
+        if made == 0.0 {
+            return 0.0;
+        }
+        let exchanged = works.exchanged();
+        let Self { stages: [.., last], system, .. } = self;
+        let [moving, _] = last.energies(system, h);
+        0.5 * made / self.energy_scale().max(moving).max(exchanged)
     }
 
     /// The same over the part of the run that the step is.
@@ -39,6 +52,27 @@ impl SystemMotion {
     pub(super) fn length_to_kink(&mut self, h: f64) -> Option<f64> {
         let (path, works) = self.path(h);
         works.first_kink(&path).map(|part| part * h)
+    }
+
+    /// Keeps the coordinates of forces of joints where a step begins.
+    pub(super) fn keep_coordinates(&mut self) {
+        let Self { system, start, room, .. } = self;
+        for ((joint, coordinate, _), kept) in system.connections.joint_forces().zip(&mut room.coordinates) {
+            *kept = start.joints[joint].along(coordinate);
+        }
+    }
+
+    /// Counts the time since [`Self::keep_coordinates`], and the path, for friction that holds then and now.
+    pub(super) fn count_held(&mut self, elapsed: f64) {
+        let Self { system, start, room, held, .. } = self;
+        let forces = system.connections.joint_forces().zip(&room.coordinates).zip(held);
+        for (((joint, coordinate, force), [from, rate_before]), [time, path]) in forces {
+            let [to, rate] = start.joints[joint].along(coordinate);
+            if force.holds(*rate_before) && force.holds(rate) {
+                *time += elapsed;
+                *path += (to - from).abs();
+            }
+        }
     }
 
     /// Replaces the works of laws that the stages have summed up by those of the finer rule. The difference, which the step has made or

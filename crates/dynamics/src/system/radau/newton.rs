@@ -7,11 +7,14 @@ use crate::matrix::lists::larger;
 use crate::system::collocation::STAGES;
 use crate::system::constraints::Compliant;
 use crate::system::elimination::newton::{Frozen, sizes};
+use crate::system::joint::force::FrictionSlope;
 use crate::system::radau::{Failed, Room, SystemMotion};
 use crate::system::stage::Stage;
 
 /// A change of positions that is rounding.
 const ROUNDING: f64 = 1e-13;
+/// Part of the energy that forces give bodies which no joint holds, below which what there is of it is rounding.
+const STILL: f64 = 1e-8;
 /// The rate of convergence that is counted on at most where forces are stiff.
 const STIFF_RATE: f64 = 0.1;
 /// Passes of Newton's method before a step is given up.
@@ -34,7 +37,7 @@ impl SystemMotion {
                 stage.y.iter_mut().zip(&self.first.y_rates).for_each(|(y, rate)| *y = c * h * rate);
             }
         }
-        self.largest_energy = self.largest_energy.max(self.first.energy(&self.system, h));
+        self.raise_energies(h);
         let [others @ .., last] = &mut self.multipliers;
         others.iter_mut().for_each(|lambda| lambda.copy_from_slice(last));
         self.velocity_multipliers.iter_mut().for_each(|mu| mu.fill(0.0));
@@ -42,18 +45,23 @@ impl SystemMotion {
 
     /// Factors of the Newton matrix with the geometry of the second stage, where there are none yet or a compliant row has changed
     /// much. Returns whether they are new.
-    fn factor(&mut self, h: f64, is_first: bool) -> Result<bool, Failed> {
+    fn factor(&mut self, h: f64, is_first: bool, by: FrictionSlope) -> Result<bool, Failed> {
         let Self { matrices, system, stages, scheme, patterns, start, .. } = self;
         let kappa = scheme.real / h;
         if !system.connections.is_rigid() {
             for (stage, c) in stages.iter_mut().zip(scheme.times) {
-                stage.linearize(system, [start.time + c * h, start.time + 0.5 * h]);
+                stage.linearize(system, [start.time + c * h, start.time + 0.5 * h], by);
             }
         }
         let mut is_new = is_first;
+        // Tangents of friction are those of the middle stage: the largest of all would hold what slides.
+        let mut frictions = system.connections.joint_forces().map(|(.., force)| force.friction.is_some());
         for (row, frozen) in matrices.compliant.iter_mut().enumerate() {
             let largest = stages.iter().map(|stage| stage.constraints.compliant[row]).reduce(Compliant::or);
-            let largest = largest.unwrap_or_default();
+            let mut largest = largest.unwrap_or_default();
+            if by == FrictionSlope::Tangent && frictions.next().is_some_and(|is_held| is_held) {
+                largest = stages[1].constraints.compliant[row];
+            }
             if is_first || largest.is_far_from(*frozen, kappa) {
                 (*frozen, is_new) = (largest, true);
             }
@@ -65,14 +73,14 @@ impl SystemMotion {
     }
 
     /// Newton's method for the stages. Returns the number of passes.
-    pub(super) fn newton(&mut self, h: f64, exactness: f64) -> Result<usize, Failed> {
+    pub(super) fn newton(&mut self, h: f64, exactness: f64, by: FrictionSlope) -> Result<usize, Failed> {
         // With compliant rows the first changes fall faster than the later ones, which turn the axes of stiff forces.
         let slowest = if self.system.connections.is_rigid() { 0.0 } else { STIFF_RATE };
         let (mut last, mut since) = (f64::INFINITY, 0);
         for pass in 1..=MAX_PASSES {
             self.evaluate_stages(h)?;
             self.find_energy(h);
-            since = if self.factor(h, pass == 1)? { 1 } else { since + 1 };
+            since = if self.factor(h, pass == 1, by)? { 1 } else { since + 1 };
             let [position, change] = self.improve(h);
             if !change.is_finite() {
                 // The next try begins with them.
@@ -96,12 +104,21 @@ impl SystemMotion {
         Err(Failed::Newton)
     }
 
+    /// Takes the energy at the start of a step of length `h` into account.
+    pub(super) fn raise_energies(&mut self, h: f64) {
+        let [moving, pushed] = self.first.energies(&self.system, h);
+        self.largest_moving = self.largest_moving.max(moving);
+        // From rest a step has what forces give it; later on that is far above what joints and springs let be of it.
+        let scale = self.energy_scale();
+        self.largest_energy = if scale == 0.0 { pushed } else { scale.max(STILL * pushed) };
+    }
+
     /// The energy that changes are measured by, where the start has none: that of bodies at rest, on which loads begin to act within the
     /// step, or which drives have begun to move in the pass before.
     fn find_energy(&mut self, h: f64) {
         let Self { stages, system, largest_energy, .. } = self;
         if *largest_energy == 0.0 {
-            *largest_energy = stages.iter_mut().map(|stage| stage.energy(system, h)).fold(0.0, f64::max);
+            *largest_energy = stages.iter_mut().flat_map(|stage| stage.energies(system, h)).fold(0.0, f64::max);
         }
     }
 

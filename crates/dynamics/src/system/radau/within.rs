@@ -14,8 +14,8 @@ impl SystemMotion {
     pub(in crate::system) fn copy_from(&mut self, other: &Self) {
         self.time = other.time;
         self.bodies.iter_mut().zip(&other.bodies).for_each(|(own, other)| own.copy_from(other));
-        let lists = |of: &Self| -> [f64; 3] { [of.last_length, of.largest_energy, of.jump_work] };
-        [self.last_length, self.largest_energy, self.jump_work] = lists(other);
+        let lists = |of: &Self| -> [f64; 4] { [of.last_length, of.largest_energy, of.largest_moving, of.jump_work] };
+        [self.last_length, self.largest_energy, self.largest_moving, self.jump_work] = lists(other);
         for (own, other) in self.last.iter_mut().flatten().zip(other.last.iter().flatten()) {
             own.copy_from_slice(other);
         }
@@ -29,6 +29,7 @@ impl SystemMotion {
         self.start.joints.copy_from_slice(&other.start.joints);
         self.joint_works.copy_from_slice(&other.joint_works);
         self.element_works.copy_from_slice(&other.element_works);
+        self.held.copy_from_slice(&other.held);
     }
 
     /// The next step begins without the polynomials of the last.
@@ -51,6 +52,7 @@ impl SystemMotion {
         self.bodies.iter_mut().for_each(|body| body.time = self.time);
         self.joint_works.fill(JointWork::default());
         self.element_works.fill(JointWork::default());
+        self.held.fill([0.0; 2]);
         [self.jump_work, self.last_length] = [0.0; 2];
         Ok(())
     }
