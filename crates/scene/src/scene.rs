@@ -237,6 +237,15 @@ impl Scene {
         self
     }
 
+    /// The same with damping of the modes that there are, unless the scene says otherwise: for small vibrations that no load of the scene
+    /// sets off.
+    pub fn with_damping(mut self) -> Self {
+        if self.on_under_unknown_forces().contains(&Effect::Damping) {
+            self.effects.choices[Effect::Damping] = Choice::On;
+        }
+        self
+    }
+
     /// The effects that are on under forces that nobody knows, of those that the scene leaves open.
     pub fn on_under_unknown_forces(&self) -> Vec<Effect> {
         let choices = &self.effects.choices;

@@ -123,6 +123,29 @@ fn poles_of_a_clamped_bar_are_those_of_its_modes() {
     }
 }
 
+/// Closed form: the damping ratio of the scene. Nothing in the scene moves this body, so that a run of it would leave damping out.
+#[test]
+fn a_held_body_without_loads_keeps_its_damping() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = bar(folder.path(), CLAMP, "\"constant\"", "end = 0.01\ntolerance = 1e-6");
+    let text = std::fs::read_to_string(&scene).unwrap();
+    let start = text.find("[[loads]]").unwrap();
+    let end = start + text[start + 1..].find("\n[").unwrap() + 1;
+    // Damping is left open there, as in most scenes.
+    let text = format!("{}{}", &text[..start], &text[end..]).replace("damping = true\n", "");
+    std::fs::write(&scene, &text).unwrap();
+    let file = folder.path().join("bar.mat");
+    let arguments = ["linearize", &scene, "--inputs", "base.acceleration.z", "-o", file.to_str().unwrap()];
+    let report = json(&arguments);
+    for pole in report["poles"].as_array().unwrap() {
+        assert!((pole["damping_ratio"].as_f64().unwrap() - 0.05).abs() < 1e-9, "{pole}");
+    }
+    assert_eq!(report["about"], "rest; damping ratio 0.05 in each mode");
+    std::fs::write(&scene, text.replace("damping_ratio = 0.05", "damping_ratio = 0.0")).unwrap();
+    let arguments = [&arguments[..], &["--overwrite"]].concat();
+    assert_eq!(json(&arguments)["about"], "rest; no damping");
+}
+
 /// Independent reference: the run in the time domain, swung in, of a sine.
 #[test]
 fn a_harmonic_run_agrees_with_the_frequency_response() {

@@ -49,6 +49,8 @@ pub struct FrfReport {
     /// Files.
     #[serde(serialize_with = "json::paths")]
     pub files: Vec<PathBuf>,
+    /// The state that the responses are about, in words, with its damping.
+    pub about: String,
     /// The highest response of each output to each input.
     pub peaks: Vec<Peak>,
     /// Rank of D, where outputs are as many as inputs.
@@ -80,7 +82,10 @@ pub fn frf(
     };
     let frequencies = frequencies.ok_or(LinearizeError::Frequencies { start, end, count })?;
     let scene = &system.bodies[0];
-    let model = linear_model(system, builder, &settings.linear, progress)?;
+    let mut model = linear_model(system, builder, &settings.linear, progress)?;
+    if let Some(loss_factor) = settings.loss_factor {
+        model.state.damping = structural(loss_factor);
+    }
     let equations = &model.equations;
     let failed = |source| LinearizeError::Linear { scene: scene.path.clone(), source: Box::new(source) };
     let response = equations.frequency_response(&frequencies, damping_of(settings.loss_factor)).map_err(failed)?;
@@ -91,16 +96,22 @@ pub fn frf(
     let answer = Answer {
         csv: csv(equations, &response),
         chart: chart(&scene.title, &unit, equations, &response, logarithmic),
-        page: page::page(&scene.title, &unit, (&response, &peaks, &model.state), (settings.loss_factor, logarithmic)),
+        page: page::page(&scene.title, &unit, (&response, &peaks, &model.state), logarithmic),
     };
     Ok(FrfReport {
         title: scene.title.clone(),
         frequency_unit: unit,
         files: curves::write::<LinearizeError>(folder, NAME, answer)?,
+        about: model.state.to_string(),
         peaks,
         at_once: AtOnce::of_equations(equations),
         warnings: model.state.warnings,
     })
+}
+
+/// Structural damping in words, in the place of the scene's.
+pub(super) fn structural(loss_factor: f64) -> String {
+    format!("structural damping, loss factor {loss_factor}")
 }
 
 /// The damping of the equations, or structural damping with a loss factor.
@@ -160,6 +171,7 @@ fn chart(
 impl fmt::Display for FrfReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
+        writeln!(f, "  about    {}", self.about)?;
         write!(f, "  highest responses")?;
         for Peak { output, unit, input, magnitude, frequency } in &self.peaks {
             write!(

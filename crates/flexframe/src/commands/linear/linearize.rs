@@ -16,7 +16,6 @@ mod state;
 mod system_spin;
 mod unseen;
 
-use std::borrow::Cow;
 use std::path::Path;
 
 use dynamics::{Initial, MotionState};
@@ -57,10 +56,10 @@ pub fn linear_model(
     settings: &LinearSettings,
     mut progress: impl FnMut(BuildProgress),
 ) -> Result<LinearModel, LinearizeError> {
-    // A motion of a free body that the scene does not call for is one that an input may.
-    let scenes: Vec<Cow<'_, Scene>> = match &system.bodies[..] {
-        [scene] if scene.constraint.is_none() => vec![Cow::Owned(scene.clone().for_unknown_forces())],
-        scenes => scenes.iter().map(Cow::Borrowed).collect(),
+    // A motion that the scene does not call for is one that an input may: of a free body any, of a held one a vibration.
+    let scenes: Vec<Scene> = match &system.bodies[..] {
+        [scene] if scene.constraint.is_none() => vec![scene.clone().for_unknown_forces()],
+        scenes => scenes.iter().map(|scene| scene.clone().with_damping()).collect(),
     };
     let models: Vec<Model> =
         scenes.iter().map(|scene| builder.build(scene, &mut progress)).collect::<Result<_, _>>()?;

@@ -16,7 +16,7 @@ pub use error::PsdError;
 pub use files::files;
 pub use report::{PsdReport, RandomOutput};
 
-use crate::commands::linear::frf::damping_of;
+use crate::commands::linear::frf::{damping_of, structural};
 use crate::commands::linear::linearize::{LinearSettings, linear_model};
 use crate::commands::linear::spectra::Spectra;
 use responses::Responses;
@@ -49,7 +49,10 @@ pub fn psd(
     let band = spectra.band(settings.band)?;
     let scene = &system.bodies[0];
     let asked = LinearSettings { inputs: spectra.inputs(), ..settings.linear.clone() };
-    let model = linear_model(system, builder, &asked, progress)?;
+    let mut model = linear_model(system, builder, &asked, progress)?;
+    if let Some(loss_factor) = settings.loss_factor {
+        model.state.damping = structural(loss_factor);
+    }
     let failed = |source| PsdError::Linear { scene: scene.path.clone(), source: Box::new(source) };
     let damping = damping_of(settings.loss_factor);
     let poles = model.equations.poles(damping).map_err(failed)?;

@@ -13,7 +13,7 @@ pub(super) fn page(
     title: &str,
     frequency_unit: &str,
     (response, peaks, state): (&FrequencyResponse, &[Peak], &State),
-    (loss_factor, logarithmic): (Option<f64>, bool),
+    logarithmic: bool,
 ) -> Responses {
     let (rows, columns) = response.values.first().map_or((0, 0), |h| (h.nrows(), h.ncols()));
     let places = (0..columns).flat_map(|j| (0..rows).map(move |i| (i, j)));
@@ -28,16 +28,11 @@ pub(super) fn page(
             about: vec![format!("{:.4e} at {:.6} {frequency_unit}", peak.magnitude, peak.frequency)],
         }
     };
-    let damping = loss_factor.map_or_else(|| "of the scene".to_owned(), |g| format!("structural, loss factor {g}"));
     let count = response.frequencies.len();
     Responses {
         title: format!("{title}: frequency response"),
         program: program(),
-        facts: vec![
-            Fact::new("About", state.to_string()),
-            Fact::new("Frequencies", count.to_string()),
-            Fact::new("Damping", damping),
-        ],
+        facts: vec![Fact::new("About", state.to_string()), Fact::new("Frequencies", count.to_string())],
         warnings: state.warnings.clone(),
         frequency_unit: frequency_unit.to_owned(),
         logarithmic,

@@ -14,7 +14,7 @@ use scene::Scene;
 use super::channels::{Channels, input_channels, point_outputs, stress_outputs, unit_of_coordinate};
 use super::error::LinearizeError;
 use super::settings::LinearSettings;
-use super::state::State;
+use super::state::{State, damping_in_words};
 use crate::commands::linear::names::is_asked;
 use base::{Held, TRANSLATIONS, base_channels};
 use driven::Driven;
@@ -168,6 +168,12 @@ pub(super) fn of_held(
     }
     let forces = Mat::from_fn(n, columns.len(), |i, j| columns[j].get(i).copied().unwrap_or(0.0));
     let equations = SecondOrder { stiffness, damping, forces, inputs, outputs, coordinates };
-    let state = State { time, omega_global: omega_global.into(), rigid: r, warnings: Vec::new() };
+    let state = State {
+        time,
+        omega_global: omega_global.into(),
+        rigid: r,
+        damping: damping_in_words([model]),
+        warnings: Vec::new(),
+    };
     Ok((Channels { equations, usual: [usual_inputs, usual_outputs], more_inputs }, state))
 }

@@ -10,7 +10,7 @@ use scene::System;
 use super::channels::{Channels, input_channels, point_outputs, stress_outputs, unit_of_coordinate, wrench_channels};
 use super::error::LinearizeError;
 use super::settings::LinearSettings;
-use super::state::State;
+use super::state::{State, damping_in_words};
 use super::system_spin::SystemSpin;
 use crate::commands::linear::names::is_asked;
 use crate::motion::{self, Beginning, Motion, Moving};
@@ -185,7 +185,13 @@ pub(super) fn of_system(
     let equations = SecondOrder { stiffness, damping, forces, inputs, outputs, coordinates };
     let mut warnings = unsteady(motion, &steady, &omega_global);
     warnings.extend(warning);
-    let state = State { time: motion.time(), omega_global: omega_global.into(), rigid: linear.rigid, warnings };
+    let state = State {
+        time: motion.time(),
+        omega_global: omega_global.into(),
+        rigid: linear.rigid,
+        damping: damping_in_words(models),
+        warnings,
+    };
     Ok((Channels { equations, usual, more_inputs }, state))
 }
 

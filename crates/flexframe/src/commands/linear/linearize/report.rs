@@ -11,7 +11,6 @@ use serde::Serialize;
 
 use super::at_once::AtOnce;
 use super::space::LinearSpace;
-use super::state::in_words;
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 
@@ -32,6 +31,8 @@ pub struct LinearReport {
     pub time: f64,
     /// Angular velocity of the state, global.
     pub omega_global: [f64; 3],
+    /// The state in words, with its damping.
+    pub about: String,
     /// Number of states, inputs and outputs of what is written.
     pub states: usize,
     /// Names of the inputs.
@@ -81,6 +82,7 @@ impl LinearReport {
             frequency_unit: frequency_unit(&scene.units.time),
             file: file.to_owned(),
             omega_global: state.omega_global,
+            about: state.to_string(),
             states: written.states.len(),
             inputs: written.inputs.iter().map(|channel| channel.name.clone()).collect(),
             outputs: written.outputs.iter().map(|channel| channel.name.clone()).collect(),
@@ -107,7 +109,7 @@ fn shape(model: &StateSpace, pole: c64) -> Vec<[f64; 2]> {
 impl fmt::Display for LinearReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
-        writeln!(f, "  about    {}", in_words(self.omega_global, self.time))?;
+        writeln!(f, "  about    {}", self.about)?;
         write!(f, "  model    {} states, {} inputs, {} outputs", self.states, self.inputs.len(), self.outputs.len())?;
         match self.error_bound {
             Some(bound) => writeln!(f, "; of {} states, no response wrong by more than {bound:.3e}", self.whole)?,

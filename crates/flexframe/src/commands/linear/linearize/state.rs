@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use model::Model;
+
 /// The state that equations are about.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
@@ -11,22 +13,36 @@ pub struct State {
     pub omega_global: [f64; 3],
     /// Number of coordinates that deform nothing.
     pub rigid: usize,
+    /// Damping of the modes, in words.
+    pub damping: String,
     /// Reservations about it.
     pub warnings: Vec<String>,
 }
 
-impl fmt::Display for State {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&in_words(self.omega_global, self.time))
+/// Damping of the modes of some bodies in words.
+pub(super) fn damping_in_words<'a>(models: impl IntoIterator<Item = &'a Model>) -> String {
+    let ratios = models.into_iter().flat_map(|model| model.damping_ratios().iter().copied());
+    let extremes = ratios.fold(None, |extremes: Option<[f64; 2]>, ratio| {
+        let [least, most] = extremes.unwrap_or([ratio; 2]);
+        Some([least.min(ratio), most.max(ratio)])
+    });
+    match extremes {
+        None => "no modes to damp".to_owned(),
+        Some([_, 0.0]) => "no damping".to_owned(),
+        Some([least, most]) if least == most => format!("damping ratio {least} in each mode"),
+        Some([least, most]) => format!("damping ratios {least:.6} to {most:.6}"),
     }
 }
 
-/// The state in words.
-pub(super) fn in_words(omega_global: [f64; 3], time: f64) -> String {
-    let [x, y, z] = omega_global;
-    let motion = match omega_global == [0.0; 3] {
-        true => "rest".to_owned(),
-        false => format!("a spin of ({x:.6}, {y:.6}, {z:.6}) rad per time, global"),
-    };
-    if time == 0.0 { motion } else { format!("{motion}, at time {time}") }
+impl fmt::Display for State {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.omega_global {
+            [0.0, 0.0, 0.0] => write!(f, "rest")?,
+            [x, y, z] => write!(f, "a spin of ({x:.6}, {y:.6}, {z:.6}) rad per time, global")?,
+        }
+        if self.time != 0.0 {
+            write!(f, ", at time {}", self.time)?;
+        }
+        write!(f, "; {}", self.damping)
+    }
 }

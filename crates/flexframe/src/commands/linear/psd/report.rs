@@ -33,6 +33,8 @@ pub struct PsdReport {
     /// Files.
     #[serde(serialize_with = "json::paths")]
     pub files: Vec<PathBuf>,
+    /// The state that the responses are about, in words, with its damping.
+    pub about: String,
     /// Reservations about the state.
     pub warnings: Vec<String>,
 }
@@ -70,6 +72,7 @@ impl PsdReport {
             frequency_unit: frequency_unit(&scene.units.time),
             band,
             frequencies: responses.frequencies.len(),
+            about: model.state.to_string(),
             inputs: model.equations.inputs.iter().map(|input| input.name.clone()).collect(),
             outputs: responses.outputs.iter().enumerate().map(output).collect(),
             files: Vec::new(),
@@ -82,6 +85,7 @@ impl fmt::Display for PsdReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let unit = &self.frequency_unit;
         writeln!(f, "{}", self.title)?;
+        writeln!(f, "  about    {}", self.about)?;
         writeln!(f, "  inputs   {}", self.inputs.join(", "))?;
         writeln!(f, "  band     {} to {} {unit}, {} frequencies", self.band[0], self.band[1], self.frequencies)?;
         write!(f, "  {:<32}  {:>14}  {:>16}  {:>14}", "root mean squares", "rms", "apparent", "above 3 rms")?;
