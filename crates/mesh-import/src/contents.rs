@@ -1,5 +1,6 @@
 //! Files that are read once: their contents are what other programs get, and what a mesh is known by.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -22,6 +23,8 @@ pub(crate) struct ReadFile {
     pub(crate) name: String,
     /// Content of the copy; none where there is no file.
     pub(crate) bytes: Option<Vec<u8>>,
+    /// By the number of a line, from 0, the number of the file that a deck includes there.
+    pub(crate) includes: BTreeMap<usize, usize>,
 }
 
 /// Files and their copies, the first one first.

@@ -1,5 +1,6 @@
 //! Decks of Abaqus and CalculiX (`.inp`), read with all that they include.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use foreign_program::open_ordinary;
@@ -7,13 +8,13 @@ use foreign_program::open_ordinary;
 use crate::contents::{MAX_FILES, ReadFile, contents};
 use crate::error::ImportError;
 
-/// The keyword of the copies, which no deck has: the program that reads them takes nothing else in.
-const KEYWORD: &str = "*FLEXFRAME INCLUDE";
-
 const HELP: &str =
     "write `*INCLUDE, INPUT=FILE` on one line, with the path of a file relative to the one that includes it";
 
-/// Reads a deck. In the copies each `*INCLUDE` names the copy of a file.
+/// Keywords that take the lines under them from the file of their parameter INPUT.
+const WITH_DATA_ELSEWHERE: [&[u8]; 4] = [b"NODE", b"ELEMENT", b"NSET", b"ELSET"];
+
+/// Reads a deck and what it includes.
 pub(crate) fn deck(path: &Path) -> Result<Vec<ReadFile>, ImportError> {
     let mut reader = DeckReader::default();
     reader.file(path, contents(path)?)?;
@@ -28,33 +29,36 @@ struct DeckReader {
 }
 
 impl DeckReader {
-    /// Takes a file and reads what it includes. Returns the name of its copy.
-    fn file(&mut self, path: &Path, bytes: Vec<u8>) -> Result<String, ImportError> {
+    /// Takes a file and reads what it includes. Returns its number.
+    fn file(&mut self, path: &Path, bytes: Vec<u8>) -> Result<usize, ImportError> {
         let number = self.files.len();
-        let name = format!("{number}.inp");
-        self.files.push(ReadFile { path: path.to_owned(), name: name.clone(), bytes: None });
+        let (name, includes) = (format!("{number}.inp"), BTreeMap::new());
+        self.files.push(ReadFile { path: path.to_owned(), name, bytes: None, includes });
         self.around.push(path.to_owned());
-        let mut copy = Vec::with_capacity(bytes.len());
         let mut line = 1;
-        // The line ends of all systems.
-        for text in bytes.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
-            match include(text) {
-                Some(included) => {
-                    let included = self.included(path, line, included)?;
-                    copy.extend_from_slice(format!("{KEYWORD}={included}").as_bytes());
-                    copy.extend(text.last().filter(|byte| matches!(byte, b'\n' | b'\r')));
+        let mut includes = BTreeMap::new();
+        let mut parts = bytes.split_inclusive(is_end).enumerate().peekable();
+        while let Some((part, text)) = parts.next() {
+            if let Some(mut name) = included_in(text) {
+                let mut place = part;
+                if name.is_none()
+                    && text.trim_ascii().ends_with(b",")
+                    && let Some((next, more)) = parts.peek()
+                {
+                    (place, name) = (*next, input(more));
                 }
-                None => copy.extend_from_slice(text),
+                includes.insert(place, self.included(path, line, name)?);
             }
             line += usize::from(text.ends_with(b"\n"));
         }
         self.around.pop();
-        self.files[number].bytes = Some(copy);
-        Ok(name)
+        self.files[number].includes = includes;
+        self.files[number].bytes = Some(bytes);
+        Ok(number)
     }
 
-    /// Reads a file that the `line` of another includes. Returns the name of its copy.
-    fn included(&mut self, of: &Path, line: usize, name: Option<String>) -> Result<String, ImportError> {
+    /// Reads a file that the `line` of another includes. Returns its number.
+    fn included(&mut self, of: &Path, line: usize, name: Option<String>) -> Result<usize, ImportError> {
         let refused = |found: String, help: &str| ImportError::Refused {
             source_name: of.display().to_string(),
             found: format!("line {line}: {found}"),
@@ -65,8 +69,8 @@ impl DeckReader {
         if self.around.contains(&path) {
             return Err(refused(format!("*INCLUDE of {}, which includes this file", path.display()), HELP));
         }
-        if let Some(known) = self.files.iter().find(|file| file.path == path) {
-            return Ok(known.name.clone());
+        if let Some(known) = self.files.iter().position(|file| file.path == path) {
+            return Ok(known);
         }
         if self.files.len() >= MAX_FILES {
             return Err(refused(format!("more than {MAX_FILES} files that include each other"), HELP));
@@ -78,22 +82,35 @@ impl DeckReader {
     }
 }
 
-/// The file that a line includes, of which the name may be missing; none of another line.
-fn include(line: &[u8]) -> Option<Option<String>> {
+/// The line ends of all systems.
+fn is_end(byte: &u8) -> bool {
+    matches!(byte, b'\n' | b'\r')
+}
+
+/// The file that a line takes in, of which the name may be missing; none of another line.
+fn included_in(line: &[u8]) -> Option<Option<String>> {
     let line = line.trim_ascii();
     let rest = line.strip_prefix(b"*")?.trim_ascii_start();
-    let (word, rest) = rest.split_at_checked("INCLUDE".len())?;
-    let is_end = |byte: &u8| !byte.is_ascii_alphanumeric();
-    if !word.eq_ignore_ascii_case(b"INCLUDE") || !rest.first().is_none_or(is_end) {
-        return None;
+    let end = rest.iter().position(|byte| !byte.is_ascii_alphanumeric()).unwrap_or(rest.len());
+    let (word, rest) = rest.split_at(end);
+    if word.eq_ignore_ascii_case(b"INCLUDE") {
+        return Some(input(rest));
     }
+    // Other keywords have two words, such as *NODE FILE.
+    let is_alone = rest.trim_ascii_start().first().is_none_or(|byte| *byte == b',');
+    let is_known = is_alone && WITH_DATA_ELSEWHERE.iter().any(|keyword| word.eq_ignore_ascii_case(keyword));
+    if is_known { input(rest).map(Some) } else { None }
+}
+
+/// The file that the parameter INPUT names.
+fn input(rest: &[u8]) -> Option<String> {
     let rest = String::from_utf8_lossy(rest);
     let named = |part: &str| {
         let (key, value) = part.split_once('=')?;
         let value = value.trim().trim_matches('"');
         (key.trim().eq_ignore_ascii_case("INPUT") && !value.is_empty()).then(|| value.to_owned())
     };
-    Some(rest.split(',').find_map(named))
+    rest.split(',').find_map(named)
 }
 
 #[cfg(test)]
@@ -107,14 +124,17 @@ mod tests {
             "* INCLUDE, INPUT=a b.inp",
             " *include,input = \"a b.inp\" \r\n",
             "*\tInclude ,Input=a b.inp,\n",
+            "*Node, nset=all, input=a b.inp",
         ] {
-            assert_eq!(include(line.as_bytes()), Some(Some("a b.inp".to_owned())), "{line}");
+            assert_eq!(included_in(line.as_bytes()), Some(Some("a b.inp".to_owned())), "{line}");
         }
         for line in ["*INCLUDE", "*INCLUDE, a.inp", "*INCLUDE,"] {
-            assert_eq!(include(line.as_bytes()), Some(None), "{line}");
+            assert_eq!(included_in(line.as_bytes()), Some(None), "{line}");
         }
-        for line in ["** *INCLUDE, INPUT=a", "*INCLUDED, INPUT=a", "*NODE, INPUT=a", "1, 2, 3", "*", ""] {
-            assert_eq!(include(line.as_bytes()), None, "{line}");
+        for line in
+            ["** *INCLUDE, INPUT=a", "*INCLUDED, INPUT=a", "*NODE FILE, INPUT=a", "*NODE, NSET=a", "1, 2, 3", "*", ""]
+        {
+            assert_eq!(included_in(line.as_bytes()), None, "{line}");
         }
     }
 }

@@ -6,6 +6,7 @@
 //! they are, in texts, too, and as the end of other words: wherever gmsh begins to read, it cannot read one. Comments are
 //! blanked before, so that they may have these words, and gmsh gets what was looked at and no comments.
 
+use std::collections::BTreeMap;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
@@ -101,7 +102,7 @@ impl GeometryReader {
             return Err(refused(path, None, &format!("more than {MAX_FILES} files that include each other")));
         }
         let name = format!("{number}.{ending}");
-        self.files.push(ReadFile { path: path.to_owned(), name: name.clone(), bytes: None });
+        self.files.push(ReadFile { path: path.to_owned(), name: name.clone(), bytes: None, includes: BTreeMap::new() });
         Ok((number, name))
     }
 

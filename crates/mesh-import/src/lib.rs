@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
+mod abaqus;
 mod contents;
 mod deck;
 mod deck_material;
@@ -14,6 +15,7 @@ mod mesh_file;
 mod reader;
 mod run;
 mod settings;
+mod tetrahedra;
 
 use std::path::Path;
 

@@ -1,11 +1,13 @@
 //! A mesh file that is read once.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use fem_tet10::{Mesh, MeshError, MeshFault, msh_bytes, parse_msh};
 use keys::{Hash, Key};
 use whole_file::TemporaryFolder;
 
+use crate::abaqus;
 use crate::contents::{Copies, ReadFile, contents, opened};
 use crate::deck::deck;
 use crate::deck_material::DeckMaterial;
@@ -53,14 +55,16 @@ impl MeshFile {
     /// [`ImportError`]: a file cannot be read, or is not what its name says.
     pub fn read(path: &Path, settings: &ImportSettings) -> Result<Self, ImportError> {
         let reader = reader_of(path, settings);
-        let one = |bytes, name| Held::Files(vec![ReadFile { path: path.to_owned(), name, bytes: Some(bytes) }]);
+        let one = |bytes, name| {
+            Held::Files(vec![ReadFile { path: path.to_owned(), name, bytes: Some(bytes), includes: BTreeMap::new() }])
+        };
         let held = match reader {
             Reader::Own => one(msh_bytes(path)?, String::new()),
             Reader::GmshMesher if is_program(path) => match geometry(path) {
                 Err(ImportError::Refused { .. }) if settings.trust_geometry => Held::InPlace,
                 read => Held::Files(read?),
             },
-            Reader::Meshio if ending(path) == "inp" => Held::Files(deck(path)?),
+            Reader::OwnDeck => Held::Files(deck(path)?),
             _ => match contents(path)? {
                 bytes if names_others(path, &bytes) => Held::InPlace,
                 bytes => one(bytes, format!("source.{}", ending(path))),
@@ -108,6 +112,12 @@ impl MeshFile {
                 first => first?,
             },
             Reader::GmshConverter => self.by_gmsh(GmshTask::Convert)?,
+            Reader::OwnDeck => {
+                let Held::Files(files) = &self.held else {
+                    return Ok(Imported { mesh: self.own()?, notes: Vec::new(), materials: Vec::new() });
+                };
+                return abaqus::read(files, &self.path, self.settings.raise_order);
+            }
             Reader::Meshio => {
                 let (mesh, (notes, mut materials)) = self.by_another(run::meshio)?;
                 // The others are of elements that are left out.

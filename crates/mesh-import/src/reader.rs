@@ -11,6 +11,8 @@ use crate::settings::ImportSettings;
 pub enum Reader {
     /// flexframe itself: MSH 4.1, and what has no known ending.
     Own,
+    /// flexframe itself: decks of Abaqus and CalculiX.
+    OwnDeck,
     /// gmsh, which meshes geometry.
     GmshMesher,
     /// gmsh, which writes other meshes as MSH 4.1.
@@ -24,6 +26,7 @@ impl Reader {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Own => "own",
+            Self::OwnDeck => "own, decks",
             Self::GmshMesher => "gmsh, meshing",
             Self::GmshConverter => "gmsh, converting",
             Self::Meshio => "meshio",
@@ -36,14 +39,16 @@ const MESHED: [&str; 7] = ["geo", "geo_unrolled", "step", "stp", "iges", "igs", 
 /// Meshes that meshio does not know.
 const CONVERTED: [&str; 1] = ["unv"];
 /// Meshes that meshio reads.
-const THROUGH_MESHIO: [&str; 14] =
-    ["inp", "med", "bdf", "nas", "fem", "vtu", "vtk", "xdmf", "xmf", "mesh", "meshb", "e", "exo", "h5m"];
+const THROUGH_MESHIO: [&str; 13] =
+    ["med", "bdf", "nas", "fem", "vtu", "vtk", "xdmf", "xmf", "mesh", "meshb", "e", "exo", "h5m"];
 
 /// Who reads a file, by the ending of its name; of `.msh`, by its version, too.
 pub fn reader_of(path: &Path, settings: &ImportSettings) -> Reader {
     let ending = ending(path);
     let is_of = |endings: &[&str]| endings.contains(&ending.as_str());
-    if is_of(&MESHED) {
+    if ending == "inp" {
+        Reader::OwnDeck
+    } else if is_of(&MESHED) {
         Reader::GmshMesher
     } else if is_of(&CONVERTED) || (ending == "msh" && (settings.raise_order || is_older_msh(path))) {
         Reader::GmshConverter
@@ -66,7 +71,9 @@ fn is_older_msh(path: &Path) -> bool {
     let head = String::from_utf8_lossy(&head);
     let mut lines = head.lines().map(str::trim).skip_while(|line| *line != "$MeshFormat");
     match lines.nth(1) {
-        Some(format) => ["1", "2", "2.1", "2.2", "4", "4.0"].iter().any(|old| format.split(' ').next() == Some(old)),
+        Some(format) => {
+            ["1", "2", "2.0", "2.1", "2.2", "4", "4.0"].iter().any(|old| format.split(' ').next() == Some(old))
+        }
         None => head.starts_with("$NOD"),
     }
 }

@@ -129,7 +129,8 @@ pub(crate) fn gmsh(job: &Job<'_>, task: GmshTask) -> Result<(), ImportError> {
     }
     command = command.args(["-v", "2", "-format", "msh41", "-o"]).arg(target);
     let said = Said::by(command, source, &gmsh, ("gmsh", GMSH_CURE))?;
-    if !said.status.success() || !target.is_file() {
+    // Some versions end with success after an error.
+    if !said.status.success() || !target.is_file() || said.first_errors.iter().any(Option::is_some) {
         let help = match task {
             GmshTask::Convert => "open it in gmsh, and see what is wrong with it",
             GmshTask::Mesh | GmshTask::MeshAndOptimize { .. } => {

@@ -1,8 +1,5 @@
 """Reads a mesh with meshio (or meshlane) and writes its second-order tetrahedra with all named sets as MSH 4.1.
 
-Abaqus and CalculiX files are read here: meshio puts element sets on wrong elements where not every *ELEMENT has a name, joins no
-*NODE blocks, and has no surfaces.
-
 Arguments: the mesh file, the MSH file to write, and "raise" if first-order tetrahedra are to get mid-edge nodes.
 Prints a line of JSON: what was left out ("notes") and the materials of sets ("materials"), or what is wrong ("error", with "help").
 """
@@ -23,8 +20,6 @@ RAISED = {"tetra": "tetra10", "triangle": "triangle6"}
 CORNERS = {"tetra10": 4, "triangle6": 3}
 # Endings of Nastran's files.
 NASTRAN = (".bdf", ".nas", ".fem")
-# Abaqus' faces of a tetrahedron.
-FACES = {"S1": (0, 1, 2), "S2": (0, 3, 1), "S3": (1, 3, 2), "S4": (2, 3, 0)}
 HELP = "install it (pip install meshio h5py), or name a Python that has it in FLEXFRAME_PYTHON"
 
 
@@ -44,7 +39,6 @@ class File:
         self.node_sets = {}
         self.labels = {}  # name: whole numbers of each block
         self.names_of_labels = {}  # label array: {(number, dimension) or number: names}
-        self.faces = {}  # surface: (block, row, face) of elements
         self.materials = []  # of sets of elements
 
 
@@ -54,10 +48,7 @@ def main(source, target, raise_order):
     except ImportError:
         raise Refused(f"{sys.executable} has no numpy", HELP)
     notes = []
-    if Path(source).suffix.lower() == ".inp":
-        file = Abaqus(notes).read(np, Path(source))
-    else:
-        file = with_meshio(np, source, Path(target), notes)
+    file = with_meshio(np, source, Path(target), notes)
     points = file.points
     if len(points) == 0:
         raise Refused("it has no nodes", "check the file")
@@ -95,11 +86,10 @@ def main(source, target, raise_order):
         groups.add(np, name, rows)
     for name, arrays in file.labels.items():
         add_labels(np, groups, name, arrays, file.names_of_labels.get(name), notes)
-    surfaces = surfaces_of_faces(np, file.faces, blocks, notes)
     point_sets = {name: nodes for name, nodes in file.node_sets.items() if len(nodes)}
     tell(notes, "element set", "no tetrahedra and no triangles of six nodes", groups.without)
     tell(notes, "node set", "no nodes", [name for name in file.node_sets if name not in point_sets])
-    write(np, target, points, blocks, groups, surfaces, point_sets)
+    write(np, target, points, blocks, groups, point_sets)
     return {"notes": notes, "materials": file.materials}
 
 
@@ -230,183 +220,6 @@ def number(field):
     return float(head + tail)
 
 
-class Abaqus:
-    """Reads a file of Abaqus or CalculiX: nodes, elements, sets, surfaces of element faces."""
-
-    # By the start of the name: kind, and number of nodes.
-    KINDS = [
-        ("C3D10", "tetra10", 10), ("C3D4", "tetra", 4), ("C3D20", "hexahedron20", 20), ("C3D27", "hexahedron27", 27),
-        ("C3D8", "hexahedron", 8), ("C3D15", "wedge15", 15), ("C3D6", "wedge", 6), ("C3D5", "pyramid", 5),
-        ("STRI65", "triangle6", 6), ("S6", "triangle6", 6), ("CPS6", "triangle6", 6), ("CPE6", "triangle6", 6),
-        ("CAX6", "triangle6", 6), ("M3D6", "triangle6", 6), ("DS6", "triangle6", 6), ("SFM3D6", "triangle6", 6),
-        ("R3D3", "triangle", 3), ("S3", "triangle", 3), ("CPS3", "triangle", 3), ("M3D3", "triangle", 3),
-    ]  # fmt: skip
-
-    def __init__(self, notes):
-        self.notes = notes
-        self.nodes, self.elements = {}, {}  # by number: position; (kind, nodes)
-        self.names = {"NSET": {}, "ELSET": {}}  # by name in capitals: the name as it was written
-        self.sets = {"NSET": {}, "ELSET": {}}  # by name in capitals: numbers
-        self.surfaces = {}
-        self.parts = Counter()
-        self.material = {"name": "", "ELASTIC": [], "DENSITY": [], "why": ""}
-        self.materials = {}  # by name in capitals: the name, lines of numbers by keyword, and why it is not read
-        self.sections = []  # name of a set, name of its material
-
-    def read(self, np, path):
-        keyword, options, waiting = "", {}, []
-        for where, line in self.lines(path):
-            if line.startswith("*"):
-                first, *others = [part.strip() for part in line[1:].split(",")]
-                keyword = " ".join(first.upper().split())
-                options = {k.strip().upper(): v.strip().strip('"') for k, _, v in (part.partition("=") for part in others)}
-                waiting = []
-                self.begin(keyword, options)
-                continue
-            words = [word.strip() for word in line.split(",")]
-            waiting += [word for word in words if word]
-            if keyword == "ELEMENT":
-                kind, count = self.kind(options.get("TYPE", ""))
-                # Of kinds that do not count, a line that ends in a comma goes on.
-                if len(waiting) <= count if count else not words[-1]:
-                    continue
-            try:
-                self.take(keyword, options, waiting)
-            except (ValueError, IndexError, KeyError):
-                raise Refused(f"{where}: in *{keyword}, found {line!r}", "check this line")
-            waiting = []
-        return self.file(np)
-
-    def lines(self, path):
-        """The lines that are no comments. What includes a file has been given this keyword: there is nothing else to be read."""
-        # Not `splitlines`, which knows more ends of lines than decks do.
-        lines = path.read_text(encoding="utf-8", errors="replace").split("\n")
-        for number, line in enumerate(lines, start=1):
-            line = line.strip()
-            if not line or line.startswith("**"):
-                continue
-            if line.startswith("*FLEXFRAME INCLUDE="):
-                yield from self.lines(path.parent / Path(line.partition("=")[2]).name)
-            else:
-                yield f"line {number} of {path}", line
-
-    def begin(self, keyword, options):
-        if keyword in ("PART", "INSTANCE"):
-            self.parts[keyword] += 1
-            if self.parts[keyword] > 1:
-                raise Refused("it has several parts", "write one part, or a file without parts and assemblies")
-        for kind in ("NSET", "ELSET"):
-            if kind in options and keyword in ("NODE", "ELEMENT", kind):
-                self.set(kind, options[kind])
-        if keyword == "MATERIAL":
-            self.material = {"name": options.get("NAME", ""), "ELASTIC": [], "DENSITY": [], "why": ""}
-            self.materials[options.get("NAME", "").upper()] = self.material
-        elif keyword == "SOLID SECTION":
-            self.sections.append((options.get("ELSET", ""), options.get("MATERIAL", "")))
-        elif keyword == "ELASTIC" and options.get("TYPE", "ISOTROPIC").upper() not in ("ISO", "ISOTROPIC"):
-            self.material["why"] = f"its *ELASTIC is of TYPE={options['TYPE']}, and only isotropic ones are"
-        if keyword == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
-            self.surfaces[options.get("NAME", "")] = []
-        elif keyword == "SURFACE":
-            self.notes.append(f"the surface {options.get('NAME', '')} is one of nodes, and is left out: name a node set")
-
-    def take(self, keyword, options, words):
-        if keyword == "NODE":
-            number, position = int(words[0]), [float(x) for x in words[1:4]]
-            if self.nodes.setdefault(number, position) != position:
-                raise Refused(f"node {number} is there twice, at different places", "write one part, or number its nodes anew")
-            if "NSET" in options:
-                self.set("NSET", options["NSET"]).append(number)
-        elif keyword == "ELEMENT":
-            number, nodes = int(words[0]), [int(node) for node in words[1:]]
-            kind, _ = self.kind(options.get("TYPE", ""))
-            if number in self.elements:
-                raise Refused(f"element {number} is there twice", "write one part, or number its elements anew")
-            self.elements[number] = (kind, nodes)
-            if "ELSET" in options:
-                self.set("ELSET", options["ELSET"]).append(number)
-        elif keyword in ("ELASTIC", "DENSITY"):
-            if not self.material["why"]:
-                self.material[keyword].append([float(word) for word in words])
-        elif keyword in ("NSET", "ELSET"):
-            members = self.set(keyword, options[keyword])
-            if "GENERATE" in options:
-                first, last, step = ([int(word) for word in words] + [1])[:3]
-                members.extend(range(first, last + 1, step))
-            else:
-                for word in words:
-                    members.extend(self.members(keyword, word))
-        elif keyword == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
-            face = words[1].upper() if len(words) > 1 else ""
-            self.surfaces[options.get("NAME", "")].extend((number, face) for number in self.members("ELSET", words[0]))
-
-    def kind(self, name):
-        name = name.upper()
-        found = [(kind, count) for start, kind, count in self.KINDS if name.startswith(start)]
-        return found[0] if found else (name, None)
-
-    def set(self, kind, name):
-        self.names[kind].setdefault(name.upper(), name)
-        return self.sets[kind].setdefault(name.upper(), [])
-
-    def members(self, kind, word):
-        # An instance may stand before a number or a name.
-        word = word.strip('"').rpartition(".")[2]
-        if word.isdigit():
-            return [int(word)]
-        if word.upper() not in self.sets[kind]:
-            raise Refused(f"the set {word} is named, but not there", "check the sets of the file")
-        return list(self.sets[kind][word.upper()])
-
-    def materials_of_sets(self):
-        materials = []
-        for group, name in self.sections:
-            material = self.materials.get(name.upper(), {"why": "there is no *MATERIAL of this name"})
-            why = material["why"]
-            for keyword, count in (("ELASTIC", 2), ("DENSITY", 1)):
-                lines = material.get(keyword, [])
-                if not why and (not lines or len(lines[0]) < count):
-                    why = f"it has no *{keyword} with numbers"
-                elif not why and len(lines) > 1:
-                    why = f"its *{keyword} is a table over temperature"
-            if why:
-                self.notes.append(f"the material {name} of {group} is not read: {why}")
-                continue
-            group = self.names["ELSET"].get(group.upper(), group)
-            [[young, poisson, *_]], [[density, *_]] = material["ELASTIC"], material["DENSITY"]
-            add_material(materials, self.notes, group, material["name"], young, poisson, density)
-        used = {name.upper() for _, name in self.sections}
-        for name in self.materials.keys() - used:
-            self.notes.append(f"the material {self.materials[name]['name']} is not read: no *SOLID SECTION names it")
-        return materials
-
-    def file(self, np):
-        index = {number: i for i, number in enumerate(self.nodes)}
-        blocks, place = {}, {}
-        for number, (kind, nodes) in self.elements.items():
-            missing = [node for node in nodes if node not in index]
-            if missing:
-                raise Refused(f"element {number} has node {missing[0]}, which is not there", "check the file")
-            rows = blocks.setdefault(kind, [])
-            place[number] = (kind, len(rows))
-            rows.append([index[node] for node in nodes])
-        number_of = {kind: number for number, kind in enumerate(blocks)}
-        cells = [(kind, rows if len({len(row) for row in rows}) == 1 else [[]] * len(rows)) for kind, rows in blocks.items()]
-        file = File(np, list(self.nodes.values()), cells)
-        for name, numbers in self.sets["ELSET"].items():
-            rows = [[] for _ in cells]
-            for kind, row in (place[number] for number in numbers if number in place):
-                rows[number_of[kind]].append(row)
-            file.element_sets[self.names["ELSET"][name]] = rows
-        for name, numbers in self.sets["NSET"].items():
-            file.node_sets[self.names["NSET"][name]] = [index[number] for number in numbers if number in index]
-        for name, faces in self.surfaces.items():
-            at = [(place.get(number), face) for number, face in faces]
-            file.faces[name] = [(number_of[p[0]], p[1], face) if p else (-1, 0, face) for p, face in at]
-        file.materials = self.materials_of_sets()
-        return file
-
-
 def raised(np, points, nodes, kind, blocks):
     """Straight elements with a node in the middle of each edge, shared with those of other elements."""
     edges = np.array(EDGES[kind])
@@ -497,33 +310,12 @@ def add_labels(np, groups, name, arrays, names, notes):
                 groups.add(np, group, only)
 
 
-def surfaces_of_faces(np, faces_of, blocks, notes):
-    """Triangles of six nodes of surfaces of element faces."""
-    kinds = {number: (kind, nodes) for kind, nodes, number in blocks}
-    edge_of = {frozenset(edge): column for column, edge in enumerate(EDGES["tetra10"], start=4)}
-    found = {}
-    for name, faces in faces_of.items():
-        triangles = []
-        for number, row, face in faces:
-            kind, nodes = kinds.get(number, (None, None))
-            if kind != "tetra10" or face not in FACES:
-                continue
-            a, b, c = FACES[face]
-            middles = [edge_of[frozenset(pair)] for pair in ((a, b), (b, c), (a, c))]
-            triangles.append([nodes[row][k] for k in (a, b, c, *middles)])
-        if len(triangles) < len(faces) or not faces:
-            notes.append(f"of the surface {name}, {len(triangles)} of {len(faces)} faces are faces of tetrahedra")
-        if triangles:
-            found[name] = np.array(triangles)
-    return found
-
-
 def plain(name):
     """A name that MSH can hold."""
     return " ".join(name.replace('"', "'").split())
 
 
-def write(np, target, points, blocks, groups, surfaces, point_sets):
+def write(np, target, points, blocks, groups, point_sets):
     """MSH 4.1 in text: an entity for each combination of groups."""
     physical = {2: {}, 3: {}, 0: {}}
     entities = {0: [], 2: [], 3: []}  # tags of physical groups, element type, rows of nodes
@@ -539,8 +331,6 @@ def write(np, target, points, blocks, groups, surfaces, point_sets):
         for names, rows in combinations.items():
             if names or dimension == 3:
                 entities[dimension].append(([tag(dimension, name) for name in names], element_type, nodes[rows]))
-    for name, triangles in surfaces.items():
-        entities[2].append(([tag(2, name)], 9, triangles))
     for name, nodes in point_sets.items():
         entities[0].append(([tag(0, name)], 15, np.asarray(nodes, dtype=int).reshape(-1, 1)))
 

@@ -57,10 +57,10 @@ fn geometry_and_first_order_meshes_give_modes_and_are_meshed_once() {
 #[test]
 fn what_is_missing_and_what_does_not_fit_is_said() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("bar.inp"), "*NODE\n").unwrap();
+    std::fs::write(folder.path().join("bar.vtu"), "<a>\n").unwrap();
     std::fs::write(folder.path().join("bar.msh"), "").unwrap();
     for (body, code, words) in [
-        ("mesh = \"bar.inp\"", 6, &["bar.inp", "meshio", "`no python` cannot be started", "pip install meshio"][..]),
+        ("mesh = \"bar.vtu\"", 6, &["bar.vtu", "meshio", "`no python` cannot be started", "pip install meshio"][..]),
         ("mesh = \"bar.msh\"\nmesh_size = 2.0", 3, &["`body.mesh_size`", "a size for a mesh that is there"]),
         ("mesh = \"bar.geo\"\nmesh_size = -2.0", 3, &["`body.mesh_size`", "greater than 0"]),
         ("file = \"bar.h5\"\nraise_order = true", 3, &["`body."]),

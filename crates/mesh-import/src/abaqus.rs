@@ -1,0 +1,27 @@
+//! Decks of Abaqus and CalculiX: parts, instances, sets, surfaces and materials, and what of them is not used.
+
+mod body;
+mod deck;
+mod keywords;
+mod kinds;
+mod lines;
+mod materials;
+mod scope;
+mod space;
+mod systems;
+
+use std::path::Path;
+
+use crate::abaqus::deck::Deck;
+use crate::abaqus::lines::Texts;
+use crate::contents::ReadFile;
+use crate::error::ImportError;
+use crate::mesh_file::Imported;
+
+/// The mesh of a deck and its materials.
+pub(crate) fn read(files: &[ReadFile], source: &Path, raise_order: bool) -> Result<Imported, ImportError> {
+    let texts = Texts::new(files);
+    let blocks = texts.blocks()?;
+    let deck = Deck::read(&texts, &blocks)?;
+    body::imported(&texts, &deck, source, raise_order)
+}

@@ -1,0 +1,227 @@
+//! The body of a file of elements: ten-node tetrahedra with their groups, whatever order the file has for nodes on edges.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use fem_tet10::{Mesh, MeshParts, NodeGroup, SurfaceGroup};
+
+use crate::error::ImportError;
+
+/// Corners of the edges, in gmsh's order of the nodes on them.
+const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
+/// Nodes of the faces: corners, then those between 01 12 20. The order is that of Abaqus' faces S1 to S4.
+const FACES: [[usize; 6]; 4] = [[0, 1, 2, 4, 5, 6], [0, 3, 1, 7, 9, 4], [1, 3, 2, 9, 8, 5], [2, 3, 0, 8, 7, 6]];
+
+/// The elements of a file and their names, by indices.
+#[derive(Debug, Default)]
+pub(crate) struct Tetrahedra {
+    pub(crate) source: String,
+    pub(crate) node_tags: Vec<u64>,
+    pub(crate) positions: Vec<[f64; 3]>,
+    pub(crate) element_tags: Vec<u64>,
+    /// Nodes of each tetrahedron, 4 or 10.
+    pub(crate) elements: Vec<Vec<u32>>,
+    /// Names of groups and their tetrahedra.
+    pub(crate) groups: Vec<(String, Vec<u32>)>,
+    /// Names of surfaces and the corners of their triangles.
+    pub(crate) surfaces: Vec<(String, Vec<[u32; 3]>)>,
+    pub(crate) node_groups: Vec<(String, Vec<u32>)>,
+}
+
+impl Tetrahedra {
+    /// The corners of a face of a tetrahedron, by its number in Abaqus, from 0.
+    pub(crate) fn corners(&self, element: usize, face: usize) -> [u32; 3] {
+        let [a, b, c, ..] = FACES[face];
+        [a, b, c].map(|corner| self.elements[element][corner])
+    }
+
+    /// The faces that only one tetrahedron has, with the tetrahedron.
+    pub(crate) fn free_faces(&self) -> Vec<(usize, [u32; 3])> {
+        let mut count: HashMap<[u32; 3], usize> = HashMap::new();
+        let faces = || (0..self.elements.len()).flat_map(|e| (0..4).map(move |face| (e, self.corners(e, face))));
+        for (_, corners) in faces() {
+            *count.entry(sorted(corners)).or_insert(0) += 1;
+        }
+        faces().filter(|(_, corners)| count[&sorted(*corners)] == 1).collect()
+    }
+
+    /// The mesh, and a sentence on each name that nothing is left of.
+    pub(crate) fn mesh(mut self, raise_order: bool) -> Result<(Mesh, Vec<String>), ImportError> {
+        let mut notes = Vec::new();
+        let linear = self.elements.iter().filter(|nodes| nodes.len() == 4).count();
+        if linear > 0 && !raise_order {
+            return Err(self.refuse(
+                format!("it has {linear} tetrahedra of first order"),
+                "mesh with second-order elements, or set raise_order = true in [body] for straight edges with nodes in their middle",
+            ));
+        }
+        if self.elements.is_empty() {
+            return Err(self.refuse("it has no tetrahedra".to_owned(), "mesh the volume with ten-node tetrahedra"));
+        }
+        let elements = self.ordered()?;
+        // Nodes that no tetrahedron has are left out.
+        let used: HashSet<u32> = elements.iter().flatten().copied().collect();
+        let mut seen = HashSet::with_capacity(used.len());
+        let is_unique = used.iter().all(|node| seen.insert(self.node_tags[*node as usize]));
+        let tag = |node: u32| if is_unique { self.node_tags[node as usize] } else { u64::from(node) + 1 };
+        let kept = || (0..self.positions.len() as u32).filter(|node| used.contains(node));
+
+        let asked: HashSet<[u32; 3]> =
+            self.surfaces.iter().flat_map(|(_, triangles)| triangles).map(|corners| sorted(*corners)).collect();
+        let mut faces: HashMap<[u32; 3], [u32; 6]> = HashMap::new();
+        for nodes in &elements {
+            for face in FACES {
+                let face = face.map(|a| nodes[a]);
+                let key = sorted([face[0], face[1], face[2]]);
+                if asked.contains(&key) {
+                    faces.entry(key).or_insert(face);
+                }
+            }
+        }
+        let mut surfaces = Vec::new();
+        let mut next_tag = 1;
+        for (name, triangles) in &self.surfaces {
+            let found: Vec<[u64; 6]> =
+                triangles.iter().filter_map(|corners| faces.get(&sorted(*corners))).map(|face| face.map(tag)).collect();
+            if found.len() < triangles.len() || found.is_empty() {
+                notes.push(format!(
+                    "of the surface {name}, {} of {} faces are faces of tetrahedra",
+                    found.len(),
+                    triangles.len()
+                ));
+            }
+            if !found.is_empty() {
+                let triangle_tags = (next_tag..).take(found.len()).collect();
+                next_tag += found.len() as u64;
+                surfaces.push(SurfaceGroup { name: name.clone(), triangle_tags, triangles: found });
+            }
+        }
+        let mut of_element: Vec<Vec<usize>> = vec![Vec::new(); elements.len()];
+        let groups: Vec<_> = self.groups.iter().filter(|(_, members)| !members.is_empty()).collect();
+        for (group, (_, members)) in groups.iter().enumerate() {
+            members.iter().for_each(|element| of_element[*element as usize].push(group));
+        }
+        let mut known: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
+        let mut regions = Vec::new();
+        let mut element_regions = Vec::with_capacity(elements.len());
+        for of in of_element {
+            let region = *known.entry(of).or_insert_with_key(|of| {
+                regions.push(of.clone());
+                regions.len() - 1
+            });
+            element_regions.push(region);
+        }
+        let node_groups = self.node_groups.iter().filter_map(|(name, nodes)| {
+            let nodes: Vec<u64> = nodes.iter().filter(|node| used.contains(node)).map(|node| tag(*node)).collect();
+            if nodes.is_empty() {
+                notes.push(format!("the node set {name} has no nodes of the body"));
+            }
+            (!nodes.is_empty()).then(|| NodeGroup { name: name.clone(), dimension: 0, nodes })
+        });
+        let node_groups = node_groups.collect();
+        let mut seen = HashSet::new();
+        let is_unique_element = self.element_tags.iter().all(|tag| seen.insert(*tag));
+        let parts = MeshParts {
+            source: self.source.clone(),
+            node_tags: kept().map(tag).collect(),
+            positions: kept().map(|node| self.positions[node as usize]).collect(),
+            element_tags: if is_unique_element {
+                self.element_tags.clone()
+            } else {
+                (1..=elements.len() as u64).collect()
+            },
+            elements: elements.iter().map(|nodes| nodes.map(tag)).collect(),
+            groups: groups.iter().map(|(name, _)| name.clone()).collect(),
+            regions,
+            element_regions,
+            surfaces,
+            node_groups,
+        };
+        Ok((Mesh::new(parts)?, notes))
+    }
+
+    fn refuse(&self, found: String, help: &str) -> ImportError {
+        ImportError::Refused { source_name: self.source.clone(), found, help: help.to_owned() }
+    }
+
+    /// The elements with the nodes on their edges in gmsh's order, found from where these are; those of first order get new ones.
+    fn ordered(&mut self) -> Result<Vec<[u32; 10]>, ImportError> {
+        let at = |positions: &[[f64; 3]], node: u32| positions[node as usize];
+        let mut orders: HashMap<[usize; 6], usize> = HashMap::new();
+        let order_of = |nodes: &[u32], positions: &[[f64; 3]]| -> [usize; 6] {
+            EDGES.map(|[a, b]| {
+                let (a, b) = (at(positions, nodes[a]), at(positions, nodes[b]));
+                let far = |k: usize| -> f64 {
+                    let there = at(positions, nodes[4 + k]);
+                    (0..3).map(|i| (there[i] - 0.5 * (a[i] + b[i])).powi(2)).sum()
+                };
+                (0..6).min_by(|i, j| far(*i).total_cmp(&far(*j))).unwrap_or(0)
+            })
+        };
+        for nodes in self.elements.iter().filter(|nodes| nodes.len() == 10) {
+            *orders.entry(order_of(nodes, &self.positions)).or_insert(0) += 1;
+        }
+        let order = orders
+            .iter()
+            .max_by_key(|(order, count)| (**count, **order))
+            .map_or([0, 1, 2, 3, 4, 5], |(order, _)| *order);
+        let mut each = order;
+        each.sort_unstable();
+        if each != [0, 1, 2, 3, 4, 5] {
+            return Err(self.refuse(
+                "the nodes on the edges of its tetra10 elements are not between their corners".to_owned(),
+                "check the order of nodes",
+            ));
+        }
+        let count = self.elements.iter().filter(|nodes| nodes.len() == 10).count();
+        let others = count - orders.get(&order).copied().unwrap_or(0);
+        if others > 0 {
+            let wrong = self
+                .elements
+                .iter()
+                .zip(&self.element_tags)
+                .find(|(nodes, _)| nodes.len() == 10 && order_of(nodes, &self.positions) != order);
+            let first = wrong.map_or(0, |(_, tag)| *tag);
+            return Err(self.refuse(
+                format!(
+                    "{others} of its {count} tetra10 elements have nodes on edges in another order than the others, the first is {first}"
+                ),
+                "check the order of nodes, or mesh again with less curved elements",
+            ));
+        }
+        let mut between: HashMap<[u32; 2], u32> = HashMap::new();
+        let mut ordered = vec![[0; 10]; self.elements.len()];
+        for (found, nodes) in ordered.iter_mut().zip(&self.elements) {
+            found[..4].copy_from_slice(&nodes[..4]);
+            if nodes.len() == 10 {
+                for (edge, [a, b]) in EDGES.iter().enumerate() {
+                    found[4 + edge] = nodes[4 + order[edge]];
+                    between.insert(edge_key(nodes[*a], nodes[*b]), found[4 + edge]);
+                }
+            }
+        }
+        let mut next = self.node_tags.iter().max().copied().unwrap_or(0);
+        for (found, nodes) in ordered.iter_mut().zip(&self.elements).filter(|(_, nodes)| nodes.len() == 4) {
+            for (edge, [a, b]) in EDGES.iter().enumerate() {
+                let ends = [nodes[*a], nodes[*b]];
+                let (positions, tags) = (&mut self.positions, &mut self.node_tags);
+                found[4 + edge] = *between.entry(edge_key(ends[0], ends[1])).or_insert_with(|| {
+                    let [a, b] = ends.map(|node| positions[node as usize]);
+                    positions.push(std::array::from_fn(|i| 0.5 * (a[i] + b[i])));
+                    next = next.wrapping_add(1);
+                    tags.push(next);
+                    positions.len() as u32 - 1
+                });
+            }
+        }
+        Ok(ordered)
+    }
+}
+
+fn edge_key(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+fn sorted(mut corners: [u32; 3]) -> [u32; 3] {
+    corners.sort_unstable();
+    corners
+}

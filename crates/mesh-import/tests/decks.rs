@@ -1,0 +1,290 @@
+//! Decks of Abaqus and CalculiX in the forms that people have: each is the same box of 3 x 1 x 1, or is refused with its line.
+//! Needs gmsh (`./dev test` sees to it).
+
+use std::fmt::Write;
+use std::fs;
+use std::process::Command;
+
+use fem_tet10::{Material, Materials, Mesh, centroid_lumped_inertia};
+use mesh_import::{ImportError, ImportSettings, Imported, read_mesh};
+use tempfile::TempDir;
+
+/// Nodes and lines of elements of the box.
+struct Bar {
+    folder: TempDir,
+    nodes: Vec<(u64, [f64; 3])>,
+    elements: Vec<Vec<u64>>,
+}
+
+impl Bar {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let geometry = "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 3, 1, 1};\nPhysical Volume(\"bar\") = {1};\nMesh.MeshSizeMax = 1;\n";
+        fs::write(folder.path().join("bar.geo"), geometry).unwrap();
+        let mut gmsh = Command::new("gmsh");
+        gmsh.args(["bar.geo", "-3", "-order", "2", "-v", "0", "-o", "bar.inp"]).current_dir(folder.path());
+        assert!(gmsh.output().unwrap().status.success());
+        let text = fs::read_to_string(folder.path().join("bar.inp")).unwrap();
+        let (mut nodes, mut elements, mut keyword) = (Vec::new(), Vec::new(), String::new());
+        for line in text.lines() {
+            if line.starts_with('*') {
+                keyword = line.to_owned();
+            } else if keyword == "*NODE" {
+                let words: Vec<f64> = line.split(',').map(|word| word.trim().parse().unwrap()).collect();
+                nodes.push((words[0] as u64, [words[1], words[2], words[3]]));
+            } else if keyword.contains("C3D10") {
+                elements.push(line.split(',').map(|word| word.trim().parse().unwrap()).collect());
+            }
+        }
+        Self { folder, nodes, elements }
+    }
+
+    fn read(&self, name: &str, text: &str) -> Result<Imported, ImportError> {
+        fs::write(self.folder.path().join(name), text).unwrap();
+        read_mesh(&self.folder.path().join(name), &ImportSettings::default())
+    }
+
+    fn node_lines(&self, of: impl Fn([f64; 3]) -> String) -> String {
+        self.nodes.iter().map(|(label, x)| format!("{label}, {}\n", of(*x))).collect()
+    }
+
+    fn element_lines(&self) -> String {
+        let line = |element: &Vec<u64>| element.iter().map(u64::to_string).collect::<Vec<_>>().join(", ") + "\n";
+        self.elements.iter().map(line).collect()
+    }
+
+    /// Numbers of the nodes at this x.
+    fn at(&self, x: f64) -> String {
+        let numbers = self.nodes.iter().filter(|(_, at)| (at[0] - x).abs() < 1e-9).map(|(label, _)| label.to_string());
+        numbers.collect::<Vec<_>>().join(",\n") + "\n"
+    }
+}
+
+fn plain(x: [f64; 3]) -> String {
+    format!("{:?}, {:?}, {:?}", x[0], x[1], x[2])
+}
+
+fn volume(mesh: &Mesh) -> f64 {
+    let material = Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0 };
+    centroid_lumped_inertia(mesh, &Materials::Uniform(material), &[]).unwrap().mass
+}
+
+fn mean_of(mesh: &Mesh, set: &str) -> [f64; 3] {
+    let nodes = mesh.group_nodes(set).unwrap_or_else(|error| panic!("{error}"));
+    std::array::from_fn(|i| nodes.iter().map(|n| mesh.positions()[*n as usize][i]).sum::<f64>() / nodes.len() as f64)
+}
+
+/// Closed form: the box is 3 x 1 x 1; in cylindrical coordinates its nodes are at the same places.
+#[test]
+fn coordinates_are_read_in_their_systems() {
+    let bar = Bar::new();
+    let elements = format!("*ELEMENT, TYPE=C3D10, ELSET=all\n{}", bar.element_lines());
+    let polar = |x: [f64; 3]| format!("{:?}, {:?}, {:?}", x[0].hypot(x[1]), x[1].atan2(x[0]).to_degrees(), x[2]);
+    let short = |x: [f64; 3]| {
+        let field = |c: f64| if c == 0.0 { String::new() } else { format!("{c:?}D0") };
+        let all = x.map(field).join(", ");
+        all.trim_end_matches([',', ' ']).to_owned()
+    };
+    for (name, nodes) in [
+        ("plain", format!("*NODE\n{}", bar.node_lines(plain))),
+        ("cylindrical", format!("*NODE, SYSTEM=C\n{}", bar.node_lines(polar))),
+        // Its x axis is along -y, its y axis along x.
+        (
+            "a system",
+            format!("*SYSTEM\n1, 2, 5, 1, 1, 5\n2, 2, 5\n*NODE\n{}", {
+                bar.node_lines(|x| plain([2.0 - x[1], x[0] - 1.0, x[2] - 5.0]))
+            }),
+        ),
+        ("blank fields and D", format!("*Node, nset=a\n{}", bar.node_lines(short))),
+    ] {
+        let read = bar.read("systems.inp", &format!("** a comment\n{nodes}{elements}"));
+        let Imported { mesh, notes, .. } = read.unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(notes.is_empty(), "{name}: {notes:?}");
+        let parts = mesh.parts();
+        for (tag, x) in parts.node_tags.iter().zip(&parts.positions) {
+            let (_, given) = bar.nodes.iter().find(|(label, _)| label == tag).unwrap();
+            let is_there = (0..3).all(|i| (x[i] - given[i]).abs() < 1e-9);
+            assert!(is_there, "{name}: node {tag} at {x:?} for {given:?}");
+        }
+    }
+    for (text, words) in [
+        ("*NODE, SYSTEM=S\n1, 1, 2, 3\n", ["line 1", "SYSTEM"]),
+        ("*NODE\n1, 1, x, 3\n", ["line 2", "coordinates"]),
+        ("*NODE\n1, 0, 0, 0\n*NGEN\n1, 2\n", ["line 3", "*NGEN"]),
+        ("*SYSTEM\n0,0,0,0,0,1\n", ["line 2", "second line"]),
+        ("*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D10\n1, 1, 1, 1\n", ["line 4", "all nodes"]),
+    ] {
+        let said = bar.read("bad.inp", text).unwrap_err().to_string();
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    }
+}
+
+/// Closed form: where the sets are. The part's set and the assembly's have one name, as CAE numbers them, and a reference point
+/// of the assembly has the number of a node.
+#[test]
+fn names_of_parts_and_of_the_assembly_are_kept_apart() {
+    let bar = Bar::new();
+    let deck = |placement: &str| {
+        format!(
+            "*Heading\n*Part, name=Part-1\n*Node\n{}*Element, type=C3D10\n{}*Nset, nset=Set-1\n{}*Elset, elset=Set-2, generate\n1, \
+             1000000, 1\n*Solid Section, elset=Set-2, material=Steel\n,\n*End Part\n*Assembly, name=Assembly\n*Instance, \
+             name=Part-1-1, part=Part-1\n{placement}*End Instance\n*Node\n1, 9., 0., 0.\n*Nset, nset=RP\n1,\n*Nset, nset=Set-1, \
+             instance=Part-1-1\n{}*Nset, nset=both\nPart-1-1.Set-1, Set-1\n*End Assembly\n*Material, name=steel\n*Density\n7.85e-9,\n\
+             *Elastic\n210000., 0.3\n",
+            bar.node_lines(plain),
+            bar.element_lines(),
+            bar.at(0.0),
+            bar.at(3.0)
+        )
+    };
+    let Imported { mesh, materials, notes } =
+        bar.read("scopes.inp", &deck("")).unwrap_or_else(|error| panic!("{error}"));
+    assert!((mean_of(&mesh, "Set-1")[0] - 3.0).abs() < 1e-9);
+    assert!(mean_of(&mesh, "Part-1.Set-1")[0].abs() < 1e-9);
+    assert_eq!(mesh.group_nodes("both").unwrap().len(), bar.at(0.0).lines().count() + bar.at(3.0).lines().count());
+    assert!((volume(&mesh) - 3.0).abs() < 1e-9);
+    assert_eq!(materials.len(), 1, "{materials:?}");
+    assert_eq!((&*materials[0].group, materials[0].material.young_modulus), ("Set-2", 210e3));
+    assert_eq!(notes, ["the node set RP has no nodes of the body"]);
+    // Moved along x, then turned about the z axis by a quarter: its far end is at y = 13.
+    let placement = "10., 0., 0.\n10., 0., 0., 10., 0., 1., 90.\n";
+    let mesh = bar.read("moved.inp", &deck(placement)).unwrap_or_else(|error| panic!("{error}")).mesh;
+    let end = mean_of(&mesh, "Set-1");
+    assert!((end[1] - 3.0).abs() < 1e-9 && (end[0] - 9.5).abs() < 0.2, "{end:?}");
+}
+
+#[test]
+fn what_is_not_used_is_counted_and_named() {
+    let bar = Bar::new();
+    let more = "*ELEMENT, TYPE=MASS, ELSET=m\n9001, 1\n*MASS, ELSET=m\n7.85e-4\n*ELEMENT, TYPE=SPRINGA, ELSET=k\n9002, 1, 2\n\
+                *SPRING, ELSET=k\n\n10.\n*EQUATION\n2\n1, 1, 1., 2, 1, -1.\n*RIGID BODY, REF NODE=1, NSET=root\n*COUPLING, \
+                CONSTRAINT NAME=hub, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 3\n*SECRET\n1\n";
+    let text = format!(
+        "*NODE\n{}*ELEMENT, TYPE=C3D10, ELSET=all\n{}*NSET, NSET=root\n{}{more}",
+        bar.node_lines(plain),
+        bar.element_lines(),
+        bar.at(0.0)
+    );
+    let notes = bar.read("more.inp", &text).unwrap_or_else(|error| panic!("{error}")).notes;
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    for words in [
+        "read: ",
+        "1 MASS (7.8500e-4",
+        "point_masses = [{ at = [",
+        "1 SPRINGA",
+        "1 *SPRING",
+        "1 *EQUATION",
+        "1 *RIGID BODY of root",
+        "tie = \"rigid\"",
+        "1 *COUPLING of face",
+        "1 keyword(s) that are not known",
+    ] {
+        assert!(notes[0].contains(words), "{words}: {notes:?}");
+    }
+    assert!(!notes[0].contains("SECRET"));
+}
+
+/// A recipe of numbers without order.
+struct Dice(u64);
+
+impl Dice {
+    fn up_to(&mut self, count: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % count
+    }
+
+    fn spelled(&mut self, keyword: &str) -> String {
+        let letters = keyword.chars();
+        letters.map(|letter| if self.up_to(2) == 0 { letter.to_ascii_lowercase() } else { letter }).collect()
+    }
+}
+
+/// Conserved: nodes, volume and sets of one body, however its deck is written. `FLEXFRAME_DECKS` is the number of decks.
+#[test]
+fn one_body_written_at_random_is_one_body() {
+    let bar = Bar::new();
+    let count = std::env::var("FLEXFRAME_DECKS").ok().and_then(|count| count.parse().ok()).unwrap_or(50);
+    for seed in 0..count {
+        let dice = &mut Dice(seed);
+        let text = written(&bar, dice);
+        let name = format!("{seed}.inp");
+        let Imported { mesh, materials, .. } =
+            bar.read(&name, &text).unwrap_or_else(|error| panic!("{seed}: {error}\n"));
+        fs::remove_file(bar.folder.path().join(name)).unwrap();
+        assert_eq!(mesh.elements().len(), bar.elements.len(), "{seed}");
+        assert!((volume(&mesh) - 3.0).abs() < 1e-9, "{seed}");
+        assert_eq!(mesh.group_nodes("root").unwrap().len(), bar.at(0.0).lines().count(), "{seed}");
+        assert!(mean_of(&mesh, "tip")[0] > 2.999, "{seed}");
+        assert_eq!(materials.first().map(|deck| deck.material.density), Some(7.85e-9), "{seed}: {materials:?}");
+    }
+}
+
+fn written(bar: &Bar, dice: &mut Dice) -> String {
+    let end = ["\n", "\r\n"][dice.up_to(2)];
+    let in_parts = dice.up_to(2) == 0;
+    let number = |dice: &mut Dice, c: f64| match dice.up_to(4) {
+        0 => format!("{c:?}"),
+        1 => format!("{c:.17E}"),
+        2 => format!("{c:.17e}").replace('e', "D"),
+        _ if c == 0.0 => String::new(),
+        _ => format!(" {c:?} "),
+    };
+    let mut nodes = dice.spelled("*NODE");
+    let in_cylinders = dice.up_to(3) == 0;
+    if in_cylinders {
+        nodes += &dice.spelled(", SYSTEM=C");
+    }
+    nodes.push('\n');
+    for (label, x) in &bar.nodes {
+        let x = if in_cylinders { [x[0].hypot(x[1]), x[1].atan2(x[0]).to_degrees(), x[2]] } else { *x };
+        let fields = x.map(|c| number(dice, c)).join(",");
+        let _ = writeln!(nodes, "{label},{fields}");
+        if dice.up_to(20) == 0 {
+            nodes += "** *NODE\n";
+        }
+    }
+    let mut elements = dice.spelled("*ELEMENT, TYPE=C3D10");
+    let is_named = dice.up_to(2) == 0;
+    elements += if is_named { ", ELSET=ALL\n" } else { "\n" };
+    for element in &bar.elements {
+        let mut words: Vec<String> = element.iter().map(u64::to_string).collect();
+        if dice.up_to(2) == 0 {
+            let at = 1 + dice.up_to(9);
+            words[at] = format!("\n{}", words[at]);
+        }
+        elements += &(words.join(", ") + ["", ","][dice.up_to(2)] + "\n");
+    }
+    if !is_named {
+        elements += &dice.spelled("*ELSET, ELSET=ALL,GENERATE\n1, 99999\n");
+    }
+    let sets = format!("*NSET,\nNSET=root\n{}*Nset, nset=inner\n{}*nset, nset=tip\ninner\n", bar.at(0.0), bar.at(3.0));
+    let section = dice.spelled("*SOLID SECTION, ELSET=all, MATERIAL=Steel\n,\n");
+    let material = dice.spelled("*MATERIAL, NAME=STEEL\n*ELASTIC\n210e3,.3\n*DENSITY\n7.85e-9\n");
+    let mut blocks = vec![nodes, elements, sets, section];
+    // Any order is one deck.
+    for i in (1..blocks.len()).rev() {
+        blocks.swap(i, dice.up_to(i + 1));
+    }
+    if dice.up_to(3) == 0 {
+        let at = dice.up_to(blocks.len());
+        fs::write(bar.folder.path().join("more.txt"), &blocks[at]).unwrap();
+        blocks[at] = dice.spelled("*INCLUDE, INPUT=") + "more.txt\n";
+    }
+    let body = blocks.concat();
+    let text = if in_parts {
+        format!(
+            "*PART, NAME=P\n{body}*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=P-1, PART=p\n*END INSTANCE\n*END ASSEMBLY\n{material}"
+        )
+    } else {
+        format!("*HEADING\n a bar\n{material}{body}")
+    };
+    text.replace('\n', end)
+}
+
+#[test]
+fn an_included_file_is_not_quoted() {
+    let bar = Bar::new();
+    fs::write(bar.folder.path().join("secret.txt"), "user:password\n").unwrap();
+    let said = bar.read("leak.inp", "*NODE\n*INCLUDE, INPUT=secret.txt\n").unwrap_err().to_string();
+    assert!(said.contains("secret.txt") && said.contains("line 1") && !said.contains("password"), "{said}");
+}
