@@ -16,7 +16,7 @@ use crate::abaqus::deck::Deck;
 use crate::abaqus::lines::Texts;
 use crate::contents::ReadFile;
 use crate::error::ImportError;
-use crate::mesh_file::Imported;
+use crate::imported::Imported;
 
 /// The mesh of a deck and its materials.
 pub(crate) fn read(files: &[ReadFile], source: &Path, raise_order: bool) -> Result<Imported, ImportError> {

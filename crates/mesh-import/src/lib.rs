@@ -10,6 +10,7 @@ mod error;
 mod format;
 mod geometry;
 mod gmsh_errors;
+mod imported;
 mod included;
 mod mesh_file;
 mod reader;
@@ -21,8 +22,9 @@ use std::path::Path;
 
 pub use deck_material::DeckMaterial;
 pub use error::ImportError;
+pub use imported::Imported;
 pub use included::files_of_mesh;
-pub use mesh_file::{Imported, MeshFile};
+pub use mesh_file::MeshFile;
 pub use reader::{Reader, reader_of};
 pub use settings::ImportSettings;
 

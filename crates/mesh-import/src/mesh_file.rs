@@ -10,24 +10,13 @@ use whole_file::TemporaryFolder;
 use crate::abaqus;
 use crate::contents::{Copies, ReadFile, contents, opened};
 use crate::deck::deck;
-use crate::deck_material::DeckMaterial;
 use crate::error::ImportError;
 use crate::format::ending;
 use crate::geometry::geometry;
+use crate::imported::Imported;
 use crate::reader::{Reader, is_program, is_surface, names_others, reader_of};
 use crate::run::{self, GmshTask, Job};
 use crate::settings::ImportSettings;
-
-/// A mesh, and what of its file was left out, in sentences.
-#[derive(Debug)]
-pub struct Imported {
-    /// The mesh, with the name of its own file.
-    pub mesh: Mesh,
-    /// Such as "the element set A has no tetrahedra and no triangles".
-    pub notes: Vec<String>,
-    /// The materials that the file gives to groups of the mesh, in its own units.
-    pub materials: Vec<DeckMaterial>,
-}
 
 /// A mesh file with all that it includes, as they were when they were read. Its hash and its mesh follow from the same bytes,
 /// whatever becomes of the files.

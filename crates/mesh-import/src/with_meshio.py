@@ -81,6 +81,10 @@ def main(source, target, raise_order):
         found = ", ".join(f"{count} {kind}" for kind, count in others.items()) or "no elements at all"
         raise Refused(f"it has no tetrahedra: {found}", "mesh the volume with ten-node tetrahedra")
 
+    turned = turn(np, points, blocks)
+    if turned:
+        notes.append(f"all {turned} tetrahedra are mirrored or have their nodes the other way round, and are turned")
+
     groups = Groups(blocks)
     for name, rows in file.element_sets.items():
         groups.add(np, name, rows)
@@ -265,6 +269,22 @@ def ordered(np, points, nodes, kind):
             "check the order of nodes, or mesh again with less curved elements",
         )
     return np.hstack([nodes[:, :corners], nodes[:, corners:][:, list(order)]])
+
+
+def turn(np, points, blocks):
+    """Turns the tetrahedra if all of them have a negative volume, as those of MED have. Returns how many are turned."""
+    count = 0
+    for kind, nodes, _ in blocks:
+        if kind == "tetra10" and len(nodes):
+            corners = points[nodes[:, :4]]
+            edges = corners[:, 1:] - corners[:, :1]
+            if (np.linalg.det(edges) >= 0).any():
+                return 0
+            count += len(nodes)
+    for _, nodes, _ in (block for block in blocks if block[0] == "tetra10"):
+        # Corners 1 and 2 change places, and with them the nodes on the edges 01 and 02, 23 and 13.
+        nodes[:] = nodes[:, [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]]
+    return count
 
 
 class Groups:

@@ -260,7 +260,7 @@ fn written(bar: &Bar, dice: &mut Dice) -> String {
     let sets = format!("*NSET,\nNSET=root\n{}*Nset, nset=inner\n{}*nset, nset=tip\ninner\n", bar.at(0.0), bar.at(3.0));
     let section = dice.spelled("*SOLID SECTION, ELSET=all, MATERIAL=Steel\n,\n");
     let material = dice.spelled("*MATERIAL, NAME=STEEL\n*ELASTIC\n210e3,.3\n*DENSITY\n7.85e-9\n");
-    let mut blocks = vec![nodes, elements, sets, section];
+    let mut blocks = [nodes, elements, sets, section];
     // Any order is one deck.
     for i in (1..blocks.len()).rev() {
         blocks.swap(i, dice.up_to(i + 1));

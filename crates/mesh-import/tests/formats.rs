@@ -157,6 +157,17 @@ fn every_format_gives_the_same_elements_and_its_groups() {
     }
 }
 
+/// Independent reference: the same mesh in MSH. Salome writes the corners of MED in the order 0 2 1 3.
+#[test]
+fn elements_that_are_all_the_other_way_round_are_turned_and_told() {
+    let formats = formats();
+    let direct = formats.read("bar.msh", AS_IT_IS).unwrap().mesh;
+    let Imported { mesh, notes, .. } = formats.read("salome.med", AS_IT_IS).unwrap_or_else(|error| panic!("{error}"));
+    assert!((volume(&mesh) / volume(&direct) - 1.0).abs() < 1e-9);
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(notes[0].contains("all 768 tetrahedra") && notes[0].contains("are turned"), "{notes:?}");
+}
+
 #[test]
 fn what_abaqus_calls_surfaces_and_node_sets_are_groups_and_the_rest_is_told() {
     let formats = formats();

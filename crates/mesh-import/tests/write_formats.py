@@ -43,6 +43,13 @@ med.point_tags = {4: ["end"]}
 med.point_data = {"point_tags": np.where(mesh.points[:, 0] == 0, 4, 0)}
 med.write(folder / "bar.med")
 
+# As Salome has the corners, and with the nodes on edges that go with them.
+turned = blocks["tetra10"][:, [0, 2, 1, 3, 6, 5, 4, 7, 8, 9]]
+salome = meshio.Mesh(mesh.points, [("tetra10", turned)], cell_data={"cell_tags": [np.full(len(turned), -3)]})
+salome.cell_tags = {-3: ["bar"]}
+salome.point_tags = {}
+salome.write(folder / "salome.med")
+
 # First order, and bricks.
 linear = meshio.Mesh(mesh.points, [("tetra", blocks["tetra10"][:, :4])])
 linear.write(folder / "linear.vtu")

@@ -11,7 +11,7 @@ use crate::abaqus::lines::Texts;
 use crate::abaqus::space::World;
 use crate::deck_material::DeckMaterial;
 use crate::error::ImportError;
-use crate::mesh_file::Imported;
+use crate::imported::Imported;
 use crate::tetrahedra::Tetrahedra;
 
 const FACES: [&str; 4] = ["S1", "S2", "S3", "S4"];
@@ -222,13 +222,13 @@ fn names(
 fn shown(world: &World<'_>, space: usize, name: &str) -> String {
     let plain = name.replace('"', "'").split_whitespace().collect::<Vec<_>>().join(" ");
     let key = name.to_uppercase();
-    let has = |scope: &&crate::abaqus::scope::Scope| {
+    let has = |scope: &crate::abaqus::scope::Scope| {
         scope.node_sets.number(&key).is_some()
             || scope.element_sets.number(&key).is_some()
             || scope.surfaces.iter().any(|surface| surface.name.eq_ignore_ascii_case(name))
     };
     let others = world.spaces.iter().enumerate().filter(|(other, _)| *other != space);
-    let is_taken = others.flat_map(|(_, other)| &other.scopes).any(|scope| has(&scope));
+    let is_taken = others.flat_map(|(_, other)| &other.scopes).any(|scope| has(scope));
     if is_taken && !world.spaces[space].prefix.is_empty() {
         format!("{}.{plain}", world.spaces[space].prefix)
     } else {

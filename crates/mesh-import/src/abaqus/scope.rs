@@ -1,4 +1,4 @@
-//! What a part, an instance or the assembly of a deck defines, under names of its own.
+//! Definitions of a part, an instance or the assembly of a deck, under names of its own.
 
 use std::collections::HashMap;
 
@@ -114,7 +114,7 @@ pub(crate) struct Tie {
     pub(crate) region: String,
 }
 
-/// What a part, an instance or the assembly defines.
+/// Definitions of a part, an instance or the assembly.
 #[derive(Debug, Default)]
 pub(crate) struct Scope {
     pub(crate) nodes: Vec<Node>,
@@ -143,7 +143,7 @@ pub(crate) struct Instance {
     /// Number of its part.
     pub(crate) part: usize,
     pub(crate) placement: Placement,
-    /// What it defines beside the part.
+    /// Definitions beside those of the part.
     pub(crate) own: Scope,
     pub(crate) place: Place,
 }
