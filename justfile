@@ -173,6 +173,24 @@ exudyn: build
     RAYON_NUM_THREADS=1 .tools/exudyn/bin/python crates/verification/performance/systems.py \
         {{flexframe}} target/debug/systems docs/evidence/systems.md
 
+# Random systems of rigid bodies against a reference in maximal coordinates: the counts in docs/evidence/systems.md (Python packages;
+# an hour, goes on where it was interrupted).
+random-systems *options: random-systems-python
+    .tools/random-systems/bin/python crates/verification/random_systems/closed_forms.py
+    nice .tools/random-systems/bin/python crates/verification/random_systems/measure.py target/debug/flexframe out/random-systems \
+        --page docs/evidence/systems.md {{options}}
+
+# Small systems that failed, with their right values: the table of cases in docs/evidence/systems.md; before: a program to compare with
+# (Python packages; a few minutes).
+systems-cases *before: random-systems-python
+    .tools/random-systems/bin/python crates/verification/systems_cases/measure.py target/debug/flexframe {{before}} --page docs/evidence/systems.md
+
+[private]
+random-systems-python:
+    cargo build --quiet --package flexframe-cli
+    python3 -m venv .tools/random-systems
+    .tools/random-systems/bin/pip install -q h5py==3.16.0 numpy==2.4.6 scipy==1.17.1
+
 # Systems of bodies in joints by radau and rkmk4: processor time at equal error.
 schemes:
     cargo build --quiet --package verification --bin systems
