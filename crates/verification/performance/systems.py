@@ -116,7 +116,9 @@ def main():
     figure.savefig(picture, metadata={"Date": None})
     template = (HERE / "systems" / "page.template").read_text()
     text = template.replace("TABLE", "\n".join(rows)).replace("LIMITS", "\n".join(limits)).replace("LADDERS", "\n".join(ladders))
-    target.write_text(text)
+    # What other recipes have measured stays.
+    _, mark, rest = target.read_text().partition("\n## Random systems\n") if target.exists() else ("", "", "")
+    target.write_text(text + mark + rest)
 
 
 main()

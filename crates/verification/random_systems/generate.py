@@ -305,17 +305,23 @@ def impossible(m):
     """Rows that contradict each other, or a loop that nothing can close: an error is right."""
     rng = m.rng
     which = rng.choice(["drive and ball", "gear and drives", "short link"])
+
+    def drive(at):
+        """One that contradicts from the start on, or one that begins at rest and so does later."""
+        rate = rng.uniform(0.5, 2)
+        return {"offset": at, "rate": rate} if rng.uniform() < 0.5 else {"offset": at + rate, "amplitude": rate, "frequency": 4.0, "phase": -math.pi / 2}
+
     if which == "drive and ball":
         body = m.hang(-1, "revolute")
         joint = m.joints[-1]
-        joint["drive"] = {"offset": m_turn(m, joint), "rate": rng.uniform(0.5, 2)}
+        joint["drive"] = drive(m_turn(m, joint))
         z = np.array(joint["i"]["axes"])[:, 2]
         away = np.cross(z, rng.normal(size=3)) * m.size
         m.joint("spherical", -1, body, np.array(joint["i"]["s"]) + away, EYE, own=True)
     elif which == "gear and drives":
         for _ in range(2):
             m.hang(-1, "revolute")
-            m.joints[-1]["drive"] = {"offset": m_turn(m, m.joints[-1]), "rate": rng.uniform(0.5, 2)}
+            m.joints[-1]["drive"] = drive(m_turn(m, m.joints[-1]))
         ratio = -rng.uniform(3, 5)
         m.couplings = [{"kind": "gear", "joints": ["j0", "j1"], "ratio": ratio, "terms": [(1, "turn", 0), (-ratio, "turn", 1)]}]
     else:

@@ -1,8 +1,8 @@
 """Random systems by the program against the reference: counts of what is right, refused and wrong in silence.
 
-Usage: measure.py PROGRAM FOLDER [--systems N] [--first SEED] [--jobs N] [--again SEED,SEED] [--references] [--page PAGE]
+Usage: measure.py PROGRAM FOLDER [--systems N] [--first SEED] [--jobs N] [--again SEED,SEED] [--references] [--kept] [--page PAGE]
 FOLDER keeps the reference of each system (`reference/SEED.json`), and what the program made of it (`runs-HASH/SEED.json`, by the content of the
-program). With --references only the former are made. What is there is not made again, so that an interrupted measurement goes on. With --page the table goes between its marks in PAGE.
+program). With --references only the former are made; --kept counts what is there. What is there is not made again, so that an interrupted measurement goes on. With --page the table goes between its marks in PAGE.
 """
 
 import argparse
@@ -28,7 +28,7 @@ import generate
 import reference
 
 # A run that takes longer than this is a failure of its own.
-SECONDS = 10
+SECONDS = 5
 VERDICTS = ["right", "right as the motion magnifies", "impossible, refused", "near a lock, refused", "told", "refused without a true reason",
             "too slow", "wrong in silence", "crash", "reference unsure"]
 
@@ -256,13 +256,14 @@ def main():
     asked.add_argument("--jobs", type=int, default=2)
     asked.add_argument("--again", default="")
     asked.add_argument("--references", action="store_true")
+    asked.add_argument("--kept", action="store_true")
     asked.add_argument("--page", type=Path)
     asked = asked.parse_args()
     content = hashlib.sha256(Path(asked.program).read_bytes()).hexdigest()[:10]
     runs = asked.folder / f"runs-{content}"
     runs.mkdir(parents=True, exist_ok=True)
     (asked.folder / "reference").mkdir(exist_ok=True)
-    seeds = [int(s) for s in asked.again.split(",") if s] or range(asked.first, asked.first + asked.systems)
+    seeds = [int(path.stem) for path in runs.glob("*.json")] if asked.kept else [int(s) for s in asked.again.split(",") if s] or range(asked.first, asked.first + asked.systems)
     for seed in seeds if asked.again else []:
         (runs / f"{seed}.json").unlink(missing_ok=True)
     results = []
@@ -271,18 +272,21 @@ def main():
         if asked.references:
             pool.map(one_reference, tasks, chunksize=1)
             return
-        for result in pool.imap_unordered(one, tasks):
+        for result in map(one, tasks) if asked.kept else pool.imap_unordered(one, tasks):
             results.append(result)
             if result["verdict"] not in ("right", "impossible, refused", "reference unsure"):
                 print({key: result.get(key) for key in ("seed", "class", "verdict", "message", "place", "attitude", "tolerance", "magnified", "warnings", "far", "fast", "thrown") if result.get(key)}, flush=True)
     results.sort(key=lambda r: r["seed"])
     shown = table(results)
+    for verdict in ("wrong in silence", "told", "too slow", "crash"):
+        found = [str(r["seed"]) for r in results if r["verdict"] == verdict]
+        shown += f"\n\n{verdict.capitalize()}: " + (f"seeds {', '.join(found)}." if found else "none.") if len(results) else ""
     print(shown)
     print()
     for verdict in ("impossible, refused", "near a lock, refused", "refused without a true reason", "reference unsure", "script"):
         for text, count in collections.Counter(reason(r.get("message", "")) for r in results if r["verdict"] == verdict).most_common():
             print(f"{verdict}: {count} × {text}")
-    for verdict in ("wrong in silence", "told", "too slow", "crash", "refused without a true reason"):
+    for verdict in ("refused without a true reason",):
         print(f"{verdict}: seeds {[r['seed'] for r in results if r['verdict'] == verdict]}")
     over = [r["over_card"] for r in results if "over_card" in r]
     if over:

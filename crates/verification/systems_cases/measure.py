@@ -177,7 +177,7 @@ def open_by(run, scene):
 
 
 def no_answer(run):
-    return math.nan, "an error is right"
+    return math.nan, "an error that names both is right"
 
 
 def wall(run):
@@ -292,7 +292,8 @@ def cell(program, scene, measure):
     except (reference.Unsure, KeyError) as missing:
         return f"not measured: {missing!r}; {run.card()}", None
     steps = run.said.get("steps")
-    return f"{error:.1e}" + (f", {steps} steps" if steps else "") + (f"; {run.card()}" if run.card() else ""), what
+    shown = f"{error:.1e}" if math.isfinite(error) else "no error said" if measure is no_answer else "not told"
+    return shown + (f", {steps} steps" if steps else "") + (f"; {run.card()}" if run.card() else ""), what
 
 
 def main():
@@ -310,7 +311,7 @@ def main():
             text, found = cell(program, scene, measure)
             cells.append(text.replace("|", "/").replace("\n", " "))
             what = found or what
-        lines.append(f"| `{scene}` | " + " | ".join(cells) + f" | {what or 'an error is right' if CASES[scene] is no_answer else what} |")
+        lines.append(f"| `{scene}` | " + " | ".join(cells) + f" | {what or ('an error that names both is right' if CASES[scene] is no_answer else '')} |")
         print(lines[-1], flush=True)
     if page:
         text = page.read_text()
