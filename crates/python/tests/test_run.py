@@ -105,6 +105,13 @@ def test_a_run_of_several_bodies_has_what_each_of_them_has_alone(program, tmp_pa
     assert np.array_equal(exported.to_numpy(), results.to_pandas().to_numpy())
 
 
+def test_a_run_without_points_is_a_table(rigid):
+    results = flexframe.Simulation(flexframe.Body(rigid.scene.with_values({"output": {"interval": 0.1}}))).run()
+    table = results.to_pandas()
+    assert len(table) == len(results["time"]) and "position x" in table.columns
+    assert not [name for name in table.columns if name.startswith("points/")]
+
+
 # Conserved: the numbers of the whole run, bit for bit.
 def test_a_run_in_parts_is_the_run(ring):
     whole = flexframe.Simulation(ring).run()

@@ -134,7 +134,8 @@ class Columns(Mapping[str, NDArray[np.float64]]):
         for path, column in self.columns.items():
             if path == "time":
                 continue
-            for name in self._histories(path) or [path]:
+            is_of_places = column.body is not None and column.scope in ("point", "support")
+            for name in self._histories(path) if is_of_places else [path]:
                 array = self[name]
                 if array.ndim == 1:
                     table[name] = array
