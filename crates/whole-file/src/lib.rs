@@ -16,6 +16,7 @@
 
 mod lock;
 mod outputs;
+mod same;
 mod temporary;
 mod written;
 

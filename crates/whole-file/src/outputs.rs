@@ -5,8 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use same_file::is_same_file;
-
+use crate::same::is_same;
 use crate::written::{OtherEnding, Written};
 
 /// A file that is not written, since something would be lost.
@@ -99,9 +98,7 @@ impl Outputs {
     /// # Errors
     /// [`OutputError::IsInput`].
     pub fn spare(&self, path: &Path) -> Result<(), OutputError> {
-        // What cannot be looked at is not there.
-        let is = |input: &&PathBuf| path.is_file() && is_same_file(path, input).unwrap_or(false);
-        match self.inputs.iter().find(is) {
+        match self.inputs.iter().find(|input| is_same(path, input)) {
             Some(input) => Err(OutputError::IsInput { path: path.to_owned(), input: input.clone() }),
             None => Ok(()),
         }
@@ -134,6 +131,10 @@ mod tests {
                 assert!(matches!(device, Err(OutputError::Device { .. })));
             }
             std::os::unix::fs::symlink("gone", at("lost")).unwrap();
+            // An input that is a pipe is not waited for.
+            let modes = rustix::fs::Mode::RUSR | rustix::fs::Mode::WUSR;
+            rustix::fs::mknodat(rustix::fs::CWD, at("pipe"), rustix::fs::FileType::Fifo, modes, 0).unwrap();
+            Outputs::new(vec![at("pipe")], true).claim(&[at("other"), at("pipe")]).unwrap();
         }
         for name in ["input", "hard", "folder/../input"] {
             for overwrite in [false, true] {
