@@ -90,7 +90,7 @@ impl Constraints {
     pub fn find<'a>(
         &mut self,
         connections: &Connections,
-        expected_turn: impl Fn(usize) -> f64,
+        expected_turn: impl Fn(usize, [&MarkerPlace; 2]) -> f64,
         times: [f64; 2],
         place: impl Fn(usize) -> BodyPlace<'a>,
     ) {
@@ -118,7 +118,7 @@ impl Constraints {
             for term in &coupling.terms {
                 let markers = &joints[term.joint].markers;
                 let places = places_of(markers);
-                let wrench = term.coordinate.wrench(places.each_ref(), expected_turn(term.joint));
+                let wrench = term.coordinate.wrench(places.each_ref(), expected_turn(term.joint, places.each_ref()));
                 self.residuals[row] += term.factor * wrench.residual;
                 add(&mut self.ends[row], markers, &places, &place, &wrench, term.factor);
             }
@@ -127,7 +127,7 @@ impl Constraints {
         for (k, (number, coordinate, _)) in connections.joint_forces().enumerate() {
             let markers = &joints[number].markers;
             let places = places_of(markers);
-            let wrench = coordinate.wrench(places.each_ref(), expected_turn(number));
+            let wrench = coordinate.wrench(places.each_ref(), expected_turn(number, places.each_ref()));
             self.coordinates[k] = wrench.residual;
             clear(&mut self.ends[row + k]);
             add(&mut self.ends[row + k], markers, &places, &place, &wrench, 1.0);

@@ -227,7 +227,7 @@ impl SystemMotion {
         let Self { first, system, start, .. } = self;
         first.place(system, start);
         for joint in 0..start.joints.len() {
-            start.joints[joint] = first.joint_coordinates(system, joint, 0.0);
+            start.joints[joint] = first.joint_coordinates(system, start, joint);
         }
         for coupling in &mut system.connections.couplings {
             let of_term = |term: &CoupledCoordinate| {
@@ -241,7 +241,7 @@ impl SystemMotion {
         // With rates, if bodies that are as they should not be have any: steps tell of those that have none.
         if self.evaluate_first(self.time).is_ok() {
             for joint in 0..self.start.joints.len() {
-                self.start.joints[joint] = self.first.joint_coordinates(&self.system, joint, 0.0);
+                self.start.joints[joint] = self.first.joint_coordinates(&self.system, &self.start, joint);
             }
         }
         self.evaluations = 0;

@@ -12,7 +12,7 @@ use crate::system::constraints::{Compliant, Constraints};
 use crate::system::description::System;
 use crate::system::element::Stored;
 use crate::system::elimination::inverse::Inertia;
-use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
+use crate::system::joint::coordinate::{Coordinate, JointCoordinates, turn_along};
 use crate::system::joint::force::{Forces, FrictionSlope};
 use crate::system::joint::work::JointWork;
 use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
@@ -33,9 +33,13 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// The turn of a joint that is expected at a time.
-    pub fn turn(&self, joint: usize, time: f64) -> f64 {
-        self.joints[joint].turn_after(time - self.time)
+    /// The turn of a joint that is expected where its markers are, with increments of the bodies since the start of the step.
+    fn turn(&self, system: &System, joint: usize, places: [&MarkerPlace; 2], increments: &[f64]) -> f64 {
+        let [i, j] = system.connections.joints[joint].markers.each_ref().map(|marker| {
+            let path = |b: usize| self.bodies[b].body_from_global.tr_mul(&vector(increments, system.first[b] + 3));
+            marker.body().map_or_else(Vector3::zeros, path)
+        });
+        turn_along(places, [&i, &j], self.joints[joint].turn)
     }
 }
 
@@ -129,8 +133,8 @@ impl Stage {
 
     /// Finds g and G where the bodies have been placed, at a time by the branch of another.
     pub fn find_constraints(&mut self, system: &System, start: &Start, times: [f64; 2]) {
-        let Self { constraints, positions, attitudes, q, evaluations, .. } = self;
-        let expected_turn = |joint: usize| start.turn(joint, times[0]);
+        let Self { x, constraints, positions, attitudes, q, evaluations, .. } = self;
+        let expected_turn = |joint: usize, places: [&MarkerPlace; 2]| start.turn(system, joint, places, x);
         let places = Places { system, positions, attitudes, q, evaluations };
         constraints.find(&system.connections, expected_turn, times, |b| places.of(b));
     }
@@ -241,13 +245,14 @@ impl Stage {
         Places { system, positions, attitudes, q, evaluations }.of(b)
     }
 
-    /// The coordinates of a joint, where the bodies have been placed and move with the velocities; the turn is next to what is
-    /// expected of it.
-    pub fn joint_coordinates(&self, system: &System, joint: usize, expected_turn: f64) -> JointCoordinates {
+    /// The coordinates of a joint, where the bodies have been placed and move with the velocities; the turn goes on from
+    /// the start of the step.
+    pub fn joint_coordinates(&self, system: &System, start: &Start, joint: usize) -> JointCoordinates {
         let markers = &system.connections.joints[joint].markers;
         let place = |k: usize| markers[k].place(markers[k].body().map(|b| self.body_place(system, b)).as_ref());
         let places = [place(0), place(1)];
         let motions = [0, 1].map(|k: usize| self.motion_of(system, &markers[k], &places[k]));
+        let expected_turn = start.turn(system, joint, places.each_ref(), &self.x);
         let [turn, slide] = [Coordinate::Turn, Coordinate::Slide]
             .map(|coordinate| coordinate.wrench(places.each_ref(), expected_turn))
             .map(|wrench| [wrench.residual, wrench.rate(motions.each_ref())]);
@@ -295,7 +300,7 @@ impl Stage {
     pub fn find_powers(&mut self, system: &System, start: &Start, times: [f64; 2]) {
         for (number, (joint, coordinate, force)) in system.connections.joint_forces().enumerate() {
             if force.has_work() {
-                let at = self.coordinate_of(system, start, (joint, coordinate), times[0]);
+                let at = self.joint_coordinates(system, start, joint).along(coordinate);
                 self.constraints.coordinates[number] = at[0];
                 self.joint_powers[number] = force.at(at, times).times(at[1]);
             }
@@ -311,24 +316,13 @@ impl Stage {
         out.clear();
         for (joint, coordinate, force) in system.connections.joint_forces() {
             if force.stops.is_some() || !force.laws.is_empty() {
-                out.extend(force.switches(self.coordinate_of(system, start, (joint, coordinate), times[0]), times));
+                out.extend(force.switches(self.joint_coordinates(system, start, joint).along(coordinate), times));
             }
         }
         for element in &system.connections.elements {
             self.find_marker_motions(system, element.markers());
             out.extend(element.switch(times, &self.marker_motions));
         }
-    }
-
-    /// A coordinate of a joint, and its rate.
-    fn coordinate_of(
-        &self,
-        system: &System,
-        start: &Start,
-        (joint, coordinate): (usize, Coordinate),
-        time: f64,
-    ) -> [f64; 2] {
-        self.joint_coordinates(system, joint, start.turn(joint, time)).along(coordinate)
     }
 
     /// Finds the wrenches of an element and their power, where the motions of its markers have been found.

@@ -73,6 +73,41 @@ fn full_turns_are_counted() {
     assert!((found.turn + 45.0).abs() < 1e-10 && (found.turn_rate + 9.0).abs() < 1e-11, "{found:?}");
 }
 
+/// Closed form: a motor turns a rotor from rest by more than half a turn within one step, by each scheme.
+#[test]
+fn a_step_that_begins_at_rest_loses_no_turn() {
+    for scheme in [SystemScheme::Radau, SystemScheme::Gauss, SystemScheme::Rkmk4] {
+        let force = JointForce { motor: Some(constant(8.0 * INERTIA)), ..JointForce::default() };
+        let motion = lone(Joint::revolute, Coordinate::Turn, force, at(0.0, 0.0, 0.0));
+        let mut motion = motion.with_scheme(scheme);
+        motion.try_step(1.0, 1.0, 1e-9, f64::INFINITY).unwrap();
+        let found = motion.joint_coordinates(0);
+        assert!((found.turn - 4.0).abs() < 1e-9 && (motion.time() - 1.0).abs() < 1e-12, "{scheme:?}: {found:?}");
+    }
+}
+
+/// Closed form: motors turn a carrier about y, and a rotor of equal moments of inertia about the axis z of the carrier. The body
+/// of the carrier is as round, so each axis turns alone: by 20 and 28 rad from rest.
+#[test]
+fn turns_about_two_axes_at_once_are_counted() {
+    let round = Matrix3::identity() * INERTIA;
+    let reduced = ReducedBody::rigid(MASS, Vector3::zeros(), round, RigidMotion::free()).unwrap();
+    let bodies = vec![ConservativeBody::new(&reduced, &[], Vec::new(), &Physics::default()).unwrap(); 2];
+    let y = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0);
+    let motor = |moment: f64| JointForce { motor: Some(constant(moment)), ..JointForce::default() };
+    let carrier =
+        Joint::revolute("carrier", [Marker::on_ground(Vector3::zeros(), y), Marker::on_rigid(0, Vector3::zeros(), y)]);
+    let joints = vec![
+        carrier.with_force(Coordinate::Turn, motor(10.0 * 2.0 * INERTIA)),
+        Joint::revolute("rotor", [on(0, 0.0), on(1, 0.0)]).with_force(Coordinate::Turn, motor(14.0 * INERTIA)),
+    ];
+    let mut motion =
+        SystemMotion::new(System::new(bodies, joints).unwrap(), &[at(0.0, 0.0, 0.0), at(0.0, 0.0, 0.0)]).unwrap();
+    motion.advance(2.0, 1e-6, &mut 0.5).unwrap();
+    let found = [0, 1].map(|joint| motion.joint_coordinates(joint).turn);
+    assert!((found[0] - 20.0).abs() < 1e-4 && (found[1] - 28.0).abs() < 1e-4, "{found:?}");
+}
+
 /// Closed form: a torsion spring swings by more than half a turn to both sides, with √(k/J).
 #[test]
 fn a_torsion_spring_knows_full_turns() {

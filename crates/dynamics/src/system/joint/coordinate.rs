@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
+use rigid_kin::transformation_matrix;
 use serde::{Deserialize, Serialize};
 
 use crate::system::joint::wrench::RowWrench;
@@ -43,11 +44,6 @@ impl JointCoordinates {
             Coordinate::Slide => [self.slide, self.slide_rate],
         }
     }
-
-    /// The angle at a time after, as far as the rate tells.
-    pub(crate) fn turn_after(&self, time: f64) -> f64 {
-        self.turn + time * self.turn_rate
-    }
 }
 
 impl Coordinate {
@@ -68,6 +64,34 @@ impl Coordinate {
             Self::Slide => RowWrench::along(places, 0, i.axes.column(2).into()),
         }
     }
+}
+
+/// Most pieces of a path: 160 turns.
+const MAX_PIECES: f64 = 1e3;
+
+/// The turn of a joint at the end of a path on which each of its two markers turns about a fixed axis by a rotation vector (global), from
+/// `turn` where the path begins. The path is followed in pieces on which the angle changes by less than half a turn.
+pub(crate) fn turn_along(places: [&MarkerPlace; 2], paths: [&Vector3<f64>; 2], turn: f64) -> f64 {
+    let pieces = (paths[0].norm() + paths[1].norm()).ceil();
+    // Newton's method refuses where increments are no longer of any use.
+    if !(1.0..MAX_PIECES).contains(&pieces) {
+        return turn;
+    }
+    let mut reached = turn;
+    // The end itself is the caller's, who takes the angle next to what is returned.
+    let mut piece = 0.0;
+    while piece < pieces {
+        let left = 1.0 - piece / pieces;
+        // An attitude that is turned back by the rest of the path.
+        let [i, j] = [0, 1].map(|k| {
+            let mut place = *places[k];
+            place.axes = transformation_matrix(&(paths[k] * left)) * place.axes;
+            place
+        });
+        reached = Coordinate::Turn.wrench([&i, &j], reached).residual;
+        piece += 1.0;
+    }
+    reached
 }
 
 /// The square of the x axis of j across the z axis of i below which there is no angle.

@@ -138,7 +138,7 @@ impl SystemMotion {
             state.time = times[0];
         }
         for joint in 0..start.joints.len() {
-            start.joints[joint] = last.joint_coordinates(system, joint, start.turn(joint, times[0]));
+            start.joints[joint] = last.joint_coordinates(system, start, joint);
         }
         self.time = times[0];
         Ok([left, rates])

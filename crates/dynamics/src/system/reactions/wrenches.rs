@@ -10,9 +10,9 @@ impl SystemMotion {
     #[must_use]
     pub fn with_turns(mut self, turns: &[f64]) -> Self {
         for (joint, turn) in turns.iter().enumerate() {
-            if let Some(of) = self.start.joints.get_mut(joint) {
-                let found = self.first.joint_coordinates(&self.system, joint, *turn);
-                of.turn = found.turn;
+            if joint < self.start.joints.len() {
+                self.start.joints[joint].turn = *turn;
+                self.start.joints[joint].turn = self.first.joint_coordinates(&self.system, &self.start, joint).turn;
             }
         }
         self

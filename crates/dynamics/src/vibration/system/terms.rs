@@ -192,7 +192,7 @@ impl Terms {
 /// g and G where the bodies are.
 fn constraints_at(system: &System, at: &Configuration) -> Constraints {
     let mut constraints = Constraints::new(&system.connections, &system.first);
-    constraints.find(&system.connections, |joint| at.turns[joint], [at.time; 2], |body| at.place(body));
+    constraints.find(&system.connections, |joint, _| at.turns[joint], [at.time; 2], |body| at.place(body));
     constraints
 }
 
