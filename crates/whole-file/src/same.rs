@@ -1,4 +1,4 @@
-//! Whether two names are of one file.
+//! Whether two names stand for one file.
 
 use std::fs::Metadata;
 use std::path::Path;
