@@ -2,6 +2,7 @@
 
 pub(crate) mod csv;
 pub mod given_file;
+pub(crate) mod identity;
 pub(crate) mod json;
 pub mod outputs;
 pub(crate) mod results_path;

@@ -59,6 +59,10 @@ impl ForeignProgram {
     /// before the other.
     pub fn new(program: &OsStr, folder: &Path) -> Self {
         let mut command = Command::new(program);
+        // Variables of the user that change what Python does or where it looks for modules are for programs of the user's own.
+        for (name, _) in std::env::vars_os().filter(|(name, _)| name.as_encoded_bytes().starts_with(b"PYTHON")) {
+            command.env_remove(name);
+        }
         // Python 3.11 and later do not look for modules in the folder of the program. (Others do, and find what is private.)
         command.env("PYTHONSAFEPATH", "1");
         let program = Self { command, folder: folder.to_owned() };

@@ -49,6 +49,10 @@ pub(crate) fn drive(
 ) -> Result<(), SlepcError> {
     let (mpirun, python) = (named(MPIRUN, "mpirun"), named(PYTHON, "python3"));
     let mut program = ForeignProgram::new(&mpirun, folder).args(["-n", &ranks.to_string()]).arg(&python);
+    // PETSc's own installation is found by it.
+    if let Some(path) = std::env::var_os("PYTHONPATH") {
+        program = program.env("PYTHONPATH", path);
+    }
     // Open MPI keeps its own files in a folder that all runs of a user share, and a run that ends may remove it under one that
     // begins.
     program = program.arg(folder.join(DRIVER_FILE)).env("TMPDIR", folder);

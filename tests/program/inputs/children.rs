@@ -240,3 +240,17 @@ fn programs_are_named_from_the_current_folder() {
     let output = output.unwrap();
     assert!(output.status.success() && case.is_clean(), "{}", said(&output));
 }
+
+#[test]
+fn variables_of_the_users_python_do_not_reach_other_programs() {
+    let case = Case::new();
+    case.write("part.geo", "");
+    case.scene("part.toml", "part.geo");
+    let (gmsh, seen) = (case.path("gmsh.sh"), case.path("seen"));
+    case.write("gmsh.sh", &format!("#!/bin/sh\nenv | grep ^PYTHON > '{}'\nexit 1\n", seen.display()));
+    fs::set_permissions(&gmsh, fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = case.command(&["modes", "part.toml"]);
+    command.env("FLEXFRAME_GMSH", &gmsh).env("PYTHONPATH", case.path("modules")).env("PYTHONSTARTUP", "start.py");
+    assert!(!command.output().unwrap().status.success());
+    assert_eq!(fs::read_to_string(seen).unwrap(), "PYTHONSAFEPATH=1\n");
+}

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use flexframe::campbell::{self, AboutRest, CampbellSettings, Speeds, SystemCampbellSettings};
-use flexframe::outputs::outputs_of_scenes;
+use flexframe::outputs::outputs_of_system;
 use flexframe::run;
 
 use crate::arguments::values::{about_rest, axis, positive, speeds};
@@ -66,7 +66,7 @@ impl Campbell {
         let system = session.read_one(scene, modes)?;
         let Some(scene) = system.bodies.first() else { return Err(run::RunError::NoBody.into()) };
         let folder = folder(scene, output)?;
-        outputs_of_scenes(&system.bodies, &session.builder, files.overwrite).claim(&campbell::files(&folder))?;
+        outputs_of_system(&system, &session.builder, files.overwrite).claim(&campbell::files(&folder))?;
         let report = if system.has_connections() {
             let settings = SystemCampbellSettings { axis, joint, speeds, orders };
             campbell::campbell_of_system(&system, &session.builder, &folder, &settings, |p| session.bar.campbell(p))

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clap::Args;
 use flexframe::cost::{self, CostSettings};
-use flexframe::outputs::outputs_of_scenes;
+use flexframe::outputs::outputs_of_system;
 
 use crate::arguments::values::{patience, positive};
 use crate::arguments::{FileArgs, SceneArgs};
@@ -38,7 +38,7 @@ impl Cost {
         let system = session.read_system(scene)?;
         let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
         let folder = folder(&system.bodies[0], output)?;
-        outputs_of_scenes(&system.bodies, &session.builder, files.overwrite).claim(&cost::files(&folder))?;
+        outputs_of_system(&system, &session.builder, files.overwrite).claim(&cost::files(&folder))?;
         let report = cost::price_list(&system, &session.builder, &folder, settings, |p| session.bar.cost(p))?;
         drop(session.bar);
         output::print(&report, json)

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use flexframe::fmu::{self, FmuSettings};
-use flexframe::outputs::{Written, outputs_of_scenes};
+use flexframe::outputs::{Written, outputs_of_system};
 use flexframe::plausible;
 
 use crate::arguments::{FileArgs, SceneArgs};
@@ -38,7 +38,7 @@ impl Fmu {
         if !json {
             output::doubts(plausible::doubts_of_system(&system));
         }
-        let outputs = outputs_of_scenes(&system.bodies, &session.builder, files.overwrite);
+        let outputs = outputs_of_system(&system, &session.builder, files.overwrite);
         outputs.and_input(&fmu::library_path(library.as_deref())).claim_as(&Written::FMU, &output)?;
         let report = fmu::pack(&system, &session.builder, &output, &FmuSettings { library }, |p| session.bar.build(p))?;
         drop(session.bar);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use flexframe::modes::{self, ModesReport};
-use flexframe::outputs::{OutputError, Written, outputs_of_scenes};
+use flexframe::outputs::{OutputError, Written, outputs_of_system};
 use flexframe::report::OfBodies;
 use flexframe::system_modes::{self, ModesOfSystems};
 use flexframe::{figures, mode_shapes, run};
@@ -66,7 +66,7 @@ impl Modes {
             output::print(&report, json)?;
             pictures
         } else {
-            let (report, pictures) = self.of_bodies(&system.bodies, &mut session)?;
+            let (report, pictures) = self.of_bodies(&system, &mut session)?;
             drop(session.bar);
             output::print(&report, json)?;
             pictures
@@ -86,9 +86,10 @@ impl Modes {
 
     fn of_bodies(
         &self,
-        scenes: &[Scene],
+        system: &System,
         session: &mut Session,
     ) -> Result<(OfBodies<ModesReport>, Vec<PathBuf>), Box<dyn Error>> {
+        let scenes = &system.bodies;
         let picture = |folder: &Path, scene: &Scene| match &scene.name {
             Some(body) => folder.join(format!("modes.{body}")),
             None => folder.join("modes"),
@@ -96,7 +97,7 @@ impl Modes {
         if let Some(folder) = &self.output {
             scenes.iter().try_for_each(modes::require_surface)?;
             let pictures: Vec<_> = scenes.iter().flat_map(|scene| figures::files(&picture(folder, scene))).collect();
-            outputs_of_scenes(scenes, &session.builder, self.files.overwrite).claim(&pictures)?;
+            outputs_of_system(system, &session.builder, self.files.overwrite).claim(&pictures)?;
         }
         let (mut reports, mut pictures) = (Vec::new(), Vec::new());
         for scene in scenes {
@@ -136,7 +137,7 @@ impl Modes {
                 let stem = folder.join(name);
                 let fields = stem.with_extension("vtkhdf");
                 let all: Vec<PathBuf> = figures::files(&stem).into_iter().chain([fields.clone()]).collect();
-                outputs_of_scenes(&system.bodies, &session.builder, self.files.overwrite).claim(&all)?;
+                outputs_of_system(system, &session.builder, self.files.overwrite).claim(&all)?;
                 pictures.extend(system_modes::draw(system, &models, modes, &stem)?.into_iter().flatten());
                 if system_modes::write_fields(system, &models, modes, &fields, self.files.overwrite)? {
                     pictures.push(fields);

@@ -43,7 +43,8 @@ pub use watch::{Watch, Watched};
 use crate::commands::check::checked_rows::check_run;
 use crate::commands::check::rows::CheckRows;
 use crate::drawn::stored_shapes;
-use crate::files::outputs::outputs_of_scenes;
+use crate::files::identity::{contents, identity};
+use crate::files::outputs::outputs_of_system;
 pub use crate::files::results_path::results_path;
 use crate::files::scene_file;
 use crate::motion::{Beginning, begin};
@@ -69,7 +70,7 @@ pub fn run(
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Vec<Model>, RunReport), RunError> {
-    check_files(&system.bodies, folder, settings)?;
+    check_files(system, folder, settings)?;
     let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
     // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
     progress(RunProgress::Built);
@@ -124,9 +125,9 @@ fn conclude(
 }
 
 /// Refuses a run that could not write its files.
-fn check_files(scenes: &[Scene], folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
-    let path = results_path(scenes, folder).ok_or(RunError::NoBody)?;
-    let outputs = outputs_of_scenes(scenes, &settings.builder, settings.overwrite);
+fn check_files(system: &System, folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
+    let path = results_path(&system.bodies, folder).ok_or(RunError::NoBody)?;
+    let outputs = outputs_of_system(system, &settings.builder, settings.overwrite);
     outputs.spare(&path)?;
     outputs.spare(&unfinished(&path))?;
     std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
@@ -163,7 +164,9 @@ pub fn run_models(
     let started = Instant::now();
     let initial = initial(&bodies);
     let movers = movers(system, &bodies, models, &initial)?;
-    let checkpoint = checkpoint(movers.iter().map(|mover| &mover.motion), &path)?.len();
+    // The rows of a sweep are not gone on with.
+    let identity = if settings.rows_alone { 0 } else { identity(system, |scene| contents(&scene.body)) };
+    let checkpoint = checkpoint(identity, movers.iter().map(|mover| &mover.motion), &path)?.len();
     let metadata = metadata_of_file(system, &bodies, &settings.builder).ok_or(RunError::NoBody)?;
     let estimate = Estimate::of_rows(scene, &metadata);
     if estimate.bytes > LARGE && !settings.large {
@@ -177,7 +180,7 @@ pub fn run_models(
     let writer = Writer::create(&path, &metadata, &shapes, &COLUMNS, expected)?;
     drop(shapes);
     progress(RunProgress::Motion(0.0));
-    let mut recorder = Recorder::new(&bodies, movers, writer, estimate);
+    let mut recorder = Recorder::new(&bodies, movers, writer, estimate, identity);
     recorder.begin()?;
     let followed = recorder.follow(started, settings, &mut progress)?;
     conclude(system, models, settings, followed, progress)
@@ -198,7 +201,7 @@ pub fn resume(
     let part = writer.unfinished().to_path_buf();
     let changed = |what| RunError::Changed { part: part.clone(), what };
     let system = system_of(&results)?.ok_or_else(|| changed("the list of bodies"))?;
-    outputs_of_scenes(&system.bodies, &settings.builder, settings.overwrite).spare(writer.path())?;
+    outputs_of_system(&system, &settings.builder, settings.overwrite).spare(writer.path())?;
     let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
     progress(RunProgress::Built);
     let bodies = bodies(&system.bodies, &models);
@@ -218,13 +221,19 @@ pub fn resume(
     let initial = initial(&bodies);
     let mut movers = movers(&system, &bodies, &models, &initial)?;
     progress(RunProgress::Motion(0.0));
-    if let Some(mut states) = state.as_deref() {
+    let identity = identity(&system, |scene| contents(&scene.body));
+    if let Some(state) = state.as_deref() {
+        let (then, mut states) = state.split_first().ok_or_else(|| changed("the motion at the checkpoint"))?;
         for mover in &mut movers {
             mover.motion = restored(mover.motion.clone(), &mut states)
                 .map_err(|source| RunError::Restore { part: part.clone(), source })?;
         }
+        // A changed load is known by its name before.
+        if *then != identity {
+            return Err(changed("a file that the run reads"));
+        }
     }
-    let mut recorder = Recorder::new(&bodies, movers, writer, estimate);
+    let mut recorder = Recorder::new(&bodies, movers, writer, estimate, identity);
     match state {
         Some(_) => recorder.take_up(&results)?,
         None => recorder.begin()?,

@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use keys::Hash;
 use model::{Assembly, BuildError, BuildProgress, Builder, Model, Variants};
 use results::{ColumnTable, Results};
-use scene::{Scene, System};
+use scene::{Body, Scene, System};
 use serde::Serialize;
 use whole_file::{FileLock, TemporaryFolder};
 
@@ -299,11 +299,13 @@ const CHANGED: &str = "a file of the body was changed while the sweep ran\n = ru
 
 /// Files that a sweep may not write over: all that it reads.
 fn outputs(plan: &Plan, sweep: &Path, builder: &Builder, overwrite: bool) -> Outputs {
-    // Rows with the same body and histories have the same files.
-    let same = |scene: &Scene| format!("{:?} {:?} {:?}", scene.body, scene.loads, scene.constraint);
-    let scenes = plan.rows.iter().flatten().flat_map(|system| &system.bodies);
-    let scenes: BTreeMap<String, &Scene> = scenes.map(|scene| (same(scene), scene)).collect();
-    let files = scenes.into_values().flat_map(|scene| builder.files(scene));
+    // Rows with the same bodies and tables have the same files.
+    let same = |system: &System| {
+        let bodies: Vec<&Body> = system.bodies.iter().map(|scene| &scene.body).collect();
+        (system.files(), format!("{bodies:?}"))
+    };
+    let systems: BTreeMap<_, &System> = plan.rows.iter().flatten().map(|system| (same(system), system)).collect();
+    let files = systems.into_values().flat_map(|system| builder.files(system));
     Outputs::new(std::iter::once(sweep.to_owned()).chain(files).collect(), overwrite)
 }
 

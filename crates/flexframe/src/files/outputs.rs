@@ -5,7 +5,7 @@ use std::path::Path;
 use mesh_import::files_of_mesh;
 use model::Builder;
 use results::Results;
-use scene::Scene;
+use scene::{Scene, System};
 pub use whole_file::{OutputError, Outputs, Written};
 
 use crate::drawn::body_files;
@@ -13,12 +13,12 @@ use crate::files::scene_file;
 
 /// Files that a command may write that builds a scene.
 pub fn outputs_of_scene(scene: &Scene, builder: &Builder, overwrite: bool) -> Outputs {
-    Outputs::new(builder.files(scene), overwrite)
+    outputs_of_system(&scene.clone().into(), builder, overwrite)
 }
 
-/// The same of one that builds the bodies of a scene.
-pub fn outputs_of_scenes(scenes: &[Scene], builder: &Builder, overwrite: bool) -> Outputs {
-    Outputs::new(scenes.iter().flat_map(|scene| builder.files(scene)).collect(), overwrite)
+/// The same of one that builds the bodies and joints of a scene.
+pub fn outputs_of_system(system: &System, builder: &Builder, overwrite: bool) -> Outputs {
+    Outputs::new(builder.files(system), overwrite)
 }
 
 /// The same of one that reads a mesh or geometry.

@@ -1,21 +1,23 @@
 //! The files that a body is read from.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use mesh_import::files_of_mesh;
-use scene::{Body, FileBody, Scene};
+use scene::{Body, FileBody, System};
 use slepc::Slepc;
 
 use crate::building::builder::Builder;
 
 impl Builder {
-    /// The files that the model of a scene is read from: the scene file and the tables of its histories, those of the body, what
-    /// a mesh or geometry may include, and what SLEPc has left in a folder.
-    pub fn files(&self, scene: &Scene) -> Vec<PathBuf> {
-        let mut files = scene.files();
-        files.extend(files_of_body(&scene.body));
-        files.extend(self.solver.iter().flat_map(Slepc::files));
-        files
+    /// All files that the models and the motion of a scene are read from, each once: the scene file, the tables of histories of
+    /// bodies and joints and of measured modes, the files of the bodies, those that a mesh or geometry may include, and those
+    /// that SLEPc has left in a folder.
+    pub fn files(&self, system: &System) -> Vec<PathBuf> {
+        let of_bodies = system.bodies.iter().flat_map(|scene| files_of_body(&scene.body));
+        let files = system.files().into_iter().chain(of_bodies);
+        let mut known = BTreeSet::new();
+        files.chain(self.solver.iter().flat_map(Slepc::files)).filter(|file| known.insert(file.clone())).collect()
     }
 }
 

@@ -70,15 +70,34 @@ impl Builder {
                 return Err(scene.refuse("body.matrices", "a body of matrices", "a body with a mesh", help).into());
             }
         }
-        // The values come by way of a cache, from which nothing is removed in the meantime.
-        let temporary = TemporaryFolder::new().map_err(SealedError::system(path, "make a temporary folder"))?;
-        let folder = self.cache.folder().filter(|_| !self.cache.is_closed()).unwrap_or(temporary.path());
-        let builder = Self { cache: self.cache.elsewhere(folder, u64::MAX), ..self.clone() };
         let scene = scene.clone();
-        let scene = &if scene.output.any_stress() { scene.with_stress_field() } else { scene };
+        let scene = if scene.output.any_stress() { scene.with_stress_field() } else { scene };
+        // The values come by way of a cache, from which nothing is removed in the meantime: that of the user, or one of a time where
+        // it cannot be written, which is a warning.
+        if let Some(folder) = self.cache.folder().filter(|_| !self.cache.is_closed()) {
+            let cache = self.cache.elsewhere(folder, u64::MAX);
+            let written = self.write_by_way_of(&cache, &scene, path, matrices, &mut progress);
+            if written.is_ok() || !cache.is_closed() {
+                return written;
+            }
+        }
+        let temporary = TemporaryFolder::new().map_err(SealedError::system(path, "make a temporary folder"))?;
+        let cache = self.cache.elsewhere(temporary.path(), u64::MAX);
+        self.write_by_way_of(&cache, &scene, path, matrices, &mut progress)
+    }
+
+    fn write_by_way_of(
+        &self,
+        cache: &Cache,
+        scene: &Scene,
+        path: &Path,
+        matrices: bool,
+        mut progress: impl FnMut(BuildProgress),
+    ) -> Result<Model, BuildError> {
+        let builder = Self { cache: cache.clone(), ..self.clone() };
         let assembly = builder.assemble(scene, &mut progress)?;
         if matches!(&assembly.0, Assembled::Meshed(assembled) if assembled.store.is_none()) {
-            return Err(without_store(&builder.cache, scene, folder));
+            return Err(without_store(cache, scene));
         }
         let mut variants = assembly.variants()?;
         let model = variants.build(scene, &mut progress)?;
@@ -88,7 +107,7 @@ impl Builder {
             return Ok(model);
         };
         let Some(body) = assembled.elements() else { return Ok(model) };
-        let Some(store) = &assembled.store else { return Err(without_store(&builder.cache, scene, folder)) };
+        let Some(store) = &assembled.store else { return Err(without_store(cache, scene)) };
 
         let arrays = MeshArrays::new(&meshed.mesh, &meshed.mesh_notes, &[]);
         let mut named = Named { scene, datasets: Vec::new() };
@@ -140,10 +159,13 @@ impl Builder {
 }
 
 /// Error of a `folder` that cannot keep values of the body, of which the file is made.
-fn without_store(cache: &Cache, scene: &Scene, folder: &Path) -> BuildError {
+fn without_store(cache: &Cache, scene: &Scene) -> BuildError {
     if cache.is_closed() {
         let what = cache.notes().warnings.join("; ");
-        return SealedError::system(folder, "write the cache")(std::io::Error::other(what)).into();
+        return SealedError::system(cache.folder().unwrap_or(Path::new("")), "write the cache")(std::io::Error::other(
+            what,
+        ))
+        .into();
     }
     let found =
         "a mesh file that names others which cannot be known before: what the body is made of cannot be told later";

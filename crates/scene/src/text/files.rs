@@ -6,21 +6,27 @@ use crate::body::constraint::Constraint;
 use crate::loads::history::{History, TablePoints};
 use crate::loads::load::Load;
 use crate::scene::Scene;
+use crate::system::System;
+
+impl System {
+    /// The scene file, the tables of all histories, and those of measured modes: the files that are read to know the scene. Those
+    /// of its bodies are read later.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let scenes = self.bodies.iter().take(1).map(|scene| scene.path.clone());
+        let tables = self.tables().filter_map(|table| table.file.clone());
+        let measured = self.bodies.iter().flat_map(|scene| &scene.modes.measured).map(|measured| measured.file.clone());
+        scenes.chain(tables).chain(measured).collect()
+    }
+
+    /// The tables of the histories of its bodies and joints, with their points as they were read.
+    pub fn tables(&self) -> impl Iterator<Item = &TablePoints> {
+        let of_joints = self.joints.iter().flat_map(|joint| joint.drive.iter().chain(&joint.motor));
+        let of_bodies = self.bodies.iter().flat_map(Scene::histories);
+        of_bodies.chain(of_joints.map(|drive| &drive.history)).flat_map(tables)
+    }
+}
 
 impl Scene {
-    /// The scene file, and the tables of its histories and of its measured modes: what is read to know the scene. Those of its body are read later.
-    pub fn files(&self) -> Vec<PathBuf> {
-        let mut files = vec![self.path.clone()];
-        files.extend(self.tables().filter_map(|table| table.file.clone()));
-        files.extend(self.modes.measured.iter().map(|measured| measured.file.clone()));
-        files
-    }
-
-    /// The tables of its histories, with their points as they were read.
-    pub fn tables(&self) -> impl Iterator<Item = &TablePoints> {
-        self.histories().flat_map(tables)
-    }
-
     /// The histories of the loads and of what drives the body.
     fn histories(&self) -> impl Iterator<Item = &History> {
         let of_loads = self.loads.iter().map(|load| match load {

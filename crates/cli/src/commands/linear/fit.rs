@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use flexframe::fit::{self, FitError, FitSettings};
-use flexframe::outputs::{Written, outputs_of_scenes};
+use flexframe::outputs::{Written, outputs_of_system};
 use scene::{Measured, Scene};
 
 use crate::arguments::values::positive;
@@ -48,7 +48,7 @@ impl Fit {
         output::require_file("--output", output.as_deref())?;
         let system = session.read_one(scene, modes)?;
         if let Some(output) = &output {
-            let mut outputs = outputs_of_scenes(&system.bodies, &session.builder, files.overwrite);
+            let mut outputs = outputs_of_system(&system, &session.builder, files.overwrite);
             if let Some(measured) = &measured {
                 outputs = outputs.and_input(measured);
             }

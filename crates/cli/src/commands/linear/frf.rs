@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use flexframe::frequencies::Frequencies;
 use flexframe::frf::{self, FrfSettings};
-use flexframe::outputs::outputs_of_scenes;
+use flexframe::outputs::outputs_of_system;
 
 use crate::arguments::values::{frequencies, positive};
 use crate::arguments::{FileArgs, LinearArgs, SceneArgs};
@@ -45,7 +45,7 @@ impl Frf {
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;
         let folder = folder(&system.bodies[0], output)?;
-        outputs_of_scenes(&system.bodies, &session.builder, files.overwrite).claim(&frf::files(&folder))?;
+        outputs_of_system(&system, &session.builder, files.overwrite).claim(&frf::files(&folder))?;
         let settings = FrfSettings { linear: about.settings(), frequencies, logarithmic: log, loss_factor: structural };
         let report = frf::frf(&system, &session.builder, &folder, &settings, |p| session.bar.build(p))?;
         drop(session.bar);

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use flexframe::frequencies::Frequencies;
 use flexframe::gradient::{self, GradientError, GradientSettings};
-use flexframe::outputs::outputs_of_scenes;
+use flexframe::outputs::outputs_of_system;
 
 use crate::arguments::values::frequencies;
 use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
@@ -47,8 +47,7 @@ impl Gradient {
         let system = session.read_one(scene, modes)?;
         let folder = folder(&system.bodies[0], output)?;
         let settings = GradientSettings { parameters, frequencies };
-        outputs_of_scenes(&system.bodies, &session.builder, files.overwrite)
-            .claim(&gradient::files(&folder, &settings))?;
+        outputs_of_system(&system, &session.builder, files.overwrite).claim(&gradient::files(&folder, &settings))?;
         let report = gradient::gradient(&system, &session.builder, &folder, &settings, |p| session.bar.build(p));
         let report = report.map_err(|error| match error {
             GradientError::Build(error) => modes.refusal(error.into()),

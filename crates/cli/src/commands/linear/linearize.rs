@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use flexframe::linearize::{self, Reduction};
-use flexframe::outputs::outputs_of_scenes;
+use flexframe::outputs::outputs_of_system;
 
 use crate::arguments::{FileArgs, LinearArgs, SceneArgs};
 use crate::output;
@@ -42,7 +42,7 @@ impl Linearize {
             Some(file) => file,
             None => folder(&system.bodies[0], None)?.join("linear.mat"),
         };
-        outputs_of_scenes(&system.bodies, &session.builder, files.overwrite).claim(std::slice::from_ref(&file))?;
+        outputs_of_system(&system, &session.builder, files.overwrite).claim(std::slice::from_ref(&file))?;
         let report = linearize::linearize(&system, &session.builder, &about.settings(), reduce, &file, |p| {
             session.bar.build(p)
         })?;

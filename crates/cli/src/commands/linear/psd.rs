@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use flexframe::given_file::GivenFile;
-use flexframe::outputs::Outputs;
+use flexframe::outputs::outputs_of_system;
 use flexframe::psd::{self, PsdSettings};
 
 use crate::arguments::values::{band, positive};
@@ -54,8 +54,8 @@ impl Psd {
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;
         let folder = folder(&system.bodies[0], output)?;
-        let read = system.bodies.iter().flat_map(|scene| session.builder.files(scene)).chain([spectra.clone()]);
-        Outputs::new(read.collect(), files.overwrite).claim(&psd::files(&folder))?;
+        let outputs = outputs_of_system(&system, &session.builder, files.overwrite).and_input(&spectra);
+        outputs.claim(&psd::files(&folder))?;
         let settings = PsdSettings { linear: about.settings(Vec::new(), outputs), band, loss_factor: structural };
         let report = psd::psd(&system, &session.builder, &spectra, &folder, &settings, |p| session.bar.build(p))?;
         drop(session.bar);

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use flexframe::animation::{AnimationSettings, Coloured, MAX_FRAMES, animate, animate_mode, animate_results};
 use flexframe::figures::View;
-use flexframe::outputs::{Written, outputs_of_results, outputs_of_scenes};
+use flexframe::outputs::{Written, outputs_of_results, outputs_of_system};
 use scene::Scene;
 
 use crate::arguments::FileArgs;
@@ -81,8 +81,7 @@ impl Animate {
             None => {
                 let mut system = session.read_system(scene)?;
                 system.bodies = system.bodies.into_iter().map(Scene::without_rows).collect();
-                outputs_of_scenes(&system.bodies, &session.builder, files.overwrite)
-                    .claim_as(&Written::ANIMATION, &output)?;
+                outputs_of_system(&system, &session.builder, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
                 match mode {
                     Some(mode) => {
                         let mode = usize::try_from(mode).unwrap_or(usize::MAX);

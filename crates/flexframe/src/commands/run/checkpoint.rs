@@ -7,10 +7,16 @@ use dynamics::CheckpointError;
 use super::error::RunError;
 use crate::motion::Motion;
 
-/// The states of all motions, one after the other: each takes the same room at any time.
-pub(super) fn checkpoint<'m>(motions: impl IntoIterator<Item = &'m Motion>, part: &Path) -> Result<Vec<u64>, RunError> {
-    let states = motions.into_iter().map(Motion::checkpoint).collect::<Result<Vec<_>, _>>();
-    Ok(states.map_err(|source| RunError::Restore { part: part.to_owned(), source })?.concat())
+/// The number of what the run reads ([`identity`](crate::files::identity::identity)), and the states of all motions, one after the
+/// other: each takes the same room at any time.
+pub(super) fn checkpoint<'m>(
+    identity: u64,
+    motions: impl IntoIterator<Item = &'m Motion>,
+    part: &Path,
+) -> Result<Vec<u64>, RunError> {
+    let states = motions.into_iter().map(Motion::checkpoint);
+    let words = std::iter::once(Ok(vec![identity])).chain(states).collect::<Result<Vec<_>, _>>();
+    Ok(words.map_err(|source| RunError::Restore { part: part.to_owned(), source })?.concat())
 }
 
 /// A motion in its state, the first of those in a checkpoint, which become the others.

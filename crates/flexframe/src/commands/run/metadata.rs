@@ -15,17 +15,11 @@ use crate::rows::effects;
 /// The metadata in the results file of a run; `None` without a body.
 pub(super) fn metadata_of_file(system: &System, bodies: &[RunBody<'_>], builder: &Builder) -> Option<Metadata> {
     let mut metadata = metadata_of_system(system, bodies)?;
-    let mut files: Vec<String> = Vec::new();
     for (RunBody { scene, model }, body) in bodies.iter().zip(&mut metadata.bodies) {
-        for file in builder.files(scene) {
-            let file = scene_file::to_text(&file);
-            if !files.contains(&file) {
-                files.push(file);
-            }
-        }
         body.model.mesh = mesh_properties(scene, model);
     }
-    Some(Metadata { input_files: files, ..metadata })
+    let input_files = builder.files(system).iter().map(|file| scene_file::to_text(file)).collect();
+    Some(Metadata { input_files, ..metadata })
 }
 
 /// As [`metadata`], with the joints, springs and bushings.

@@ -34,10 +34,18 @@ pub(super) struct Recorder<'a> {
     /// Times of the rows of several bodies and of tied ones; a single free one has its rows where it takes them.
     times: Option<RowTimes>,
     estimate: Estimate,
+    /// The number of what the run reads.
+    identity: u64,
 }
 
 impl<'a> Recorder<'a> {
-    pub fn new(bodies: &[RunBody<'_>], mut movers: Vec<Mover<'a>>, writer: Writer<Row>, estimate: Estimate) -> Self {
+    pub fn new(
+        bodies: &[RunBody<'_>],
+        mut movers: Vec<Mover<'a>>,
+        writer: Writer<Row>,
+        estimate: Estimate,
+        identity: u64,
+    ) -> Self {
         let is_alone = matches!(&movers[..], [Mover { motion: Motion::Alone(_), .. }]);
         let times = bodies.first().filter(|_| !is_alone).map(|body| RowTimes::new(body.scene));
         if times.is_some_and(|times| times.may_be_between_steps()) {
@@ -49,7 +57,7 @@ impl<'a> Recorder<'a> {
             bodies: bodies.iter().map(|body| BodyRow::new(body.model)).collect(),
             joints: vec![JointObservation::default(); joints],
         };
-        Self { movers, row, writer, rows: 0, times, estimate }
+        Self { movers, row, writer, rows: 0, times, estimate, identity }
     }
 
     /// The first row, and a first checkpoint.
@@ -266,7 +274,8 @@ impl<'a> Recorder<'a> {
         if next < self.end() && self.movers.iter().any(|mover| mover.motion.time() > next) {
             return Ok(());
         }
-        let checkpoint = checkpoint(self.movers.iter().map(|mover| &mover.motion), self.writer.unfinished())?;
+        let checkpoint =
+            checkpoint(self.identity, self.movers.iter().map(|mover| &mover.motion), self.writer.unfinished())?;
         Ok(self.writer.flush(&checkpoint)?)
     }
 }

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use foreign_program::read_at_most;
-use keys::{Digest, Hash, Key};
-use model::files_of_body;
-use scene::{AssignError, Body, Scene, SceneError, System, assign, text_of};
+use keys::Hash;
+use scene::{AssignError, Scene, SceneError, System, assign, text_of};
 use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::error::SweepError;
+use crate::files::identity::{contents, identity};
 
 /// More rows than these are a mistake.
 const MAX_ROWS: usize = 1_000_000;
@@ -203,7 +203,7 @@ impl Plan {
     pub fn has_changed(&self, row: usize) -> bool {
         self.rows[row]
             .as_ref()
-            .is_ok_and(|system| identity(&system.bodies, |scene| contents(&scene.body)) != self.identities[row])
+            .is_ok_and(|system| identity(system, |scene| contents(&scene.body)) != self.identities[row])
     }
 }
 
@@ -233,35 +233,8 @@ fn identities(rows: &[Result<System, String>]) -> Vec<u64> {
     let mut bodies: BTreeMap<String, Hash> = BTreeMap::new();
     let mut contents_of =
         |scene: &Scene| *bodies.entry(format!("{:?}", scene.body)).or_insert_with(|| contents(&scene.body));
-    let of_row =
-        |row: &Result<System, String>| row.as_ref().map_or(0, |system| identity(&system.bodies, &mut contents_of));
+    let of_row = |row: &Result<System, String>| row.as_ref().map_or(0, |system| identity(system, &mut contents_of));
     rows.iter().map(of_row).collect()
-}
-
-/// A number for the texts of the scenes, the tables as they were read, and what the bodies are read from.
-fn identity(scenes: &[Scene], mut contents_of: impl FnMut(&Scene) -> Hash) -> u64 {
-    let of_scene = |key: Key, scene: &Scene| {
-        let key = key.with("scene", scene.source.as_str());
-        let key = scene.tables().fold(key, |key, table| key.with("table", table.points.as_flattened()));
-        let measured = scene.modes.measured.as_ref().map(|measured| format!("{measured:?}")).unwrap_or_default();
-        key.with("measured", measured.as_str()).with("body", &contents_of(scene))
-    };
-    let key = scenes.iter().fold(Key::new().of("row", 1), of_scene);
-    let mut first = [0; 8];
-    first.copy_from_slice(&key.finish().as_bytes()[..8]);
-    u64::from_be_bytes(first)
-}
-
-/// Hash of the files of a body.
-fn contents(body: &Body) -> Hash {
-    let files = files_of_body(body);
-    let digest = files.iter().fold(Digest::new(), |digest, path| {
-        // What is no ordinary file can be read only once; what cannot be read fails in its row.
-        let hash = Some(path).filter(|path| path.is_file()).and_then(|path| Hash::of_file(path).ok());
-        let hash = hash.map_or_else(String::new, |hash| hash.to_string());
-        digest.text(&path.to_string_lossy()).text(&hash)
-    });
-    digest.finish()
 }
 
 /// The values of the parameters in a row.

@@ -1,0 +1,31 @@
+//! A number for what a run reads: a run goes on, and a row of a sweep is kept, only while it is the same.
+
+use keys::{Digest, Hash, Key};
+use model::files_of_body;
+use scene::{Body, Scene, System};
+
+/// A number for the texts of the scenes, all tables as they were read, and the files that the bodies are read from, whose hash
+/// `contents_of` knows.
+pub fn identity(system: &System, contents_of: impl FnMut(&Scene) -> Hash) -> u64 {
+    let key = Key::new().of("row", 2);
+    let key = system.bodies.iter().fold(key, |key, scene| key.with("scene", scene.source.as_str()));
+    let key = system.tables().fold(key, |key, table| key.with("table", table.points.as_flattened()));
+    let measured = system.bodies.iter().map(|scene| format!("{:?}", scene.modes.measured));
+    let key = measured.fold(key, |key, measured| key.with("measured", measured.as_str()));
+    let key = system.bodies.iter().map(contents_of).fold(key, |key, contents| key.with("body", &contents));
+    let mut first = [0; 8];
+    first.copy_from_slice(&key.finish().as_bytes()[..8]);
+    u64::from_be_bytes(first)
+}
+
+/// Hash of the files of a body.
+pub fn contents(body: &Body) -> Hash {
+    let files = files_of_body(body);
+    let digest = files.iter().fold(Digest::new(), |digest, path| {
+        // What is no ordinary file can be read only once; what cannot be read fails where it is read.
+        let hash = Some(path).filter(|path| path.is_file()).and_then(|path| Hash::of_file(path).ok());
+        let hash = hash.map_or_else(String::new, |hash| hash.to_string());
+        digest.text(&path.to_string_lossy()).text(&hash)
+    });
+    digest.finish()
+}
