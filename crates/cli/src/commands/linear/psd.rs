@@ -54,8 +54,9 @@ impl Psd {
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;
         let folder = folder(&system.bodies[0], output)?;
-        let outputs = outputs_of_system(&system, &session.builder, files.overwrite).and_input(&spectra);
-        outputs.claim(&psd::files(&folder))?;
+        outputs_of_system(&system, &session.builder, files.overwrite)
+            .and_input(&spectra)
+            .claim(&psd::files(&folder))?;
         let settings = PsdSettings { linear: about.settings(Vec::new(), outputs), band, loss_factor: structural };
         let report = psd::psd(&system, &session.builder, &spectra, &folder, &settings, |p| session.bar.build(p))?;
         drop(session.bar);
