@@ -139,8 +139,12 @@ fn a_table_of_a_motor_is_never_written_over() {
     done(folder.path(), &["run", "wheel.toml", "-o", "."]);
     let table = fs::read(folder.path().join("motor.csv")).unwrap();
     // By another name, which the command takes for its own.
-    fs::hard_link(folder.path().join("motor.csv"), folder.path().join("wheel.csv")).unwrap();
-    refused(folder.path(), &["export", "wheel.h5", "--csv", ".", "--overwrite"], "this file is read by the command");
+    fs::hard_link(folder.path().join("motor.csv"), folder.path().join("wheel.wheel.csv")).unwrap();
+    refused(
+        folder.path(),
+        &["export", "wheel.wheel.h5", "--csv", ".", "--overwrite"],
+        "this file is read by the command",
+    );
     refused(
         folder.path(),
         &["linearize", "wheel.toml", "-o", "motor.csv", "--overwrite"],
@@ -153,7 +157,7 @@ fn a_table_of_a_motor_is_never_written_over() {
 fn rows_of_a_sweep_follow_from_the_table_of_a_motor() {
     let folder = desk();
     let rates = || {
-        done(folder.path(), &["sweep", "sweep.toml", "-o", "sweep.h5", "--overwrite"]);
+        done(folder.path(), &["sweep", "sweep.toml", "-o", "sweep.h5"]);
         fs::read_to_string(folder.path().join("sweep.csv")).unwrap()
     };
     let first = rates();
@@ -186,10 +190,10 @@ fn a_run_with_joints_does_not_go_on_with_another_table() {
 fn a_pipe_among_the_files_of_a_run_is_not_waited_for() {
     let folder = desk();
     done(folder.path(), &["run", "wheel.toml", "-o", "."]);
-    fs::write(folder.path().join("wheel.csv"), "old").unwrap();
+    fs::write(folder.path().join("wheel.wheel.csv"), "old").unwrap();
     fs::remove_file(folder.path().join("motor.csv")).unwrap();
     assert!(Command::new("mkfifo").arg(folder.path().join("motor.csv")).status().unwrap().success());
-    done(folder.path(), &["export", "wheel.h5", "--csv", ".", "--overwrite"]);
+    done(folder.path(), &["export", "wheel.wheel.h5", "--csv", ".", "--overwrite"]);
 }
 
 /// docs/reference/body.md: a cache that cannot be written is a warning.
