@@ -1,4 +1,4 @@
-//! Whether two names stand for one file.
+//! Comparison of names that stand for one file.
 
 use std::fs::Metadata;
 use std::path::Path;
