@@ -388,7 +388,7 @@ mod tests {
         let mut constraints = Constraints::new(&connections, &first);
         constraints.find(
             &connections,
-            |_| 0.0,
+            |_, _| 0.0,
             [0.0; 2],
             |body| BodyPlace {
                 origin: Vector3::new(body as f64, 0.3, -0.1 * body as f64),
