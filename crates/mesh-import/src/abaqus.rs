@@ -8,20 +8,20 @@ mod lines;
 mod materials;
 mod scope;
 mod space;
-mod systems;
 
 use std::path::Path;
 
 use crate::abaqus::deck::Deck;
-use crate::abaqus::lines::Texts;
+use crate::abaqus::lines::blocks;
 use crate::contents::ReadFile;
 use crate::error::ImportError;
 use crate::imported::Imported;
+use crate::texts::Texts;
 
 /// The mesh of a deck and its materials.
 pub(crate) fn read(files: &[ReadFile], source: &Path, raise_order: bool) -> Result<Imported, ImportError> {
     let texts = Texts::new(files);
-    let blocks = texts.blocks()?;
+    let blocks = blocks(&texts)?;
     let deck = Deck::read(&texts, &blocks)?;
     body::imported(&texts, &deck, source, raise_order)
 }

@@ -1,4 +1,4 @@
-//! Decks of Abaqus and CalculiX (`.inp`), read with all that they include.
+//! Decks of Abaqus, CalculiX (`.inp`) and Nastran, read with all that they include.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -7,22 +7,40 @@ use foreign_program::open_ordinary;
 
 use crate::contents::{MAX_FILES, ReadFile, contents};
 use crate::error::ImportError;
+use crate::format::ending;
+use crate::nastran::is_include;
 
-const HELP: &str =
-    "write `*INCLUDE, INPUT=FILE` on one line, with the path of a file relative to the one that includes it";
+/// Who writes decks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Syntax {
+    Abaqus,
+    Nastran,
+}
+
+impl Syntax {
+    fn help(self) -> &'static str {
+        match self {
+            Self::Abaqus => {
+                "write `*INCLUDE, INPUT=FILE` on one line, with the path of a file relative to the one that includes it"
+            }
+            Self::Nastran => "write `INCLUDE 'FILE'`, with the path of a file relative to the one that includes it",
+        }
+    }
+}
 
 /// Keywords that take the lines under them from the file of their parameter INPUT.
 const WITH_DATA_ELSEWHERE: [&[u8]; 4] = [b"NODE", b"ELEMENT", b"NSET", b"ELSET"];
 
 /// Reads a deck and what it includes.
 pub(crate) fn deck(path: &Path) -> Result<Vec<ReadFile>, ImportError> {
-    let mut reader = DeckReader::default();
+    let syntax = if ending(path) == "inp" { Syntax::Abaqus } else { Syntax::Nastran };
+    let mut reader = DeckReader { syntax, files: Vec::new(), around: Vec::new() };
     reader.file(path, contents(path)?)?;
     Ok(reader.files)
 }
 
-#[derive(Default)]
 struct DeckReader {
+    syntax: Syntax,
     files: Vec<ReadFile>,
     /// Files that are being read: each includes the next.
     around: Vec<PathBuf>,
@@ -39,7 +57,20 @@ impl DeckReader {
         let mut includes = BTreeMap::new();
         let mut parts = bytes.split_inclusive(is_end).enumerate().peekable();
         while let Some((part, text)) = parts.next() {
-            if let Some(mut name) = included_in(text) {
+            if self.syntax == Syntax::Nastran {
+                if let Some(mut name) = included_by_nastran(text) {
+                    let (mut place, mut of, mut ends) = (part, 0, 0);
+                    // A long name goes on in the next lines, up to the second quote.
+                    while name.is_open
+                        && let Some((next, more)) = parts.next_if(|_| of < LINES_OF_A_NAME)
+                    {
+                        name.goes_on(more);
+                        (place, of, ends) = (next, of + 1, ends + usize::from(more.ends_with(b"\n")));
+                    }
+                    includes.insert(place, self.included(path, line, name.path())?);
+                    line += ends;
+                }
+            } else if let Some(mut name) = included_in(text) {
                 let mut place = part;
                 if name.is_none()
                     && text.trim_ascii().ends_with(b",")
@@ -64,18 +95,19 @@ impl DeckReader {
             found: format!("line {line}: {found}"),
             help: help.to_owned(),
         };
-        let Some(name) = name else { return Err(refused("*INCLUDE without the name of a file".to_owned(), HELP)) };
+        let help = self.syntax.help();
+        let Some(name) = name else { return Err(refused("INCLUDE without the name of a file".to_owned(), help)) };
         let path = of.parent().unwrap_or(Path::new("")).join(name);
         if self.around.contains(&path) {
-            return Err(refused(format!("*INCLUDE of {}, which includes this file", path.display()), HELP));
+            return Err(refused(format!("INCLUDE of {}, which includes this file", path.display()), help));
         }
         if let Some(known) = self.files.iter().position(|file| file.path == path) {
             return Ok(known);
         }
         if self.files.len() >= MAX_FILES {
-            return Err(refused(format!("more than {MAX_FILES} files that include each other"), HELP));
+            return Err(refused(format!("more than {MAX_FILES} files that include each other"), help));
         }
-        let cannot = |cause| refused(format!("*INCLUDE of {}, which cannot be read: {cause}", path.display()), HELP);
+        let cannot = |cause| refused(format!("INCLUDE of {}, which cannot be read: {cause}", path.display()), help);
         let mut bytes = Vec::new();
         open_ordinary(&path).and_then(|mut file| std::io::Read::read_to_end(&mut file, &mut bytes)).map_err(cannot)?;
         self.file(&path, bytes)
@@ -102,6 +134,51 @@ fn included_in(line: &[u8]) -> Option<Option<String>> {
     if is_known { input(rest).map(Some) } else { None }
 }
 
+/// Lines of the name of a file at most.
+const LINES_OF_A_NAME: usize = 20;
+
+/// The name of a file in a line of Nastran, and in the lines after it.
+struct NamedByNastran {
+    text: String,
+    quote: char,
+    /// True if the second quote is missing.
+    is_open: bool,
+}
+
+impl NamedByNastran {
+    fn goes_on(&mut self, line: &[u8]) {
+        let line = String::from_utf8_lossy(line);
+        let (part, rest) = line.split_once(self.quote).map_or((&*line, None), |(part, rest)| (part, Some(rest)));
+        self.text += part.trim();
+        self.is_open = rest.is_none();
+    }
+
+    /// As this system has it.
+    fn path(self) -> Option<String> {
+        (!self.is_open && !self.text.is_empty()).then(|| self.text.replace('\\', "/"))
+    }
+}
+
+/// The file that a line of Nastran takes in.
+fn included_by_nastran(line: &[u8]) -> Option<NamedByNastran> {
+    let line = String::from_utf8_lossy(line.trim_ascii());
+    if !is_include(&line) {
+        return None;
+    }
+    let rest = line[7..].trim_start_matches(['=', ' ', '\t']);
+    match rest.chars().next().filter(|first| matches!(first, '\'' | '"')) {
+        Some(quote) => {
+            let mut name = NamedByNastran { text: String::new(), quote, is_open: true };
+            name.goes_on(&rest.as_bytes()[1..]);
+            Some(name)
+        }
+        None => {
+            let text = rest.split('$').next().unwrap_or_default().trim().to_owned();
+            Some(NamedByNastran { text, quote: '\'', is_open: false })
+        }
+    }
+}
+
 /// The file that the parameter INPUT names.
 fn input(rest: &[u8]) -> Option<String> {
     let rest = String::from_utf8_lossy(rest);
@@ -116,6 +193,25 @@ fn input(rest: &[u8]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_of_nastran_that_includes_a_file_is_known_however_it_is_written() {
+        for (lines, wanted) in [
+            (vec!["INCLUDE 'a b.bdf'"], Some("a b.bdf")),
+            (vec![" include a.bdf $ more\r\n"], Some("a.bdf")),
+            (vec!["Include\"x\\a.bdf\""], Some("x/a.bdf")),
+            (vec!["INCLUDE '/x/y/", "  z/", "a.bdf'"], Some("/x/y/z/a.bdf")),
+            (vec!["INCLUDE 'a"], None),
+            (vec!["INCLUDE ''"], None),
+        ] {
+            let mut name = included_by_nastran(lines[0].as_bytes()).unwrap();
+            lines[1..].iter().for_each(|line| name.goes_on(line.as_bytes()));
+            assert_eq!(name.path().as_deref(), wanted, "{lines:?}");
+        }
+        for line in ["$ INCLUDE 'a'", "INCLUDED 'a'", "GRID,1", ""] {
+            assert!(included_by_nastran(line.as_bytes()).is_none(), "{line}");
+        }
+    }
 
     #[test]
     fn a_line_that_includes_a_file_is_known_however_it_is_written() {

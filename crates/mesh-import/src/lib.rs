@@ -13,10 +13,14 @@ mod gmsh_errors;
 mod imported;
 mod included;
 mod mesh_file;
+mod nastran;
+mod notes;
 mod reader;
 mod run;
 mod settings;
+mod systems;
 mod tetrahedra;
+mod texts;
 
 use std::path::Path;
 

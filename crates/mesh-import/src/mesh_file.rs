@@ -14,6 +14,7 @@ use crate::error::ImportError;
 use crate::format::ending;
 use crate::geometry::geometry;
 use crate::imported::Imported;
+use crate::nastran;
 use crate::reader::{Reader, is_program, is_surface, names_others, reader_of};
 use crate::run::{self, GmshTask, Job};
 use crate::settings::ImportSettings;
@@ -105,13 +106,12 @@ impl MeshFile {
                 let Held::Files(files) = &self.held else {
                     return Ok(Imported { mesh: self.own()?, notes: Vec::new(), materials: Vec::new() });
                 };
-                return abaqus::read(files, &self.path, self.settings.raise_order);
+                let read = if ending(&self.path) == "inp" { abaqus::read } else { nastran::read };
+                return read(files, &self.path, self.settings.raise_order);
             }
             Reader::Meshio => {
-                let (mesh, (notes, mut materials)) = self.by_another(run::meshio)?;
-                // The others are of elements that are left out.
-                materials.retain(|material| mesh.groups().contains(&material.group));
-                return Ok(Imported { mesh, notes, materials });
+                let (mesh, notes) = self.by_another(run::meshio)?;
+                return Ok(Imported { mesh, notes, materials: Vec::new() });
             }
         };
         Ok(Imported { mesh, notes: Vec::new(), materials: Vec::new() })

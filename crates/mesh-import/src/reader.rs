@@ -11,7 +11,7 @@ use crate::settings::ImportSettings;
 pub enum Reader {
     /// flexframe itself: MSH 4.1, and what has no known ending.
     Own,
-    /// flexframe itself: decks of Abaqus and CalculiX.
+    /// flexframe itself: decks of Abaqus, CalculiX and Nastran.
     OwnDeck,
     /// gmsh, which meshes geometry.
     GmshMesher,
@@ -39,14 +39,15 @@ const MESHED: [&str; 7] = ["geo", "geo_unrolled", "step", "stp", "iges", "igs", 
 /// Meshes that meshio does not know.
 const CONVERTED: [&str; 1] = ["unv"];
 /// Meshes that meshio reads.
-const THROUGH_MESHIO: [&str; 13] =
-    ["med", "bdf", "nas", "fem", "vtu", "vtk", "xdmf", "xmf", "mesh", "meshb", "e", "exo", "h5m"];
+const THROUGH_MESHIO: [&str; 10] = ["med", "vtu", "vtk", "xdmf", "xmf", "mesh", "meshb", "e", "exo", "h5m"];
+/// Decks.
+const DECKS: [&str; 4] = ["inp", "bdf", "nas", "fem"];
 
 /// Who reads a file, by the ending of its name; of `.msh`, by its version, too.
 pub fn reader_of(path: &Path, settings: &ImportSettings) -> Reader {
     let ending = ending(path);
     let is_of = |endings: &[&str]| endings.contains(&ending.as_str());
-    if ending == "inp" {
+    if is_of(&DECKS) {
         Reader::OwnDeck
     } else if is_of(&MESHED) {
         Reader::GmshMesher

@@ -12,7 +12,6 @@ use serde::Deserialize;
 use whole_file::TemporaryFolder;
 
 use crate::contents::Copies;
-use crate::deck_material::DeckMaterial;
 use crate::error::ImportError;
 use crate::gmsh_errors::error_in;
 use crate::settings::ImportSettings;
@@ -38,7 +37,7 @@ const PYTHON_CURE: &str = "install Python 3 with meshio (pip install meshio h5py
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Answer {
-    Done { notes: Vec<String>, materials: Vec<DeckMaterial> },
+    Done { notes: Vec<String> },
     Refused { error: String, help: String },
 }
 
@@ -55,8 +54,8 @@ pub(crate) struct Job<'a> {
     pub(crate) is_free: bool,
 }
 
-/// Lets meshio do a job. Returns what was left out, and the materials of sets.
-pub(crate) fn meshio(job: &Job<'_>) -> Result<(Vec<String>, Vec<DeckMaterial>), ImportError> {
+/// Lets meshio do a job. Returns what was left out.
+pub(crate) fn meshio(job: &Job<'_>) -> Result<Vec<String>, ImportError> {
     let &Job { source, settings, copies, target, .. } = job;
     let folder = folder_of(target);
     let python = named(PYTHON, "python3");
@@ -68,7 +67,7 @@ pub(crate) fn meshio(job: &Job<'_>) -> Result<(Vec<String>, Vec<DeckMaterial>), 
     }
     let said = Said::by(command, source, &python, ("meshio", PYTHON_CURE))?;
     match said.last(Stream::Output).and_then(|line| serde_json::from_str(line).ok()) {
-        Some(Answer::Done { notes, materials }) if said.status.success() => Ok((notes, materials)),
+        Some(Answer::Done { notes }) if said.status.success() => Ok(notes),
         Some(Answer::Refused { error, help }) => {
             let source_name = source.display().to_string();
             Err(ImportError::Refused { source_name, found: copies.translated(&error), help })

@@ -57,7 +57,15 @@ impl Tetrahedra {
         if self.elements.is_empty() {
             return Err(self.refuse("it has no tetrahedra".to_owned(), "mesh the volume with ten-node tetrahedra"));
         }
-        let elements = self.ordered()?;
+        let mut elements = self.ordered()?;
+        if elements.iter().all(|nodes| self.is_turned(nodes)) {
+            // Corners 1 and 2 change places, and with them the nodes on the edges 01 and 02, 23 and 13.
+            elements.iter_mut().for_each(|nodes| *nodes = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8].map(|k| nodes[k]));
+            notes.push(format!(
+                "all {} tetrahedra are mirrored or have their nodes the other way round, and are turned",
+                elements.len()
+            ));
+        }
         // Nodes that no tetrahedron has are left out.
         let used: HashSet<u32> = elements.iter().flatten().copied().collect();
         let mut seen = HashSet::with_capacity(used.len());
@@ -137,6 +145,14 @@ impl Tetrahedra {
             node_groups,
         };
         Ok((Mesh::new(parts)?, notes))
+    }
+
+    /// True if the volume between the corners is negative.
+    fn is_turned(&self, nodes: &[u32; 10]) -> bool {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| self.positions[nodes[k] as usize]);
+        let [u, v, w] = [b, c, d].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
+        let across = [v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]];
+        u[0] * across[0] + u[1] * across[1] + u[2] * across[2] < 0.0
     }
 
     fn refuse(&self, found: String, help: &str) -> ImportError {

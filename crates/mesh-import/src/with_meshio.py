@@ -1,7 +1,7 @@
 """Reads a mesh with meshio (or meshlane) and writes its second-order tetrahedra with all named sets as MSH 4.1.
 
 Arguments: the mesh file, the MSH file to write, and "raise" if first-order tetrahedra are to get mid-edge nodes.
-Prints a line of JSON: what was left out ("notes") and the materials of sets ("materials"), or what is wrong ("error", with "help").
+Prints a line of JSON: what was left out ("notes"), or what is wrong ("error", with "help").
 """
 
 import contextlib
@@ -9,7 +9,6 @@ import io
 import json
 import sys
 from collections import Counter
-from pathlib import Path
 
 # The corners of each edge, and the edges in gmsh's order of the mid-edge nodes.
 EDGES = {
@@ -18,8 +17,6 @@ EDGES = {
 }
 RAISED = {"tetra": "tetra10", "triangle": "triangle6"}
 CORNERS = {"tetra10": 4, "triangle6": 3}
-# Endings of Nastran's files.
-NASTRAN = (".bdf", ".nas", ".fem")
 HELP = "install it (pip install meshio h5py), or name a Python that has it in FLEXFRAME_PYTHON"
 
 
@@ -39,7 +36,6 @@ class File:
         self.node_sets = {}
         self.labels = {}  # name: whole numbers of each block
         self.names_of_labels = {}  # label array: {(number, dimension) or number: names}
-        self.materials = []  # of sets of elements
 
 
 def main(source, target, raise_order):
@@ -48,7 +44,7 @@ def main(source, target, raise_order):
     except ImportError:
         raise Refused(f"{sys.executable} has no numpy", HELP)
     notes = []
-    file = with_meshio(np, source, Path(target), notes)
+    file = with_meshio(np, source)
     points = file.points
     if len(points) == 0:
         raise Refused("it has no nodes", "check the file")
@@ -94,17 +90,7 @@ def main(source, target, raise_order):
     tell(notes, "element set", "no tetrahedra and no triangles of six nodes", groups.without)
     tell(notes, "node set", "no nodes", [name for name in file.node_sets if name not in point_sets])
     write(np, target, points, blocks, groups, point_sets)
-    return {"notes": notes, "materials": file.materials}
-
-
-def add_material(materials, notes, group, name, young, poisson, density):
-    """An isotropic material of a set of elements, unless its numbers are none of one."""
-    if young > 0 and -1 < poisson < 0.5 and density > 0:
-        numbers = {"young_modulus": young, "poisson_ratio": poisson, "density": density}
-        materials.append({"group": plain(group), "name": name, **numbers})
-    else:
-        found = f"Young's modulus {young:g}, Poisson's ratio {poisson:g}, density {density:g}"
-        notes.append(f"the material {name} of {group} is not read: {found}")
+    return {"notes": notes}
 
 
 def tell(notes, kind, what, names):
@@ -113,7 +99,7 @@ def tell(notes, kind, what, names):
         notes.append(f"the {kind} {shown} has {what}" if len(names) == 1 else f"the {kind}s {shown} have {what}")
 
 
-def with_meshio(np, source, target, notes):
+def with_meshio(np, source):
     try:
         import meshio
     except ImportError:
@@ -126,7 +112,7 @@ def with_meshio(np, source, target, notes):
     try:
         # meshio prints its reasons.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            mesh = meshio.read(prepared(source, target))
+            mesh = meshio.read(source)
     except Refused:
         raise
     except (SystemExit, Exception) as error:
@@ -146,82 +132,8 @@ def with_meshio(np, source, target, notes):
     file.labels = {name: arrays for name, arrays in mesh.cell_data.items() if name != "gmsh:geometrical"}
     # gmsh's physical groups have names by number and dimension, MED's families by number.
     physical = {(int(data[0]), int(data[1])): [name] for name, data in mesh.field_data.items() if len(data) == 2}
-    if Path(source).suffix.lower() in NASTRAN:
-        file.materials = nastran_materials(Path(source).read_text(encoding="utf-8", errors="replace"), notes)
     file.names_of_labels = {"gmsh:physical": physical, "cell_tags": getattr(mesh, "cell_tags", {})}
     return file
-
-
-def prepared(source, target):
-    """The file as meshio can read it: it wants heads that gmsh leaves out."""
-    ending = Path(source).suffix.lower()
-    if ending in NASTRAN:
-        text = Path(source).read_text(encoding="utf-8", errors="replace")
-        if any(line.strip().upper().startswith(("INCLUDE ", "INCLUDE'", 'INCLUDE"')) for line in text.splitlines()):
-            raise Refused("it includes other files by INCLUDE, which meshio leaves out", "write it as one file")
-        if "BEGIN BULK" not in text.upper():
-            whole = target.with_suffix(ending)
-            whole.write_text("BEGIN BULK\n" + text + "\nENDDATA\n", encoding="utf-8")
-            return str(whole)
-    return source
-
-
-def nastran_materials(text, notes):
-    """Materials by MAT1 of the elements of each PSOLID, whose numbers are the names of groups."""
-    isotropic, others, of_property, mass_of_weight = {}, {}, {}, 1.0
-    for card, fields in nastran_cards(text):
-        try:
-            if card == "MAT1":
-                young, shear, poisson, density = (number(field) for field in fields[1:5])
-                isotropic[int(fields[0])] = (young, shear, poisson, density)
-            elif card in ("MAT9", "MAT10", "MAT11"):
-                others[int(fields[0])] = card
-            elif card == "PSOLID":
-                of_property[int(fields[0])] = int(fields[1])
-            elif card == "PARAM" and fields[0].upper() == "WTMASS":
-                mass_of_weight = number(fields[1])
-        except ValueError:
-            notes.append(f"a card {card} is not read: {', '.join(fields)}")
-    materials = []
-    for pid, mid in of_property.items():
-        group = f"ref_{pid}"
-        if mid not in isotropic:
-            found = f"it is of kind {others[mid]}, and only MAT1 is" if mid in others else "there is none of that number"
-            notes.append(f"the material {mid} of {group} is not read: {found}")
-            continue
-        young, shear, poisson, density = isotropic[mid]
-        if poisson is None and young and shear:
-            poisson = young / (2 * shear) - 1
-        if young is None and poisson is not None and shear:
-            young = 2 * shear * (1 + poisson)
-        add_material(materials, notes, group, f"MAT1 {mid}", young or 0.0, poisson or 0.0, (density or 0.0) * mass_of_weight)
-    return materials
-
-
-def nastran_cards(text):
-    """Names and the first eight fields of cards: free, of 8 letters or of 16."""
-    lines = [line.expandtabs(8).rstrip() for line in text.splitlines() if line.strip() and not line.startswith("$")]
-    for at, line in enumerate(lines):
-        if "," in line:
-            name, *fields = [field.strip() for field in line.split(",")]
-        elif line[:8].strip().endswith("*"):
-            name, fields = line[:8].strip(), [line[start : start + 16].strip() for start in range(8, 72, 16)]
-            more = lines[at + 1] if at + 1 < len(lines) and lines[at + 1].startswith("*") else ""
-            fields += [more[start : start + 16].strip() for start in range(8, 72, 16)]
-        else:
-            name, fields = line[:8].strip(), [line[start : start + 8].strip() for start in range(8, 72, 8)]
-        yield name.rstrip("*").upper(), (fields + [""] * 8)[:8]
-
-
-def number(field):
-    """A number as Nastran writes it, such as 7.+4; none of an empty field."""
-    if not field:
-        return None
-    field = field.upper().replace("D", "E")
-    head, tail = field[:1], field[1:]
-    if "E" not in field:
-        tail = tail.replace("+", "E+").replace("-", "E-")
-    return float(head + tail)
 
 
 def raised(np, points, nodes, kind, blocks):

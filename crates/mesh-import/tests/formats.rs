@@ -126,7 +126,7 @@ fn every_format_gives_the_same_elements_and_its_groups() {
         ("bar.geo", AS_IT_IS, Reader::GmshMesher, &["bar"], &names, &[]),
         ("bar.unv", AS_IT_IS, Reader::GmshConverter, &["bar"], &names, &[]),
         ("bar.inp", AS_IT_IS, Reader::OwnDeck, &["Volume1", "bar"], &both, &[]),
-        ("bar.bdf", AS_IT_IS, Reader::Meshio, &["ref_1"], &of_properties, &[]),
+        ("bar.bdf", AS_IT_IS, Reader::OwnDeck, &["ref_1"], &of_properties, &[]),
         ("bar.vtk", AS_IT_IS, Reader::Meshio, &[], &[], &[]),
         ("meshio.vtk", AS_IT_IS, Reader::Meshio, &["material_3"], &["material_2"], &[]),
         ("bar.vtu", AS_IT_IS, Reader::Meshio, &["material_3"], &["material_2"], &[]),

@@ -7,12 +7,13 @@ use fem_tet10::Material;
 
 use crate::abaqus::deck::Deck;
 use crate::abaqus::kinds::Kind;
-use crate::abaqus::lines::Texts;
 use crate::abaqus::space::World;
 use crate::deck_material::DeckMaterial;
 use crate::error::ImportError;
 use crate::imported::Imported;
+use crate::notes;
 use crate::tetrahedra::Tetrahedra;
+use crate::texts::Texts;
 
 const FACES: [&str; 4] = ["S1", "S2", "S3", "S4"];
 
@@ -104,9 +105,7 @@ pub(super) fn imported(
     if let Some((count, place)) = deck.unknown {
         left.push(format!("{count} keyword(s) that are not known here, the first in {}", texts.named(place)));
     }
-    if !left.is_empty() {
-        notes.push(format!("read: {count} tetrahedra; not used: {}", left.join(", ")));
-    }
+    notes.extend(notes::not_used(count, &left));
     let materials = materials.into_iter().filter(|material| mesh.groups().contains(&material.group)).collect();
     Ok(Imported { mesh, notes, materials })
 }
@@ -243,17 +242,15 @@ fn masses(
     world: &mut World<'_>,
     unused: &mut BTreeMap<String, usize>,
 ) -> Result<Option<String>, ImportError> {
-    let (mut count, mut sum, mut named) = (0, 0.0, HashSet::new());
-    let mut places = Vec::new();
+    let (mut named, mut masses) = (HashSet::new(), Vec::new());
     for space in 0..world.spaces.len() {
         for scope in world.spaces[space].scopes.clone() {
             for mass in &scope.masses {
                 let Some(members) = world.set(texts, false, space, &mass.set.to_uppercase())? else { continue };
                 for element in members.iter().filter(|e| world.elements[**e as usize].1.kind == Kind::Mass) {
                     named.insert(*element);
-                    let [x, y, z] = world.positions[world.nodes_of(texts, *element as usize)?[0] as usize];
-                    places.push(format!("{{ at = [{x:?}, {y:?}, {z:?}], mass = {:?} }}", mass.mass));
-                    (count, sum) = (count + 1, sum + mass.mass);
+                    let at = world.positions[world.nodes_of(texts, *element as usize)?[0] as usize];
+                    masses.push((at, mass.mass));
                 }
             }
         }
@@ -263,10 +260,7 @@ fn masses(
         let name = deck.types.iter().find(|name| *name == "MASS").map_or("MASS", String::as_str);
         *unused.entry(format!("{name} without a number")).or_insert(0) += all - named.len();
     }
-    let more = if places.len() > 5 { ", …" } else { "" };
-    places.truncate(5);
-    Ok((count > 0)
-        .then(|| format!("{count} MASS ({sum:.4e}; in a scene: point_masses = [{}{more}])", places.join(", "))))
+    Ok(notes::masses("MASS", &masses))
 }
 
 /// The materials of solid sections.

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use crate::abaqus::keywords::{is_known, is_silent, makes_mesh};
 use crate::abaqus::kinds::Kind;
-use crate::abaqus::lines::{Block, Data, Place, Texts, number};
+use crate::abaqus::lines::{Block, number};
 use crate::abaqus::materials::Material;
 use crate::abaqus::scope::{Element, Instance, Mass, Node, Part, Reference, Referred, Scope, Section, Surface, Tie};
-use crate::abaqus::systems::{Placement, cylindrical};
 use crate::error::ImportError;
+use crate::systems::{Placement, cylindrical};
+use crate::texts::{Data, Place, Texts};
 
 const CHECK: &str = "check this line";
 

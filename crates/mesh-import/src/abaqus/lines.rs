@@ -1,51 +1,7 @@
-//! The lines of a deck and what it includes: keywords with their parameters and the lines of data under them.
+//! The lines of a deck: keywords with their parameters and the lines of data under them.
 
-use std::borrow::Cow;
-use std::fmt;
-
-use crate::contents::ReadFile;
 use crate::error::ImportError;
-
-/// Includes that are followed, those of a file that is included twice counted twice.
-const MAX_INCLUDES: usize = 10_000;
-
-/// A line of a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Place {
-    /// Number of the file, from 0, the deck itself.
-    file: usize,
-    /// From 1.
-    line: usize,
-}
-
-/// The files of a deck as texts.
-pub(crate) struct Texts<'f> {
-    files: &'f [ReadFile],
-    texts: Vec<Cow<'f, str>>,
-}
-
-/// A line of data.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Data<'t> {
-    pub(crate) place: Place,
-    pub(crate) text: &'t str,
-}
-
-impl<'t> Data<'t> {
-    /// The fields between commas, without spaces; the last may be empty.
-    pub(crate) fn fields(&self) -> impl Iterator<Item = &'t str> + use<'t> {
-        self.text.split(',').map(str::trim)
-    }
-
-    /// Fields without the empty one after a comma at the end.
-    pub(crate) fn words(&self) -> Vec<&'t str> {
-        let mut words: Vec<&str> = self.fields().collect();
-        while words.last().is_some_and(|word| word.is_empty()) {
-            words.pop();
-        }
-        words
-    }
-}
+use crate::texts::{Data, Place, Texts};
 
 /// A keyword with its parameters and its data.
 #[derive(Debug)]
@@ -74,71 +30,23 @@ impl<'t> Block<'t> {
     }
 }
 
-impl<'f> Texts<'f> {
-    pub(crate) fn new(files: &'f [ReadFile]) -> Self {
-        let text = |file: &'f ReadFile| String::from_utf8_lossy(file.bytes.as_deref().unwrap_or_default());
-        Self { files, texts: files.iter().map(text).collect() }
+/// The blocks of a deck, with all that it includes in its place.
+pub(crate) fn blocks<'t>(texts: &'t Texts<'_>) -> Result<Vec<Block<'t>>, ImportError> {
+    let mut reading = Reading { texts, blocks: Vec::new(), open: false };
+    for Data { place, text } in texts.lines()? {
+        reading.line(place, text.trim())?;
     }
-
-    /// A refusal that names a line.
-    pub(crate) fn refuse(&self, place: Place, found: impl fmt::Display, help: &str) -> ImportError {
-        let named = |file: usize| self.files.get(file).map_or_else(String::new, |file| file.path.display().to_string());
-        ImportError::Refused {
-            source_name: named(0),
-            found: format!("line {} of {}: {found}", place.line, named(place.file)),
-            help: help.to_owned(),
-        }
-    }
-
-    /// A line in quotes; of an included file nothing, since that may be any file.
-    pub(crate) fn shown(&self, data: Data<'_>) -> String {
-        match data.place.file {
-            0 => format!("`{}`", data.text.chars().take(80).collect::<String>()),
-            _ => "a line".to_owned(),
-        }
-    }
-
-    /// A line by its number and its file.
-    pub(crate) fn named(&self, place: Place) -> String {
-        match (place.file, self.files.get(place.file)) {
-            (1.., Some(file)) => format!("line {} of {}", place.line, file.path.display()),
-            _ => format!("line {}", place.line),
-        }
-    }
-
-    /// The blocks of the deck, with all that it includes in its place.
-    pub(crate) fn blocks(&self) -> Result<Vec<Block<'_>>, ImportError> {
-        let mut reading = Reading { texts: self, blocks: Vec::new(), includes: 0, open: false };
-        reading.file(0)?;
-        Ok(reading.blocks)
-    }
+    Ok(reading.blocks)
 }
 
 struct Reading<'t, 'f> {
     texts: &'t Texts<'f>,
     blocks: Vec<Block<'t>>,
-    includes: usize,
     /// True if the last keyword ends in a comma, and may go on.
     open: bool,
 }
 
 impl<'t> Reading<'t, '_> {
-    // Files do not include each other in a circle, and there are a thousand at the most: `deck` has looked.
-    fn file(&mut self, file: usize) -> Result<(), ImportError> {
-        let text: &'t str = self.texts.texts.get(file).map_or("", |text| text);
-        let includes = self.texts.files.get(file).map(|file| &file.includes);
-        let mut line = 1;
-        for (part, text) in text.split_inclusive(['\n', '\r']).enumerate() {
-            let place = Place { file, line };
-            line += usize::from(text.ends_with('\n'));
-            self.line(place, text.trim_start_matches('\u{feff}').trim())?;
-            if let Some(included) = includes.and_then(|includes| includes.get(&part)) {
-                self.include(place, *included)?;
-            }
-        }
-        Ok(())
-    }
-
     fn line(&mut self, place: Place, text: &'t str) -> Result<(), ImportError> {
         if text.is_empty() || text.starts_with("**") {
             return Ok(());
@@ -170,15 +78,6 @@ impl<'t> Reading<'t, '_> {
             }
         }
         Ok(())
-    }
-
-    fn include(&mut self, place: Place, number: usize) -> Result<(), ImportError> {
-        self.includes += 1;
-        if self.includes > MAX_INCLUDES {
-            let found = format!("more than {MAX_INCLUDES} files that are included");
-            return Err(self.texts.refuse(place, found, "include each file once"));
-        }
-        self.file(number)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Materials of a deck: `*ELASTIC` and `*DENSITY`.
 
-use crate::abaqus::lines::{Block, Texts, number};
+use crate::abaqus::lines::{Block, number};
 use crate::error::ImportError;
+use crate::texts::Texts;
 
 /// A `*MATERIAL`.
 #[derive(Debug)]

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use crate::abaqus::kinds::Kind;
-use crate::abaqus::lines::Place;
-use crate::abaqus::systems::Placement;
+use crate::systems::Placement;
+use crate::texts::Place;
 
 /// A number or a name, of an instance where one stands before it.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
 use crate::abaqus::deck::Deck;
-use crate::abaqus::lines::{Place, Texts};
 use crate::abaqus::scope::{Element, Reference, Referred, Scope, Sets};
-use crate::abaqus::systems::Placement;
 use crate::error::ImportError;
+use crate::systems::Placement;
+use crate::texts::{Place, Texts};
 
 /// Sets of sets of sets.
 const DEEPEST: usize = 50;

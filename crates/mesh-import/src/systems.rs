@@ -1,4 +1,5 @@
-//! Positions in the systems of a deck: `*SYSTEM`, `SYSTEM=C` of `*NODE`, and the two lines that move an `*INSTANCE`.
+//! Positions in the systems of a deck: of Abaqus `*SYSTEM`, `SYSTEM=C` of `*NODE`, and the two lines that move an `*INSTANCE`; of Nastran
+//! `CORD1x` and `CORD2x`.
 
 /// A point or a vector.
 type Vector = [f64; 3];
@@ -29,6 +30,19 @@ impl Placement {
         Some(Self { rotation: std::array::from_fn(|i| [x[i], y[i], z[i]]), translation: a })
     }
 
+    /// The system of the points `a` (its origin), `b` on its z axis and `c` in its xz plane: none where they are on a line.
+    pub(crate) fn of_z_axis(a: Vector, b: Vector, c: Vector) -> Option<Self> {
+        let z = unit(minus(b, a))?;
+        let y = unit(cross(z, minus(c, a)))?;
+        let x = cross(y, z);
+        Some(Self { rotation: std::array::from_fn(|i| [x[i], y[i], z[i]]), translation: a })
+    }
+
+    /// A vector after its rotation.
+    pub(crate) fn turned(&self, vector: Vector) -> Vector {
+        std::array::from_fn(|i| dot(self.rotation[i], vector))
+    }
+
     /// A translation.
     pub(crate) fn to(translation: Vector) -> Self {
         Self { translation, ..Self::NONE }
@@ -55,6 +69,12 @@ impl Placement {
 pub(crate) fn cylindrical([radius, degrees, height]: Vector) -> Vector {
     let (sine, cosine) = sine_and_cosine(degrees);
     [radius * cosine, radius * sine, height]
+}
+
+/// Position in rectangular coordinates of a radius, the angle from the z axis and the one about it, in degrees.
+pub(crate) fn spherical([radius, from_z, about_z]: Vector) -> Vector {
+    let ((s, c), (sine, cosine)) = (sine_and_cosine(from_z), sine_and_cosine(about_z));
+    [radius * s * cosine, radius * s * sine, radius * c]
 }
 
 /// Exact at quarters of a turn, so that nodes of two parts meet.
@@ -96,6 +116,12 @@ mod tests {
     fn points_are_moved_and_turned() {
         assert!(near(cylindrical([2.0, 90.0, 3.0]), [0.0, 2.0, 3.0]));
         assert!(near(cylindrical([2.0, 30.0, 3.0]), [3.0_f64.sqrt(), 1.0, 3.0]));
+        assert!(near(spherical([2.0, 90.0, 90.0]), [0.0, 2.0, 0.0]));
+        assert!(near(spherical([2.0, 60.0, 0.0]), [3.0_f64.sqrt(), 0.0, 1.0]));
+        // z of the system is along X, x along Y.
+        let system = Placement::of_z_axis([1.0, 2.0, 3.0], [5.0, 2.0, 3.0], [7.0, 8.0, 3.0]).unwrap();
+        assert!(near(system.of([1.0, 10.0, 100.0]), [101.0, 3.0, 13.0]));
+        assert!(near(system.turned([1.0, 10.0, 100.0]), [100.0, 1.0, 10.0]));
         // x of the system is along Z, y along X.
         let system = Placement::system([1.0, 2.0, 3.0], [1.0, 2.0, 5.0], [4.0, 2.0, 3.0]).unwrap();
         assert!(near(system.of([1.0, 10.0, 100.0]), [11.0, 102.0, 4.0]));

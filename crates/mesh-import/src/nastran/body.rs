@@ -1,0 +1,359 @@
+//! The body of a deck: its tetrahedra, names and materials, and a sentence on all that is not used.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::path::Path;
+
+use fem_tet10::Material;
+
+use crate::deck_material::DeckMaterial;
+use crate::error::ImportError;
+use crate::imported::Imported;
+use crate::nastran::cards::{Bulk, Card};
+use crate::nastran::kinds::{SHELLS, SOLIDS, is_silent, known};
+use crate::nastran::systems::Space;
+use crate::notes;
+use crate::tetrahedra::Tetrahedra;
+use crate::texts::{Place, Texts};
+
+/// Names of groups of elements; more are none that anybody reads.
+const MAX_GROUPS: usize = 1000;
+
+/// Cards of a deck, as they are read.
+#[derive(Default)]
+struct Deck {
+    space: Space,
+    tetrahedra: Vec<Element>,
+    triangles: Vec<Element>,
+    solids: BTreeMap<String, (usize, Place)>,
+    shells: HashSet<u64>,
+    /// Material of each PSOLID.
+    properties: BTreeMap<u64, u64>,
+    /// Young's modulus, shear modulus, Poisson's ratio, density and damping.
+    isotropic: HashMap<u64, [Option<f64>; 5]>,
+    /// Kinds of materials that are not read.
+    others: HashMap<u64, String>,
+    masses: Vec<Mass>,
+    mass_of_weight: f64,
+    unused: BTreeMap<String, usize>,
+    unknown: Option<(usize, Place)>,
+}
+
+struct Element {
+    place: Place,
+    label: u64,
+    property: u64,
+    nodes: Vec<u64>,
+}
+
+/// A CONM2.
+struct Mass {
+    place: Place,
+    node: u64,
+    /// None where the offset is a position.
+    system: Option<u64>,
+    mass: f64,
+    offset: [f64; 3],
+    has_inertia: bool,
+}
+
+pub(super) fn imported(
+    texts: &Texts<'_>,
+    bulk: &Bulk<'_>,
+    source: &Path,
+    raise_order: bool,
+) -> Result<Imported, ImportError> {
+    let mut deck = Deck { mass_of_weight: 1.0, ..Deck::default() };
+    for card in &bulk.cards {
+        deck.take(texts, card)?;
+    }
+    if let Some((_, first)) = deck.solids.values().next() {
+        let each: Vec<String> = deck.solids.iter().map(|(name, (count, _))| format!("{count} {name}")).collect();
+        let found = format!("it has elements that are no tetrahedra: {}", each.join(", "));
+        return Err(texts.refuse(
+            *first,
+            found,
+            "mesh with ten-node tetrahedra (CTETRA), or give mass and stiffness of any elements in place of the mesh: `matrices` in \
+             [body], which other programs write (docs/reference/matrices.md)",
+        ));
+    }
+    let positions = deck.space.positions(texts)?;
+    if positions.is_empty() {
+        return Err(ImportError::Refused {
+            source_name: source.display().to_string(),
+            found: "it has no nodes".to_owned(),
+            help: "check the file; its nodes are GRID cards".to_owned(),
+        });
+    }
+    let rows: HashMap<u64, u32> = positions.iter().zip(0..).map(|((label, _), row)| (*label, row)).collect();
+    let mut found = Tetrahedra {
+        source: source.display().to_string(),
+        node_tags: positions.iter().map(|(label, _)| *label).collect(),
+        positions: positions.iter().map(|(_, position)| *position).collect(),
+        ..Tetrahedra::default()
+    };
+    let mut notes = Vec::new();
+    deck.elements(texts, &rows, &mut found, &mut notes)?;
+    let with_tetrahedra: HashSet<u64> = deck.tetrahedra.iter().map(|element| element.property).collect();
+    let materials = deck.materials(&with_tetrahedra, &mut notes);
+    let mut left = deck.masses(texts, &rows, &found.positions)?;
+    let count = found.elements.len();
+    let (mesh, mut of_mesh) = found.mesh(raise_order)?;
+    notes.append(&mut of_mesh);
+    left.extend(deck.unused.iter().map(|(name, count)| format!("{count} {name}")));
+    if let Some((count, place)) = deck.unknown {
+        left.push(format!("{count} card(s) that are not known here, the first in {}", texts.named(place)));
+    }
+    if bulk.lines_after > 0 {
+        left.push(format!("{} lines after ENDDATA", bulk.lines_after));
+    }
+    notes.extend(notes::not_used(count, &left));
+    let materials = materials.into_iter().filter(|material| mesh.groups().contains(&material.group)).collect();
+    Ok(Imported { mesh, notes, materials })
+}
+
+fn group_of(property: u64) -> String {
+    format!("ref_{property}")
+}
+
+impl Deck {
+    fn count(&mut self, name: &str) {
+        *self.unused.entry(name.to_owned()).or_insert(0) += 1;
+    }
+
+    fn take(&mut self, texts: &Texts<'_>, card: &Card<'_>) -> Result<(), ImportError> {
+        match card.name.as_str() {
+            "GRID" => {
+                self.space.grid(texts, card)?;
+                if !matches!(card.field(7), "" | "0") {
+                    self.count("GRID with a support (PS)");
+                }
+            }
+            "GRDSET" => {
+                self.space.default = card.whole(texts, 2)?.unwrap_or(0);
+                if !matches!(card.field(7), "" | "0") {
+                    self.count("GRDSET with supports (PS)");
+                }
+            }
+            "CORD1R" | "CORD1C" | "CORD1S" | "CORD2R" | "CORD2C" | "CORD2S" => self.space.system(texts, card)?,
+            "CTETRA" => {
+                let element = element(texts, card, &[4, 10])?;
+                self.tetrahedra.push(element);
+            }
+            "CTRIA3" | "CTRIAR" => self.triangles.push(element(texts, card, &[3])?),
+            "CTRIA6" => self.triangles.push(element(texts, card, &[3, 6])?),
+            "PSOLID" => {
+                if self.properties.insert(card.label(texts, 1)?, card.label(texts, 2)?).is_some() {
+                    let found = format!("PSOLID {} a second time", card.field(1));
+                    return Err(texts.refuse(card.place, found, "give each property a number of its own"));
+                }
+            }
+            "MAT1" => {
+                let number = |field: usize| card.number(texts, field);
+                let numbers = [number(2)?, number(3)?, number(4)?, number(5)?, number(8)?];
+                if self.isotropic.insert(card.label(texts, 1)?, numbers).is_some() {
+                    let found = format!("MAT1 {} a second time", card.field(1));
+                    return Err(texts.refuse(card.place, found, "give each material a number of its own"));
+                }
+            }
+            "PARAM" => match card.field(1).to_uppercase().as_str() {
+                "WTMASS" => self.mass_of_weight = card.number(texts, 2)?.unwrap_or(1.0),
+                "G" | "W3" | "W4" => self.count("PARAM of damping"),
+                _ => {}
+            },
+            "CONM2" => {
+                let system = if card.field(3) == "-1" { None } else { Some(card.whole(texts, 3)?.unwrap_or(0)) };
+                let number = |field: usize| card.number_or_nought(texts, field);
+                let mut has_inertia = false;
+                for field in 9..=14 {
+                    has_inertia |= number(field)? != 0.0;
+                }
+                self.masses.push(Mass {
+                    place: card.place,
+                    node: card.label(texts, 2)?,
+                    system,
+                    mass: number(4)?,
+                    offset: [number(5)?, number(6)?, number(7)?],
+                    has_inertia,
+                });
+            }
+            "RBE2" => self.count("RBE2 (in a scene: a marker with tie = \"rigid\")"),
+            "RBE3" => self.count("RBE3 (in a scene: a marker with tie = \"mean\")"),
+            name if SOLIDS.contains(&name) => {
+                self.solids.entry(name.to_owned()).or_insert((0, card.place)).0 += 1;
+            }
+            name if is_silent(name) => {}
+            name => {
+                if SHELLS.contains(&name) {
+                    self.shells.insert(card.label(texts, 1)?);
+                }
+                if name.starts_with("MAT")
+                    && let Ok(Some(label)) = card.whole(texts, 1)
+                    && known(name).is_some_and(|name| !name.starts_with("MATT"))
+                {
+                    self.others.insert(label, name.to_owned());
+                }
+                match known(name) {
+                    Some(name) => self.count(name),
+                    None => self.unknown.get_or_insert((0, card.place)).0 += 1,
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Elements and the groups of their properties.
+    fn elements(
+        &mut self,
+        texts: &Texts<'_>,
+        rows: &HashMap<u64, u32>,
+        found: &mut Tetrahedra,
+        notes: &mut Vec<String>,
+    ) -> Result<(), ImportError> {
+        let nodes_of = |element: &Element| -> Result<Vec<u32>, ImportError> {
+            let row = |label: &u64| {
+                rows.get(label).copied().ok_or_else(|| {
+                    let found = format!("element {} has node {label}, which is not there", element.label);
+                    texts.refuse(element.place, found, "check the nodes of the deck, and that all its files are there")
+                })
+            };
+            element.nodes.iter().map(row).collect()
+        };
+        let mut seen = HashSet::new();
+        let mut groups: BTreeMap<u64, Vec<u32>> = BTreeMap::new();
+        for (element, row) in self.tetrahedra.iter().zip(0..) {
+            if !seen.insert(element.label) {
+                let found = format!("element {} is there twice", element.label);
+                return Err(texts.refuse(element.place, found, "number its elements anew"));
+            }
+            found.elements.push(nodes_of(element)?);
+            found.element_tags.push(element.label);
+            groups.entry(element.property).or_default().push(row);
+        }
+        let mut surfaces: BTreeMap<u64, Vec<[u32; 3]>> = BTreeMap::new();
+        let mut shells = 0;
+        for element in &self.triangles {
+            if self.shells.contains(&element.property) {
+                shells += 1;
+                continue;
+            }
+            let nodes = nodes_of(element)?;
+            surfaces.entry(element.property).or_default().push([nodes[0], nodes[1], nodes[2]]);
+        }
+        if shells > 0 {
+            self.unused.insert("triangles with PSHELL or PCOMP".to_owned(), shells);
+        }
+        if groups.len().max(surfaces.len()) > MAX_GROUPS {
+            let count = groups.len().max(surfaces.len());
+            notes.push(format!("the elements have {count} properties, which make no groups"));
+            return Ok(());
+        }
+        found.groups = groups.into_iter().map(|(property, members)| (group_of(property), members)).collect();
+        found.surfaces = surfaces.into_iter().map(|(property, members)| (group_of(property), members)).collect();
+        Ok(())
+    }
+
+    /// Masses on nodes in a sentence, with their sum.
+    fn masses(
+        &mut self,
+        texts: &Texts<'_>,
+        rows: &HashMap<u64, u32>,
+        positions: &[[f64; 3]],
+    ) -> Result<Vec<String>, ImportError> {
+        let (mut masses, mut elsewhere) = (Vec::new(), (0, 0.0));
+        let mut with_inertia = 0;
+        for Mass { place, node, system, mass, offset, has_inertia } in &self.masses {
+            with_inertia += usize::from(*has_inertia);
+            let Some(at) = rows.get(node).map(|row| positions[*row as usize]) else {
+                let found = format!("CONM2 at node {node}, which is not there");
+                return Err(texts.refuse(
+                    *place,
+                    found,
+                    "check the nodes of the deck, and that all its files are there",
+                ));
+            };
+            let mass = mass * self.mass_of_weight;
+            let place = match system {
+                None => Some(*offset),
+                Some(_) if *offset == [0.0; 3] => Some(at),
+                Some(system) => {
+                    let offset = self.space.vector(texts, *place, *system, *offset)?;
+                    offset.map(|offset| std::array::from_fn(|i| at[i] + offset[i]))
+                }
+            };
+            match place {
+                Some(place) => masses.push((place, mass)),
+                None => elsewhere = (elsewhere.0 + 1, elsewhere.1 + mass),
+            }
+        }
+        let mut left: Vec<String> = notes::masses("CONM2", &masses).into_iter().collect();
+        if elsewhere.0 > 0 {
+            left.push(format!("{} CONM2 with offsets in systems of angles ({:.4e})", elsewhere.0, elsewhere.1));
+        }
+        if with_inertia > 0 {
+            left.push(format!("moments of inertia of {with_inertia} CONM2"));
+        }
+        Ok(left)
+    }
+
+    /// The materials of the properties that tetrahedra have.
+    fn materials(&self, with_tetrahedra: &HashSet<u64>, notes: &mut Vec<String>) -> Vec<DeckMaterial> {
+        let mut found = Vec::new();
+        for (property, label) in self.properties.iter().filter(|(property, _)| with_tetrahedra.contains(property)) {
+            let group = group_of(*property);
+            let Some([young, shear, poisson, density, damping]) = self.isotropic.get(label) else {
+                let found = match self.others.get(label) {
+                    Some(kind) => format!("it is of kind {kind}, and only MAT1 is"),
+                    None => "there is none of that number".to_owned(),
+                };
+                notes.push(format!("the material {label} of {group} is not read: {found}"));
+                continue;
+            };
+            // Each follows from the two others.
+            let poisson_ratio = match (poisson, young, shear) {
+                (Some(poisson), ..) => *poisson,
+                (None, Some(young), Some(shear)) if *shear > 0.0 => young / (2.0 * shear) - 1.0,
+                _ => 0.0,
+            };
+            let young_modulus = match (young, shear) {
+                (Some(young), _) => *young,
+                (None, Some(shear)) if poisson.is_some() => 2.0 * shear * (1.0 + poisson_ratio),
+                _ => 0.0,
+            };
+            let density = density.unwrap_or(0.0) * self.mass_of_weight;
+            if young_modulus > 0.0 && poisson_ratio > -1.0 && poisson_ratio < 0.5 && density > 0.0 {
+                let name = format!("MAT1 {label}");
+                let material = Material { young_modulus, poisson_ratio, density };
+                found.push(DeckMaterial { group: group.clone(), name, material });
+            } else {
+                notes.push(format!(
+                    "the material MAT1 {label} of {group} is not read: Young's modulus {young_modulus}, Poisson's ratio \
+                     {poisson_ratio}, density {density}"
+                ));
+            }
+            if damping.is_some_and(|damping| damping != 0.0) {
+                notes.push(format!("the damping GE of the material MAT1 {label} is not read"));
+            }
+        }
+        found
+    }
+}
+
+/// An element with one of these numbers of nodes.
+fn element(texts: &Texts<'_>, card: &Card<'_>, counts: &[usize]) -> Result<Element, ImportError> {
+    let label = card.label(texts, 1)?;
+    let property = card.whole(texts, 2)?.unwrap_or(label);
+    let most = counts.iter().copied().max().unwrap_or(0);
+    // Fields after the nodes of a triangle are its thickness and angle.
+    let last = if card.name == "CTETRA" { card.len() } else { card.len().min(2 + most) };
+    let filled = (3..=last).rev().find(|field| !card.field(*field).is_empty()).unwrap_or(2);
+    let count = filled - 2;
+    if !counts.contains(&count) {
+        let each = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ");
+        let found = format!("{} {label} with {count} nodes, expected {each}", card.name);
+        let help =
+            "check the card and the lines that continue it; elements with nodes on some of their edges are not read";
+        return Err(texts.refuse(card.place, found, help));
+    }
+    let nodes = (3..=filled).map(|field| card.label(texts, field)).collect::<Result<_, _>>()?;
+    Ok(Element { place: card.place, label, property, nodes })
+}

@@ -1,0 +1,319 @@
+//! Decks of Nastran in the forms that people have: each is the same box of 3 x 1 x 1, or is refused with its line. Needs gmsh
+//! (`./dev test` sees to it).
+
+use std::fmt::Write;
+use std::fs;
+
+use bar::{Bar, Dice, mean_of, of_environment, volume};
+use mesh_import::{ImportSettings, Imported};
+
+mod bar;
+
+/// The cards of the elements, all of property 1. Abaqus and Nastran have one order of nodes.
+fn elements(bar: &Bar) -> String {
+    let card = |element: &Vec<u64>| {
+        let words: Vec<String> = element.iter().map(u64::to_string).collect();
+        format!("CTETRA,{},1,{},+\n+,{}\n", words[0], words[1..7].join(","), words[7..].join(","))
+    };
+    bar.elements.iter().map(card).collect()
+}
+
+fn grids(bar: &Bar, system: &str, of: impl Fn([f64; 3]) -> [f64; 3]) -> String {
+    let card = |(label, x): &(u64, [f64; 3])| {
+        let [x, y, z] = of(*x);
+        format!("GRID*,{label},{system},{x:?},{y:?}\n*,{z:?}\n")
+    };
+    bar.nodes.iter().map(card).collect()
+}
+
+fn cylindrical([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [x.hypot(y), y.atan2(x).to_degrees(), z]
+}
+
+fn spherical([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [(x * x + y * y + z * z).sqrt(), x.hypot(y).atan2(z).to_degrees(), y.atan2(x).to_degrees()]
+}
+
+fn all_in_place(bar: &Bar, name: &str, text: &str) {
+    let Imported { mesh, .. } = bar.read("deck.bdf", text).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let parts = mesh.parts();
+    assert_eq!(parts.positions.len(), bar.nodes.len(), "{name}");
+    for (tag, x) in parts.node_tags.iter().zip(&parts.positions) {
+        let (_, given) = bar.nodes.iter().find(|(label, _)| label == tag).unwrap();
+        let is_there = (0..3).all(|i| (x[i] - given[i]).abs() < 1e-9);
+        assert!(is_there, "{name}: node {tag} at {x:?} for {given:?}");
+    }
+}
+
+/// Closed form: the nodes are at the same places, whatever system they are written in.
+#[test]
+fn coordinates_are_read_in_their_systems() {
+    let bar = Bar::new();
+    let elements = elements(&bar);
+    // The axes of a system with its origin in (1, 2, 3), z along X and x along Y.
+    let turned = |x: [f64; 3]| [x[1] - 2.0, x[2] - 3.0, x[0] - 1.0];
+    let system = "1.,2.,3.,5.,2.,3.\n,1.,4.,3.\n";
+    for (name, nodes) in [
+        ("basic", grids(&bar, "", |x| x)),
+        ("nought over GRDSET", format!("GRDSET,,7\nCORD2R,7,,{system}{}", grids(&bar, "0", |x| x))),
+        ("rectangular", format!("CORD2R,7,0,{system}{}", grids(&bar, "7", turned))),
+        (
+            "cylindrical by GRDSET",
+            format!("{}CORD2C,7,,{system}GRDSET,,7\n", grids(&bar, "", |x| cylindrical(turned(x)))),
+        ),
+        ("spherical", format!("cord2s,7,,{system}{}", grids(&bar, "7", |x| spherical(turned(x))))),
+        // The origin of the second is at (2, 2, 4) of the basic system; its points are given by radius, angle and height.
+        (
+            "a chain",
+            format!(
+                "CORD2C,8,7,1.,90.,1.,1.,90.,9.\n,2.,90.,1.\n{}CORD2C,7,,{system}",
+                grids(&bar, "8", |x| {
+                    // z is along X, x along Z.
+                    cylindrical([x[2] - 4.0, -(x[1] - 2.0), x[0] - 2.0])
+                })
+            ),
+        ),
+        (
+            "of nodes",
+            format!(
+                "GRID,9001,,1.,2.,3.\nGRID,9002,,5.,2.,3.\nGRID,9003,,1.,4.,3.\nCORD1S,3,9001,9002,9003,7,9001,9002,9003\n{}",
+                grids(&bar, "7", |x| spherical(turned(x)))
+            ),
+        ),
+    ] {
+        all_in_place(&bar, name, &format!("{nodes}{elements}"));
+    }
+    for (cards, words) in [
+        ("GRID,9001,5,1.,2.,3.", ["line 1", "coordinate system 5"]),
+        ("GRID,9001,x,1.,2.,3.", ["line 1", "field 3"]),
+        ("GRID,9001,,1.,2 .,3.", ["line 1", "field 5"]),
+        (
+            "CORD2R,1,2,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nCORD2R,2,1,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nGRID,9001,2",
+            ["line 3", "in itself"],
+        ),
+        ("CORD2R,1,,0.,0.,0.,0.,0.,1.\n,0.,0.,3.\nGRID,9001,1", ["line 1", "on a line"]),
+        ("$\n=,*(1),=", ["line 2", "expected a card"]),
+        ("GRID,1,,0.,0.,0.,,,,+A\n+B,1", ["line 2", "continues no card"]),
+        ("GRID,1\nCTETRA,1,1,1,1,1,1,1", ["line 2", "5 nodes"]),
+        ("GRID,1\nCTETRA,1,1,1,1,1,2", ["line 2", "node 2"]),
+        ("GRID,1\nCHEXA,1,1,1,1,1,2", ["line 2", "1 CHEXA"]),
+        ("GRID,1\nGRID,1,,2.", ["line 2", "twice"]),
+        ("GRID,1,,2.,,,,,,,3.", ["line 1", "more than 10 fields"]),
+        ("INCLUDE 'nowhere.bdf'", ["line 1", "nowhere.bdf"]),
+    ] {
+        let said = bar.read("bad.bdf", cards).unwrap_err().to_string();
+        assert!(words.iter().all(|word| said.contains(word)), "{cards}: {said}");
+    }
+}
+
+/// Closed form: the volume of a quarter of a ring, whose nodes are given by radius and angle. The edges along the circle are
+/// parabolas.
+#[test]
+fn a_bar_in_a_cylindrical_system_is_a_quarter_of_a_ring() {
+    let bar = Bar::new();
+    let nodes = grids(&bar, "3", |[x, y, z]| [10.0 + y, 30.0 * x, z]);
+    let text = format!("CORD2C,3,,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n{nodes}{}", elements(&bar));
+    let mesh = bar.read("ring.bdf", &text).unwrap_or_else(|error| panic!("{error}")).mesh;
+    let exact = std::f64::consts::PI / 4.0 * (11.0_f64.powi(2) - 10.0_f64.powi(2));
+    assert!((volume(&mesh) / exact - 1.0).abs() < 2e-3, "{} for {exact}", volume(&mesh));
+}
+
+#[test]
+fn what_is_not_used_is_counted_and_named() {
+    let bar = Bar::new();
+    let more = "PARAM,WTMASS,.001\nCORD2R,7,,0.,0.,0.,1.,0.,0.\n,0.,1.,0.\nCONM2,9001,1,7,7.85-1,0.,0.,.5\nRBE2,9002,1,123456,2\n\
+                RBE3,9003,,1,123,1.,123,2,3\nCBAR,9004,1,1,2,0.,0.,1.\nCELAS2,9005,1.+3,1,1\nPSHELL,9,1,.1\nCTRIA3,9006,9,1,2,3\n\
+                SPC1,1,123,1\nSECRET,1\nENDDATA\nMORE\n";
+    let [x, y, z] = bar.nodes.iter().find(|(label, _)| *label == 1).unwrap().1;
+    let text = format!("{}{}{more}", grids(&bar, "", |x| x), elements(&bar));
+    let notes = bar.read("more.bdf", &text).unwrap_or_else(|error| panic!("{error}")).notes;
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    let place = format!("point_masses = [{{ at = [{:?}, {y:?}, {z:?}]", x + 0.5);
+    for words in [
+        "read: ",
+        "1 CONM2 (7.8500e-4",
+        place.as_str(),
+        "1 RBE2 (in a scene: a marker with tie = \"rigid\")",
+        "1 RBE3 (in a scene: a marker with tie = \"mean\")",
+        "1 CBAR",
+        "1 CELAS2",
+        "1 PSHELL",
+        "1 triangles with PSHELL",
+        "1 SPC1",
+        "1 card(s) that are not known here, the first in line",
+        "1 lines after ENDDATA",
+    ] {
+        assert!(notes[0].contains(words), "{words}: {notes:?}");
+    }
+    assert!(!notes[0].contains("SECRET"));
+}
+
+#[test]
+fn elements_that_are_all_mirrored_are_turned_and_told() {
+    let bar = Bar::new();
+    let text = format!("{}{}", grids(&bar, "", |[x, y, z]| [-x, y, z]), elements(&bar));
+    let Imported { mesh, notes, .. } = bar.read("mirrored.bdf", &text).unwrap_or_else(|error| panic!("{error}"));
+    assert!((volume(&mesh) - 3.0).abs() < 1e-9);
+    assert!(notes.len() == 1 && notes[0].contains("are turned"), "{notes:?}");
+}
+
+#[test]
+fn an_included_file_is_not_quoted() {
+    let bar = Bar::new();
+    for secret in ["user:password\n", "GRID,password\n", "password,1\n", "PASSWORD,1\n"] {
+        fs::write(bar.folder.path().join("secret.txt"), secret).unwrap();
+        let said = bar.read("leak.bdf", "GRID,1\nINCLUDE 'secret.txt'\n").unwrap_err().to_string();
+        assert!(!said.to_lowercase().contains("password"), "{said}");
+    }
+}
+
+/// Conserved: nodes, volume and groups of one body, however its deck is written. `FLEXFRAME_DECKS` is the number of decks.
+#[test]
+fn one_body_written_at_random_is_one_body() {
+    let bar = Bar::new();
+    for seed in 0..of_environment() {
+        let text = written(&bar, &mut Dice(seed));
+        let name = format!("{seed}.{}", ["bdf", "nas", "fem"][seed as usize % 3]);
+        let Imported { mesh, materials, .. } =
+            bar.read(&name, &text).unwrap_or_else(|error| panic!("{seed}: {error}\n{text}"));
+        fs::remove_file(bar.folder.path().join(name)).unwrap();
+        assert_eq!(mesh.elements().len(), bar.elements.len(), "{seed}");
+        // Fields of eight letters have five digits.
+        assert!((volume(&mesh) - 3.0).abs() < 1e-3, "{seed}: {}", volume(&mesh));
+        assert_eq!(mesh.groups(), ["ref_1"], "{seed}");
+        assert_eq!(materials.first().map(|deck| deck.material.density), Some(7.85e-9), "{seed}: {materials:?}");
+    }
+}
+
+/// A card in one of the formats of fields.
+fn card(dice: &mut Dice, name: &str, fields: &[String]) -> String {
+    let name = dice.spelled(name);
+    let mut text = String::new();
+    let (is_free, is_wide) = (dice.up_to(2) == 0, dice.up_to(2) == 0);
+    let count = if is_wide { 4 } else { 8 };
+    let lines: Vec<&[String]> = fields.chunks(count).collect();
+    for (number, line) in lines.iter().enumerate() {
+        let mark = if is_wide { "*" } else { "" };
+        let head = match (number, dice.up_to(3)) {
+            (0, _) => format!("{name}{mark}"),
+            (_, 0) if !is_wide => String::new(),
+            _ => format!("{}{}", if is_wide { "*" } else { "+" }, ["", "C1"][dice.up_to(2)]),
+        };
+        let label = if number + 1 < lines.len() && line.len() == count { ["", "+C1", "+"][dice.up_to(3)] } else { "" };
+        if is_free {
+            let space = ["", " "][dice.up_to(2)];
+            let words: Vec<String> = line.iter().map(|word| format!("{space}{word}")).collect();
+            let _ = write!(text, "{head},{}", words.join(","));
+            if !label.is_empty() {
+                let _ = write!(text, ",{label}");
+            }
+        } else {
+            let width = if is_wide { 16 } else { 8 };
+            if width == 8 && number == 0 && dice.up_to(4) == 0 && head.len() < 8 {
+                text += &format!("{head}\t");
+            } else {
+                text += &format!("{head:<8}");
+            }
+            for word in *line {
+                text += &if dice.up_to(2) == 0 { format!("{word:>width$}") } else { format!("{word:<width$}") };
+            }
+            if label.is_empty() {
+                text.truncate(text.trim_end().len());
+            } else {
+                text += &" ".repeat(width * (count - line.len()));
+                text += label;
+            }
+        }
+        text += ["", " $ a comment"][usize::from(dice.up_to(10) == 0)];
+        text += "\n";
+        if dice.up_to(20) == 0 {
+            text += "$ GRID,1,,9.\n\n";
+        }
+    }
+    text
+}
+
+/// A number in eight letters at most.
+fn short(dice: &mut Dice, number: f64) -> String {
+    if number.abs() < 1e-12 {
+        return ["", "0.", "0.0", ".0"][dice.up_to(4)].to_owned();
+    }
+    match dice.up_to(3) {
+        0 => {
+            let text = format!("{number:.2e}");
+            let exact = format!("{number:.4}");
+            // Only where no digit is lost.
+            let is_exact = text.parse::<f64>().is_ok_and(|read| (read - number).abs() < 1e-12);
+            if is_exact { text.replace("e-", "-").replace('e', "+") } else { exact }
+        }
+        1 => format!("{number:.5}").chars().take(8).collect::<String>().trim_end_matches('0').to_owned(),
+        _ => format!("{number:.4}"),
+    }
+}
+
+fn written(bar: &Bar, dice: &mut Dice) -> String {
+    let end = ["\n", "\r\n"][dice.up_to(2)];
+    let mut cards = Vec::new();
+    let system = [0, 7, 8][dice.up_to(3)];
+    let is_default = dice.up_to(2) == 0;
+    for (label, x) in &bar.nodes {
+        let x = match system {
+            0 => *x,
+            7 => cylindrical(*x),
+            _ => [x[1], x[2] - 1.0, x[0] + 1.0],
+        };
+        let of = if is_default { String::new() } else { system.to_string() };
+        let mut fields = vec![label.to_string(), of];
+        fields.extend(x.map(|c| short(dice, c)));
+        cards.push(card(dice, "GRID", &fields));
+    }
+    for element in &bar.elements {
+        let mut fields: Vec<String> = element.iter().map(u64::to_string).collect();
+        fields.insert(1, "1".to_owned());
+        cards.push(card(dice, "CTETRA", &fields));
+    }
+    let words = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+    for (name, fields) in [
+        ("CORD2C", words(&["7", "", "0.", "0.", "0.", "0.", "0.", "1.", "1.", "0.", "0."])),
+        ("CORD2R", words(&["8", "0", "-1.", "0.", "1.", "9.", "0.", "1.", "-1.", "1.", "1."])),
+        ("MAT1", words(&["5", "2.1+5", "", ".3", "7.85-9"])),
+        ("PSOLID", words(&["1", "5"])),
+    ] {
+        cards.push(card(dice, name, &fields));
+    }
+    if is_default {
+        cards.push(card(dice, "GRDSET", &words(&["", &system.to_string()])));
+    }
+    // Any order is one deck.
+    for i in (1..cards.len()).rev() {
+        cards.swap(i, dice.up_to(i + 1));
+    }
+    if dice.up_to(3) == 0 {
+        let folder = bar.folder.path().join("more");
+        fs::create_dir_all(&folder).unwrap();
+        let at = dice.up_to(cards.len());
+        let part: String = cards.drain(at..).collect();
+        fs::write(folder.join("a b.dat"), part).unwrap();
+        cards.push(
+            dice.spelled("INCLUDE ")
+                + ["'more/a b.dat'\n", "'more/\n  a b.dat'\n", "\"more\\a b.dat\" $\n"][dice.up_to(3)],
+        );
+    }
+    let before = ["", "$ a deck\n", "SOL 103\nCEND\nTITLE = GRID, 1\nbegin bulk\n"][dice.up_to(3)];
+    let after = ["", "ENDDATA\n", "enddata"][dice.up_to(3)];
+    format!("{before}{}{after}", cards.concat()).replace('\n', end)
+}
+
+/// Straight elements with four nodes get nodes on their edges, if asked for.
+#[test]
+fn elements_of_first_order_are_raised() {
+    let bar = Bar::new();
+    let four: String =
+        bar.elements.iter().map(|e| format!("CTETRA,{},1,{},{},{},{}\n", e[0], e[1], e[2], e[3], e[4])).collect();
+    let text = format!("{}{four}", grids(&bar, "", |x| x));
+    let said = bar.read("four.bdf", &text).unwrap_err().to_string();
+    assert!(said.contains("first order"), "{said}");
+    let settings = ImportSettings { raise_order: true, ..ImportSettings::default() };
+    let mesh = mesh_import::read_mesh(&bar.folder.path().join("four.bdf"), &settings).unwrap().mesh;
+    assert!((volume(&mesh) - 3.0).abs() < 1e-9 && (mean_of(&mesh, "ref_1")[1] - 0.5).abs() < 0.1);
+}
