@@ -205,7 +205,9 @@ fn table_files_and_diagram_say_the_same() {
     assert_eq!((branches.len(), branches[0].len()), (30, 1 + 3 * 12));
     assert_eq!((branches[0][0], branches[29][0]), (100.0, 3000.0));
     // Each critical speed lies where its branch crosses its order, found another way.
-    let critical = rows(&read("critical_speeds.csv"));
+    let critical = read("critical_speeds.csv");
+    assert!(critical.starts_with("order,mode,speed,frequency,kind\n"), "{critical}");
+    let critical = rows(&critical.replace(",crossing", "").replace(",kind", ""));
     // 2x meets chord and flap 1, 0.8x the chord alone: the flap rises by more than the spin.
     assert_eq!(critical.iter().map(|row| row[0]).collect::<Vec<_>>(), [0.8, 2.0, 2.0]);
     for row in &critical {
@@ -295,4 +297,69 @@ fn a_blade_that_its_spin_bends_vibrates_about_its_rest_at_each_speed() {
     assert!(straight["deflection"].is_null(), "{}", straight["deflection"]);
     let difference = at(&straight, 2)[0] / 6.20321 - 1.0;
     assert!(difference < -0.005, "{difference}");
+}
+
+/// Closed form: the lag hinge of the rotor blade with a damper, ζ̈ + 2d ζ̇ + a Ω² ζ = 0, swings from d/√a on, and meets order n at d/√(a − n²). Its
+/// d and a are those of the highest speed.
+#[test]
+fn an_overdamped_hinge_begins_to_swing_and_is_stable_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let arguments =
+        ["campbell", "examples/mechanisms/rotor_blade.toml", "--speeds", "0:60:4", "--orders", "0.25,1,2", "-o", out];
+    let report = json(&arguments);
+    assert!(report["stable_below"].is_null(), "{}", report["stable_below"]);
+    let swings = report["swing_limits"].as_array().unwrap();
+    assert_eq!(swings.len(), 1, "{swings:?}");
+    let lag = swings[0]["mode"].as_u64().unwrap() as usize - 1;
+    let last = |name: &str| report["branches"][lag][name].as_array().unwrap().last().unwrap().as_f64().unwrap();
+    let damping = -last("growth");
+    let a = ((TAU * last("frequency")).powi(2) + damping.powi(2)) / 60.0_f64.powi(2);
+    let (begins, expected) = (swings[0]["speed"].as_f64().unwrap(), damping / a.sqrt());
+    assert!((begins / expected - 1.0).abs() < 1e-3, "{begins} {expected}");
+    assert_eq!(swings[0]["swings_above"].as_bool(), Some(true));
+    // Flapping is 1.068 Ω and meets no order.
+    let critical = report["critical_speeds"].as_array().unwrap();
+    assert_eq!(critical.len(), 1, "{critical:?}");
+    let (meets, expected) = (critical[0]["speed"].as_f64().unwrap(), damping / (a - 0.0625).sqrt());
+    assert!((meets / expected - 1.0).abs() < 1e-3, "{meets} {expected}");
+    assert_eq!((critical[0]["kind"].as_str(), critical[0]["order"].as_f64()), (Some("crossing"), Some(0.25)));
+}
+
+/// Closed form: a mass on a spring along a driven arm has ω² = k/m − Ω², and flies out from √(k/m) on.
+#[test]
+fn a_mass_on_a_spinning_arm_flies_out_from_the_frequency_of_its_spring_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("arm.toml");
+    let rigid =
+        "rigid = { mass = 2.0, center_of_mass = [0, 0, 0], inertia = [[1e-2, 0, 0], [0, 1e-2, 0], [0, 0, 1e-2]] }";
+    let text = format!(
+        "title = \"Arm\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n[bodies.arm]\n{rigid}\n\
+         markers = {{ a = {{ at = [0, 0, 0] }} }}\n[bodies.bob]\n{rigid}\nmarkers = {{ a = {{ at = [0, 0, 0] }} }}\n\
+         [[joints]]\nname = \"axle\"\nkind = \"revolute\"\nbetween = [\"ground\", \"arm.a\"]\naxis = [0, 0, 1]\n\
+         drive = {{ amplitude = 1.0, history = {{ kind = \"expression\", formula = \"t\" }} }}\n\
+         [[joints]]\nname = \"slide\"\nkind = \"prismatic\"\nbetween = [\"arm.a\", \"bob.a\"]\naxis = [1, 0, 0]\n\
+         spring = {{ stiffness = 200.0 }}\n[time]\nend = 1.0\ntolerance = 1e-5\n"
+    );
+    std::fs::write(&scene, text).unwrap();
+    let out = folder.path().join("out");
+    let arguments =
+        ["campbell", scene.to_str().unwrap(), "--speeds", "0:12:5", "--orders", "1,3", "-o", out.to_str().unwrap()];
+    let report = json(&arguments);
+    let stable_below = report["stable_below"].as_f64().unwrap();
+    assert!((stable_below - 10.0).abs() < 1e-9, "{stable_below}");
+    assert!(report["swing_limits"].is_null());
+    let found: Vec<(&str, f64, f64)> = report["critical_speeds"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| (one["kind"].as_str().unwrap(), one["order"].as_f64().unwrap(), one["speed"].as_f64().unwrap()))
+        .collect();
+    let expected =
+        [("growth_begins", 0.0, 10.0), ("crossing", 1.0, 50.0_f64.sqrt()), ("crossing", 3.0, 10.0_f64.sqrt())];
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert_eq!((found.0, found.1), (expected.0, expected.1));
+        assert!((found.2 / expected.2 - 1.0).abs() < 1e-9, "{found:?} {expected:?}");
+    }
 }

@@ -12,6 +12,7 @@ mod critical;
 mod diagram;
 mod error;
 mod files;
+mod limits;
 mod report;
 mod system;
 mod table;
@@ -25,7 +26,7 @@ use scene::{Choice, Flexible, Scene};
 
 pub use bent::AboutRest;
 pub use branches::Branch;
-pub use critical::Critical;
+pub use critical::{Critical, CriticalKind, SwingLimit};
 pub use error::CampbellError;
 pub use files::files;
 pub use report::{CampbellReport, SpinEffects};
@@ -174,7 +175,8 @@ pub fn campbell(
             let critical = critical::between(&branches, &settings.orders);
             let grows = |here: &Vec<dynamics::SpinMode>| here.iter().any(|mode| mode.growth > 0.0);
             let first = branches.modes.iter().position(grows).map(|at| branches.speeds[at]);
-            let stops = critical.iter().filter(|critical| critical.order == 0.0).map(|critical| critical.speed);
+            let stops = critical.iter().filter(|critical| critical.kind == CriticalKind::ZeroFrequency);
+            let stops = stops.map(|critical| critical.speed);
             let stable_below = stops.chain(first).reduce(f64::min);
             (branches, stable_below, critical, 0)
         }
@@ -192,6 +194,7 @@ pub fn campbell(
         effects: Some(effects),
         stable_below,
         critical_speeds,
+        swing_limits: Vec::new(),
         deflection: bent.iter().flat_map(|bent| branches.speeds.iter().map(|speed| bent.deflection(*speed))).collect(),
         branches: branches.lines(static_shapes),
         speeds: branches.speeds,

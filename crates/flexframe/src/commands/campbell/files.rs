@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use whole_file::write_whole;
 
+use super::critical::Critical;
 use super::diagram::draw;
 use super::error::CampbellError;
 use super::report::CampbellReport;
@@ -62,9 +63,9 @@ fn branches(report: &CampbellReport) -> String {
 }
 
 fn critical_speeds(report: &CampbellReport) -> String {
-    let mut csv = "order,mode,speed,frequency\n".to_owned();
-    for critical in &report.critical_speeds {
-        let _ = writeln!(csv, "{},{},{:e},{:e}", critical.order, critical.mode, critical.speed, critical.frequency);
+    let mut csv = "order,mode,speed,frequency,kind\n".to_owned();
+    for &Critical { kind, order, mode, speed, frequency } in &report.critical_speeds {
+        let _ = writeln!(csv, "{order},{mode},{speed:e},{frequency:e},{}", kind.name());
     }
     csv
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::branches::Branch;
-use super::critical::Critical;
+use super::critical::{Critical, SwingLimit};
 use crate::files::json;
 use crate::report::MeshReport;
 
@@ -46,8 +46,11 @@ pub struct CampbellReport {
     /// The spin speed at which the body loses its stability because K + Ω²(K_σ − N) is no longer positive definite; none
     /// if it never does. Of a system, and about the rest of the full body, the lowest of the speeds at which a vibration grows; none if none does within them.
     pub stable_below: Option<f64>,
-    /// Where orders and branches cross, by order and speed; order 0 where a frequency is zero.
+    /// Where orders and branches cross, by order and speed; order 0 where a frequency is zero, or growth begins or ends.
     pub critical_speeds: Vec<Critical>,
+    /// Where vibrations that are damped so much that they only decay begin to swing, or stop to, by speed: no limits of stability.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub swing_limits: Vec<SwingLimit>,
     /// Files written.
     #[serde(serialize_with = "json::paths")]
     pub files: Vec<PathBuf>,

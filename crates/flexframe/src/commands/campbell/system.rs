@@ -8,9 +8,11 @@ use nalgebra::Vector3;
 use scene::System;
 
 use super::branches::Branches;
+use super::critical::CriticalKind;
 use super::error::CampbellError;
+use super::limits::Limits;
 use super::report::{CampbellReport, SpinEffects};
-use super::{CampbellProgress, Speeds, checked, critical, files, spinning, unit};
+use super::{CampbellProgress, Speeds, checked, files, spinning, unit};
 use crate::commands::modes::frequency_unit;
 use crate::commands::system_modes::{TiedMotion, body_names, build, tied_motions};
 
@@ -80,8 +82,11 @@ pub fn campbell_of_system(
         flexible.all(|model| model.physics.effects[effect])
     };
     let static_shapes: usize = motion.bodies.iter().map(|body| models[*body].static_shapes()).sum();
+    let limits = Limits::between(&find, &branches, &settings.orders)?;
     let grows = |here: &Vec<dynamics::SpinMode>| here.iter().any(|mode| mode.growth > 0.0);
-    let unstable = branches.modes.iter().position(grows);
+    let unstable = branches.modes.iter().position(grows).map(|at| branches.speeds[at]);
+    let begins = limits.critical.iter().filter(|critical| critical.kind == CriticalKind::GrowthBegins);
+    let stable_below = begins.map(|critical| critical.speed).chain(unstable).reduce(f64::min);
     let mut report = CampbellReport {
         title: scene.title.clone(),
         time_unit: scene.units.time.clone(),
@@ -97,8 +102,9 @@ pub fn campbell_of_system(
             softening: is_on(Effect::DeformedInertia),
             stiffening: is_on(Effect::GeometricStiffening),
         }),
-        stable_below: unstable.map(|at| branches.speeds[at]),
-        critical_speeds: critical::find_between(&find, &branches, &settings.orders)?,
+        stable_below,
+        critical_speeds: limits.critical,
+        swing_limits: limits.swings,
         deflection: Vec::new(),
         branches: branches.lines(static_shapes),
         speeds: branches.speeds,

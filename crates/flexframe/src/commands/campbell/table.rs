@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use super::critical::Critical;
+use super::critical::{Critical, CriticalKind, SwingLimit};
 use super::report::{CampbellReport, SpinEffects};
 use crate::report::quantity;
 
@@ -48,12 +48,16 @@ impl fmt::Display for CampbellReport {
                 "  stable   below {} rad/{time}, about the undeformed body (`--about-rest always` asks the full body)",
                 quantity(speed)
             )?,
+            Some(speed) if self.speeds.first().is_some_and(|first| *first >= speed) => {
+                writeln!(f, "  stable   not at {} rad/{time}, the lowest speed of this range", quantity(speed))?;
+            }
             Some(speed) => writeln!(f, "  stable   below {} rad/{time}", quantity(speed))?,
             None if !self.of_undeformed() => writeln!(f, "  stable   at all speeds of this range")?,
             None => writeln!(f, "  stable   no frequency falls to zero at any speed")?,
         }
         self.write_branches(f)?;
         self.write_critical_speeds(f)?;
+        self.write_swing_limits(f)?;
         write!(f, "\n  wrote     ")?;
         self.files.iter().try_for_each(|file| write!(f, " {}", file.display()))
     }
@@ -116,17 +120,35 @@ impl CampbellReport {
         let rpm = if self.rpm(0.0).is_some() { "       rpm" } else { "" };
         let unit = format!("rad/{}", self.time_unit);
         writeln!(f, "\n  critical speeds\n  order  mode  {unit:>10}{rpm}  frequency, {}", self.frequency_unit)?;
-        for &Critical { order, mode, speed, frequency } in &self.critical_speeds {
+        for &Critical { kind, order, mode, speed, frequency } in &self.critical_speeds {
             write!(f, "  {:>5}  {mode:>4}  {speed:>10.3}", format!("{order}x"))?;
             if let Some(rpm) = self.rpm(speed) {
                 write!(f, "{rpm:>10.1}")?;
             }
-            let zero = match (order == 0.0, self.of_undeformed()) {
-                (false, _) => "",
-                (true, false) => "   the frequency is zero: a limit of stability",
-                (true, true) => "   the frequency is zero: no rest of the model from here on",
+            let words = match kind {
+                CriticalKind::Crossing => "",
+                CriticalKind::ZeroFrequency if self.of_undeformed() => {
+                    "   the frequency is zero: no rest of the model from here on"
+                }
+                CriticalKind::ZeroFrequency => "   the frequency is zero: a limit of stability",
+                CriticalKind::GrowthBegins => "   the vibration grows from here on: a limit of stability",
+                CriticalKind::GrowthEnds => "   the vibration grows up to here: a limit of stability",
             };
-            writeln!(f, "  {frequency:>9.3}{zero}")?;
+            writeln!(f, "  {frequency:>9.3}{words}")?;
+        }
+        Ok(())
+    }
+}
+
+impl CampbellReport {
+    fn write_swing_limits(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for &SwingLimit { mode, speed, swings_above } in &self.swing_limits {
+            let (swings, decays) = if swings_above { ("above", "below") } else { ("below", "above") };
+            let (speed, time) = (quantity(speed), &self.time_unit);
+            writeln!(
+                f,
+                "  mode {mode} swings {swings} {speed} rad/{time}; {decays} it is damped so much that it only decays"
+            )?;
         }
         Ok(())
     }
