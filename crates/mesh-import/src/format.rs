@@ -47,7 +47,9 @@ pub(crate) fn format_of(ending: &str) -> Option<Format> {
             [[0, 0, 0, 1], [1, 0, 0, 0]].iter().any(|one| head.starts_with(one))
         }),
         "med" | "h5m" => format("an HDF5 file", is_hdf5),
-        "e" | "exo" => format("a NetCDF or HDF5 file", |head| head.starts_with(b"CDF") || is_hdf5(head)),
+        "e" | "exo" | "ex2" | "g" | "gen" => {
+            format("a NetCDF or HDF5 file", |head| head.starts_with(b"CDF") || is_hdf5(head))
+        }
         _ => None,
     }
 }

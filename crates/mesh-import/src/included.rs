@@ -42,7 +42,13 @@ fn named_in(path: &Path) -> Vec<PathBuf> {
     for line in lines(file) {
         let spaceless = line.to_uppercase().replace(' ', "");
         if words.iter().any(|word| spaceless.contains(word)) {
-            let names = line.split(['"', '\'', '=', '<', '>', ',', ':']).map(str::trim).filter(|name| !name.is_empty());
+            let names = line.split(['"', '\'', '=', '<', '>', ',', ':']).map(str::trim);
+            // Nastran needs no quotes.
+            let names = names.map(|name| match name.get(..8) {
+                Some(word) if word.eq_ignore_ascii_case("INCLUDE ") => name[8..].trim(),
+                _ => name,
+            });
+            let names = names.filter(|name| !name.is_empty());
             found.extend(names.map(|name| folder.join(name)).filter(|named| named.is_file()));
         }
     }
@@ -68,7 +74,8 @@ mod tests {
             ("part.step", ""),
             ("a.inp", "*NODE\n1, 0, 0, 0\n* Include, input = nodes.txt\n"),
             ("nodes.txt", ""),
-            ("a.bdf", "INCLUDE 'nodes.txt'\n"),
+            ("a.bdf", "INCLUDE 'nodes.txt'\ninclude more.txt\n"),
+            ("more.txt", ""),
             ("a.xdmf", "<DataItem Format=\"HDF\">data.h5:/mesh</DataItem>\n"),
             ("data.h5", ""),
         ] {
@@ -77,7 +84,7 @@ mod tests {
         for (name, expected) in [
             ("a.geo", vec!["a.geo", "c d.geo", "part.step"]),
             ("a.inp", vec!["a.inp", "nodes.txt"]),
-            ("a.bdf", vec!["a.bdf", "nodes.txt"]),
+            ("a.bdf", vec!["a.bdf", "nodes.txt", "more.txt"]),
             ("a.xdmf", vec!["a.xdmf", "data.h5"]),
             ("part.step", vec!["part.step"]),
             ("nowhere.geo", vec!["nowhere.geo"]),

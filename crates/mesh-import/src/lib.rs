@@ -21,6 +21,7 @@ mod settings;
 mod systems;
 mod tetrahedra;
 mod texts;
+mod universal;
 
 use std::path::Path;
 

@@ -18,6 +18,7 @@ use crate::nastran;
 use crate::reader::{Reader, is_program, is_surface, names_others, reader_of};
 use crate::run::{self, GmshTask, Job};
 use crate::settings::ImportSettings;
+use crate::universal;
 
 /// A mesh file with all that it includes, as they were when they were read. Its hash and its mesh follow from the same bytes,
 /// whatever becomes of the files.
@@ -54,7 +55,8 @@ impl MeshFile {
                 Err(ImportError::Refused { .. }) if settings.trust_geometry => Held::InPlace,
                 read => Held::Files(read?),
             },
-            Reader::OwnDeck => Held::Files(deck(path)?),
+            // Universal files include no others.
+            Reader::OwnDeck if ending(path) != "unv" => Held::Files(deck(path)?),
             _ => match contents(path)? {
                 bytes if names_others(path, &bytes) => Held::InPlace,
                 bytes => one(bytes, format!("source.{}", ending(path))),
@@ -106,7 +108,11 @@ impl MeshFile {
                 let Held::Files(files) = &self.held else {
                     return Ok(Imported { mesh: self.own()?, notes: Vec::new(), materials: Vec::new() });
                 };
-                let read = if ending(&self.path) == "inp" { abaqus::read } else { nastran::read };
+                let read = match &*ending(&self.path) {
+                    "inp" => abaqus::read,
+                    "unv" => universal::read,
+                    _ => nastran::read,
+                };
                 return read(files, &self.path, self.settings.raise_order);
             }
             Reader::Meshio => {

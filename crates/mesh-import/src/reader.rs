@@ -11,7 +11,7 @@ use crate::settings::ImportSettings;
 pub enum Reader {
     /// flexframe itself: MSH 4.1, and what has no known ending.
     Own,
-    /// flexframe itself: decks of Abaqus, CalculiX and Nastran.
+    /// flexframe itself: decks of Abaqus, CalculiX and Nastran, universal files.
     OwnDeck,
     /// gmsh, which meshes geometry.
     GmshMesher,
@@ -36,12 +36,11 @@ impl Reader {
 
 /// Geometry.
 const MESHED: [&str; 7] = ["geo", "geo_unrolled", "step", "stp", "iges", "igs", "brep"];
-/// Meshes that meshio does not know.
-const CONVERTED: [&str; 1] = ["unv"];
-/// Meshes that meshio reads.
-const THROUGH_MESHIO: [&str; 10] = ["med", "vtu", "vtk", "xdmf", "xmf", "mesh", "meshb", "e", "exo", "h5m"];
-/// Decks.
-const DECKS: [&str; 4] = ["inp", "bdf", "nas", "fem"];
+/// Meshes that meshio reads, and Exodus, which the program around it reads.
+const THROUGH_MESHIO: [&str; 13] =
+    ["med", "vtu", "vtk", "xdmf", "xmf", "mesh", "meshb", "e", "exo", "ex2", "g", "gen", "h5m"];
+/// Decks and universal files.
+const DECKS: [&str; 5] = ["inp", "bdf", "nas", "fem", "unv"];
 
 /// Who reads a file, by the ending of its name; of `.msh`, by its version, too.
 pub fn reader_of(path: &Path, settings: &ImportSettings) -> Reader {
@@ -51,7 +50,7 @@ pub fn reader_of(path: &Path, settings: &ImportSettings) -> Reader {
         Reader::OwnDeck
     } else if is_of(&MESHED) {
         Reader::GmshMesher
-    } else if is_of(&CONVERTED) || (ending == "msh" && (settings.raise_order || is_older_msh(path))) {
+    } else if ending == "msh" && (settings.raise_order || is_older_msh(path)) {
         Reader::GmshConverter
     } else if is_of(&THROUGH_MESHIO) {
         Reader::Meshio

@@ -18,6 +18,8 @@ use crate::settings::ImportSettings;
 
 /// The program that meshio runs.
 const WITH_MESHIO: &str = include_str!("with_meshio.py");
+/// Its part for Exodus, by the name under which it takes it in.
+const EXODUS: (&str, &str) = ("exodus.py", include_str!("exodus.py"));
 /// Names Python, where it is not `python3`.
 const PYTHON: &str = "FLEXFRAME_PYTHON";
 /// Names gmsh, where it is not `gmsh`.
@@ -61,6 +63,7 @@ pub(crate) fn meshio(job: &Job<'_>) -> Result<Vec<String>, ImportError> {
     let python = named(PYTHON, "python3");
     let program = folder.join("with_meshio.py");
     std::fs::write(&program, WITH_MESHIO).map_err(of(source))?;
+    std::fs::write(folder.join(EXODUS.0), EXODUS.1).map_err(of(source))?;
     let mut command = ForeignProgram::new(&python, folder).arg(&program).arg(copies.first()).arg(target);
     if settings.raise_order {
         command = command.arg("raise");

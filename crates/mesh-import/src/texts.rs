@@ -18,6 +18,11 @@ pub(crate) struct Place {
     line: usize,
 }
 
+impl Place {
+    /// The first line of a file.
+    pub(crate) const FIRST: Self = Self { file: 0, line: 1 };
+}
+
 /// The files of a deck as texts.
 pub(crate) struct Texts<'f> {
     files: &'f [ReadFile],

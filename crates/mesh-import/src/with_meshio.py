@@ -7,8 +7,15 @@ Prints a line of JSON: what was left out ("notes"), or what is wrong ("error", w
 import contextlib
 import io
 import json
+import struct
 import sys
 from collections import Counter
+from pathlib import Path
+
+# The private folder of this program: nothing in it hides a module.
+sys.path.append(str(Path(__file__).parent))
+
+from exodus import exodus  # noqa: E402
 
 # The corners of each edge, and the edges in gmsh's order of the mid-edge nodes.
 EDGES = {
@@ -17,6 +24,14 @@ EDGES = {
 }
 RAISED = {"tetra": "tetra10", "triangle": "triangle6"}
 CORNERS = {"tetra10": 4, "triangle6": 3}
+# Elements of VTK that may have any order, by the number of their nodes.
+OF_ANY_ORDER = {
+    ("VTK_LAGRANGE_TETRAHEDRON", 4): "tetra",
+    ("VTK_LAGRANGE_TETRAHEDRON", 10): "tetra10",
+    ("VTK_LAGRANGE_TRIANGLE", 3): "triangle",
+    ("VTK_LAGRANGE_TRIANGLE", 6): "triangle6",
+}
+EXODUS = (".e", ".exo", ".ex2", ".g", ".gen")
 HELP = "install it (pip install meshio h5py), or name a Python that has it in FLEXFRAME_PYTHON"
 
 
@@ -44,7 +59,15 @@ def main(source, target, raise_order):
     except ImportError:
         raise Refused(f"{sys.executable} has no numpy", HELP)
     notes = []
-    file = with_meshio(np, source)
+    if Path(source).suffix.lower() in EXODUS:
+        try:
+            file = exodus(np, source, File, Refused, notes)
+        except ImportError:
+            raise Refused(f"{sys.executable} has no h5py", HELP)
+        except (ValueError, KeyError, IndexError, struct.error, OSError) as error:
+            raise Refused(f"it is no Exodus file that can be read: {error}", "check the file, and write its mesh anew")
+    else:
+        file = with_meshio(np, source)
     points = file.points
     if len(points) == 0:
         raise Refused("it has no nodes", "check the file")
@@ -53,6 +76,7 @@ def main(source, target, raise_order):
     blocks = []  # kind, nodes, number of the block in the file
     others = Counter()
     for number, (kind, nodes) in enumerate(file.cells):
+        kind = OF_ANY_ORDER.get((kind, nodes.shape[-1]), kind)
         if kind in RAISED and raise_order:
             kind = RAISED[kind]
             points, nodes = raised(np, points, nodes, kind, blocks)
@@ -90,6 +114,10 @@ def main(source, target, raise_order):
     tell(notes, "element set", "no tetrahedra and no triangles of six nodes", groups.without)
     tell(notes, "node set", "no nodes", [name for name in file.node_sets if name not in point_sets])
     write(np, target, points, blocks, groups, point_sets)
+    if others:
+        count = sum(len(nodes) for kind, nodes, _ in blocks if kind == "tetra10")
+        each = ", ".join(f"{number} {kind}" for kind, number in others.items())
+        notes.append(f"read: {count} tetrahedra; not used: {each}")
     return {"notes": notes}
 
 

@@ -66,6 +66,20 @@ impl Formats {
         let written =
             Command::new(python).arg(script).arg(formats.path("bar.msh")).arg(&formats.folder).output().unwrap();
         assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+        // Names of MSH 2.0 have no dimension.
+        let old = fs::read_to_string(formats.path("old.msh")).unwrap().replacen("2.2 0 8", "2.0 0 8", 1);
+        let old: String = ["root", "tip", "top", "sides", "bar"].iter().fold(old, |text, name| {
+            let line = text.lines().find(|line| line.ends_with(&format!("\"{name}\""))).unwrap();
+            text.replace(&format!("\n{line}\n"), &format!("\n{}\n", &line[2..]))
+        });
+        fs::write(formats.path("old20.msh"), old).unwrap();
+        for (name, python) in [("bar.g", "FLEXFRAME_READERS"), ("bar.exo", PYTHON)] {
+            let python = std::env::var_os(python).unwrap_or_else(|| "python3".into());
+            let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/write_exodus.py");
+            let files = ["bar.npz", name].map(|name| formats.path(name));
+            let written = Command::new(python).arg(script).args(files).output().unwrap();
+            assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+        }
         formats
     }
 
@@ -119,21 +133,25 @@ fn every_format_gives_the_same_elements_and_its_groups() {
     let both: Vec<&str> = names.iter().chain(&of_entities).copied().collect();
     // File; groups of volumes; of surfaces; of nodes.
     type Row<'a> = (&'a str, ImportSettings, Reader, &'a [&'a str], &'a [&'a str], &'a [&'a str]);
-    let table: [Row<'_>; 16] = [
+    let table: [Row<'_>; 20] = [
         ("bar.msh", AS_IT_IS, Reader::Own, &["bar"], &names, &[]),
         ("old.msh", AS_IT_IS, Reader::GmshConverter, &["bar"], &names, &[]),
+        ("old20.msh", AS_IT_IS, Reader::GmshConverter, &["bar"], &names, &[]),
         ("old40.msh", AS_IT_IS, Reader::GmshConverter, &["bar"], &names, &[]),
         ("bar.geo", AS_IT_IS, Reader::GmshMesher, &["bar"], &names, &[]),
-        ("bar.unv", AS_IT_IS, Reader::GmshConverter, &["bar"], &names, &[]),
+        ("bar.unv", AS_IT_IS, Reader::OwnDeck, &["bar"], &names, &[]),
         ("bar.inp", AS_IT_IS, Reader::OwnDeck, &["Volume1", "bar"], &both, &[]),
         ("bar.bdf", AS_IT_IS, Reader::OwnDeck, &["ref_1"], &of_properties, &[]),
         ("bar.vtk", AS_IT_IS, Reader::Meshio, &[], &[], &[]),
         ("meshio.vtk", AS_IT_IS, Reader::Meshio, &["material_3"], &["material_2"], &[]),
         ("bar.vtu", AS_IT_IS, Reader::Meshio, &["material_3"], &["material_2"], &[]),
+        ("lagrange.vtu", AS_IT_IS, Reader::Meshio, &["material_3"], &["material_2"], &[]),
+        ("bar.g", AS_IT_IS, Reader::Meshio, &["one", "block_9"], &["root"], &["nodeset_4"]),
+        ("bar.exo", AS_IT_IS, Reader::Meshio, &["one", "block_9"], &["root"], &["nodeset_4"]),
         ("bar.xdmf", AS_IT_IS, Reader::Meshio, &["material_3"], &[], &[]),
         ("bar.med", AS_IT_IS, Reader::Meshio, &["all", "bar"], &["skin"], &["end"]),
         ("linear.msh", RAISED, Reader::GmshConverter, &["bar"], &names, &[]),
-        ("linear.unv", RAISED, Reader::GmshConverter, &["bar"], &names, &[]),
+        ("linear.unv", RAISED, Reader::OwnDeck, &["bar"], &names, &[]),
         ("linear.vtu", RAISED, Reader::Meshio, &[], &[], &[]),
         ("bar.inp", RAISED, Reader::OwnDeck, &["Volume1", "bar"], &both, &[]),
     ];

@@ -50,6 +50,18 @@ salome.cell_tags = {-3: ["bar"]}
 salome.point_tags = {}
 salome.write(folder / "salome.med")
 
+np.savez(folder / "bar.npz", points=mesh.points, solid=blocks["tetra10"], skin=blocks["triangle6"])
+
+# Elements of any order, which VTK numbers otherwise.
+meshio.Mesh(mesh.points, list(both.items()), cell_data={"material": [np.full(len(data), number[kind]) for kind, data in both.items()]}).write(
+    folder / "text_only.vtu", binary=False
+)
+text = (folder / "text_only.vtu").read_text()
+head, rest = text.split('Name="types"')
+at, end = rest.index(">"), rest.index("</DataArray>")
+rest = rest[:at] + rest[at:end].replace("24", "71").replace("22", "69") + rest[end:]
+(folder / "lagrange.vtu").write_text(head + 'Name="types"' + rest)
+
 # First order, and bricks.
 linear = meshio.Mesh(mesh.points, [("tetra", blocks["tetra10"][:, :4])])
 linear.write(folder / "linear.vtu")

@@ -13,11 +13,14 @@ use crate::mesh::parts::{MeshParts, NodeGroup, SurfaceGroup};
 /// Numbers of four digits may be in twenty groups at once.
 const MAX_ENTRIES: usize = 4;
 
+/// gmsh writes it for the dimension of names in MSH 2.0, which has none.
+const WITHOUT_DIMENSION: i32 = -1;
+
 /// The physical groups of a file.
 #[derive(Default)]
 pub(super) struct PhysicalGroups {
     /// Name of a group by its dimension and number. Not every group has one.
-    names: HashMap<(usize, u32), String>,
+    names: HashMap<(i32, u32), String>,
     /// Numbers of the groups that an entity is in, by the entity's dimension and tag.
     of_entity: HashMap<(usize, i32), Vec<u32>>,
 }
@@ -27,7 +30,7 @@ impl PhysicalGroups {
     pub(super) fn read_names(&mut self, source: &mut Source) -> Result<(), MeshError> {
         let count: u64 = source.text_number("the number of names")?;
         for _ in 0..count {
-            let dimension: usize = source.text_number("a dimension")?;
+            let dimension: i32 = source.text_number("a dimension")?;
             let number: u32 = source.text_number("the number of a physical group")?;
             self.names.insert((dimension, number), source.quoted()?);
         }
@@ -159,6 +162,7 @@ impl PhysicalGroups {
         entities: &[i32],
         source_name: &str,
     ) -> Result<(Vec<String>, Vec<Vec<usize>>), MeshError> {
+        let name = |dimension: i32, number: u32| self.names.get(&(dimension, number));
         let mut names = Vec::new();
         // Name -> (index, whether it is a number for want of a name).
         let mut known: HashMap<Cow<str>, (usize, bool)> = HashMap::new();
@@ -166,7 +170,8 @@ impl PhysicalGroups {
         for entity in entities {
             let mut of_entity = Vec::new();
             for number in self.of_entity.get(&(dimension, *entity)).into_iter().flatten() {
-                let (name, unnamed) = match self.names.get(&(dimension, *number)) {
+                let (name, unnamed) = match name(dimension as i32, *number).or_else(|| name(WITHOUT_DIMENSION, *number))
+                {
                     Some(name) => (Cow::from(name), false),
                     None => (Cow::from(number.to_string()), true),
                 };
