@@ -43,7 +43,7 @@ pub use watch::{Watch, Watched};
 use crate::commands::check::checked_rows::check_run;
 use crate::commands::check::rows::CheckRows;
 use crate::drawn::stored_shapes;
-use crate::files::identity::{contents, identity};
+use crate::files::identity::{contents, identity_of_files};
 use crate::files::outputs::outputs_of_system;
 pub use crate::files::results_path::results_path;
 use crate::files::scene_file;
@@ -164,8 +164,7 @@ pub fn run_models(
     let started = Instant::now();
     let initial = initial(&bodies);
     let movers = movers(system, &bodies, models, &initial)?;
-    // The rows of a sweep are not gone on with.
-    let identity = if settings.rows_alone { 0 } else { identity(system, |scene| contents(&scene.body)) };
+    let identity = identity(system, settings);
     let checkpoint = checkpoint(identity, movers.iter().map(|mover| &mover.motion), &path)?.len();
     let metadata = metadata_of_file(system, &bodies, &settings.builder).ok_or(RunError::NoBody)?;
     let estimate = Estimate::of_rows(scene, &metadata);
@@ -221,7 +220,7 @@ pub fn resume(
     let initial = initial(&bodies);
     let mut movers = movers(&system, &bodies, &models, &initial)?;
     progress(RunProgress::Motion(0.0));
-    let identity = identity(&system, |scene| contents(&scene.body));
+    let identity = identity(&system, settings);
     if let Some(state) = state.as_deref() {
         let (then, mut states) = state.split_first().ok_or_else(|| changed("the motion at the checkpoint"))?;
         for mover in &mut movers {
@@ -240,6 +239,11 @@ pub fn resume(
     }
     let followed = recorder.follow(started, settings, &mut progress)?;
     conclude(&system, &models, settings, followed, progress)
+}
+
+/// The number of the files that a run reads; none for the rows of a sweep, which do not go on.
+fn identity(system: &System, settings: &RunSettings) -> u64 {
+    if settings.rows_alone { 0 } else { identity_of_files(system, |scene| contents(&scene.body)) }
 }
 
 /// The system of a run, with the bodies that the run has; `None` where one of them is not there.

@@ -1,18 +1,31 @@
-//! A number for what a run reads: a run goes on, and a row of a sweep is kept, only while it is the same.
+//! Numbers for what a run reads: a run goes on, and a row of a sweep is kept, only while they are the same.
 
 use keys::{Digest, Hash, Key};
 use model::files_of_body;
 use scene::{Body, Scene, System};
 
-/// A number for the texts of the scenes, all tables as they were read, and the files that the bodies are read from, whose hash
-/// `contents_of` knows.
-pub fn identity(system: &System, contents_of: impl FnMut(&Scene) -> Hash) -> u64 {
+/// A number for what the files hold that a system names: all tables as they were read, and the files that the bodies are read from,
+/// whose hash `contents_of` knows. The names of the files do not count: a run goes on from another folder.
+pub fn identity_of_files(system: &System, contents_of: impl FnMut(&Scene) -> Hash) -> u64 {
+    number(with_files(Key::new().of("files", 1), system, contents_of))
+}
+
+/// The same with the texts of the scenes.
+pub fn identity_of_row(system: &System, contents_of: impl FnMut(&Scene) -> Hash) -> u64 {
     let key = Key::new().of("row", 2);
     let key = system.bodies.iter().fold(key, |key, scene| key.with("scene", scene.source.as_str()));
+    number(with_files(key, system, contents_of))
+}
+
+fn with_files(key: Key, system: &System, contents_of: impl FnMut(&Scene) -> Hash) -> Key {
     let key = system.tables().fold(key, |key, table| key.with("table", table.points.as_flattened()));
-    let measured = system.bodies.iter().map(|scene| format!("{:?}", scene.modes.measured));
+    let measured = system.bodies.iter().filter_map(|scene| scene.modes.measured.as_ref());
+    let measured = measured.map(|measured| format!("{:?} {:?}", measured.places, measured.modes));
     let key = measured.fold(key, |key, measured| key.with("measured", measured.as_str()));
-    let key = system.bodies.iter().map(contents_of).fold(key, |key, contents| key.with("body", &contents));
+    system.bodies.iter().map(contents_of).fold(key, |key, contents| key.with("body", &contents))
+}
+
+fn number(key: Key) -> u64 {
     let mut first = [0; 8];
     first.copy_from_slice(&key.finish().as_bytes()[..8]);
     u64::from_be_bytes(first)
@@ -25,7 +38,7 @@ pub fn contents(body: &Body) -> Hash {
         // What is no ordinary file can be read only once; what cannot be read fails where it is read.
         let hash = Some(path).filter(|path| path.is_file()).and_then(|path| Hash::of_file(path).ok());
         let hash = hash.map_or_else(String::new, |hash| hash.to_string());
-        digest.text(&path.to_string_lossy()).text(&hash)
+        digest.text(&hash)
     });
     digest.finish()
 }

@@ -7,7 +7,7 @@ use dynamics::CheckpointError;
 use super::error::RunError;
 use crate::motion::Motion;
 
-/// The number of what the run reads ([`identity`](crate::files::identity::identity)), and the states of all motions, one after the
+/// The number of the files that the run reads ([`identity_of_files`](crate::files::identity::identity_of_files)), and the states of all motions, one after the
 /// other: each takes the same room at any time.
 pub(super) fn checkpoint<'m>(
     identity: u64,

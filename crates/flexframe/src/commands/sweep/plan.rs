@@ -10,7 +10,7 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::error::SweepError;
-use crate::files::identity::{contents, identity};
+use crate::files::identity::{contents, identity_of_row};
 
 /// More rows than these are a mistake.
 const MAX_ROWS: usize = 1_000_000;
@@ -203,7 +203,7 @@ impl Plan {
     pub fn has_changed(&self, row: usize) -> bool {
         self.rows[row]
             .as_ref()
-            .is_ok_and(|system| identity(system, |scene| contents(&scene.body)) != self.identities[row])
+            .is_ok_and(|system| identity_of_row(system, |scene| contents(&scene.body)) != self.identities[row])
     }
 }
 
@@ -233,7 +233,8 @@ fn identities(rows: &[Result<System, String>]) -> Vec<u64> {
     let mut bodies: BTreeMap<String, Hash> = BTreeMap::new();
     let mut contents_of =
         |scene: &Scene| *bodies.entry(format!("{:?}", scene.body)).or_insert_with(|| contents(&scene.body));
-    let of_row = |row: &Result<System, String>| row.as_ref().map_or(0, |system| identity(system, &mut contents_of));
+    let of_row =
+        |row: &Result<System, String>| row.as_ref().map_or(0, |system| identity_of_row(system, &mut contents_of));
     rows.iter().map(of_row).collect()
 }
 
