@@ -77,8 +77,8 @@ fn op4_is_a_model_of_craig_and_bampton() {
     assert!((free[6].sqrt() / expected - 1.0).abs() < 0.02, "{} {expected}", free[6].sqrt());
     // Rotations of the base about the root move the tip by its arm.
     let recovery = matrix(&found["TREC"]);
-    // Nodes are in the order of their names.
-    assert!((recovery[(7, 5)] - 202.07).abs() < 1e-9 && recovery.nrows() == 12 && recovery[(9, 3)] == 1.0);
+    // Nodes are in the order of the scene.
+    assert!((recovery[(1, 5)] - 202.07).abs() < 1e-9 && recovery.nrows() == 12 && recovery[(9, 3)] == 1.0);
 }
 
 /// Independent reference: `flexframe modes` of the bar that is clamped at the nodes of the interface, whose first three frequencies the inner modes
@@ -220,6 +220,86 @@ fn op2_has_the_matrices_of_op4() {
     let [binary, text] = ["op2", "op4"].map(|ending| handed_over(folder.path(), ending));
     assert_eq!(binary, text);
     assert_eq!(binary.as_object().unwrap().len(), 4);
+}
+
+/// The matrices that pyYeti and pyNastran read of a scene, and the words about them.
+fn op4_of(scene: &Path) -> (Value, String) {
+    let file = scene.with_extension("op4");
+    let said = done(&["reduce", scene.to_str().unwrap(), "-o", file.to_str().unwrap()]);
+    let python = std::env::var_os(READERS).expect("FLEXFRAME_READERS names no Python with pyYeti; use ./dev test");
+    let read = Command::new(python).arg(root().join("tests/read_hand_over.py")).arg(&file).output().unwrap();
+    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
+    (serde_json::from_slice(&read.stdout).unwrap(), said)
+}
+
+/// Closed form: the slope at the end of a cantilever over its deflection there is between 1.3765/L, without a mass at its end, and 1.5/L, of
+/// a mass alone.
+#[test]
+fn points_of_matrices_turn_as_their_nodes_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let examples = root().join("examples");
+    std::fs::create_dir(folder.path().join("boom")).unwrap();
+    for name in ["boom.toml", "boom/K.mtx", "boom/M.mtx", "boom/nodes.csv"] {
+        std::fs::copy(examples.join(name), folder.path().join(name)).unwrap();
+    }
+    let (found, said) = op4_of(&folder.path().join("boom.toml"));
+    let recovery = matrix(&found["TREC"]);
+    let (column, length) = (6, 6.0);
+    let slope = [recovery[(1, column)], recovery[(2, column)]];
+    let turn = [recovery[(5, column)], -recovery[(4, column)]];
+    let along = usize::from(slope[1].abs() > slope[0].abs());
+    let ratio = turn[along] / slope[along] * length;
+    assert!((1.3765..1.5).contains(&ratio), "{ratio}");
+    assert!(!said.contains("do not tell"), "{said}");
+}
+
+/// Closed form: the points are at the corners of a cube, which the motions of its base take along. Its nodes have three degrees of freedom: no turns
+/// of them are known, which is said.
+#[test]
+fn matrices_without_turns_are_handed_over_with_a_word_on_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let at: Vec<Vector3<f64>> =
+        (0..8).map(|n| Vector3::new(f64::from(n & 1), f64::from(n >> 1 & 1), f64::from(n >> 2))).collect();
+    let mut stiffness = DMatrix::<f64>::zeros(24, 24);
+    for (a, b) in (0..8).flat_map(|a| (0..a).map(move |b| (a, b))) {
+        let along = (at[a] - at[b]).normalize();
+        let spring = 1e4 * along * along.transpose();
+        for (i, j, sign) in [(a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)] {
+            let mut part = stiffness.view_mut((3 * i, 3 * j), (3, 3));
+            part += sign * spring;
+        }
+    }
+    let written = |of: &DMatrix<f64>| {
+        let entries: Vec<String> = (0..24)
+            .flat_map(|j| (j..24).map(move |i| (i, j)))
+            .filter(|at| of[*at] != 0.0)
+            .map(|(i, j)| format!("{} {} {:?}", i + 1, j + 1, of[(i, j)]))
+            .collect();
+        format!("%%MatrixMarket matrix coordinate real symmetric\n24 24 {}\n{}\n", entries.len(), entries.join("\n"))
+    };
+    let nodes: String = (1..).zip(&at).map(|(n, x)| format!("{n},{:?},{:?},{:?}\n", x.x, x.y, x.z)).collect();
+    for (name, text) in [
+        ("K.mtx", written(&stiffness)),
+        ("M.mtx", written(&DMatrix::identity(24, 24))),
+        ("nodes.csv", format!("node,x,y,z\n{nodes}")),
+        (
+            "cube.toml",
+            "title = \"Cube\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n[body]\nmatrices = { mass = \"M.mtx\", \
+             stiffness = \"K.mtx\", nodes = \"nodes.csv\" }\n[modes]\nflexible = 3\n[time]\nend = 0.01\ntolerance = 1e-6\n\
+             [output]\npoints = { z = [1.0, 1.0, 1.0], \"a b\" = [1.0, 0.0, 0.0] }\n"
+                .to_owned(),
+        ),
+    ] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let (found, said) = op4_of(&folder.path().join("cube.toml"));
+    let recovery = matrix(&found["TREC"]);
+    assert_eq!(recovery.shape(), (12, 9));
+    // z comes first, as in the scene. Its arm from the middle is half an edge: a turn about z moves it along −x and y.
+    assert!((recovery[(0, 5)] + 0.5).abs() < 1e-12 && (recovery[(1, 5)] - 0.5).abs() < 1e-12);
+    assert!((recovery[(6, 5)] - 0.5).abs() < 1e-12 && (recovery[(7, 5)] - 0.5).abs() < 1e-12);
+    assert!(recovery.view((3, 6), (3, 3)).amax() == 0.0 && recovery.view((0, 6), (3, 3)).amax() > 0.1);
+    assert!(said.contains("the nodes at z, a b do not tell how the material there turns"), "{said}");
 }
 
 /// Conserved: three files say the same of one body by their own integrals, 42's `L` and `N` turned as `InitFlexModes` turns them.

@@ -77,34 +77,51 @@ pub fn hand_over(
     progress: impl FnMut(BuildProgress),
 ) -> Result<ModesReport, HandOverError> {
     let model = builder.build(scene, progress)?;
-    let note = write(scene, &model, form, path)?;
+    let notes = write(scene, &model, form, path)?;
     let mut report = ModesReport::new(scene, &model);
-    report.warnings.extend(note);
+    report.warnings.extend(notes);
     Ok(report)
 }
 
-/// Writes the file, where its form holds what the body is about; a note where its coordinates are others than markers ask for.
-fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<Option<String>, HandOverError> {
+/// Writes the file, where its form holds what the body is about. Notes where its coordinates are others than markers ask for, and where turns
+/// are not known.
+fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<Vec<String>, HandOverError> {
     let is_bent = model.meshed.as_ref().is_some_and(|meshed| meshed.reference.is_some());
     if is_bent && matches!(form, Form::Mbdyn | Form::Flex42 | Form::Sid) {
         let found = "modes about a bent rest, whose internal forces this form does not hold: its loads would bend the body a second time";
         let help = "remove `about`; the matrices of .op4 and .op2 are those of vibrations about the rest";
         return Err(scene.refuse("modes.about", found, "modes about the undeformed body", help).into());
     }
-    let mut note = None;
+    let mut of_turns = None;
+    let mut body = || {
+        let body = Reduced::new(scene, model)?;
+        of_turns = without_turns(&body.nodes_without_turns);
+        Ok::<_, HandOverError>(body)
+    };
+    let mut of_markers = None;
     let mut named = |body: &Reduced<'_>| {
-        let (matrices, of_markers) = matrices(body);
-        note = of_markers;
+        let (matrices, note) = matrices(body);
+        of_markers = note;
         matrices
     };
     let bytes = match form {
         Form::Gltf => gltf::bytes(scene, model)?,
-        Form::Op4 => op4::text(&named(&Reduced::new(scene, model)?)).into_bytes(),
-        Form::Op2 => op2::bytes(&named(&Reduced::new(scene, model)?)),
-        Form::Mbdyn => mbdyn::text(&Reduced::new(scene, model)?).into_bytes(),
-        Form::Flex42 => flex42::text(&Reduced::new(scene, model)?).into_bytes(),
-        Form::Sid => sid::text(&Reduced::new(scene, model)?).into_bytes(),
+        Form::Op4 => op4::text(&named(&body()?)).into_bytes(),
+        Form::Op2 => op2::bytes(&named(&body()?)),
+        Form::Mbdyn => mbdyn::text(&body()?).into_bytes(),
+        Form::Flex42 => flex42::text(&body()?).into_bytes(),
+        Form::Sid => sid::text(&body()?).into_bytes(),
     };
     write_whole(path, bytes).map_err(WriteError::of(path))?;
-    Ok(note)
+    Ok(of_markers.into_iter().chain(of_turns).collect())
+}
+
+/// A sentence on nodes of the file whose turns in the modes are not known.
+fn without_turns(nodes: &[&str]) -> Option<String> {
+    (!nodes.is_empty()).then(|| {
+        format!(
+            "the nodes at {} do not tell how the material there turns: in the file it turns as the base does, and in no mode",
+            nodes.join(", ")
+        )
+    })
 }

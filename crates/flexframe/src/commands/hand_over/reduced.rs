@@ -40,6 +40,7 @@ pub struct Reduced<'a> {
     products: &'a [[Mat<f64>; 3]; 3],
     /// Stiffness by spins of rate 1 about 11, 22, 33, 23, 13, 12; none where the body is not stiffened.
     pub spin_stiffness: Option<&'a [Mat<f64>; 6]>,
+    /// Points of the output in the order of the scene, then markers.
     pub nodes: Vec<Node>,
     /// Places of the markers of a free body: the interface. None where turns of a marker are unknown.
     pub interface: Vec<Place>,
@@ -47,6 +48,8 @@ pub struct Reduced<'a> {
     pub markers: Vec<&'a str>,
     /// Names of those of them whose turns the nodes do not tell.
     pub without_turns: Vec<&'a str>,
+    /// Names of points and markers whose turns the nodes do not tell: they turn as the base does.
+    pub nodes_without_turns: Vec<&'a str>,
 }
 
 /// A place of the body.
@@ -70,16 +73,24 @@ impl<'a> Reduced<'a> {
         }
         let body = &model.body;
         let count = body.flexible();
-        let turns = model.point_rotations(scene)?;
+        let turns = match model.has_point_rotations() {
+            true => model.point_rotations(scene)?,
+            false => {
+                let unknown = Mat::zeros(3, count);
+                model.points.iter().map(|_| RotationShapes::new(body, unknown.as_ref())).collect()
+            }
+        };
         let node = |name: &str, position: Vector3<f64>, shapes: &[Vector3<f64>], turns: &[Vector3<f64>]| Node {
             name: name.to_owned(),
             position,
             shapes: shapes[RIGID..].to_vec(),
             turns: turns[RIGID..].to_vec(),
         };
-        let points = model.points.iter().zip(&turns);
-        let points =
-            points.map(|((name, point), turn)| node(name, point.position_body(), point.columns(), turn.columns()));
+        let mut points: Vec<_> = model.points.iter().zip(&turns).collect();
+        points.sort_by_cached_key(|((name, _), _)| place_of_point(scene, name));
+        let of_points = points
+            .iter()
+            .map(|((name, point), turn)| node(name, point.position_body(), point.columns(), turn.columns()));
         let markers = model.markers.iter().map(|BodyMarker { name, point, turning, .. }| {
             node(name, point.position_body(), point.columns(), turning.columns())
         });
@@ -87,6 +98,12 @@ impl<'a> Reduced<'a> {
         let free = model.markers.iter().filter(|_| body.motion.is_free());
         let name = |marker: &'a BodyMarker| &marker.name[..];
         let without_turns: Vec<&str> = free.clone().filter(|marker| !is_known(marker)).map(name).collect();
+        let unknown_points: Vec<&str> = match model.has_point_rotations() {
+            true => Vec::new(),
+            false => points.iter().map(|((name, _), _)| &name[..]).collect(),
+        };
+        let unknown_markers = model.markers.iter().filter(|marker| !is_known(marker)).map(name);
+        let nodes_without_turns = unknown_points.into_iter().chain(unknown_markers).collect();
         let interface = if without_turns.is_empty() { free.clone().flat_map(places).collect() } else { Vec::new() };
         let of = |parts: &'a [Vec<f64>; 3]| -> Vec<Vector3<f64>> {
             (0..count).map(|k| Vector3::from_fn(|i, _| parts[i][k])).collect()
@@ -107,10 +124,11 @@ impl<'a> Reduced<'a> {
                 .collect(),
             products: &body.rotation_products,
             spin_stiffness: body.stress_stiffness.as_ref(),
-            nodes: points.chain(markers).collect(),
+            nodes: of_points.chain(markers).collect(),
             interface,
             markers: free.map(name).collect(),
             without_turns,
+            nodes_without_turns,
         })
     }
 
@@ -146,6 +164,14 @@ impl<'a> Reduced<'a> {
     pub fn damping(&self, k: usize) -> f64 {
         2.0 * self.damping_ratios[k] * self.omegas[k]
     }
+}
+
+/// Line and column of a point of the output in the scene file.
+fn place_of_point(scene: &Scene, name: &str) -> (usize, usize) {
+    let is_plain = name.chars().all(|letter| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_'));
+    let name = if is_plain { name.to_owned() } else { format!("{name:?}") };
+    let place = scene.place(&format!("output.points.{name}"));
+    (place.line, place.column)
 }
 
 /// The places of a marker.
