@@ -158,7 +158,14 @@ impl Motion {
             motion.observe(None, own.map(|(_, body)| &mut body.motion))?;
             motion.observe_ties([joints, elements], &mut row.joints);
         }
-        row.bodies.iter_mut().zip(&fmu.bodies).for_each(|(row, body)| row.complete(&body.model));
+        for (number, (row, body)) in row.bodies.iter_mut().zip(&fmu.bodies).enumerate() {
+            let own = self.inputs.iter().filter(|channel| channel.input.body == number);
+            let factor = |load: usize| {
+                let of_load = own.clone().find(|channel| channel.input.kind == InputKind::Factor(load));
+                of_load.map_or(1.0, |channel| channel.value)
+            };
+            row.complete_with(&body.model, factor);
+        }
         fmu.numbers(&self.row, &mut self.numbers);
         self.known = true;
         Ok(())

@@ -52,6 +52,7 @@ pub use gradient::load_rates::LoadRates;
 pub use gradient::parameter::Parameter;
 pub use gradient::rates::{BodyRates, ParameterRates, RatesOf, Residues};
 pub use gradient::varied::VariedBody;
+pub use load::mesh_load::BaseAcceleration;
 pub use mesh::doubt::{Doubt, doubts};
 pub use mesh::given::MatrixChecks;
 pub use model::rest::{Answer, AtRest, HeldSlopes};

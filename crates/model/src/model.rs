@@ -21,6 +21,7 @@ use scene::{MeshedBody, Scene};
 
 use crate::building::progress::BuildTimes;
 use crate::error::StartError;
+use crate::load::mesh_load::BaseAcceleration;
 use crate::mesh::given::MatrixChecks;
 use crate::model::initial::initial;
 use crate::stress::shapes::BodyStress;
@@ -80,6 +81,8 @@ pub struct Model {
     pub stress: Option<BodyStress>,
     /// Reactions of several supports.
     pub supports: Option<SupportRows>,
+    /// Accelerations of the support that loads stand for: the motion is relative to it.
+    pub base: Vec<BaseAcceleration>,
     pub(crate) loads: Vec<SharedLoad>,
     pub(crate) damping_ratios: Vec<f64>,
     /// All loads that the scene does not switch off, gravity that it does not call for among them.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::mem::MaybeUninit;
 use std::os::fd::OwnedFd;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use flexframe::fmu::marker;
@@ -93,7 +93,7 @@ enum Opens {
     Linear,
 }
 
-fn name_of(path: &PathBuf) -> String {
+fn name_of(path: &Path) -> String {
     path.file_name().unwrap().to_str().unwrap().to_owned()
 }
 
@@ -164,7 +164,7 @@ fn each_command_opens_what_is_in_the_list_of_files_that_are_read() {
         assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     }
     let system = System::read(folder.join("every.toml")).unwrap();
-    let files: BTreeSet<String> = Builder::default().files(&system).iter().map(name_of).collect();
+    let files: BTreeSet<String> = Builder::default().files(&system).iter().map(|file| name_of(file)).collect();
     assert_eq!(files.len(), 14, "{files:?}");
     let inputs: BTreeSet<String> = fs::read_dir(folder).unwrap().map(|entry| name_of(&entry.unwrap().path())).collect();
     fs::create_dir(folder.join("o")).unwrap();

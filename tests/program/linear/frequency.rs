@@ -566,6 +566,14 @@ fn a_base_motion_is_an_input() {
     let at = |input: &str, outputs: &str, f: f64| response(shaken, folder.path(), input, outputs, f, &[]);
     assert_alike(&at("base.acceleration.y", "tip.displacement", 50.0), &at("loads[1]", "tip.displacement", 50.0), 1e-9);
     assert_alike(&at("base.acceleration.y", "tip.acceleration.y", 0.0), &[[1.0, 0.0]], 1e-9);
+    // A load that stands for it is the same input, and the acceleration relative to the support has a name of its own.
+    for frequency in [10.0, 50.0] {
+        let absolute = at("base.acceleration.y", "tip.acceleration.y", frequency);
+        assert_alike(&at("loads[1]", "tip.acceleration.y", frequency), &absolute, 1e-9);
+        let relative = at("base.acceleration.y", "tip.acceleration_relative.y", frequency);
+        assert_alike(&at("loads[1]", "tip.acceleration_relative.y", frequency), &relative, 1e-9);
+        assert_alike(&[[relative[0][0] + 1.0, relative[0][1]]], &absolute, 1e-8);
+    }
     // A turn of the base about the origin: ω × x.
     let turned = at("base.angular_acceleration.z", "tip.acceleration.y", 0.0);
     assert_alike(&turned, &[[202.07, 0.0]], 1e-9);

@@ -6,6 +6,8 @@ use std::process::{Command, Output};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use flexframe::columns::COLUMNS;
+use flexframe::results::Results;
 use flexframe::run::{Estimate, RunError, RunProgress, RunSettings, run};
 use flexframe::scene::Scene;
 
@@ -123,4 +125,38 @@ fn the_terminal_and_the_summary_say_what_a_run_will_come_to() {
     let large = flexframe(&["--set", "time.end=1e7", "--set", "output.every=1", "--json"]);
     let failure: serde_json::Value = serde_json::from_slice(&large.stderr).unwrap();
     assert_eq!((large.status.code(), &failure["key"]), (Some(4), &"output.interval".into()), "{failure}");
+}
+
+/// Closed form: a body on a slider stays where it is while its support is shaken along it; one on a hinge across goes with it.
+#[test]
+fn accelerations_are_absolute_and_relative_to_a_shaken_support_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let body = SCENE.replace("initial = { angular_velocity = [0.0, 0.0, 1e-3] }", "");
+    let course = |time: f64| 3.0 * (std::f64::consts::PI * time).sin();
+    for (support, slides) in [
+        ("kind = \"slider\", direction = [0, 0, 1]", true),
+        ("kind = \"hinge\", at = [0, 0, 0], axis = [0, 0, 1]", false),
+    ] {
+        let text = format!(
+            "{body}constraints = [{{ {support} }}]\n\
+             loads = [{{ kind = \"base-acceleration\", direction = [0, 0, 1], amplitude = 3.0, history = {{ kind = \"half-sine\", duration = 1.0 }} }}]\n\
+             time = {{ end = 1.0, step = 0.01 }}\noutput = {{ points = {{ P = [0.5, 0, 0] }} }}"
+        );
+        let scene = Scene::parse(&text, "top.toml").unwrap();
+        let settings = RunSettings { overwrite: true, ..RunSettings::default() };
+        run(&scene.into(), folder.path(), &settings, |_| ()).unwrap();
+        let results = Results::open(folder.path().join("top.h5"), &COLUMNS).unwrap();
+        let along = |path: &str| -> Vec<f64> {
+            results.vectors::<3>(path).unwrap_or_else(|| panic!("{path}")).iter().map(|vector| vector[2]).collect()
+        };
+        let times = results.numbers("time").unwrap();
+        let names = ["acceleration", "acceleration_relative", "rigid_acceleration"];
+        let [absolute, relative, rigid] = names.map(|name| along(&format!("bodies/body/points/P/{name}")));
+        for (row, time) in times.iter().enumerate() {
+            let expected = if slides { [0.0, -course(*time)] } else { [course(*time), 0.0] };
+            assert!((absolute[row] - expected[0]).abs() < 1e-12, "{support}: {} at {time}", absolute[row]);
+            assert!((relative[row] - expected[1]).abs() < 1e-12, "{support}: {} at {time}", relative[row]);
+            assert!((rigid[row] - expected[0]).abs() < 1e-12, "{support}: {} at {time}", rigid[row]);
+        }
+    }
 }

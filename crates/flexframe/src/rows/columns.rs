@@ -27,6 +27,8 @@ pub mod part {
     pub const SLIDER: &str = "slider";
     /// Something drives it.
     pub const DRIVE: &str = "drive";
+    /// A load stands for the acceleration of its support.
+    pub const MOVING_SUPPORT: &str = "moving support";
     /// Several supports hold it.
     pub const SUPPORTS: &str = "supports";
     /// The stress at the points is asked for.
@@ -50,7 +52,7 @@ pub mod part {
 }
 
 /// All columns; those of the system come last.
-pub static COLUMNS: [Column<Row>; 64] = [
+pub static COLUMNS: [Column<Row>; 65] = [
     // Each body.
     body(["", "attitude"], (Dimension::Number, "body to global"), "unit quaternion (w, x, y, z) that takes body components to global ones", Quaternion(|now| now.attitude.wxyz())),
     body(["", "origin"], (Length, "global"), "position of the origin of the body frame", Vector(|now| now.origin_global.into())),
@@ -85,8 +87,9 @@ pub static COLUMNS: [Column<Row>; 64] = [
     body(["drive", "power"], (Power, "none"), "power of the drive", Number(|now| now.reaction.drive_power)).only_with(part::DRIVE).in_role(Direct),
     points("displacement", (Length, "global"), "displacement of the point from its place at t = 0 in the undeformed body", Vectors(|now, i| Some(now.points.get(i)?.displacement.into()))),
     points("velocity", (Velocity, "global"), "velocity of the point", Vectors(|now, i| Some(now.points.get(i)?.velocity.into()))),
-    points("acceleration", (Acceleration, "global"), "acceleration of the point", Vectors(|now, i| Some(now.points.get(i)?.acceleration.into()))).in_role(Direct),
-    points("rigid_acceleration", (Acceleration, "global"), "part of the point's acceleration that belongs to the rigid motion", Vectors(|now, i| Some(now.points.get(i)?.rigid_acceleration.into()))).in_role(Direct),
+    points("acceleration", (Acceleration, "global"), "acceleration of the point, with that of the support", Vectors(|now, i| Some(now.absolute(now.points.get(i)?.acceleration)))).in_role(Direct),
+    points("acceleration_relative", (Acceleration, "global"), "acceleration of the point relative to the support, which a base acceleration moves", Vectors(|now, i| Some(now.points.get(i)?.acceleration.into()))).only_with(part::MOVING_SUPPORT).in_role(Direct),
+    points("rigid_acceleration", (Acceleration, "global"), "part of the point's acceleration that belongs to the rigid motion, with that of the support", Vectors(|now, i| Some(now.absolute(now.points.get(i)?.rigid_acceleration)))).in_role(Direct),
     points("elastic_displacement", (Length, "global"), "displacement of the point by deformation alone, seen from the body frame", Vectors(|now, i| Some(now.points.get(i)?.elastic_displacement_global.into()))),
     points("elastic_displacement_body", (Length, "body"), "the same in body axes", Vectors(|now, i| Some(now.points.get(i)?.elastic_displacement_body.into()))),
     points("stress", (Stress, "body"), "stress at the point: components xx, yy, zz, xy, yz, zx", Named(&STRESSES, |now, i| Some(&now.stress.get(i)?.components))).only_with(part::STRESS),

@@ -29,6 +29,8 @@ pub struct BodyRow {
     /// Force of each of several supports on the body, and its moment about the mean of the nodes that it holds, global
     /// components.
     pub supports: Vec<[[f64; 3]; 2]>,
+    /// Acceleration of the support, which the motion is relative to, global components.
+    pub base_acceleration_global: Vector3<f64>,
 }
 
 /// The stress at a point, force per area.
@@ -50,11 +52,19 @@ impl BodyRow {
             motion: Observation::new(model.body.flexible(), model.points.len()),
             stress: vec![PointStress::default(); stressed],
             supports: vec![[[0.0; 3]; 2]; model.supports.as_ref().map_or(0, |supports| supports.names().len())],
+            base_acceleration_global: Vector3::zeros(),
         }
     }
 
     /// Fills in what follows from the motion.
     pub fn complete(&mut self, model: &Model) {
+        self.complete_with(model, |_| 1.0);
+    }
+
+    /// The same, where what is outside multiplies each load that may act by a factor.
+    pub fn complete_with(&mut self, model: &Model, factor: impl Fn(usize) -> f64) {
+        let time = self.motion.time;
+        self.base_acceleration_global = model.base.iter().map(|base| base.at(time) * factor(base.load)).sum();
         if let Some(supports) = &model.supports {
             let to_global = |vectors: [_; 2]| vectors.map(|vector| self.motion.attitude.to_global(&vector).into());
             self.supports = supports.at(&self.motion).into_iter().map(to_global).collect();
@@ -67,6 +77,13 @@ impl BodyRow {
                 principal: principal_stresses(&components),
             };
         }
+    }
+}
+
+impl BodyRow {
+    /// An acceleration that is relative to the support, and then that of the support, too.
+    pub(super) fn absolute(&self, relative_global: Vector3<f64>) -> [f64; 3] {
+        (relative_global + self.base_acceleration_global).into()
     }
 }
 

@@ -233,6 +233,39 @@ pub(crate) fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
     scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !is_gravity(load))
 }
 
+/// The acceleration of the support that a load stands for.
+#[derive(Debug, Clone)]
+pub struct BaseAcceleration {
+    /// Number of the load among those that act.
+    pub load: usize,
+    /// Where the history is 1, global components.
+    acceleration_global: Vector3<f64>,
+    history: dynamics::History,
+}
+
+impl BaseAcceleration {
+    /// All base accelerations of a scene, whose gravity acts or not.
+    pub(crate) fn of(scene: &Scene, with_gravity: bool) -> Result<Vec<Self>, BuildError> {
+        let of_load = |(load, (i, of)): (usize, (usize, &Load))| match of {
+            Load::BaseAcceleration(base) => {
+                Some(history(scene, &format!("loads[{i}].history"), &base.history).map(|history| Self {
+                    load,
+                    acceleration_global: Vector3::from(base.direction) * base.amplitude,
+                    history,
+                }))
+            }
+            _ => None,
+        };
+        let acting = acting(scene).filter(|(_, load)| with_gravity || !is_gravity(load));
+        acting.enumerate().filter_map(of_load).collect()
+    }
+
+    /// At a time, global components.
+    pub fn at(&self, time: f64) -> Vector3<f64> {
+        self.acceleration_global * self.history.at(time, time)
+    }
+}
+
 /// Name of a load for the reader.
 fn name(i: usize, load: &Load) -> String {
     let kind = match load {

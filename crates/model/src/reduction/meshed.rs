@@ -15,7 +15,7 @@ use scene::{Choice, Frame, Scene};
 use crate::building::assembly::AssembledMesh;
 use crate::building::progress::{BuildProgress, BuildTimes, timed};
 use crate::error::{BuildError, modal, refuse};
-use crate::load::mesh_load::{self, UnitWeight};
+use crate::load::mesh_load::{self, BaseAcceleration, UnitWeight};
 use crate::model::points::{output_points, well_spread};
 use crate::model::{Meshed, Model};
 use crate::reduction::about::proposed;
@@ -112,6 +112,7 @@ pub(crate) fn reduce(
         advice,
         refusal: None,
         times,
+        base: BaseAcceleration::of(scene, effects[Effect::Gravity])?,
         all_loads: reduced.loads.loads.clone(),
         loads: reduced.loads.acting(effects[Effect::Gravity]),
         damping_ratios: if effects[Effect::Damping] { damping_ratios.clone() } else { vec![0.0; body.flexible()] },

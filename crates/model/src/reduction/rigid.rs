@@ -10,7 +10,7 @@ use scene::{Frame, RigidBody, Scene};
 
 use crate::building::progress::BuildTimes;
 use crate::error::{BuildError, modal};
-use crate::load::mesh_load;
+use crate::load::mesh_load::{self, BaseAcceleration};
 use crate::model::initial::initial;
 use crate::model::points::output_points;
 use crate::model::{Model, Size};
@@ -65,6 +65,7 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
     let effects = physics::effects(scene, &advice, &body, 0);
     Ok(Model {
         meshed: None,
+        base: BaseAcceleration::of(scene, effects[Effect::Gravity])?,
         all_loads: loads.loads.clone(),
         loads: loads.acting(effects[Effect::Gravity]),
         physics: Physics { effects, drive, ..Physics::default() },

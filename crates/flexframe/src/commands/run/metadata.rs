@@ -162,5 +162,6 @@ fn parts<'a>(RunBody { scene, model }: &RunBody<'a>) -> impl Iterator<Item = &'s
     .into_iter()
     .filter_map(move |(part, has)| (is_held && has).then_some(part))
     .chain(model.supports.as_ref().map(|_| part::SUPPORTS))
+    .chain((!model.base.is_empty()).then_some(part::MOVING_SUPPORT))
     .chain(scene.output.stress.then_some(part::STRESS))
 }

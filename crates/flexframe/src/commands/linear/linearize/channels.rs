@@ -74,6 +74,15 @@ pub(in crate::commands::linear) fn acting_loads<'a>(
     scene.loads.iter().enumerate().filter(move |(_, load)| all || !matches!(load, Load::Gravity(_)))
 }
 
+/// The acceleration of the support, global axes, that each load that acts stands for where its history is 1: zero of most.
+pub(super) fn base_accelerations(scene: &Scene, model: &Model) -> Vec<Vector3<f64>> {
+    let of_load = |(_, load): (usize, &Load)| match load {
+        Load::BaseAcceleration(base) => Vector3::from(base.direction) * base.amplitude,
+        _ => Vector3::zeros(),
+    };
+    acting_loads(scene, model).map(of_load).collect()
+}
+
 /// An input for each load that acts: its factor, so that 1 is the load as the scene has it where its history is 1.
 pub(in crate::commands::linear) fn input_channels(scene: &Scene, model: &Model, prefix: &str) -> Vec<Channel> {
     let names: Vec<String> =
@@ -98,6 +107,14 @@ pub(super) fn point_outputs(scene: &Scene, name: &str, columns: &[Vector3<f64>])
         }
     }
     outputs
+}
+
+/// Acceleration of a point relative to the support, along the axes of the body, by its displacement in each coordinate.
+pub(super) fn relative_outputs(scene: &Scene, name: &str, columns: &[Vector3<f64>]) -> Vec<Output> {
+    let channels = along_axes(&format!("{name}.acceleration_relative"), &UnitLabels::from(&scene.units).acceleration());
+    let row = |axis: usize| columns.iter().map(|column| column[axis]).collect();
+    let channels = channels.into_iter().enumerate();
+    channels.map(|(axis, channel)| Output::new(channel, Rate::Acceleration, row(axis))).collect()
 }
 
 /// Stress components of a point, body axes, by those of each modal displacement in each material there; `over` makes a row over the

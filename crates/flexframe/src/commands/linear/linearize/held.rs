@@ -11,14 +11,26 @@ use model::{AtRest, Model};
 use nalgebra::Vector3;
 use scene::Scene;
 
-use super::channels::{Channels, input_channels, point_outputs, stress_outputs, unit_of_coordinate};
+use super::channels::{
+    Channels, base_accelerations, input_channels, point_outputs, relative_outputs, stress_outputs, unit_of_coordinate,
+};
 use super::error::LinearizeError;
 use super::settings::LinearSettings;
 use super::state::{State, damping_in_words};
 use crate::commands::linear::names::is_asked;
-use base::{Held, TRANSLATIONS, base_channels};
+use base::{Held, TRANSLATIONS, at_point, base_channels};
 use driven::Driven;
 use rigid::{acts_on, rigid_motions};
+
+/// How an input moves the support.
+enum Moved {
+    /// By an acceleration of all of it, along the axes of the body.
+    Along(Vector3<f64>),
+    /// By a motion of the base.
+    Base(usize),
+    /// As the drive does.
+    Driven,
+}
 
 /// The equations about rest under the loads of a time, or about the spin of a drive then.
 pub(super) fn of_held(
@@ -75,16 +87,30 @@ pub(super) fn of_held(
         .collect();
     let mut inputs = input_channels(scene, model, "");
     let usual_inputs = inputs.len();
+    // Accelerations that an input gives all of the support, along the axes of the body: the first of a load that stands for them.
+    let base = base_channels(scene);
+    let in_spin = drive.is_some_and(|driven| driven.is_spin());
+    let by_loads: Vec<Vector3<f64>> = match in_spin {
+        // Outputs in a spin are as seen from the body.
+        true => vec![Vector3::zeros(); usual_inputs],
+        false => base_accelerations(scene, model).iter().map(|global| initial.attitude.to_body(global)).collect(),
+    };
+    let shakes = |asked: &String| base.iter().any(|channel| is_asked(&channel.name, asked));
+    let has_base = by_loads.iter().any(|of_load| *of_load != Vector3::zeros()) || settings.inputs.iter().any(shakes);
     let names = (1..=r).map(|k| format!("rigid{k}")).chain((1..=nf).map(|k| format!("mode{k}")));
     let unit = unit_of_coordinate(scene);
     let mut coordinates: Vec<Channel> = names.map(|name| Channel::new(name, unit.clone())).collect();
     let (stiffness, mut damping) = (of_modes(&stiffness), of_modes(&damping));
-    let mut outputs = Vec::new();
+    let (mut outputs, mut relative) = (Vec::new(), Vec::new());
     let mut arms = Vec::new();
     for (name, point) in &model.points {
         let numbers = rigid.iter().map(|motion| motion.number).chain(6..6 + nf);
         let shapes = numbers.map(|k| point.columns()[k]).chain(std::iter::repeat_n(Vector3::zeros(), d));
-        outputs.extend(point_outputs(scene, name, &shapes.collect::<Vec<_>>()));
+        let shapes: Vec<Vector3<f64>> = shapes.collect();
+        outputs.extend(point_outputs(scene, name, &shapes));
+        if has_base && !in_spin {
+            relative.extend(relative_outputs(scene, name, &shapes));
+        }
         let q = slopes.as_ref().map_or_else(|| vec![0.0; nf], |slopes| slopes.modal_displacement.clone());
         arms.push(model.arm(point, &q));
     }
@@ -98,6 +124,9 @@ pub(super) fn of_held(
         outputs.extend(stress_outputs(scene, name, materials, over));
     }
     let usual_outputs = outputs.len();
+    let first_relative = outputs.len();
+    outputs.extend(relative);
+    let mut accelerations: Vec<Moved> = by_loads.into_iter().map(Moved::Along).collect();
 
     // Reactions, by input; base and drive.
     let mut direct: Vec<[f64; 6]> = Vec::new();
@@ -112,9 +141,6 @@ pub(super) fn of_held(
         for (unit, column) in unit_forces.iter().zip(&columns) {
             direct.push(std::array::from_fn(|i| by_modes(column, i) - unit[i]));
         }
-        // The motion of the base that an input is.
-        let mut accelerations: Vec<Option<usize>> = vec![None; direct.len()];
-        let (in_spin, base) = (drive.is_some_and(|driven| driven.is_spin()), base_channels(scene));
         // A base that tilts a spin changes more than accelerations.
         let known = if in_spin { TRANSLATIONS } else { base.len() };
         for (motion, channel) in base.into_iter().enumerate().take(known) {
@@ -122,8 +148,7 @@ pub(super) fn of_held(
             column[r..r + nf].iter_mut().zip(&momenta).for_each(|(force, momentum)| *force = -momentum[motion]);
             let whole = held.rigid(motion);
             direct.push(std::array::from_fn(|i| whole[i] + by_modes(&column, i)));
-            // Outputs in a spin are as seen from the body.
-            accelerations.push((!in_spin).then_some(motion));
+            accelerations.push(if in_spin { Moved::Along(Vector3::zeros()) } else { Moved::Base(motion) });
             columns.push(column);
             inputs.push(channel);
         }
@@ -134,7 +159,7 @@ pub(super) fn of_held(
             column[r + nf] = 1.0;
             columns.push(column);
             direct.push(by_rate.1);
-            accelerations.push(None);
+            accelerations.push(Moved::Driven);
             let [input, coordinate] = driven.channels(scene);
             inputs.push(input);
             let mut row = vec![0.0; n];
@@ -149,16 +174,24 @@ pub(super) fn of_held(
                 output.rows[1][r + nf] = by_speed.1[i];
             }
         }
-        // Accelerations are absolute: base and drive add theirs.
-        for (point, arm) in arms.iter().enumerate() {
-            for axis in 0..3 {
-                let of_input = |motion: &Option<usize>| motion.map_or(0.0, |motion| held.at_point(arm, motion)[axis]);
-                let mut added: Vec<f64> = accelerations.iter().map(of_input).collect();
-                if let (Some(driven), Some(last)) = (&asked_drive, added.last_mut()) {
-                    *last = driven.at_point(arm)[axis];
-                }
-                if added.iter().any(|x| *x != 0.0) {
-                    outputs[motions / arms.len() * point + 6 + axis].direct = added;
+    }
+    // Accelerations are absolute: base and drive add theirs; those relative to the support have none of the base.
+    for (point, arm) in arms.iter().enumerate() {
+        let of_driven = asked_drive.as_ref().map_or_else(Vector3::zeros, |driven| driven.at_point(arm));
+        let added: Vec<[Vector3<f64>; 2]> = accelerations
+            .iter()
+            .map(|moved| match moved {
+                Moved::Along(acceleration) => [*acceleration, Vector3::zeros()],
+                Moved::Base(motion) => [at_point(arm, *motion), Vector3::zeros()],
+                Moved::Driven => [of_driven, of_driven],
+            })
+            .collect();
+        for axis in 0..3 {
+            let absolute = motions / arms.len() * point + 6 + axis;
+            for (kind, output) in [absolute, first_relative + 3 * point + axis].into_iter().enumerate() {
+                let direct: Vec<f64> = added.iter().map(|of_input| of_input[kind][axis]).collect();
+                if (kind == 0 || has_base && !in_spin) && direct.iter().any(|x| *x != 0.0) {
+                    outputs[output].direct = direct;
                 }
             }
         }

@@ -20,6 +20,12 @@ pub(super) fn base_channels(scene: &Scene) -> Vec<Channel> {
     translations.into_iter().chain(along_axes("base.angular_acceleration", &format!("rad/{time}²"))).collect()
 }
 
+/// The acceleration that a motion of the base gives a point.
+pub(super) fn at_point(arm: &Vector3<f64>, motion: usize) -> Vector3<f64> {
+    let axis = Vector3::ith(motion % 3, 1.0);
+    if motion < TRANSLATIONS { axis } else { axis.cross(arm) }
+}
+
 /// A held body that nothing but its modes moves in its base.
 pub(super) struct Held<'a> {
     pub model: &'a Model,
@@ -46,12 +52,6 @@ impl Held<'_> {
     pub fn rigid(&self, motion: usize) -> [f64; 6] {
         let mass = self.model.body.rigid_mass();
         std::array::from_fn(|i| mass[(i, motion)])
-    }
-
-    /// The acceleration that a motion of the base gives a point.
-    pub fn at_point(&self, arm: &Vector3<f64>, motion: usize) -> Vector3<f64> {
-        let axis = Vector3::ith(motion % 3, 1.0);
-        if motion < TRANSLATIONS { axis } else { axis.cross(arm) }
     }
 
     /// The reaction: rows over `before` other coordinates, the modes and `after` others; `direct` by input.
