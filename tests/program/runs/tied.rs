@@ -163,3 +163,57 @@ fn a_joint_to_the_ground_moves_a_body_as_its_constraint_does() {
     // The stiffest shape of the joint does not limit its steps.
     assert!(10 * steps_tied < steps_held, "{steps_tied} {steps_held}");
 }
+
+/// Closed form: friction F tanh(v / v_f) that holds 95 % of F creeps at v_f artanh(0.95); the arm starts at rest.
+#[test]
+fn a_run_tells_how_friction_that_holds_creeps() {
+    let scene = r#"
+title = "An arm held by friction"
+units = { length = "m", mass = "kg", time = "s" }
+[bodies.arm]
+rigid = { mass = 2.0, center_of_mass = [0.5, 0, 0], inertia = [[0.2, 0, 0], [0, 0.2, 0], [0, 0, 0.2]] }
+markers = { root = { at = [0, 0, 0] } }
+[[bodies.arm.loads]]
+kind = "gravity"
+direction = [0, 0, -1]
+amplitude = 9.81
+[[joints]]
+name = "brake"
+kind = "revolute"
+between = ["ground", "arm.root"]
+axis = [0, 1, 0]
+spring = { friction = { force = 10.326315789473684, rate = 1e-5 } }
+[time]
+end = 1.0
+tolerance = 1e-4
+[output]
+interval = 0.1
+"#;
+    let folder = tempfile::tempdir().unwrap();
+    let system = System::parse(scene, &folder.path().join("arm.toml")).unwrap();
+    let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let [held] = &report.tied[0].held[..] else { panic!("{:?}", report.tied) };
+    let expected = 1e-5 * 0.95_f64.atanh();
+    assert!(held.joint == "brake" && held.time > 0.999 && (held.path / expected - 1.0).abs() < 1e-3, "{held:?}");
+    let text = report.to_string();
+    assert!(text.contains("held     by friction of brake for 1, in which it creeps by 1.8"), "{text}");
+    // At rest, balances stand over what its weight could give, and raise no alarm.
+    let balances = &report.bodies[0].balances;
+    assert!(balances.energy < 1e-2 && balances.angular_momentum < 1e-1, "{balances:?}");
+    assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+}
+
+#[test]
+fn a_run_tells_that_stops_act_on_a_flexible_body() {
+    let joint =
+        "[[joints]]\nname = \"hinge\"\nkind = \"revolute\"\nbetween = [\"ground\", \"body.root\"]\naxis = [0, 1, 0]\n";
+    let stops = "spring = { stops = { high = 0.5, stiffness = 1e4 } }\n";
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/hung.toml"));
+    for (joint, expected) in [(joint.to_owned(), vec![]), (format!("{joint}{stops}"), vec!["hinge".to_owned()])] {
+        let system = System::parse(&format!("{}\n{joint}", HUNG.replace("end = 0.3", "end = 0.02")), file).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+        assert_eq!(report.tied[0].flexible_stops, expected);
+        assert_eq!(report.to_string().contains("beyond its modes"), !expected.is_empty());
+    }
+}

@@ -205,10 +205,10 @@ impl SystemSimulation {
         (6 * system.bodies().len() + implied).saturating_sub(system.rows())
     }
 
-    /// Largest |work of loads, joints and elements| + |dissipation| since the beginning, of a body. Not their sum over the steps: what a
-    /// spring gives and takes in each period would hide what is lost in all of them.
+    /// Largest |work of loads, joints and elements| + |dissipation| since the beginning, of a body, or the largest energy of the motion, if that
+    /// is more. Not their sum over the steps: what a spring gives and takes in each period would hide what is lost in all of them.
     pub fn exchanged(&self, body: usize) -> f64 {
-        self.exchanged[body]
+        self.exchanged[body].max(self.motion.energy_scale())
     }
 
     /// The limit that shapes set for the steps, if the scheme is one that they limit and steps have come near to it.

@@ -37,7 +37,7 @@ pub(crate) use metadata::units;
 pub use metadata::{metadata, metadata_of_system};
 pub use report::{RunReport, SystemReport};
 pub use settings::{RunProgress, RunSettings};
-pub use tied_report::{AssembledReport, StepLimitReport, TiedReport};
+pub use tied_report::{AssembledReport, HeldReport, StepLimitReport, TiedReport};
 pub use watch::{Watch, Watched};
 
 use crate::commands::check::checked_rows::check_run;

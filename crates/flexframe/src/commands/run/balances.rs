@@ -105,11 +105,11 @@ impl Monitor {
     }
 
     /// Takes what a body in joints may have in any case: it may turn about a center of mass that rests, under forces that cancel, so that its
-    /// momentum is that of its `mass` with its largest kinetic energy; strain pushes nothing. What moves by less than the error of a step in all
-    /// of the run rests, with this energy at the most.
-    pub(super) fn in_joints(&mut self, mass: f64, at_rest: f64) {
+    /// momentum is counted over the one of its `mass` with its largest kinetic energy, and its moment over the one at its `radius` of
+    /// gyration; strain pushes nothing. What moves by less than the error of a step in all of the run rests, with this energy at the most.
+    pub(super) fn in_joints(&mut self, mass: f64, radius: f64, at_rest: f64) {
         let linear_momentum = (2.0 * mass * self.scales.kinetic.max(at_rest)).sqrt();
-        let of = Balances { linear_momentum, energy: at_rest, ..Balances::default() };
+        let of = Balances { linear_momentum, angular_momentum: radius * linear_momentum, energy: at_rest };
         self.widen(&Largest { of, kinetic: 0.0 });
     }
 
@@ -142,7 +142,7 @@ mod tests {
                     kinetic: 25.0,
                 });
             }
-            monitor.in_joints(2.0, 1e-9);
+            monitor.in_joints(2.0, 0.1, 1e-9);
             assert!((monitor.balances().linear_momentum - 1e-3).abs() < 1e-15, "{:?}", monitor.balances());
         }
         // At rest a body is measured by what would be called rest.
@@ -152,7 +152,7 @@ mod tests {
             let quantities = (3.0, momentum, Vector3::zeros());
             monitor.take(&Conserved { quantities, balances: (0.0, momentum, Vector3::zeros()), kinetic: 1e-30 });
         }
-        monitor.in_joints(2.0, 1e-12);
+        monitor.in_joints(2.0, 0.1, 1e-12);
         assert!((monitor.balances().linear_momentum - 1e-15 / 2e-6).abs() < 1e-20, "{:?}", monitor.balances());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use dynamics::{ShapeLimit, SystemSimulation};
+use dynamics::{Joint, Marker, ShapeLimit, SystemSimulation};
 use serde::Serialize;
 
 use crate::files::json;
@@ -12,6 +12,9 @@ use crate::report::{quantity, rounded};
 const TOLD: f64 = 1e-9;
 /// Moves over the size of the system, and turns (rad), above which a place in the scene may be wrong.
 const FAR: f64 = 0.1;
+
+/// Part of the run above which friction that holds is told.
+const HELD: f64 = 0.01;
 
 /// Report of bodies that joints, springs or bushings tie together.
 #[derive(Debug, Clone, Serialize)]
@@ -35,6 +38,23 @@ pub struct TiedReport {
     pub steps: u64,
     /// The limit that the shapes of a body set for the steps of an explicit scheme, where steps came near to it.
     pub step_limit: Option<StepLimitReport>,
+    /// Joints whose friction has held.
+    pub held: Vec<HeldReport>,
+    /// Joints with stops on flexible bodies.
+    pub flexible_stops: Vec<String>,
+}
+
+/// Friction that has held.
+#[derive(Debug, Clone, Serialize)]
+pub struct HeldReport {
+    /// The joint.
+    pub joint: String,
+    /// Time for which it has held.
+    #[serde(serialize_with = "json::number")]
+    pub time: f64,
+    /// Path by which it has crept in that time: rad, or a length.
+    #[serde(serialize_with = "json::number")]
+    pub path: f64,
 }
 
 /// The longest step that the fastest shape of a body allows.
@@ -86,7 +106,19 @@ impl TiedReport {
             let AssembledReport { moved, turned, velocity, angular_velocity, .. } = *of;
             moved.max(turned * size) > TOLD * size || velocity.max(angular_velocity * size) > TOLD * speed
         };
+        let held = simulation.motion().held().map(|(joint, [time, path])| HeldReport {
+            joint: system.joints()[joint].name.clone(),
+            time,
+            path,
+        });
+        let is_flexible = |marker: &Marker| marker.body().is_some_and(|body| system.bodies()[body].flexible() > 0);
+        let has_stops = |joint: &&Joint| {
+            [&joint.turn_force, &joint.slide_force].into_iter().flatten().any(|force| force.stops.is_some())
+        };
+        let stops = system.joints().iter().filter(has_stops).filter(|joint| joint.markers.iter().any(is_flexible));
         Self {
+            held: held.filter(|of| of.time > HELD * simulation.end()).collect(),
+            flexible_stops: stops.map(|joint| joint.name.clone()).collect(),
             joints: system.joints().iter().map(|joint| joint.name.clone()).collect(),
             rows: system.joints().iter().map(|joint| joint.row_count()).sum(),
             rigid_dofs: simulation.rigid_dofs(),
@@ -147,6 +179,21 @@ impl fmt::Display for TiedReport {
                 f,
                 "  closed   {body} moved by {moved} and turned by {turned} rad, its velocity changed by {velocity} and \
                  its angular velocity by {angular_velocity} rad per time, so that the joints hold at the start"
+            )?;
+        }
+        for HeldReport { joint, time, path } in &self.held {
+            let [time, path] = [time, path].map(|x| quantity(rounded(*x, 4)));
+            writeln!(
+                f,
+                "  held     by friction of {joint} for {time}, in which it creeps by {path}; with a smaller `rate` it creeps less"
+            )?;
+        }
+        if !self.flexible_stops.is_empty() {
+            writeln!(
+                f,
+                "  stops    of {} act on a flexible body: an impact also gives energy to shapes beyond its modes, which are not there, so that it \
+                 bounces off faster than the part",
+                self.flexible_stops.join(", ")
             )?;
         }
         if let Some(StepLimitReport { body, frequency, limit }) = &self.step_limit {

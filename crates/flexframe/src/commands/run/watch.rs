@@ -133,7 +133,7 @@ impl<'a> Watch<'a> {
             };
             let radius_squared = model.body.inertia_about_center().trace() / (2.0 * model.body.mass);
             let at_rest = 0.5 * model.body.mass * radius_squared * (part / scene.time.end).powi(2);
-            self.monitor.in_joints(model.body.mass, at_rest);
+            self.monitor.in_joints(model.body.mass, radius_squared.sqrt(), at_rest);
         }
         self.monitor.exchanged(exchanged);
         let balances = self.monitor.balances();
