@@ -83,6 +83,16 @@ fn error(system: &System, steady: &SteadyState) -> f64 {
     let linear = &steady.linear;
     let (n, size) = (linear.basis.nrows(), linear.size());
     let column = |k: usize| -> Vec<f64> { (0..n).map(|i| linear.basis[(i, k)]).collect() };
+    // The same states with V' and ω' in the place of velocities.
+    let accelerated: Vec<MotionState> = states
+        .iter()
+        .zip(steady.unbalance.accelerations.iter().zip(&steady.unbalance.angular_accelerations))
+        .map(|(state, (rate, omega_rate))| MotionState {
+            velocity_global: state.attitude.to_global(rate),
+            omega_body: *omega_rate,
+            ..state.clone()
+        })
+        .collect();
     let mut worst: f64 = 0.0;
     for (of_velocity, k) in [false, true].into_iter().flat_map(|of| (0..size).map(move |k| (of, k))) {
         let direction = column(k);
@@ -100,14 +110,13 @@ fn error(system: &System, steady: &SteadyState) -> f64 {
             let of = accelerations(&mut motion);
             found.iter_mut().zip(&of).for_each(|(sum, a)| *sum += sign * a / (2.0 * step));
         }
-        // δv̇ = N η̈ + L N η̇
+        // δv̇ = N η̈ + L N η̇ + L' N η
         let rates: Vec<f64> =
             (0..size).map(|i| -if of_velocity { linear.damping[(i, k)] } else { linear.stiffness[(i, k)] }).collect();
         let mut expected: Vec<f64> =
             (0..n).map(|i| (0..size).map(|j| linear.basis[(i, j)] * rates[j]).sum::<f64>()).collect();
-        if of_velocity {
-            expected.iter_mut().zip(convected(&states, &direction)).for_each(|(a, more)| *a += more);
-        }
+        let moving = if of_velocity { &states } else { &accelerated };
+        expected.iter_mut().zip(convected(moving, &direction)).for_each(|(a, more)| *a += more);
         let size_of = |list: &[f64]| list.iter().map(|x| x * x).sum::<f64>().sqrt();
         let off: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
         let scale = size_of(&expected) + if of_velocity { 1.0 } else { 100.0 };

@@ -58,9 +58,13 @@ impl Mechanism {
 
     /// Adds a hinge about z at a place of the plane.
     pub fn hinge(&mut self, bodies: [Option<usize>; 2], at: [f64; 2]) {
+        self.joint(Joint::revolute, bodies, at);
+    }
+
+    /// Adds a joint at a place of the plane.
+    pub fn joint(&mut self, joint: impl Fn(&str, [Marker; 2]) -> Joint, bodies: [Option<usize>; 2], at: [f64; 2]) {
         let markers = bodies.map(|body| self.marker(body, at));
-        let name = format!("hinge {}", self.joints.len());
-        self.joints.push(Joint::revolute(&name, markers));
+        self.joints.push(joint(&format!("joint {}", self.joints.len()), markers));
     }
 
     /// Adds a moment about the last hinge.

@@ -1,7 +1,13 @@
 //! Vibrations of systems, against closed forms, the whole body and runs.
 
-use dynamics::{CommonSpin, Joint, JointForce, Marker, MotionState, System, SystemMode, SystemMotion};
+use std::sync::Arc;
+
+use dynamics::{
+    Bushing, CommonSpin, ConservativeBody, ForceElement, Joint, JointForce, LoadFn, Marker, MotionState, Physics,
+    PointShapes, SharedLoad, System, SystemMode, SystemMotion,
+};
 use fem_tet10::Material;
+use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
@@ -309,5 +315,103 @@ fn a_run_rings_down_as_its_mode_says() {
         let off = [found.re - expected.re, (found.im - expected.im + 1e-3).rem_euclid(std::f64::consts::TAU) - 1e-3];
         println!("at {speed}: {}, off by {off:?} after {time}", mode.eigenvalue);
         assert!(off.iter().all(|off| off.abs() < 1e-6 * expected.norm()), "{off:?}");
+    }
+}
+
+/// A force along y at the centre of mass, in global axes or in those of the body.
+fn push(force: f64, turns_with_body: bool) -> SharedLoad {
+    let body = ReducedBody::rigid(1.0, Vector3::zeros(), Matrix3::identity(), RigidMotion::free()).unwrap();
+    let center = PointShapes::new(&body, &BodyPoint::rigid(Vector3::zeros()));
+    Arc::new(LoadFn::new("push", move |motion, applied| {
+        let along = Vector3::new(0.0, force, 0.0);
+        applied.force(&center, &if turns_with_body { along } else { motion.body_from_global * along });
+    }))
+}
+
+/// Closed form: a rod of 0.8 m that hangs behind a cart, which is pushed with 2 m/s²: 3/2 a/l = ω², and a rod that is let go at an angle α to the
+/// vertical, whose variations obey δα̈ = −(3/2)(g/l) cos α δα.
+#[test]
+fn vibrations_are_about_the_accelerated_motion() {
+    let mut mechanism = Mechanism::default();
+    let link = |mass: f64, length: f64, center: [f64; 2], angle: f64, loads| Link {
+        mass,
+        inertia: Vector3::new(mass * length.powi(2) / 12.0, 1e-3, mass * length.powi(2) / 12.0),
+        center,
+        angle,
+        loads,
+    };
+    let cart = mechanism.link(link(1000.0, 1.0, [0.0; 2], 0.0, vec![push(1150.0 * 2.0, false)]));
+    let rod = mechanism.link(link(150.0, 0.8, [0.0, -0.4], 0.0, Vec::new()));
+    let rail = |name: &str, markers| Joint::locked(name, markers, [true, false, true], [true; 3]);
+    mechanism.joint(rail, [None, Some(cart)], [0.0; 2]);
+    mechanism.hinge([Some(cart), Some(rod)], [0.0; 2]);
+    let (rigid, found) = modes(&mechanism.rests(), &CommonSpin::REST);
+    assert_eq!((rigid, found.len()), (1, 1));
+    near(found[0].circular_frequency().powi(2), 1.5 * 2.0 / 0.8, 1e-12);
+
+    let mut mechanism = Mechanism::default();
+    let angle = 1.1_f64;
+    let center = [0.5 * angle.sin(), -0.5 * angle.cos()];
+    let rod = mechanism.link(link(1.0, 1.0, center, angle, vec![weight(1.0)]));
+    mechanism.hinge([None, Some(rod)], [0.0; 2]);
+    let (_, found) = modes(&mechanism.rests(), &CommonSpin::REST);
+    near(found[0].circular_frequency().powi(2), 1.5 * GRAVITY * angle.cos(), 1e-10);
+}
+
+/// Closed form: a free body with a force along its y axis, through its centre of mass, drifts as it turns; all its eigenvalues are zero. The same
+/// with a force that keeps its direction.
+#[test]
+fn a_rocket_has_motions_that_nothing_resists_alone() {
+    for turns_with_body in [true, false] {
+        let mut mechanism = Mechanism::default();
+        let link =
+            |loads| Link { mass: 3.0, inertia: Vector3::new(0.3, 0.2, 0.4), center: [0.0; 2], angle: 0.3, loads };
+        let rocket = mechanism.link(link(vec![push(30.0, turns_with_body)]));
+        let tank = mechanism.link(link(Vec::new()));
+        mechanism.joint(Joint::fixed, [Some(rocket), Some(tank)], [0.0; 2]);
+        let (rigid, found) = modes(&mechanism.rests(), &CommonSpin::REST);
+        assert_eq!((rigid, found.len()), (6, 0), "{:?}", found.iter().map(|mode| mode.eigenvalue).collect::<Vec<_>>());
+    }
+}
+
+/// Closed form: a pendulum of a metre with a small body on a bushing: the slow vibration keeps its digits however stiff the bushing is. The fast ones
+/// are √(k/m) of the small body against one that is heavy.
+#[test]
+fn a_slow_vibration_keeps_its_digits_beside_fast_ones() {
+    for stiffness in [1e3, 1e9, 1e13, 1e15] {
+        let bodies = vec![
+            ConservativeBody::new(
+                &ReducedBody::rigid(1.0, Vector3::zeros(), Matrix3::identity() * 1e-3, RigidMotion::free()).unwrap(),
+                &[],
+                vec![weight(1.0)],
+                &Physics::default(),
+            )
+            .unwrap(),
+            rigid(1e-4, [1e-10; 3]),
+        ];
+        let turned = Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0);
+        let hinge = Joint::revolute(
+            "hinge",
+            [
+                Marker::on_ground(Vector3::zeros(), Matrix3::identity()),
+                Marker::on_rigid(0, Vector3::new(0.0, 1.0, 0.0), Matrix3::identity()),
+            ],
+        );
+        let bushing = Bushing {
+            markers: [
+                Marker::on_rigid(0, Vector3::new(0.1, 0.0, 0.0), turned),
+                Marker::on_rigid(1, Vector3::zeros(), turned),
+            ],
+            stiffness: [Vector3::repeat(stiffness), Vector3::repeat(1e-6 * stiffness)],
+            damping: [Vector3::zeros(); 2],
+        };
+        let elements: Vec<Arc<dyn ForceElement>> = vec![Arc::new(bushing)];
+        let system = System::new(bodies, vec![hinge]).unwrap().with_elements(elements).unwrap();
+        let motion = SystemMotion::new(system, &[at_rest(Vector3::new(0.0, -1.0, 0.0)), at_rest(Vector3::new(0.1, -1.0, 0.0))]).unwrap();
+        let (rigid, found) = modes(&motion, &CommonSpin::REST);
+        assert_eq!((rigid, found.len()), (0, 7), "{stiffness:e}");
+        let off = found[0].circular_frequency().powi(2) / (GRAVITY / (1.001 + 1e-4 * 1.01 + 1e-10)) - 1.0;
+        println!("{stiffness:e}: slow off by {off:e}, fast {:e}", found[1].circular_frequency() / (stiffness / 1e-4).sqrt());
+        assert!(off.abs() < 1e-8, "{stiffness:e}: {off:e}");
     }
 }

@@ -19,6 +19,8 @@ pub(crate) struct BodyTerms {
     pub damping: Mat<f64>,
     /// K, without the stiffness Λ of the modes, with ∂²V/∂q² − Λ of large ones.
     pub stiffness: Mat<f64>,
+    /// The part M L' of it.
+    pub accelerated: Mat<f64>,
     /// L: δv = ξ̇ + L ξ.
     pub convection: Mat<f64>,
     /// Forces of inertia, modes and loads in its motion.
@@ -103,7 +105,7 @@ impl BodyTerms {
                 row.iter().zip(&terms.modes).for_each(|(k, j)| stiffness[(6 + i, 6 + j)] += k);
             }
         }
-        let mut terms = Self { mass, damping, stiffness, convection, forces };
+        let mut terms = Self { mass, damping, stiffness, accelerated: Mat::zeros(n, n), convection, forces };
         terms.add_acceleration(&inertia, at);
         terms.add_loads(body, at, time);
         terms
@@ -120,7 +122,8 @@ impl BodyTerms {
         put(&mut convection_rate, [0, 0], &cross_matrix(omega));
         put(&mut convection_rate, [0, 3], &cross_matrix(velocity));
         put(&mut convection_rate, [3, 3], &cross_matrix(omega));
-        self.stiffness += &self.mass * &convection_rate;
+        self.accelerated = &self.mass * &convection_rate;
+        self.stiffness += &self.accelerated;
         let by_modes = inertia.change_of_momenta(omega);
         for (i, k) in (0..n - 6).flat_map(|k| (0..n).map(move |i| (i, k))) {
             self.stiffness[(i, 6 + k)] += by_modes[(i, k)];

@@ -33,7 +33,7 @@ pub(crate) struct BodyConfiguration {
     pub omega: Vector3<f64>,
     /// Angular momentum of a rotor about its axis, in axes that do not turn with it; zero of any other body.
     pub own_momentum: Vector3<f64>,
-    /// V' and ω', the rates of their components; zero in a common spin.
+    /// V' and ω', the rates of their components; zero in a steady spin.
     pub velocity_rate: Vector3<f64>,
     pub omega_rate: Vector3<f64>,
 }
@@ -74,6 +74,14 @@ impl Configuration {
             [body.velocity_rate, body.omega_rate] = [0, 3].map(|part| vector(rates, first + part));
         }
         configuration
+    }
+
+    /// Adds to the rates of the velocities, over the coordinates of all bodies, of which the modal ones do not count.
+    pub fn accelerate(&mut self, system: &System, rates: &[f64]) {
+        for (body, first) in self.bodies.iter_mut().zip(&system.first) {
+            body.velocity_rate += vector(rates, *first);
+            body.omega_rate += vector(rates, first + 3);
+        }
     }
 
     fn still(motion: &SystemMotion) -> Self {

@@ -8,9 +8,12 @@ use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::terms::{Spring, Terms};
 use crate::vibration::system::tie::{Tie, stiffnesses};
 
+/// A strain of springs below this part of the largest is rounding.
+const UNSTRAINED: f64 = 1e-13;
+
 /// The linearised equations over independent coordinates η: η̈ + C η̇ + K η = 0, changes of place ξ = N η.
 ///
-/// The first coordinates are those that deform no body.
+/// The first coordinates are those that deform no body, of these first those that strain no spring.
 #[derive(Debug, Clone)]
 pub struct Linearization {
     /// N (n×nη), n the coordinates of all bodies: ρ and φ in body axes, and δq, of each.
@@ -21,7 +24,12 @@ pub struct Linearization {
     pub damping: Mat<f64>,
     /// Number of coordinates that deform no body.
     pub rigid: usize,
-    /// The magnitude of the terms of K and C in the coordinates that deform no body, to which their rounding is in proportion.
+    /// Number of coordinates that deform no body and strain no spring.
+    pub(crate) unsprung: usize,
+    /// Λ of the slowest vibration of the bodies, or the terms of springs before they cancel in the coordinates that strain none; zero without any. Where
+    /// no force acts, all terms of a motion as a whole are rounding, and are judged by this.
+    pub(crate) strain_floor: f64,
+    /// The magnitude of the terms of K and C, but for those of springs, in the coordinates that deform nothing, to which their rounding is in proportion.
     pub(crate) magnitudes: [f64; 2],
     /// First coordinate of each body, and their number.
     pub(crate) first: Vec<usize>,
@@ -45,7 +53,7 @@ impl Linearization {
         let rigid = terms.rigid_motions.min(size).max(size.saturating_sub(strained.len()));
         let order: Vec<usize> = (0..size).rev().collect();
         let turned = Mat::from_fn(size, size, |i, j| svd.V()[(i, order[j])]);
-        let mut basis = basis * turned;
+        let mut basis: Mat<f64> = basis * turned;
         let values = svd.S().column_vector();
         let strain_rates: Vec<f64> = order
             .iter()
@@ -55,23 +63,32 @@ impl Linearization {
         for (k, j) in (0..rigid).flat_map(|j| strained.iter().map(move |k| (*k, j))) {
             basis[(k, j)] = 0.0;
         }
+        let (basis, strains, unsprung) = unstrained_first(basis, rigid, &terms.springs)?;
         let reduce = |matrix: &Mat<f64>| basis.transpose() * (matrix * &basis);
+        // |N|ᵀ |K| |N| of the coordinates that deform nothing.
+        let absolute = |matrix: &Mat<f64>| Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].abs());
+        let columns = absolute(&basis.get(.., ..unsprung).to_owned());
         let magnitude = |matrix: &Mat<f64>| {
-            let absolute =
-                |matrix: &Mat<f64>| Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].abs());
-            let columns = absolute(&basis.get(.., ..rigid).to_owned());
             let product = columns.transpose() * (absolute(matrix) * &columns);
-            (0..rigid).map(|k| product[(k, k)]).fold(0.0, f64::max)
+            (0..unsprung).map(|k| product[(k, k)]).fold(0.0, f64::max)
         };
-        let magnitudes = [magnitude(&terms.stiffness), magnitude(&terms.damping)];
-        let (mut stiffness, damping) = (reduce(&terms.stiffness), reduce(&terms.damping));
+        let [of_forces, accelerated] = [&terms.unsprung, &terms.accelerated].map(magnitude);
+        let magnitudes = [of_forces.max(accelerated), magnitude(&terms.damping)];
+        let of_springs = absolute(&terms.springs) * &columns;
+        let of_springs = (0..unsprung).map(|k| of_springs.col(k).squared_norm_l2()).fold(0.0, f64::max);
+        let of_bodies = strain.iter().copied().filter(|strain| *strain > 0.0).reduce(f64::min);
+        let strain_floor = of_springs.max(of_bodies.unwrap_or(0.0));
+        let mut stiffness = reduce(&terms.unsprung) + strains.transpose() * &strains;
+        let damping = reduce(&terms.damping);
         strain_rates.iter().enumerate().for_each(|(k, rate)| stiffness[(k, k)] += rate * rate);
         Ok(Self {
             basis,
             stiffness,
             damping,
             rigid,
+            unsprung,
             magnitudes,
+            strain_floor,
             first: system.first.clone(),
             strain,
             masses: terms.masses.clone(),
@@ -115,6 +132,30 @@ impl Linearization {
         }
         change
     }
+}
+
+/// Turns the motions that deform no body so that those that strain no spring come first, and gives the rows B N of the springs, in which these have
+/// nothing, where a product would leave them the rounding of the stiffest, and their number.
+fn unstrained_first(
+    mut basis: Mat<f64>,
+    rigid: usize,
+    springs: &Mat<f64>,
+) -> Result<(Mat<f64>, Mat<f64>, usize), SteadyError> {
+    let mut strains = springs * &basis;
+    if rigid == 0 || springs.nrows() == 0 {
+        return Ok((basis, strains, rigid));
+    }
+    let svd = strains.get(.., ..rigid).to_owned().svd().map_err(|_| SteadyError::Numbers)?;
+    let values = svd.S().column_vector();
+    let value = |k: usize| if k < values.nrows() { values[k] } else { 0.0 };
+    let turn = Mat::from_fn(rigid, rigid, |i, j| svd.V()[(i, rigid - 1 - j)]);
+    for part in [&mut basis, &mut strains] {
+        let turned = part.get(.., ..rigid) * &turn;
+        part.get_mut(.., ..rigid).copy_from(&turned);
+    }
+    let unsprung = (0..rigid).filter(|k| value(*k) <= UNSTRAINED * value(0)).count();
+    (0..unsprung).for_each(|j| strains.col_mut(j).fill(0.0));
+    Ok((basis, strains, unsprung))
 }
 
 /// An M-orthonormal basis of the motions that the rows leave.

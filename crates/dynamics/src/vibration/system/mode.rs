@@ -52,14 +52,31 @@ impl SystemMode {
     }
 }
 
+/// Motions apart from those that nothing resists.
+struct Drifts {
+    /// Orthonormal bases of the one and of the other.
+    rest: Mat<f64>,
+    rigid: Mat<f64>,
+    /// Those of the latter that others push.
+    drifts: Vec<Vec<f64>>,
+}
+
+/// Right singular vectors of forces, and how many of the last have none.
+fn null_vectors(forces: &Mat<f64>) -> Result<(Mat<f64>, usize), SteadyError> {
+    let svd = forces.svd().map_err(|_| SteadyError::Numbers)?;
+    let values = svd.S().column_vector();
+    let loose = (0..forces.ncols()).filter(|k| *k >= values.nrows() || values[*k] <= ROUNDING).count();
+    Ok((svd.V().to_owned(), loose))
+}
+
 impl Linearization {
     /// Its vibrations.
     ///
     /// # Errors
     /// [`SteadyError::Numbers`] where the eigenvalue problem has no answer.
     pub fn vibrations(&self) -> Result<Vibrations, SteadyError> {
-        let kept = self.without_rigid()?;
-        let (rest, rigid) = kept;
+        let (rest, rigid) = self.without_rigid()?;
+        let Drifts { rest, rigid, drifts } = self.without_drifts(rest, rigid)?;
         let size = rest.ncols();
         let [stiffness, damping] = [&self.stiffness, &self.damping].map(|matrix| rest.transpose() * (matrix * &rest));
         if size == 0 {
@@ -69,7 +86,7 @@ impl Linearization {
         let ScaledEquations { matrix, scales } = &scaled;
         let eigen = matrix.eigen().map_err(|_| SteadyError::Numbers)?;
         let largest = scaled.fastest();
-        let slow = scales[..self.rigid.saturating_sub(rigid.ncols())].iter().copied().fold(0.0, f64::max);
+        let slow = scales[..self.unsprung.saturating_sub(rigid.ncols())].iter().copied().fold(0.0, f64::max);
         let zero = scaled.zero(slow, 1e-13);
         let (mut modes, mut zeros) = (Vec::new(), 0);
         for (k, eigenvalue) in eigen.S().column_vector().iter().enumerate() {
@@ -91,8 +108,9 @@ impl Linearization {
             }
             let state = eigen.U().col(k);
             let of_rest: Vec<c64> = (0..size).map(|i| state[i] / scales[i]).collect();
-            let coordinates =
+            let mut coordinates: Vec<c64> =
                 (0..self.size()).map(|i| of_rest.iter().enumerate().map(|(j, x)| *x * rest[(i, j)]).sum()).collect();
+            self.let_drift(&drifts, eigenvalue, &mut coordinates);
             modes.push(self.mode(eigenvalue, coordinates));
         }
         modes.sort_by(|a, b| {
@@ -100,6 +118,60 @@ impl Linearization {
             a.norm().total_cmp(&b.norm()).then(a.im.total_cmp(&b.im))
         });
         Ok(Vibrations { rigid: &self.basis * rigid, zeros, modes })
+    }
+
+    /// Takes out motions that nothing resists, but that others push, such as the path of a rocket that turns, or that push others and are pushed by none:
+    /// zeros, too, which rounding would part by a root the higher the longer their chain is.
+    fn without_drifts(&self, mut rest: Mat<f64>, mut rigid: Mat<f64>) -> Result<Drifts, SteadyError> {
+        let weights = self.weights();
+        let mut drifts = Vec::new();
+        loop {
+            let (size, count) = (rest.ncols(), self.unsprung - rigid.ncols());
+            if count == 0 {
+                break;
+            }
+            let all = [&self.stiffness, &self.damping].map(|matrix| rest.transpose() * (matrix * &rest));
+            let sides = [false, true].map(|of_rows| {
+                let forces = Mat::from_fn(2 * size, count, |row, k| {
+                    let (which, i) = (row / size, row % size);
+                    weights[which] * if of_rows { all[which][(k, i)] } else { all[which][(i, k)] }
+                });
+                null_vectors(&forces)
+            });
+            let [pushed, pushing] = sides;
+            let (pushed, pushing) = (pushed?, pushing?);
+            let (v, loose) = if pushed.1 > 0 { &pushed } else { &pushing };
+            if *loose == 0 {
+                break;
+            }
+            let tied = count - loose;
+            let out = rest.get(.., ..count) * v.get(.., tied..);
+            let first = rigid.ncols();
+            if pushed.1 > 0 {
+                drifts.extend((0..*loose).map(|k| out.col(k).iter().copied().collect::<Vec<f64>>()));
+            }
+            rigid = Mat::from_fn(self.size(), first + loose, |i, j| {
+                if j < first { rigid[(i, j)] } else { out[(i, j - first)] }
+            });
+            let kept = rest.get(.., ..count) * v.get(.., ..tied);
+            rest = Mat::from_fn(self.size(), size - loose, |i, j| {
+                if j < tied { kept[(i, j)] } else { rest[(i, j + loose)] }
+            });
+        }
+        Ok(Drifts { rest, rigid, drifts })
+    }
+
+    /// Adds to a motion what it pushes: x = −Xᵀ(sC + K)η/s² of each, the last taken out first.
+    fn let_drift(&self, drifts: &[Vec<f64>], eigenvalue: c64, coordinates: &mut [c64]) {
+        for drift in drifts.iter().rev() {
+            let force = |i: usize| -> c64 {
+                let of = |j: usize| eigenvalue * self.damping[(i, j)] + self.stiffness[(i, j)];
+                coordinates.iter().enumerate().map(|(j, x)| of(j) * x).sum()
+            };
+            let along: c64 = drift.iter().enumerate().filter(|(_, x)| **x != 0.0).map(|(i, x)| force(i) * *x).sum();
+            let moved = -along / (eigenvalue * eigenvalue);
+            coordinates.iter_mut().zip(drift).for_each(|(sum, x)| *sum += moved * *x);
+        }
     }
 
     /// The same equations with the motions that nothing resists as the first coordinates, and their number: their rows and columns of K and C
@@ -129,27 +201,19 @@ impl Linearization {
 
     /// Orthonormal bases of the coordinates that are not rigid motions without forces, and of those that are.
     pub(crate) fn without_rigid(&self) -> Result<(Mat<f64>, Mat<f64>), SteadyError> {
-        let (size, count) = (self.size(), self.rigid);
+        let (size, count) = (self.size(), self.unsprung);
         if count == 0 {
             return Ok((Mat::identity(size, size), Mat::zeros(size, 0)));
         }
         let all = [&self.stiffness, &self.damping];
-        let slowest = self.slowest_strain();
-        let floors = [slowest, slowest.sqrt()];
-        let weights: [f64; 2] = std::array::from_fn(|which| {
-            let magnitude = self.magnitudes[which].max(f64::EPSILON / ROUNDING * floors[which]);
-            if magnitude > 0.0 { 1.0 / magnitude } else { 0.0 }
-        });
+        let weights = self.weights();
         let forces = Mat::from_fn(4 * size, count, |row, k| {
             let (which, i) = (row / (2 * size), row % (2 * size));
             let matrix = all[which];
             weights[which] * if i < size { matrix[(i, k)] } else { matrix[(k, i - size)] }
         });
-        let svd = forces.svd().map_err(|_| SteadyError::Numbers)?;
-        let values = svd.S().column_vector();
-        let loose = (0..count).filter(|k| *k >= values.nrows() || values[*k] <= ROUNDING).count();
+        let (v, loose) = null_vectors(&forces)?;
         let tied = count - loose;
-        let v = svd.V();
         let rest = Mat::from_fn(size, size - loose, |i, j| match (i < count, j < tied) {
             (true, true) => v[(i, j)],
             (false, false) => f64::from(u8::from(i - count == j - tied)),
@@ -159,16 +223,18 @@ impl Linearization {
         Ok((rest, rigid))
     }
 
-    /// The rounding of K in the coordinates that deform no body.
-    pub(crate) fn rounding_of_stiffness(&self) -> f64 {
-        ROUNDING * self.magnitudes[0].max(f64::EPSILON / ROUNDING * self.slowest_strain())
+    /// Reciprocals of the magnitudes of K and C that rounding is in proportion to.
+    fn weights(&self) -> [f64; 2] {
+        let floors = [self.strain_floor, self.strain_floor.sqrt()];
+        std::array::from_fn(|which| {
+            let magnitude = self.magnitudes[which].max(f64::EPSILON / ROUNDING * floors[which]);
+            if magnitude > 0.0 { 1.0 / magnitude } else { 0.0 }
+        })
     }
 
-    /// Λ of the slowest vibration of the bodies; zero without any. Where no force acts, all terms of a motion as a whole are rounding, and
-    /// are judged by this.
-    fn slowest_strain(&self) -> f64 {
-        let slowest = self.strain.iter().copied().filter(|strain| *strain > 0.0).fold(f64::INFINITY, f64::min);
-        if slowest.is_finite() { slowest } else { 0.0 }
+    /// The rounding of K in the coordinates that deform no body.
+    pub(crate) fn rounding_of_stiffness(&self) -> f64 {
+        ROUNDING * self.magnitudes[0].max(f64::EPSILON / ROUNDING * self.strain_floor)
     }
 
     /// A mode with the energies of its bodies and springs, its largest velocity at unit kinetic energy.

@@ -8,8 +8,10 @@
 use nalgebra::Vector3;
 
 use crate::body::motion_state::MotionState;
+use crate::system::description::System;
 use crate::system::joint::coordinate::Coordinate;
 use crate::system::radau::SystemMotion;
+use crate::system::stage::vector;
 use crate::vibration::system::configuration::{BodyConfiguration, CommonSpin, Configuration};
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::linearization::Linearization;
@@ -21,10 +23,13 @@ const PASSES: usize = 40;
 const STILL: f64 = 1e-12;
 /// Largest turn and bending, as a part of the size of bodies, of one pass.
 const STRIDE: f64 = 0.2;
+/// Part of forces that is their rounding where they balance.
+const ROUNDING: f64 = 1e-13;
 /// Rate of a row in a common spin, relative to the speed of the bodies, above which its joint does not allow the spin.
 const AGAINST: f64 = 1e-6;
 
-/// How far a steady state is from balance: the accelerations that are left, along motions that deform no body.
+/// How far a steady state is from balance: the accelerations that are left, along motions that deform no body. Its linearised equations are
+/// about that accelerated motion, at its instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unbalance {
     /// Acceleration of the origin of each body, in its axes.
@@ -124,9 +129,18 @@ impl SteadyState {
                 return Err(SteadyError::Numbers);
             }
             if size <= STILL {
-                let springs = springs(system, &at);
-                let linear = Linearization { springs, ..linear };
-                let unbalance = unbalance(motion, &linear, &terms);
+                let rates = unbalanced(&linear, &terms);
+                let (terms, linear) = match &rates {
+                    Some(rates) => {
+                        at.accelerate(system, rates);
+                        let terms = Terms::new(system, &at)?;
+                        let linear = Linearization::new(system, &terms, Vec::new())?;
+                        (terms, linear)
+                    }
+                    None => (terms, linear),
+                };
+                let linear = Linearization { springs: springs(system, &at), ..linear };
+                let unbalance = Unbalance::new(system, rates.as_deref().unwrap_or(&vec![0.0; system.coordinates()]));
                 return Ok(Self { configuration: at, terms, linear, unbalance, spin: spin.copied() });
             }
             if pass == PASSES {
@@ -177,18 +191,23 @@ pub(super) fn check_spin(motion: &SystemMotion, terms: &Terms, at: &Configuratio
     Ok(())
 }
 
-fn unbalance(motion: &SystemMotion, linear: &Linearization, terms: &Terms) -> Unbalance {
+/// The accelerations of all coordinates that the forces leave along motions that deform no body, if they are more than rounding.
+fn unbalanced(linear: &Linearization, terms: &Terms) -> Option<Vec<f64>> {
     let mut forces = linear.project(&terms.forces);
     forces[linear.rigid..].fill(0.0);
-    let accelerations = linear.expand(&forces);
-    let of = |part: usize| {
-        let first = &motion.system().first;
-        first[..first.len() - 1]
-            .iter()
-            .map(|first| crate::system::stage::vector(&accelerations, first + part))
-            .collect()
-    };
-    Unbalance { accelerations: of(0), angular_accelerations: of(3) }
+    let parts = |k: usize| terms.forces.iter().enumerate().map(move |(i, force)| linear.basis[(i, k)] * force);
+    let is_more = |k: usize| forces[k].abs() > ROUNDING * parts(k).map(f64::abs).sum::<f64>();
+    (0..linear.rigid).any(is_more).then(|| linear.expand(&forces))
+}
+
+impl Unbalance {
+    fn new(system: &System, accelerations: &[f64]) -> Self {
+        let of = |part: usize| {
+            let first = &system.first;
+            first[..first.len() - 1].iter().map(|first| vector(accelerations, first + part)).collect()
+        };
+        Self { accelerations: of(0), angular_accelerations: of(3) }
+    }
 }
 
 impl SteadyState {

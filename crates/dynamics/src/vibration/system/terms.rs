@@ -24,6 +24,11 @@ pub(crate) struct Terms {
     pub damping: Mat<f64>,
     /// K without Λ.
     pub stiffness: Mat<f64>,
+    /// The same without what strains springs, and the rows B of that: K = `unsprung` + BᵀB.
+    pub unsprung: Mat<f64>,
+    pub springs: Mat<f64>,
+    /// The part of K that is M L': what it leaves with the loads that give these accelerations has its rounding.
+    pub accelerated: Mat<f64>,
     /// K without Λ if no forces acted: springs, bushings and their like alone.
     pub unloaded: Mat<f64>,
     /// Forces of joints and elements on each body; K has their stiffening.
@@ -67,14 +72,18 @@ impl Terms {
             .collect();
         let row_rates =
             (0..m).map(|row| velocities.iter().enumerate().map(|(k, v)| rows[(row, k)] * v).sum()).collect();
-        let (mut damping, mut stiffness) = (Mat::zeros(n, n), Mat::zeros(n, n));
+        let [mut damping, mut unsprung, mut accelerated] = [(); 3].map(|()| Mat::zeros(n, n));
         for (terms, first) in bodies.iter().zip(&system.first) {
             add_block(&mut damping, [*first; 2], &terms.damping);
-            add_block(&mut stiffness, [*first; 2], &terms.stiffness);
+            add_block(&mut unsprung, [*first; 2], &terms.stiffness);
+            add_block(&mut accelerated, [*first; 2], &terms.accelerated);
         }
         let mut terms = Self {
             damping,
-            stiffness,
+            stiffness: Mat::zeros(0, 0),
+            unsprung,
+            springs: Mat::zeros(0, n),
+            accelerated,
             unloaded: Mat::zeros(n, n),
             borne: system.first.windows(2).map(|range| Borne::nothing(range[1] - range[0] - 6)).collect(),
             rows,
@@ -94,17 +103,20 @@ impl Terms {
             masses: Vec::new(),
             convections: Vec::new(),
         };
-        let sources: Vec<Tie> = force_ties(system, at).collect();
+        let mut sources: Vec<Tie> = force_ties(system, at).collect();
         terms.factor((system, at), &constraints, &bodies)?;
         (terms.masses, terms.convections) = bodies.into_iter().map(|terms| (terms.mass, terms.convection)).unzip();
-        sources.iter().for_each(|tie| terms.add(system, tie));
         sources.iter().for_each(|tie| tie.add_law(&mut terms.unloaded));
+        let springs: Vec<Vec<f64>> = sources.iter_mut().flat_map(|tie| tie.take_springs(n)).collect();
+        terms.springs = Mat::from_fn(springs.len(), n, |i, k| springs[i][k]);
+        sources.iter().for_each(|tie| terms.add(system, tie));
         terms.find_multipliers(system);
         let held: Vec<Tie> = row_ties(system, at, &terms.multipliers);
         let forces = terms.forces.clone();
         held.iter().for_each(|tie| terms.add(system, tie));
         // The forces of the multipliers stay apart.
         terms.forces = forces;
+        terms.stiffness = &terms.unsprung + terms.springs.transpose() * &terms.springs;
         Ok(terms)
     }
 
@@ -114,12 +126,12 @@ impl Terms {
         let (mut by_place, mut by_velocity) = (Mat::zeros(n, n), Mat::zeros(n, n));
         tie.add_to(&mut Sums { forces: &mut self.forces, by_place: &mut by_place, by_velocity: &mut by_velocity });
         tie.add_borne(&mut self.borne);
-        self.stiffness -= by_place;
+        self.unsprung -= by_place;
         for (convection, first) in self.convections.iter().zip(&system.first) {
             let columns = convection.ncols();
             let changed = by_velocity.get(.., *first..first + columns) * convection;
             for (i, j) in (0..columns).flat_map(|j| (0..n).map(move |i| (i, j))) {
-                self.stiffness[(i, first + j)] -= changed[(i, j)];
+                self.unsprung[(i, first + j)] -= changed[(i, j)];
             }
         }
         self.damping -= by_velocity;

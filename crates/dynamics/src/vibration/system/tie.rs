@@ -19,6 +19,10 @@ use crate::vibration::system::configuration::Configuration;
 /// Part of a change of a wrench that is rounding.
 const ROUNDING: f64 = 1e-6;
 
+/// A change of a wrench below this part of what its springs do is rounding, and a stiffness below this part of what it was is one that others leave.
+const LEFT: f64 = 1e-14;
+const TAKEN: f64 = 1e-6;
+
 /// Some markers with the forces between them, to first order. Entries of lists and matrices are those of the markers one after
 /// another, six each: displacement and turn, or force and moment, global.
 #[derive(Debug, Clone)]
@@ -222,6 +226,50 @@ impl Tie {
                 }
             }
         }
+    }
+
+    /// Parts its springs from all else: over all coordinates (n), rows b of changes of place that strain a spring, of which each adds b bᵀ to K. The tie
+    /// keeps what they do not hold, such as the turn of its forces. Slow motions that strain none have then no rounding of stiff ones.
+    pub fn take_springs(&mut self, n: usize) -> Vec<Vec<f64>> {
+        let size = 6 * self.ends.len();
+        let own: Vec<f64> = (0..size).map(|i| -self.by_motion[(i, i)]).collect();
+        // Rows of a Cholesky factor, the least changed first: entries of soft springs keep their digits beside stiff ones.
+        let mut left = Mat::from_fn(size, size, |i, j| -0.5 * (self.by_motion[(i, j)] + self.by_motion[(j, i)]));
+        let length = |i: usize| if i % 6 < 3 { 1.0 } else { self.length };
+        let part = |left: &Mat<f64>, i: usize| if own[i] > 0.0 { left[(i, i)] / own[i] } else { 0.0 };
+        // A stiffness beside which the turn of forces is large is none of a spring.
+        let is_sound = |left: &Mat<f64>, i: usize| {
+            (0..size).all(|j| {
+                let [beside, of] = [left[(i, j)].abs(), left[(i, i)]];
+                beside * beside <= 2.0 * of * own[j] || beside * length(i) <= of * length(j)
+            })
+        };
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        loop {
+            let stiff = (0..size).filter(|i| part(&left, *i) > TAKEN && is_sound(&left, *i));
+            let Some(pivot) = stiff.max_by(|a, b| part(&left, *a).total_cmp(&part(&left, *b))) else { break };
+            let root = left[(pivot, pivot)].sqrt();
+            let row: Vec<f64> = (0..size).map(|j| left[(pivot, j)] / root).collect();
+            for (i, j) in (0..size).flat_map(|j| (0..size).map(move |i| (i, j))) {
+                left[(i, j)] -= row[i] * row[j];
+            }
+            (0..size).for_each(|i| (left[(pivot, i)], left[(i, pivot)]) = (0.0, 0.0));
+            rows.push(row);
+        }
+        self.by_motion = Mat::from_fn(size, size, |i, j| {
+            let rest = 0.5 * (self.by_motion[(i, j)] - self.by_motion[(j, i)]) - left[(i, j)];
+            if rest.abs() > LEFT * (own[i] * own[j]).abs().sqrt() { rest } else { 0.0 }
+        });
+        let over_all = |row: &Vec<f64>| {
+            let mut whole = vec![0.0; n];
+            for (k, end) in self.on_bodies() {
+                for j in 0..end.tangent.motion.ncols() {
+                    whole[end.first + j] += (0..6).map(|i| row[6 * k + i] * end.tangent.motion[(i, j)]).sum::<f64>();
+                }
+            }
+            whole
+        };
+        rows.iter().map(over_all).collect()
     }
 
     /// The ends that are on bodies, with their numbers.

@@ -102,12 +102,20 @@ impl<'a> Here<'a> {
     pub fn stiffness_rate(&self, number: &Number) -> Result<Mat<f64>, GradientError> {
         let (mut changed, value) = (self.system.clone(), number.value(self.system));
         number.set(&mut changed, 2.0 * value);
-        let (there, linear) = (steady(&changed, self.models)?.1, &self.steady.linear);
+        let (there, here) = (steady(&changed, self.models)?.1, &self.steady);
         // A body that the stiffness deforms stands elsewhere, with other coordinates.
-        if (&there.linear.basis - &linear.basis).norm_max() > ROUNDING * linear.basis.norm_max() {
+        let is_moved = |(place, body): (usize, &usize)| {
+            let size = self.models[*body].body.inertia.trace().sqrt();
+            let pairs = there.modal_displacement(place).iter().zip(here.modal_displacement(place));
+            pairs.into_iter().any(|(q, here)| (q - here).abs() > ROUNDING * size)
+        };
+        if self.motion.bodies.iter().enumerate().any(is_moved) {
             return Err(self.loaded());
         }
-        Ok((&there.linear.stiffness - &linear.stiffness) * faer::Scale(1.0 / value))
+        let motion = self.motion.simulation.motion();
+        let [[there, _], [whole, _]] = [&there, here].map(|at| motion.whole_matrices(at));
+        let basis = &here.linear.basis;
+        Ok(basis.transpose() * ((there - whole) * basis) * faer::Scale(1.0 / value))
     }
 }
 
