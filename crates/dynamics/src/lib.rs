@@ -94,7 +94,7 @@ pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 pub use vibration::system::{
     BodyStiffening, CommonSpin, Linearization, ReactionRows, Rotor, RotorError, ScaledEquations, Spring, SteadyError,
-    SteadyState, StiffenedMode, SystemMode, SystemParticipation, Unbalance, Vibrations,
+    SteadyState, StiffenedMode, SystemMode, SystemParticipation, TurningJoint, Unbalance, Vibrations,
 };
 
 /// Crates whose types are in the interface.

@@ -145,3 +145,58 @@ fn a_dished_disc_in_a_spin_has_the_frequencies_of_calculix() {
         }
     }
 }
+
+/// Closed form: a frame on a soft pad carries a wheel that spins at its centre, J φ̈ − i h φ̇ + k φ = 0: √(a² + k/J) ± a, a = h/2J. Without the
+/// spin both are √(k/J).
+#[test]
+fn a_wheel_that_spins_parts_the_frequencies_of_its_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("wheel.toml");
+    let write = |inertia: f64, speed: f64| {
+        let text = format!(
+            "title = \"Wheel\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n\
+             [bodies.frame]\nrigid = {{ mass = 3.0, center_of_mass = [0, 0, 0], inertia = [[0.2, 0, 0], [0, 0.3, 0], [0, 0, 0.3]] }}\n\
+             markers = {{ c = {{ at = [0, 0, 0] }} }}\n\
+             [bodies.wheel]\nrigid = {{ mass = 2.0, center_of_mass = [0, 0, 0], inertia = [[0.4, 0, 0], [0, 0.25, 0], [0, 0, {inertia}]] }}\n\
+             markers = {{ c = {{ at = [0, 0, 0] }} }}\ninitial = {{ angular_velocity = [{speed:?}, 0, 0] }}\n\
+             [[joints]]\nname = \"bearing\"\nkind = \"revolute\"\nbetween = [\"frame.c\", \"wheel.c\"]\naxis = [1, 0, 0]\n\
+             [[bushings]]\nname = \"pad\"\nbetween = [\"ground\", \"frame.c\"]\n\
+             stiffness = {{ translation = [4e4, 3e4, 3e4], rotation = [900.0, 500.0, 500.0] }}\n[time]\nend = 1.0\ntolerance = 1e-5\n"
+        );
+        std::fs::write(&scene, text).unwrap();
+        scene.to_str().unwrap().to_owned()
+    };
+    let (a, still) = (0.5 * 300.0 * 0.4 / 0.55, 500.0 / 0.55_f64);
+    let root = (a * a + still).sqrt();
+    let path = write(0.25, 300.0);
+    let report = json(&["modes", &path]);
+    let system = &report["systems"][0];
+    let found: Vec<f64> =
+        system["modes"].as_array().unwrap().iter().map(|mode| TAU * mode["frequency"].as_f64().unwrap()).collect();
+    for expected in [root - a, root + a] {
+        assert!((nearest(&found, expected) / expected - 1.0).abs() < 1e-9, "{found:?} {expected}");
+    }
+    assert_eq!(system["rotors"][0]["joint"].as_str(), Some("bearing"));
+    assert!((system["rotors"][0]["speed"].as_f64().unwrap() - 300.0).abs() < 1e-9);
+    assert!(system["warnings"].as_array().unwrap().is_empty(), "{}", system["warnings"]);
+    let file = folder.path().join("linear.json");
+    let report = json(&["linearize", &path, "-o", file.to_str().unwrap()]);
+    let found: Vec<f64> =
+        report["poles"].as_array().unwrap().iter().map(|pole| TAU * pole["frequency"].as_f64().unwrap()).collect();
+    for expected in [root - a, root + a] {
+        assert!((nearest(&found, expected) / expected - 1.0).abs() < 1e-9, "{found:?} {expected}");
+    }
+    assert!(
+        report["about"].as_str().unwrap().contains("a rotor that spins at 300 rad/s in joint bearing"),
+        "{}",
+        report["about"]
+    );
+
+    // One that is not round has equations that change with its turn.
+    let path = write(0.3, 300.0);
+    let report = json(&["modes", &path]);
+    let warning = report["systems"][0]["warnings"][0].as_str().unwrap();
+    for words in ["joint bearing turns at 300 rad", "left out", "differs"] {
+        assert!(warning.contains(words), "{words} in: {warning}");
+    }
+}

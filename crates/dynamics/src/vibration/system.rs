@@ -31,7 +31,7 @@ pub use linearization::Linearization;
 pub use mode::{SystemMode, Vibrations};
 pub use participation::SystemParticipation;
 pub use reaction::ReactionRows;
-pub use rotor::{Rotor, RotorError};
+pub use rotor::{Rotor, RotorError, TurningJoint};
 pub use scaled::ScaledEquations;
 pub use steady::{SteadyState, Unbalance};
 pub use stiffening::{BodyStiffening, StiffenedMode};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use dynamics::{
     Bushing, CommonSpin, Coordinate, ForceElement, History, Joint, JointDrive, JointForce, Marker, MotionState, Rotor,
-    RotorError, SpinMode, System, SystemMotion, Table,
+    RotorError, SpinMode, System, SystemMotion, Table, TurningJoint,
 };
 use faer::c64;
 use fem_tet10::Material;
@@ -258,4 +258,47 @@ fn what_is_no_rotor_is_refused() {
     ]);
     assert!(two.rotor(0).is_ok(), "{:?}", two.rotor(0));
     assert!(two.steady_state(&CommonSpin::REST).is_ok());
+}
+
+/// Closed form: a free hub that spins at Ω with a wheel that spins at s against it, about one axis of symmetry of both: as the hub sees it, its axis
+/// circles with (J Ω + j s)/A − Ω, of both J about and A across the axis, j of the wheel.
+#[test]
+fn a_wheel_against_a_spinning_hub_has_its_part_in_the_nutation() {
+    let bodies = || vec![rigid(3.0, [0.5, 0.3, 0.3]), rigid(2.0, [0.2, 0.15, 0.15])];
+    let axis = |body: usize| Marker::on_rigid(body, Vector3::zeros(), along_x());
+    for (hub, wheel) in [(0.0, 50.0), (7.0, 50.0), (7.0, -20.0)] {
+        let system = System::new(bodies(), vec![Joint::revolute("bearing", [axis(0), axis(1)])]).unwrap();
+        let spins = [hub, hub + wheel].map(|spin| MotionState { omega_body: Vector3::x() * spin, ..at(0.0) });
+        let mut motion = SystemMotion::new(system, &spins).unwrap();
+        motion.assemble().unwrap();
+        let turning = motion.turning_joints();
+        let [TurningJoint { joint: 0, rate, rotor: Ok((rotor, speed)) }] = &turning[..] else { panic!("{turning:?}") };
+        assert!((rate - wheel).abs() < 1e-12 && (speed - wheel).abs() < 1e-12 && rotor.body == 1);
+        let spin = CommonSpin { omega_global: Vector3::x() * hub, point_global: Vector3::zeros() };
+        let steady = motion.steady_state_with_rotors(&spin, [(rotor, *speed)]).unwrap();
+        let modes = steady.linear.vibrations().unwrap().modes;
+        let expected = ((0.7 * hub + 0.2 * wheel) / 0.45 - hub).abs();
+        let off = |found: f64| (found / expected - 1.0).abs();
+        let found: Vec<f64> = modes.iter().map(|mode| mode.circular_frequency()).collect();
+        assert!(found.iter().any(|found| off(*found) < 1e-9), "{found:?} {expected}");
+    }
+}
+
+/// Closed form: a disk at the center of its stand, as above; that it spins, and how fast, is a matter of its motion.
+#[test]
+fn a_disk_that_spins_in_the_motion_is_found_and_a_crank_is_not() {
+    let pad = ([4e4, 3e4, 3e4], [90.0, 50.0, 50.0], 0.0);
+    for (disk, is_round) in [([0.4, 0.25, 0.25], true), ([0.4, 0.25, 0.3], false)] {
+        let (system, _) = stand(disk, 0.0, pad, 40.0);
+        let spins = [0.0, 40.0].map(|spin| MotionState { omega_body: Vector3::x() * spin, ..at(0.0) });
+        let mut motion = SystemMotion::new(system, &spins).unwrap();
+        motion.assemble().unwrap();
+        let turning = motion.turning_joints();
+        assert_eq!((turning.len(), turning[0].rotor.is_ok()), (1, is_round), "{turning:?}");
+        let Ok((rotor, speed)) = &turning[0].rotor else { continue };
+        let half = 0.5 * 40.0 * 0.4 / 0.55;
+        let expected = (half * half + 50.0_f64 / 0.55).sqrt() - half;
+        let modes = motion.rotor_modes(rotor, *speed).unwrap();
+        assert!(modes.iter().any(|mode| (mode.circular_frequency / expected - 1.0).abs() < 1e-9));
+    }
 }

@@ -407,11 +407,16 @@ fn a_slow_vibration_keeps_its_digits_beside_fast_ones() {
         };
         let elements: Vec<Arc<dyn ForceElement>> = vec![Arc::new(bushing)];
         let system = System::new(bodies, vec![hinge]).unwrap().with_elements(elements).unwrap();
-        let motion = SystemMotion::new(system, &[at_rest(Vector3::new(0.0, -1.0, 0.0)), at_rest(Vector3::new(0.1, -1.0, 0.0))]).unwrap();
+        let motion =
+            SystemMotion::new(system, &[at_rest(Vector3::new(0.0, -1.0, 0.0)), at_rest(Vector3::new(0.1, -1.0, 0.0))])
+                .unwrap();
         let (rigid, found) = modes(&motion, &CommonSpin::REST);
         assert_eq!((rigid, found.len()), (0, 7), "{stiffness:e}");
         let off = found[0].circular_frequency().powi(2) / (GRAVITY / (1.001 + 1e-4 * 1.01 + 1e-10)) - 1.0;
-        println!("{stiffness:e}: slow off by {off:e}, fast {:e}", found[1].circular_frequency() / (stiffness / 1e-4).sqrt());
+        println!(
+            "{stiffness:e}: slow off by {off:e}, fast {:e}",
+            found[1].circular_frequency() / (stiffness / 1e-4).sqrt()
+        );
         assert!(off.abs() < 1e-8, "{stiffness:e}: {off:e}");
     }
 }

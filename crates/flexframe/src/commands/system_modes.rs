@@ -5,6 +5,7 @@ mod assembled;
 mod draw;
 mod error;
 mod report;
+mod rotors;
 mod shape;
 mod stiffening;
 
@@ -21,6 +22,8 @@ pub use draw::{FieldsError, draw, write_fields};
 pub use error::SystemModesError;
 pub(crate) use report::body_names;
 pub use report::{ModesOfSystems, Share, SystemModeReport, SystemModes, SystemModesReport};
+pub(crate) use rotors::Rotors;
+pub use rotors::SpinningRotor;
 pub(crate) use shape::SystemSurface;
 pub use stiffening::{StiffenedBody, StiffenedFrequency};
 
@@ -37,7 +40,8 @@ pub fn build(
 }
 
 /// Finds the vibrations of all bodies of a scene that joints, springs or bushings tie together, at rest where they stand at the
-/// start, or where a run has them at a time; the bodies are deformed as their loads ask, and drives hold still. Rotations of the ground,
+/// start, or where a run has them at a time; the bodies are deformed as their loads ask, and drives hold still, but rotors spin. Where forces do
+/// not balance, the vibrations are about the motion that they accelerate. Rotations of the ground,
 /// for effective moments of inertia, are `about` a global point, or about the first place that the ground holds.
 ///
 /// # Errors
@@ -98,9 +102,11 @@ pub fn system_advice(
 
 fn of_motion(system: &System, motion: &TiedMotion) -> Result<(SystemModes, SteadyState), SystemModesError> {
     let failed = |source| failed(system, motion, source);
-    let steady = motion.simulation.motion().steady_state(&CommonSpin::REST).map_err(failed)?;
+    let of_motion = motion.simulation.motion();
+    let rotors = Rotors::of(of_motion, |_| false);
+    let steady = rotors.steady_state(of_motion, &CommonSpin::REST).map_err(failed)?;
     let vibrations = steady.linear.vibrations().map_err(failed)?;
-    let report = SystemModesReport::new(system, motion, &steady, &vibrations);
+    let report = SystemModesReport::new(system, motion, &steady, &vibrations, rotors);
     Ok((SystemModes { bodies: motion.bodies.clone(), states: steady.states(), vibrations, report }, steady))
 }
 

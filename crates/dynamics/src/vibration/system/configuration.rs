@@ -80,7 +80,12 @@ impl Configuration {
     pub fn accelerate(&mut self, system: &System, rates: &[f64]) {
         for (body, first) in self.bodies.iter_mut().zip(&system.first) {
             body.velocity_rate += vector(rates, *first);
-            body.omega_rate += vector(rates, first + 3);
+            let mut omega_rate = vector(rates, first + 3);
+            // The axes of a rotor do not turn with it.
+            if let Some(axis) = body.own_momentum.try_normalize(0.0) {
+                omega_rate -= axis * axis.dot(&omega_rate);
+            }
+            body.omega_rate += omega_rate;
         }
     }
 

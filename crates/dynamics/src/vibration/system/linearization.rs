@@ -68,10 +68,7 @@ impl Linearization {
         // |N|ᵀ |K| |N| of the coordinates that deform nothing.
         let absolute = |matrix: &Mat<f64>| Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].abs());
         let columns = absolute(&basis.get(.., ..unsprung).to_owned());
-        let magnitude = |matrix: &Mat<f64>| {
-            let product = columns.transpose() * (absolute(matrix) * &columns);
-            (0..unsprung).map(|k| product[(k, k)]).fold(0.0, f64::max)
-        };
+        let magnitude = |matrix: &Mat<f64>| (columns.transpose() * (absolute(matrix) * &columns)).norm_max();
         let [of_forces, accelerated] = [&terms.unsprung, &terms.accelerated].map(magnitude);
         let magnitudes = [of_forces.max(accelerated), magnitude(&terms.damping)];
         let of_springs = absolute(&terms.springs) * &columns;

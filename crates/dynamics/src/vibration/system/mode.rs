@@ -150,13 +150,22 @@ impl Linearization {
             if pushed.1 > 0 {
                 drifts.extend((0..*loose).map(|k| out.col(k).iter().copied().collect::<Vec<f64>>()));
             }
-            rigid = Mat::from_fn(self.size(), first + loose, |i, j| {
-                if j < first { rigid[(i, j)] } else { out[(i, j - first)] }
-            });
+            rigid =
+                Mat::from_fn(
+                    self.size(),
+                    first + loose,
+                    |i, j| {
+                        if j < first { rigid[(i, j)] } else { out[(i, j - first)] }
+                    },
+                );
             let kept = rest.get(.., ..count) * v.get(.., ..tied);
-            rest = Mat::from_fn(self.size(), size - loose, |i, j| {
-                if j < tied { kept[(i, j)] } else { rest[(i, j + loose)] }
-            });
+            rest = Mat::from_fn(
+                self.size(),
+                size - loose,
+                |i, j| {
+                    if j < tied { kept[(i, j)] } else { rest[(i, j + loose)] }
+                },
+            );
         }
         Ok(Drifts { rest, rigid, drifts })
     }

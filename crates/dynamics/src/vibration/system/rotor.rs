@@ -11,6 +11,7 @@
 use faer::c64;
 use nalgebra::{Matrix3, Vector3};
 
+use crate::system::marker::Marker;
 use crate::system::radau::SystemMotion;
 use crate::system::stage::{put, vector};
 use crate::vibration::steady_spin::SpinMode;
@@ -22,6 +23,9 @@ use crate::vibration::system::terms::{Terms, springs};
 
 /// Parts of the radius of gyration and of the inertia that a rotor may be off its axis, and off symmetry.
 const SYMMETRIC: f64 = 1e-3;
+/// Rate of a turn, as a part of the fastest, that is rounding, and part of a rate that may be across the axis of a joint that turns about it.
+const STILL: f64 = 1e-12;
+const ALONG: f64 = 1e-3;
 /// Part of a row that is rounding.
 const ROUNDING: f64 = 1e-6;
 
@@ -34,6 +38,17 @@ pub struct Rotor {
     pub axis_body: Vector3<f64>,
     /// Its moment of inertia about the axis.
     pub polar_inertia: f64,
+}
+
+/// A joint that turns in a motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TurningJoint {
+    /// Its number.
+    pub joint: usize,
+    /// Rate of its turn, rad per time.
+    pub rate: f64,
+    /// The rotor that it spins, with its speed about its axis, relative to what carries it; or why there is none.
+    pub rotor: Result<(Rotor, f64), RotorError>,
 }
 
 /// Reasons that no body spins alone about the axis of a joint.
@@ -113,13 +128,37 @@ impl SystemMotion {
     /// # Errors
     /// [`RotorError`], that of the second marker's body.
     pub fn rotor(&self, joint: usize) -> Result<Rotor, RotorError> {
-        let [first, second] = self.system().joints()[joint].markers.each_ref().map(crate::Marker::body);
+        let [first, second] = self.system().joints()[joint].markers.each_ref().map(Marker::body);
         let found = second.ok_or(RotorError::Nothing).and_then(|body| self.rotor_of(joint, body));
         match first.map(|body| self.rotor_of(joint, body)) {
             Some(Ok(rotor)) if found.is_err() => Ok(rotor),
             Some(Err(error)) if second.is_none() => Err(error),
             _ => found,
         }
+    }
+
+    /// The joints that turn in the motion, with the rotors that they spin.
+    pub fn turning_joints(&self) -> Vec<TurningJoint> {
+        let omega = |marker: &Marker| -> Vector3<f64> {
+            let state = marker.body().and_then(|body| self.state(body).ok());
+            state.map_or_else(Vector3::zeros, |state| state.attitude.to_global(&state.omega_body))
+        };
+        let rate = |joint: usize| self.joint_coordinates(joint).turn_rate;
+        let joints = self.system().joints().iter().enumerate();
+        let fastest = joints.clone().map(|(joint, _)| rate(joint).abs()).fold(0.0, f64::max);
+        let turns = joints.filter(|(joint, of)| {
+            let [first, second] = of.markers.each_ref().map(omega);
+            let across = (second - first).cross(&self.joint_axis(*joint).1).norm();
+            rate(*joint).abs() > (STILL * fastest).max(ALONG.recip() * across)
+        });
+        turns
+            .map(|(joint, of)| {
+                let rate = rate(joint);
+                // The turn is that of the second marker as the first sees it.
+                let speed = |rotor: Rotor| if of.markers[1].body() == Some(rotor.body) { rate } else { -rate };
+                TurningJoint { joint, rate, rotor: self.rotor(joint).map(|rotor| (rotor, speed(rotor))) }
+            })
+            .collect()
     }
 
     fn rotor_of(&self, joint: usize, body: usize) -> Result<Rotor, RotorError> {
@@ -184,9 +223,23 @@ impl SystemMotion {
     /// # Errors
     /// [`SteadyError`].
     pub fn rotor_state(&self, rotor: &Rotor, speed: f64) -> Result<SteadyState, SteadyError> {
-        let mut at = Configuration::of(self, &CommonSpin::REST);
-        at.bodies[rotor.body].own_momentum = rotor.axis_body * (rotor.polar_inertia * speed);
-        SteadyState::near(self, at, Some(&CommonSpin::REST))
+        self.steady_state_with_rotors(&CommonSpin::REST, [(rotor, speed)])
+    }
+
+    /// The steady state in a common spin in which rotors spin against what carries them, at a speed each: along axes that turn with the bodies.
+    ///
+    /// # Errors
+    /// [`SteadyError`].
+    pub fn steady_state_with_rotors<'a>(
+        &self,
+        spin: &CommonSpin,
+        rotors: impl IntoIterator<Item = (&'a Rotor, f64)>,
+    ) -> Result<SteadyState, SteadyError> {
+        let mut at = Configuration::of(self, spin);
+        for (rotor, speed) in rotors {
+            at.bodies[rotor.body].own_momentum += rotor.axis_body * (rotor.polar_inertia * speed);
+        }
+        SteadyState::near(self, at, Some(spin))
     }
 
     /// The vibrations while a rotor spins at a speed in rad per time, slowest first: one for each independent coordinate. Their `whirl` is

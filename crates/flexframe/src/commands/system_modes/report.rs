@@ -8,6 +8,7 @@ use scene::{Choice, Damping, Scene, System};
 use serde::Serialize;
 
 use super::assembled::TiedMotion;
+use super::rotors::{Rotors, SpinningRotor};
 use crate::commands::modes::{CarriedReport, ModesReport, frequency_unit};
 use crate::files::json;
 use crate::report::quantity;
@@ -64,6 +65,9 @@ pub struct SystemModesReport {
     pub mechanisms: usize,
     /// Motions that nothing resists, whose frequency is zero.
     pub rigid_modes: usize,
+    /// Rotors that spin, of which the vibrations have the gyroscopic moments.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rotors: Vec<SpinningRotor>,
     /// Sentences about a state that is not at rest, and about vibrations that grow.
     pub warnings: Vec<String>,
     /// Vibrations, slowest first.
@@ -102,7 +106,13 @@ pub struct Share {
 }
 
 impl SystemModesReport {
-    pub(super) fn new(system: &System, motion: &TiedMotion, steady: &SteadyState, found: &Vibrations) -> Self {
+    pub(super) fn new(
+        system: &System,
+        motion: &TiedMotion,
+        steady: &SteadyState,
+        found: &Vibrations,
+        rotors: Rotors,
+    ) -> Self {
         let scene = &system.bodies[motion.bodies[0]];
         let of_motion = motion.simulation.motion().system();
         let bodies = body_names(system, &motion.bodies);
@@ -131,7 +141,8 @@ impl SystemModesReport {
             degrees_of_freedom: steady.linear.size(),
             mechanisms: steady.linear.rigid,
             rigid_modes,
-            warnings: Vec::new(),
+            rotors: rotors.found,
+            warnings: rotors.warnings,
             carried: None,
             modes: found.modes.iter().map(mode).collect(),
             elements: motion.elements.clone(),
@@ -158,7 +169,7 @@ impl SystemModesReport {
             let time = &self.time_unit;
             format!(
                 "the system is not at rest where it stands: body {} is free to go with {} {length}/{time}² and {} rad/{time}²; the \
-                 vibrations are those of this place as if it were held there by its inertia. Place it where its forces balance, or \
+                 vibrations are those about this accelerated motion, at its instant. Place it where its forces balance, or \
                  take out what moves it",
                 self.bodies[body],
                 quantity(unbalance.accelerations[body].norm()),
@@ -262,6 +273,9 @@ impl fmt::Display for SystemModesReport {
         for (name, rows) in &self.redundant {
             let s = if *rows == 1 { " is" } else { "s are" };
             writeln!(f, "           {rows} row{s} implied by others at {name}, where bodies are rigid")?;
+        }
+        for rotor in &self.rotors {
+            writeln!(f, "  rotor    {}", rotor.words(&self.time_unit))?;
         }
         let count = |count: usize, of: &str| format!("{count} {of}{}", if count == 1 { "" } else { "s" });
         writeln!(

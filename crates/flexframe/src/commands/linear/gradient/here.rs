@@ -11,7 +11,7 @@ use scene::System;
 use super::error::GradientError;
 use super::number::{Number, Place};
 use super::varying::{REPEATED, Varying};
-use crate::commands::system_modes::{SystemModesError, TiedMotion, tied_motions};
+use crate::commands::system_modes::{Rotors, SystemModesError, TiedMotion, tied_motions};
 
 /// A part of an entry that is rounding.
 const ROUNDING: f64 = 1e-8;
@@ -127,6 +127,7 @@ fn steady(system: &System, models: &[Model]) -> Result<(TiedMotion, SteadyState)
         return Err(GradientError::Systems { scene, count });
     };
     let failed = |source| SystemModesError::Steady { scene: system.bodies[0].path.clone(), source };
-    let steady = motion.simulation.motion().steady_state(&CommonSpin::REST).map_err(failed)?;
+    let of_motion = motion.simulation.motion();
+    let steady = Rotors::of(of_motion, |_| false).steady_state(of_motion, &CommonSpin::REST).map_err(failed)?;
     Ok((motion, steady))
 }

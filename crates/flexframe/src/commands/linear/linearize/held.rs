@@ -204,6 +204,7 @@ pub(super) fn of_held(
     let state = State {
         time,
         omega_global: omega_global.into(),
+        rotors: Vec::new(),
         rigid: r,
         damping: damping_in_words([model]),
         warnings: Vec::new(),

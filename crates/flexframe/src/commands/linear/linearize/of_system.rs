@@ -46,7 +46,8 @@ pub(super) fn of_system(
     let Motion::Tied(simulation) = &*motion else { return Err(no_body()) };
     let motion = simulation.motion();
     let failed = |source| LinearizeError::Steady { scene: scene.path.clone(), source: Box::new(source) };
-    let SystemSpin { omega_global, steady, warning } = SystemSpin::new(motion, spin).map_err(failed)?;
+    let SystemSpin { omega_global, steady, rotors, warnings: turning } =
+        SystemSpin::new(motion, spin).map_err(failed)?;
     let (linear, _) = steady.linear.with_loose_apart().map_err(failed)?;
     let joint_drives: Vec<usize> = (0..joints.len())
         .filter(|joint| {
@@ -184,10 +185,11 @@ pub(super) fn of_system(
     }
     let equations = SecondOrder { stiffness, damping, forces, inputs, outputs, coordinates };
     let mut warnings = unsteady(motion, &steady, &omega_global);
-    warnings.extend(warning);
+    warnings.extend(turning);
     let state = State {
         time: motion.time(),
         omega_global: omega_global.into(),
+        rotors: rotors.iter().map(|rotor| rotor.words(&scene.units.time)).collect(),
         rigid: linear.rigid,
         damping: damping_in_words(models),
         warnings,

@@ -11,6 +11,8 @@ pub struct State {
     pub time: f64,
     /// Angular velocity, global.
     pub omega_global: [f64; 3],
+    /// Rotors that spin against the others, in words.
+    pub rotors: Vec<String>,
     /// Number of coordinates that deform nothing.
     pub rigid: usize,
     /// Damping of the modes, in words.
@@ -40,6 +42,7 @@ impl fmt::Display for State {
             [0.0, 0.0, 0.0] => write!(f, "rest")?,
             [x, y, z] => write!(f, "a spin of ({x:.6}, {y:.6}, {z:.6}) rad per time, global")?,
         }
+        self.rotors.iter().try_for_each(|rotor| write!(f, ", {rotor}"))?;
         if self.time != 0.0 {
             write!(f, ", at time {}", self.time)?;
         }

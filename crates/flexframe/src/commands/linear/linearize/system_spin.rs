@@ -3,12 +3,16 @@
 use dynamics::{CommonSpin, SteadyError, SteadyState, SystemMotion};
 use nalgebra::Vector3;
 
+use crate::commands::system_modes::{Rotors, SpinningRotor};
+
 /// The spin that equations are about.
 pub(super) struct SystemSpin {
     pub omega_global: Vector3<f64>,
     pub steady: SteadyState,
-    /// A drive that turns, but not all bodies together.
-    pub warning: Option<String>,
+    /// Rotors that spin against the others.
+    pub rotors: Vec<SpinningRotor>,
+    /// Joints that turn otherwise.
+    pub warnings: Vec<String>,
 }
 
 impl SystemSpin {
@@ -19,37 +23,33 @@ impl SystemSpin {
     /// [`SteadyError`]; that a joint does not allow the spin only of one that is asked for.
     pub fn new(motion: &SystemMotion, asked: Option<Vector3<f64>>) -> Result<Self, SteadyError> {
         let driven = of_drives(motion);
-        let axis = driven.first().map(|(_, spin)| spin.point_global);
+        let axis = driven.first().map(|spin| spin.point_global);
         let point_global = axis.unwrap_or_else(|| motion.center_of_mass());
-        let at = |omega_global, warning| -> Result<Self, SteadyError> {
-            let steady = motion.steady_state(&CommonSpin { omega_global, point_global })?;
-            Ok(Self { omega_global, steady, warning })
+        let at = |spin: &CommonSpin| -> Result<Self, SteadyError> {
+            // Joints on the ground turn by the spin.
+            let is_on_ground =
+                |joint: usize| motion.system().joints()[joint].markers.iter().any(|marker| marker.body().is_none());
+            let spins = spin.omega_global.norm() > 0.0;
+            let rotors = Rotors::of(motion, |joint| spins && is_on_ground(joint));
+            let steady = rotors.steady_state(motion, spin)?;
+            let Rotors { found, warnings, .. } = rotors;
+            Ok(Self { omega_global: spin.omega_global, steady, rotors: found, warnings })
         };
         if let Some(omega_global) = asked {
-            return at(omega_global, None);
+            return at(&CommonSpin { omega_global, point_global });
         }
-        let rest = |warning| at(Vector3::zeros(), warning);
-        let turning: Vec<&(String, CommonSpin)> =
-            driven.iter().filter(|(_, spin)| spin.omega_global.norm() > 0.0).collect();
-        let [(name, spin)] = turning[..] else {
-            let warning = (!turning.is_empty()).then(|| "several drives turn; the equations are about rest".to_owned());
-            return rest(warning);
-        };
-        match motion.steady_state(spin) {
-            Ok(steady) => Ok(Self { omega_global: spin.omega_global, steady, warning: None }),
-            Err(SteadyError::Against { joint, .. }) => {
-                let warning = format!(
-                    "the drive of {name} turns, but joint {joint} keeps bodies from turning with it; the equations are about rest"
-                );
-                rest(Some(warning))
-            }
-            Err(error) => Err(error),
+        let rest = || at(&CommonSpin::REST);
+        let turning: Vec<&CommonSpin> = driven.iter().filter(|spin| spin.omega_global.norm() > 0.0).collect();
+        let [spin] = turning[..] else { return rest() };
+        match at(spin) {
+            Err(SteadyError::Against { .. }) => rest(),
+            found => found,
         }
     }
 }
 
-/// The spins of drives that turn a body against the ground, by joint, at the time of the motion.
-fn of_drives(motion: &SystemMotion) -> Vec<(String, CommonSpin)> {
+/// The spins of drives that turn a body against the ground, at the time of the motion.
+fn of_drives(motion: &SystemMotion) -> Vec<CommonSpin> {
     let joints = motion.system().joints().iter().enumerate();
     joints
         .filter(|(_, joint)| joint.is_turned_by_drive())
@@ -65,7 +65,7 @@ fn of_drives(motion: &SystemMotion) -> Vec<(String, CommonSpin)> {
                 _ => return None,
             };
             let (point_global, axis) = motion.joint_axis(number);
-            Some((joint.name.clone(), CommonSpin { omega_global: axis * speed, point_global }))
+            Some(CommonSpin { omega_global: axis * speed, point_global })
         })
         .collect()
 }

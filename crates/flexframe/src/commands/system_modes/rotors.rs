@@ -1,0 +1,59 @@
+//! Rotors that spin in the motion of a scene, of which linear answers have the gyroscopic moments.
+
+use dynamics::{CommonSpin, Rotor, SteadyError, SteadyState, SystemMotion, TurningJoint};
+use serde::Serialize;
+
+use crate::report::quantity;
+
+/// A rotor that spins.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpinningRotor {
+    /// Name of its joint.
+    pub joint: String,
+    /// Speed against what carries it, radians per time.
+    pub speed: f64,
+}
+
+impl SpinningRotor {
+    /// In words.
+    pub(crate) fn words(&self, time: &str) -> String {
+        format!("a rotor that spins at {} rad/{time} in joint {}", quantity(self.speed), self.joint)
+    }
+}
+
+/// The rotors of a motion, and sentences about joints that turn and spin none.
+pub(crate) struct Rotors {
+    spinning: Vec<(Rotor, f64)>,
+    pub found: Vec<SpinningRotor>,
+    pub warnings: Vec<String>,
+}
+
+impl Rotors {
+    /// The rotors that a motion spins, with the joints that turn for another reason.
+    pub fn of(motion: &SystemMotion, is_another: impl Fn(usize) -> bool) -> Self {
+        let mut rotors = Self { spinning: Vec::new(), found: Vec::new(), warnings: Vec::new() };
+        for TurningJoint { joint, rate, rotor } in motion.turning_joints() {
+            if is_another(joint) {
+                continue;
+            }
+            let name = motion.system().joints()[joint].name.clone();
+            match rotor {
+                // A rotor in two bearings is one.
+                Ok((rotor, _)) if rotors.spinning.iter().any(|(of, _)| of.body == rotor.body) => {}
+                Ok((rotor, speed)) => {
+                    rotors.spinning.push((rotor, speed));
+                    rotors.found.push(SpinningRotor { joint: name, speed });
+                }
+                Err(error) => rotors
+                    .warnings
+                    .push(format!("joint {name} turns at {} rad per time, which is left out: {error}", quantity(rate))),
+            }
+        }
+        rotors
+    }
+
+    /// The steady state in a common spin of what carries them.
+    pub fn steady_state(&self, motion: &SystemMotion, spin: &CommonSpin) -> Result<SteadyState, SteadyError> {
+        motion.steady_state_with_rotors(spin, self.spinning.iter().map(|(rotor, speed)| (rotor, *speed)))
+    }
+}
