@@ -32,7 +32,11 @@ fn for_terminal(text: &str) -> Cow<'_, str> {
 /// Prints a summary.
 pub fn print<R: Serialize + Display>(report: &R, json: bool) -> Result<(), Box<dyn Error>> {
     let report = if json { serde_json::to_string_pretty(report).map_err(CliError::from)? } else { report.to_string() };
-    if json { text(&format!("{report}\n"))? } else { line(&report)? }
+    if json {
+        text(&format!("{report}\n"))?
+    } else {
+        line(&report)?
+    }
     Ok(())
 }
 

@@ -57,7 +57,7 @@ struct Drifts {
     /// Orthonormal bases of the one and of the other.
     rest: Mat<f64>,
     rigid: Mat<f64>,
-    /// Those of the latter that others push.
+    /// The motions of the latter that others push.
     drifts: Vec<Vec<f64>>,
 }
 

@@ -1,6 +1,8 @@
 //! Rotors that spin in the motion of a scene, of which linear answers have the gyroscopic moments.
 
-use dynamics::{CommonSpin, Rotor, SteadyError, SteadyState, SystemMotion, TurningJoint};
+use dynamics::{
+    CommonSpin, Rotor, RotorError, SteadyError, SteadyState, SystemMode, SystemMotion, TurningJoint, Vibrations,
+};
 use serde::Serialize;
 
 use crate::report::quantity;
@@ -21,17 +23,21 @@ impl SpinningRotor {
     }
 }
 
-/// The rotors of a motion, and sentences about joints that turn and spin none.
+/// Rate of a turn, as a part of the slowest circular frequency, from which leaving it out is told: its centrifugal forces change that by half
+/// the square.
+const TOLD: f64 = 0.03;
+
+/// The rotors of a motion, and joints that turn and spin none.
 pub(crate) struct Rotors {
     spinning: Vec<(Rotor, f64)>,
     pub found: Vec<SpinningRotor>,
-    pub warnings: Vec<String>,
+    left_out: Vec<(String, f64, RotorError)>,
 }
 
 impl Rotors {
     /// The rotors that a motion spins, with the joints that turn for another reason.
     pub fn of(motion: &SystemMotion, is_another: impl Fn(usize) -> bool) -> Self {
-        let mut rotors = Self { spinning: Vec::new(), found: Vec::new(), warnings: Vec::new() };
+        let mut rotors = Self { spinning: Vec::new(), found: Vec::new(), left_out: Vec::new() };
         for TurningJoint { joint, rate, rotor } in motion.turning_joints() {
             if is_another(joint) {
                 continue;
@@ -44,12 +50,24 @@ impl Rotors {
                     rotors.spinning.push((rotor, speed));
                     rotors.found.push(SpinningRotor { joint: name, speed });
                 }
-                Err(error) => rotors
-                    .warnings
-                    .push(format!("joint {name} turns at {} rad per time, which is left out: {error}", quantity(rate))),
+                Err(error) => rotors.left_out.push((name, rate, error)),
             }
         }
         rotors
+    }
+
+    /// Sentences about turns that are left out, beside these vibrations.
+    pub fn warnings(&self, vibrations: &Vibrations) -> Vec<String> {
+        let frequencies = vibrations.modes.iter().map(SystemMode::circular_frequency);
+        let slowest = frequencies.filter(|omega| *omega > 0.0).reduce(f64::min).unwrap_or(0.0);
+        let told = self.left_out.iter().filter(|(_, rate, _)| rate.abs() > TOLD * slowest);
+        told.map(|(name, rate, error)| {
+            format!(
+                "joint {name} turns at {} rad per time, which is left out, for it spins no rotor: {error}",
+                quantity(*rate)
+            )
+        })
+        .collect()
     }
 
     /// The steady state in a common spin of what carries them.

@@ -32,8 +32,8 @@ impl SystemSpin {
             let spins = spin.omega_global.norm() > 0.0;
             let rotors = Rotors::of(motion, |joint| spins && is_on_ground(joint));
             let steady = rotors.steady_state(motion, spin)?;
-            let Rotors { found, warnings, .. } = rotors;
-            Ok(Self { omega_global: spin.omega_global, steady, rotors: found, warnings })
+            let warnings = rotors.warnings(&steady.linear.vibrations()?);
+            Ok(Self { omega_global: spin.omega_global, steady, rotors: rotors.found, warnings })
         };
         if let Some(omega_global) = asked {
             return at(&CommonSpin { omega_global, point_global });
