@@ -3,6 +3,7 @@
 pub(crate) mod canary;
 pub(crate) mod children;
 pub(crate) mod command_line;
+pub(crate) mod decks;
 pub(crate) mod failures;
 pub(crate) mod files_opened;
 pub(crate) mod files_read;

@@ -3,6 +3,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod abaqus;
+mod beside;
 mod contents;
 mod deck;
 mod deck_material;
@@ -25,6 +26,7 @@ mod universal;
 
 use std::path::Path;
 
+pub use beside::{Beside, DeckMass, DeckTie, Elastic};
 pub use deck_material::DeckMaterial;
 pub use error::ImportError;
 pub use imported::Imported;

@@ -8,6 +8,7 @@ use keys::{Hash, Key};
 use whole_file::TemporaryFolder;
 
 use crate::abaqus;
+use crate::beside::Beside;
 use crate::contents::{Copies, ReadFile, contents, opened};
 use crate::deck::deck;
 use crate::error::ImportError;
@@ -74,7 +75,7 @@ impl MeshFile {
         }
         // Whoever wrote it is trusted or not, the mesh is the same.
         let ImportSettings { mesh_size, raise_order, trust_geometry: _ } = &self.settings;
-        let start = Key::new().of("mesh", 1).with("reader", self.reader.name());
+        let start = Key::new().of("mesh", 2).with("reader", self.reader.name());
         let start = start.with("mesh size", mesh_size).with("raise order", raise_order);
         let with = |key: Key, file: &ReadFile| match &file.bytes {
             Some(bytes) => key.with("name", file.name.as_str()).with("bytes", &Hash::of(bytes)),
@@ -106,7 +107,12 @@ impl MeshFile {
             Reader::GmshConverter => self.by_gmsh(GmshTask::Convert)?,
             Reader::OwnDeck => {
                 let Held::Files(files) = &self.held else {
-                    return Ok(Imported { mesh: self.own()?, notes: Vec::new(), materials: Vec::new() });
+                    return Ok(Imported {
+                        mesh: self.own()?,
+                        notes: Vec::new(),
+                        materials: Vec::new(),
+                        beside: Beside::default(),
+                    });
                 };
                 let read = match &*ending(&self.path) {
                     "inp" => abaqus::read,
@@ -117,10 +123,10 @@ impl MeshFile {
             }
             Reader::Meshio => {
                 let (mesh, notes) = self.by_another(run::meshio)?;
-                return Ok(Imported { mesh, notes, materials: Vec::new() });
+                return Ok(Imported { mesh, notes, materials: Vec::new(), beside: Beside::default() });
             }
         };
-        Ok(Imported { mesh, notes: Vec::new(), materials: Vec::new() })
+        Ok(Imported { mesh, notes: Vec::new(), materials: Vec::new(), beside: Beside::default() })
     }
 
     fn own(&self) -> Result<Mesh, ImportError> {

@@ -11,6 +11,9 @@ const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
 /// Nodes of the faces: corners, then those between 01 12 20. The order is that of Abaqus' faces S1 to S4.
 const FACES: [[usize; 6]; 4] = [[0, 1, 2, 4, 5, 6], [0, 3, 1, 7, 9, 4], [1, 3, 2, 9, 8, 5], [2, 3, 0, 8, 7, 6]];
 
+/// A node that is farther from the middle of its edge, in lengths of the longest edge, may be on another edge.
+const FAR: f64 = 0.25;
+
 /// The elements of a file and their names, by indices.
 #[derive(Debug, Default)]
 pub(crate) struct Tetrahedra {
@@ -188,18 +191,36 @@ impl Tetrahedra {
                 "check the order of nodes",
             ));
         }
+        // In a sliver the middles of two edges are so near to each other that they are mistaken, which is no other order.
+        let mut shared: HashMap<[u32; 2], u32> = HashMap::new();
+        let is_usual = |nodes: &&Vec<u32>| nodes.len() == 10 && order_of(nodes, &self.positions) == order;
+        for nodes in self.elements.iter().filter(is_usual) {
+            for (edge, [a, b]) in EDGES.iter().enumerate() {
+                shared.insert(edge_key(nodes[*a], nodes[*b]), nodes[4 + order[edge]]);
+            }
+        }
+        let is_other = |nodes: &[u32]| {
+            let x = |k: usize| at(&self.positions, nodes[k]);
+            let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
+            let longest = EDGES.iter().map(|[a, b]| apart(x(*a), x(*b))).fold(0.0, f64::max);
+            EDGES.iter().enumerate().any(|(edge, [a, b])| {
+                let node = 4 + order[edge];
+                let middle = std::array::from_fn(|i| 0.5 * (x(*a)[i] + x(*b)[i]));
+                apart(x(node), middle) > FAR * longest
+                    || shared.get(&edge_key(nodes[*a], nodes[*b])).is_some_and(|other| *other != nodes[node])
+            })
+        };
         let count = self.elements.iter().filter(|nodes| nodes.len() == 10).count();
-        let others = count - orders.get(&order).copied().unwrap_or(0);
-        if others > 0 {
-            let wrong = self
-                .elements
-                .iter()
-                .zip(&self.element_tags)
-                .find(|(nodes, _)| nodes.len() == 10 && order_of(nodes, &self.positions) != order);
-            let first = wrong.map_or(0, |(_, tag)| *tag);
+        let numbered = self.elements.iter().zip(&self.element_tags);
+        let others: Vec<u64> = numbered
+            .filter(|(nodes, _)| nodes.len() == 10 && order_of(nodes, &self.positions) != order && is_other(nodes))
+            .map(|(_, tag)| *tag)
+            .collect();
+        if let Some(first) = others.first() {
             return Err(self.refuse(
                 format!(
-                    "{others} of its {count} tetra10 elements have nodes on edges in another order than the others, the first is {first}"
+                    "{} of its {count} tetra10 elements have nodes on edges in another order than the others, the first is {first}",
+                    others.len()
                 ),
                 "check the order of nodes, or mesh again with less curved elements",
             ));
@@ -240,4 +261,41 @@ fn edge_key(a: u32, b: u32) -> [u32; 2] {
 fn sorted(mut corners: [u32; 3]) -> [u32; 3] {
     corners.sort_unstable();
     corners
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Closed form: corners of a square, one of them a little higher. The middles of its diagonals are 0.01 apart, and the nodes on
+    /// them each nearer to the other; another element has the edge, so that its node is known.
+    #[test]
+    fn nodes_of_a_sliver_are_not_taken_for_another_order() {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.02], [0.0, 1.0, 0.0], [0.4, 0.3, 1.0]];
+        let mut found =
+            Tetrahedra { node_tags: (1..6).collect(), positions: corners.to_vec(), ..Tetrahedra::default() };
+        let mut between: HashMap<[u32; 2], u32> = HashMap::new();
+        for corners in [[0, 1, 2, 3], [0, 1, 2, 4], [0, 2, 3, 4]] {
+            let mut nodes = corners.to_vec();
+            for [a, b] in EDGES.map(|[a, b]| [corners[a], corners[b]]) {
+                let (positions, tags) = (&mut found.positions, &mut found.node_tags);
+                nodes.push(*between.entry(edge_key(a, b)).or_insert_with(|| {
+                    let [a, b] = [a, b].map(|node| positions[node as usize]);
+                    positions.push(std::array::from_fn(|i| 0.5 * (a[i] + b[i])));
+                    tags.push(positions.len() as u64);
+                    positions.len() as u32 - 1
+                }));
+            }
+            found.element_tags.push(found.elements.len() as u64 + 1);
+            found.elements.push(nodes);
+        }
+        found.positions[between[&[0, 2]] as usize][2] = 0.002;
+        found.positions[between[&[1, 3]] as usize][2] = 0.008;
+        let ordered = found.ordered().unwrap();
+        assert!(ordered.iter().zip(&found.elements).all(|(ordered, nodes)| ordered[..] == nodes[..]));
+        // Nodes that are on other edges are found as before.
+        found.elements[1].swap(4, 5);
+        let said = found.ordered().unwrap_err().to_string();
+        assert!(said.contains("in another order"), "{said}");
+    }
 }

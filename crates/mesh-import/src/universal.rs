@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
+use crate::beside::Beside;
 use crate::contents::ReadFile;
 use crate::error::ImportError;
 use crate::imported::Imported;
@@ -358,6 +359,6 @@ impl File {
         notes.append(&mut of_mesh);
         let left: Vec<String> = self.unused.iter().map(|(name, count)| format!("{count} {name}")).collect();
         notes.extend(notes::not_used(count, &left));
-        Ok(Imported { mesh, notes, materials: Vec::new() })
+        Ok(Imported { mesh, notes, materials: Vec::new(), beside: Beside::default() })
     }
 }

@@ -76,7 +76,7 @@ fn names_of_parts_and_of_the_assembly_are_kept_apart() {
             bar.at(3.0)
         )
     };
-    let Imported { mesh, materials, notes } =
+    let Imported { mesh, materials, notes, .. } =
         bar.read("scopes.inp", &deck("")).unwrap_or_else(|error| panic!("{error}"));
     assert!((mean_of(&mesh, "Set-1")[0] - 3.0).abs() < 1e-9);
     assert!(mean_of(&mesh, "Part-1.Set-1")[0].abs() < 1e-9);
@@ -104,8 +104,13 @@ fn what_is_not_used_is_counted_and_named() {
         bar.element_lines(),
         bar.at(0.0)
     );
-    let notes = bar.read("more.inp", &text).unwrap_or_else(|error| panic!("{error}")).notes;
+    let Imported { mut notes, beside, .. } = bar.read("more.inp", &text).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(notes.len(), 1, "{notes:?}");
+    let first = bar.nodes.iter().find(|(label, _)| *label == 1).unwrap().1;
+    let [rigid] = &beside.ties[..] else { panic!("{:?}", beside.ties) };
+    assert_eq!((&*rigid.group, rigid.is_rigid, rigid.at), ("root", true, Some(first)));
+    assert_eq!(beside.unused_masses(|mass| mass.at == first), None);
+    notes[0] += &beside.unused_masses(|_| false).unwrap();
     for words in [
         "read: ",
         "1 MASS (7.8500e-4",

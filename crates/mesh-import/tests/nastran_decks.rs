@@ -126,8 +126,14 @@ fn what_is_not_used_is_counted_and_named() {
                 SPC1,1,123,1\nSECRET,1\nENDDATA\nMORE\n";
     let [x, y, z] = bar.nodes.iter().find(|(label, _)| *label == 1).unwrap().1;
     let text = format!("{}{}{more}", grids(&bar, "", |x| x), elements(&bar));
-    let notes = bar.read("more.bdf", &text).unwrap_or_else(|error| panic!("{error}")).notes;
+    let Imported { mut notes, beside, mesh, .. } =
+        bar.read("more.bdf", &text).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(notes.len(), 1, "{notes:?}");
+    let ties: Vec<_> = beside.ties.iter().map(|tie| (&*tie.group, tie.is_rigid, tie.at)).collect();
+    assert_eq!(ties, [("RBE2_9002", true, Some([x, y, z])), ("RBE3_9003", false, Some([x, y, z]))]);
+    assert_eq!(mesh.group_nodes("RBE2_9002").unwrap().len(), 1);
+    assert_eq!(mesh.group_nodes("RBE3_9003").unwrap().len(), 2);
+    notes[0] += &beside.unused_masses(|_| false).unwrap();
     let place = format!("point_masses = [{{ at = [{:?}, {y:?}, {z:?}]", x + 0.5);
     for words in [
         "read: ",

@@ -4,5 +4,5 @@ pub(crate) mod arrays;
 pub(crate) mod doubt;
 pub(crate) mod fe_matrices;
 pub(crate) mod given;
-pub(crate) mod other_materials;
+pub(crate) mod others;
 pub(crate) mod read;

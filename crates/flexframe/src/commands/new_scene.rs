@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use fem_tet10::{AssemblyError, Material, Materials, centroid_lumped_inertia};
+use fem_tet10::{AssemblyError, Material, Materials, Mesh, PointMass, centroid_lumped_inertia};
 pub use mesh_import::ImportSettings;
-use mesh_import::{ImportError, Imported, MeshFile};
+use mesh_import::{Beside, DeckMass, DeckTie, ImportError, Imported, MeshFile};
 use whole_file::write_whole;
 
 use crate::files::outputs::{OutputError, Written, outputs_of_mesh};
@@ -33,6 +33,7 @@ pub enum NewSceneError {
 }
 
 /// Consistent units, and steel in them.
+#[derive(Clone, Copy)]
 struct System {
     length: &'static str,
     length_in_words: &'static str,
@@ -44,8 +45,10 @@ struct System {
 
 /// A mesh has no units. A body of more than this is taken to be in millimetres, a smaller one in metres.
 const LONGEST_IN_METRES: f64 = 8.0;
-/// A solid of less than this, kg/m³, is none: its density is in Mg/mm³.
-const LIGHTEST_IN_METRES: f64 = 1e-3;
+/// Solids for which decks are written: Young's modulus, Pa, density, kg/m³, and speed of sound, m/s.
+const SOLIDS: [[f64; 2]; 3] = [[1e6, 1.2e12], [10.0, 2.3e4], [300.0, 1.5e4]];
+/// Young's modulus of metals and stiff plastics, Pa, where no density is given.
+const STIFF: [f64; 2] = [5e8, 1.2e12];
 
 const METRES: System = System {
     length: "m",
@@ -62,6 +65,85 @@ const MILLIMETRES: System = System {
     steel: Material { young_modulus: 210e3, poisson_ratio: 0.3, density: 7.85e-9 },
     gravity: 9810.0,
 };
+
+/// Units in which decks are written, by the force that goes with them: N, N, lbf, lbf, dyn, mN.
+const SYSTEMS: [System; 6] = [
+    METRES,
+    MILLIMETRES,
+    System {
+        length: "in",
+        length_in_words: "inches (stress in psi)",
+        mass: "lbf s²/in",
+        steel: Material { young_modulus: 3.046e7, poisson_ratio: 0.3, density: 7.345e-4 },
+        gravity: 386.09,
+    },
+    System {
+        length: "ft",
+        length_in_words: "feet",
+        mass: "slug",
+        steel: Material { young_modulus: 4.386e9, poisson_ratio: 0.3, density: 15.23 },
+        gravity: 32.174,
+    },
+    System {
+        length: "cm",
+        length_in_words: "centimetres, with grams",
+        mass: "g",
+        steel: Material { young_modulus: 2.1e12, poisson_ratio: 0.3, density: 7.85 },
+        gravity: 981.0,
+    },
+    System {
+        length: "mm",
+        length_in_words: "millimetres, with kilograms",
+        mass: "kg",
+        steel: Material { young_modulus: 2.1e8, poisson_ratio: 0.3, density: 7.85e-6 },
+        gravity: 9810.0,
+    },
+];
+
+impl System {
+    fn labels(&self) -> UnitLabels<'static> {
+        UnitLabels { length: self.length, mass: self.mass, time: "s" }
+    }
+
+    /// True if a material with these numbers is a solid in these units.
+    fn fits(&self, young_modulus: f64, density: f64) -> bool {
+        let in_si = |value: f64, powers| self.labels().in_si(powers).map_or(f64::NAN, |factor| value * factor);
+        let (young, density) = (in_si(young_modulus, [-1, 1, -2]), in_si(density, [-3, 1, 0]));
+        let found = [young, density, (young / density).sqrt()];
+        SOLIDS.iter().zip(found).all(|([least, most], value)| (*least..=*most).contains(&value))
+    }
+}
+
+/// The units of a mesh, and how they were guessed.
+fn system_of(mesh: &Mesh, given: Option<&GivenMaterials>, beside: &Beside) -> (System, String) {
+    let longest = mesh.size().into_iter().fold(0.0, f64::max);
+    let by_size = if longest > LONGEST_IN_METRES { MILLIMETRES } else { METRES };
+    let materials = || given.iter().flat_map(|given| given.materials.values());
+    let like = |of: &str, system: System| (system, format!("{of} like {}", system.length_in_words));
+    if materials().next().is_some() {
+        let fits = |system: &&System| materials().all(|material| system.fits(material.young_modulus, material.density));
+        return match SYSTEMS.iter().find(fits) {
+            Some(system) => like("the materials of its file look", *system),
+            None => (
+                by_size,
+                format!(
+                    "Young's modulus and density of its file fit no set of units that is known here (a density by weight, such as \
+                     lb/in³, is to be divided by gravity); its size looks like {}",
+                    by_size.length_in_words
+                ),
+            ),
+        };
+    }
+    let moduli = || beside.without_density.iter().map(|elastic| elastic.young_modulus);
+    let is_stiff = |system: &&System| {
+        let factor = system.labels().in_si([-1, 1, -2]).unwrap_or(f64::NAN);
+        moduli().all(|young| (STIFF[0]..=STIFF[1]).contains(&(young * factor)))
+    };
+    match SYSTEMS[..3].iter().find(is_stiff).filter(|_| moduli().next().is_some()) {
+        Some(system) => like("Young's modulus of its file looks", *system),
+        None => like("its size looks", by_size),
+    }
+}
 
 /// Reads a mesh and writes a scene of it, which can be run as it is: a body of steel, free in space, that spins and gets a
 /// push. Groups, size and mass are read off the mesh. Returns the path of the scene (`scene`, or that of the mesh with
@@ -112,15 +194,15 @@ fn text(read: &mut Imported, settings: &ImportSettings, mesh_path: &Path) -> Res
     let size = mesh.size();
     let longest = (0..3).max_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(0);
     let thinnest = (0..3).min_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(2);
-    let heaviest = given.iter().flat_map(|given| given.materials.values()).map(|material| material.density);
-    let (is_in_millimetres, guessed_by) = match heaviest.reduce(f64::max) {
-        Some(density) => (density < LIGHTEST_IN_METRES, "the densities of its file look"),
-        None => (size[longest] > LONGEST_IN_METRES, "its size looks"),
+    let (system, guess) = system_of(mesh, given.as_ref(), &read.beside);
+    let System { length, mass: mass_unit, steel, gravity, .. } = system;
+    let units = system.labels();
+    let without_density = match given {
+        Some(_) => None,
+        None => elastic_materials(mesh, &read.beside, &steel),
     };
-    let system = if is_in_millimetres { MILLIMETRES } else { METRES };
-    let System { length, length_in_words, mass: mass_unit, steel, gravity } = system;
-    let units = UnitLabels { length, mass: mass_unit, time: "s" };
-    let materials = given.as_ref().map_or(Materials::Uniform(steel), GivenMaterials::all);
+    let own = given.as_ref().or(without_density.as_ref());
+    let materials = own.map_or(Materials::Uniform(steel), GivenMaterials::all);
     let mass = centroid_lumped_inertia(mesh, &materials, &[])?.mass;
     let end = mesh.positions().iter().max_by(|a, b| a[longest].total_cmp(&b[longest])).copied().unwrap_or_default();
     let mut across = [0.0; 3];
@@ -129,10 +211,15 @@ fn text(read: &mut Imported, settings: &ImportSettings, mesh_path: &Path) -> Res
     let parts = mesh.parts();
     let groups: Vec<String> = mesh.groups().iter().map(|name| quoted(name)).collect();
     let faces: Vec<String> = parts.surfaces.iter().map(|surface| quoted(&surface.name)).collect();
-    let material = match &given {
-        Some(given) => format!(
-            "# As the mesh file has it: {}.\n",
-            given.names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ")
+    let material = match own {
+        Some(own) => format!(
+            "# As the mesh file has it: {}.{}\n",
+            own.names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", "),
+            if given.is_some() {
+                ""
+            } else {
+                " It gives no density: these are densities of steel, or of aluminium where the modulus is."
+            }
         ),
         None => "# Steel.\n".to_owned(),
     } + &match &materials {
@@ -151,14 +238,14 @@ fn text(read: &mut Imported, settings: &ImportSettings, mesh_path: &Path) -> Res
 #     flexframe run THIS_FILE
 # Every key is described in docs/reference/scene.md; `flexframe advise` says which effects the scene calls for.
 title = {title}
-# A mesh has no units; {guessed_by} like {length_in_words}. Nothing is converted: these are labels, and all numbers
+# A mesh has no units; {guess}. Nothing is converted: these are labels, and all numbers
 # of the scene are in these units (forces in {force}, stresses in {stress}).
 units = {{ length = "{length}", mass = "{mass_unit}", time = "s" }}
 
 # {dx} x {dy} x {dz} {length}. Its mass, of this material, is {mass} {mass_unit}.
 [body]
 mesh = {mesh_path}
-{import}{material}"#,
+{import}{masses}{material}"#,
         force = units.force(),
         stress = units.stress(),
         nodes = mesh.positions().len(),
@@ -169,6 +256,7 @@ mesh = {mesh_path}
         dz = short(size[2]),
         mass = short(mass),
         import = import_keys(settings),
+        masses = point_masses(mesh, &read.beside, &mut read.notes),
         mesh_path = quoted(&mesh_path.to_string_lossy()),
     );
     if !groups.is_empty() && matches!(materials, Materials::Uniform(_)) {
@@ -183,8 +271,10 @@ flexible = 10
 damping_ratio = 0.01
 "
     );
-    let region = match faces.first() {
-        Some(face) => format!("group = {face}"),
+    let is_tie = |name: &str| read.beside.ties.iter().any(|tie| tie.group == name);
+    let node_set = parts.node_groups.iter().find(|group| group.nodes.len() >= 3 && !is_tie(&group.name));
+    let region = match faces.first().cloned().or(node_set.map(|group| quoted(&group.name))) {
+        Some(group) => format!("group = {group}"),
         None => format!("at = {end:?}\n# radius = {}", short(0.05 * size[longest])),
     };
     let _ = writeln!(
@@ -194,12 +284,16 @@ damping_ratio = 0.01
     if !faces.is_empty() {
         let _ = writeln!(text, "# Surfaces of the mesh: {}.", faces.join(", "));
     }
+    if !parts.node_groups.is_empty() {
+        let names: Vec<String> = parts.node_groups.iter().map(|group| quoted(&group.name)).collect();
+        let _ = writeln!(text, "# Node sets of the mesh: {}.", names.join(", "));
+    }
     let _ = write!(
         text,
         r#"# [[constraints]]
 # kind = "clamp"
 # {region}
-
+{markers}
 # It spins, about one turn a second.
 [initial]
 angular_velocity = {spin:?}
@@ -220,6 +314,7 @@ tolerance = 1e-4
 [output.points]
 end = {end:?}
 "#,
+        markers = markers(&read.beside.ties),
         amplitude = short(0.5 * mass * gravity),
         spin = across.map(|axis| 6.3 * axis),
     );
@@ -247,7 +342,7 @@ impl GivenMaterials {
 
 /// The materials of a mesh file, if they are those of all elements; a note says it where they are not.
 fn given_materials(read: &mut Imported) -> Option<GivenMaterials> {
-    let Imported { mesh, notes, materials: of_file } = read;
+    let Imported { mesh, notes, materials: of_file, .. } = read;
     let materials = of_file.iter().map(|deck| (deck.group.clone(), deck.material)).collect();
     let mut names: Vec<String> = of_file.iter().map(|deck| deck.name.clone()).collect();
     names.sort();
@@ -260,6 +355,88 @@ fn given_materials(read: &mut Imported) -> Option<GivenMaterials> {
         return None;
     }
     Some(GivenMaterials { materials, names })
+}
+
+/// Young's moduli and Poisson's ratios that a mesh file gives to all elements, with a density of our own.
+fn elastic_materials(mesh: &Mesh, beside: &Beside, steel: &Material) -> Option<GivenMaterials> {
+    let all = &beside.without_density;
+    let material = |young_modulus: f64, poisson_ratio| {
+        let is_aluminium = (ALUMINIUM[0]..=ALUMINIUM[1]).contains(&(young_modulus / steel.young_modulus));
+        let density = steel.density * if is_aluminium { LIGHTER } else { 1.0 };
+        Material { young_modulus, poisson_ratio, density }
+    };
+    let materials: BTreeMap<_, _> = all
+        .iter()
+        .map(|elastic| (elastic.group.clone(), material(elastic.young_modulus, elastic.poisson_ratio)))
+        .collect();
+    let mut names: Vec<String> = all.iter().map(|elastic| elastic.name.clone()).collect();
+    names.sort();
+    names.dedup();
+    let is_of_all = !names.is_empty() && Materials::ByGroup(materials.clone()).of_elements(mesh).is_ok();
+    is_of_all.then_some(GivenMaterials { materials, names })
+}
+
+/// Young's modulus of aluminium and its density, those of steel being 1.
+const ALUMINIUM: [f64; 2] = [0.3, 0.37];
+const LIGHTER: f64 = 2700.0 / 7850.0;
+
+/// The masses of a mesh file as lines of `[body]`. A note tells of those that nothing of the body carries.
+fn point_masses(mesh: &Mesh, beside: &Beside, notes: &mut Vec<String>) -> String {
+    let (mut lines, mut count) = (String::new(), 0);
+    let mut is_left = Vec::new();
+    for DeckMass { at, mass, .. } in &beside.masses {
+        let is_on_body = mesh.locate(*at).is_ok();
+        let spread = if is_on_body { None } else { spread_of(mesh, &beside.ties, *at) };
+        if *mass <= 0.0 || !(is_on_body || spread.is_some()) || count == MAX_MASSES {
+            is_left.push((*at, *mass));
+            continue;
+        }
+        count += 1;
+        let spread = spread.map_or_else(String::new, |radius| format!(", spread = {radius:?}"));
+        // Writing to a string does not fail.
+        let _ = writeln!(lines, "    {{ at = {at:?}, mass = {mass:?}{spread} }},");
+    }
+    notes.extend(beside.unused_masses(|mass| !is_left.contains(&(mass.at, mass.mass))));
+    if lines.is_empty() {
+        return lines;
+    }
+    format!(
+        "# The masses of the mesh file. Where one is beside the body, the nodes within `spread` carry it.\npoint_masses = [\n{lines}]\n"
+    )
+}
+
+/// Point masses of a scene.
+const MAX_MASSES: usize = 1000;
+
+/// A radius whose nodes can carry the mass at the point of a tie: up to the farthest node of the tie, or farther into the body.
+fn spread_of(mesh: &Mesh, ties: &[DeckTie], at: [f64; 3]) -> Option<f64> {
+    let tie = ties.iter().find(|tie| tie.at == Some(at))?;
+    let distance = |node: &u32| {
+        let x = mesh.positions()[*node as usize];
+        (0..3).map(|i| (x[i] - at[i]).powi(2)).sum::<f64>().sqrt()
+    };
+    let farthest = mesh.group_nodes(&tie.group).ok()?.iter().map(distance).fold(0.0, f64::max);
+    let carries = |radius: &f64| {
+        let mass = PointMass { at, mass: 1.0, spread: Some(*radius) };
+        centroid_lumped_inertia(mesh, &Materials::Uniform(METRES.steel), &[mass]).is_ok()
+    };
+    [1.001, 1.25, 1.5, 2.0, 3.0].map(|factor| rounded(farthest * factor, 4)).into_iter().find(carries)
+}
+
+/// The ties of a mesh file as markers, to be uncommented: they give the body static shapes, and make rigid what is tied so.
+fn markers(ties: &[DeckTie]) -> String {
+    let mut text = String::new();
+    for DeckTie { kind, group, is_rigid, .. } in ties {
+        let tie = if *is_rigid { "rigid" } else { "mean" };
+        let group = quoted(group);
+        // Writing to a string does not fail.
+        let _ = write!(
+            text,
+            "\n# {kind} of the mesh file: a marker for joints, springs and bushings (docs/reference/systems.md).\n# [body.markers.{group}]\n\
+             # group = {group}\n# tie = \"{tie}\"\n"
+        );
+    }
+    text
 }
 
 /// A material as a table on one line.

@@ -1,4 +1,5 @@
-//! The units that SI has names for, in the labels of a scene: N, mJ and MPa where it is in mm, Mg and s.
+//! The units that have names, in the labels of a scene: N, mJ and MPa where it is in mm, Mg and s; lbf and psi in inches with the mass
+//! that goes with them.
 
 /// Labels of a scene's units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,22 +16,26 @@ impl<'a> From<&'a scene::Units> for UnitLabels<'a> {
 }
 
 impl UnitLabels<'_> {
-    /// "N", or "lb in/s²" where the units are not those of SI, or not a power of 1000 of N.
+    /// "N", "lbf", or "lb in/s²" where the units are neither those of SI with a power of 1000 of N, nor those of a pound-force.
     pub(crate) fn force(&self) -> String {
         let Self { length, mass, time } = self;
-        self.named("N", [1, 1, -2]).unwrap_or_else(|| format!("{mass} {length}/{time}²"))
+        self.named_force().unwrap_or_else(|| format!("{mass} {length}/{time}²"))
     }
 
     /// "mJ".
     pub(crate) fn energy(&self) -> String {
         let Self { length, mass, time } = self;
-        self.named("J", [2, 1, -2]).unwrap_or_else(|| format!("{mass} {length}²/{time}²"))
+        let of_pounds = || self.with_pounds().map(|length| format!("{length} lbf"));
+        self.named("J", [2, 1, -2]).or_else(of_pounds).unwrap_or_else(|| format!("{mass} {length}²/{time}²"))
     }
 
     /// "MPa".
     pub(crate) fn stress(&self) -> String {
         let Self { length, mass, time } = self;
-        self.named("Pa", [-1, 1, -2]).unwrap_or_else(|| format!("{mass}/({length} {time}²)"))
+        let of_pounds = || {
+            self.with_pounds().map(|length| if length == "in" { "psi".to_owned() } else { format!("lbf/{length}²") })
+        };
+        self.named("Pa", [-1, 1, -2]).or_else(of_pounds).unwrap_or_else(|| format!("{mass}/({length} {time}²)"))
     }
 
     /// "N mm".
@@ -41,7 +46,8 @@ impl UnitLabels<'_> {
     /// "mW".
     pub(crate) fn power(&self) -> String {
         let Self { length, mass, time } = self;
-        self.named("W", [2, 1, -3]).unwrap_or_else(|| format!("{mass} {length}²/{time}³"))
+        let of_pounds = || self.with_pounds().map(|length| format!("{length} lbf/s"));
+        self.named("W", [2, 1, -3]).or_else(of_pounds).unwrap_or_else(|| format!("{mass} {length}²/{time}³"))
     }
 
     /// "N s".
@@ -57,8 +63,20 @@ impl UnitLabels<'_> {
 
     /// The unit of force where it has a name, times other units.
     fn times_force(&self, others: &[&str]) -> Option<String> {
-        let force = self.named("N", [1, 1, -2])?;
+        let force = self.named_force()?;
         Some([&[force.as_str()], others].concat().join(" "))
+    }
+
+    /// The unit of force, where it has a name.
+    fn named_force(&self) -> Option<String> {
+        self.named("N", [1, 1, -2]).or_else(|| self.with_pounds().map(|_| "lbf".to_owned()))
+    }
+
+    /// The unit of length, "in" or "ft", where force is in pounds.
+    fn with_pounds(&self) -> Option<&'static str> {
+        let [length, mass] = [imperial_length(self.length)?, imperial_mass(self.mass)?];
+        let is_pound = self.time == "s" && (mass * length / POUND_FORCE - 1.0).abs() < 1e-9;
+        is_pound.then_some(if length < 0.1 { "in" } else { "ft" })
     }
 
     /// A unit of SI with its prefix, from the powers of length, mass and time that it has in m, kg and s.
@@ -125,10 +143,12 @@ fn imperial_length(label: &str) -> Option<f64> {
     }
 }
 
+/// A pound in kilograms, and its weight in newtons.
+const POUND: f64 = 0.453_592_37;
+const POUND_FORCE: f64 = 9.806_65 * POUND;
+
 /// In kilograms: a pound, and the masses that a force of one pound accelerates by 1 ft/s² and by 1 in/s².
 fn imperial_mass(label: &str) -> Option<f64> {
-    const POUND: f64 = 0.453_592_37;
-    const POUND_FORCE: f64 = 9.806_65 * POUND;
     match label {
         "lb" | "lbm" => Some(POUND),
         "slug" => Some(POUND_FORCE / 0.3048),
@@ -168,6 +188,7 @@ mod tests {
             ("mm", "Mg", "s", ["mW", "N mm", "N s", "N mm s"]),
             ("mm", "g", "ms", ["W", "N mm", "N ms", "N mm ms"]),
             ("in", "lb", "s", ["lb in²/s³", "lb in²/s²", "lb in/s", "lb in²/s"]),
+            ("in", "lbf s²/in", "s", ["in lbf/s", "lbf in", "lbf s", "lbf in s"]),
         ] {
             let units = UnitLabels { length, mass, time };
             let found = [units.power(), units.moment(), units.momentum(), units.angular_momentum()];
@@ -183,6 +204,8 @@ mod tests {
             // A dyne is no power of 1000 of N, an erg none of J.
             ("cm", "g", "s", ["g cm/s²", "g cm²/s²", "g/(cm s²)"]),
             ("in", "lb", "s", ["lb in/s²", "lb in²/s²", "lb/(in s²)"]),
+            ("in", "slinch", "s", ["lbf", "in lbf", "psi"]),
+            ("ft", "slug", "s", ["lbf", "ft lbf", "lbf/ft²"]),
             ("mm", "Mg", "", ["Mg mm/²", "Mg mm²/²", "Mg/(mm ²)"]),
         ] {
             let units = UnitLabels { length, mass, time };

@@ -6,8 +6,11 @@ use std::path::Path;
 use fem_tet10::Material;
 
 use crate::abaqus::deck::Deck;
+use crate::abaqus::deck::referred;
 use crate::abaqus::kinds::Kind;
+use crate::abaqus::materials::Material as AbaqusMaterial;
 use crate::abaqus::space::World;
+use crate::beside::{Beside, DeckMass, DeckTie, Elastic};
 use crate::deck_material::DeckMaterial;
 use crate::error::ImportError;
 use crate::imported::Imported;
@@ -88,7 +91,9 @@ pub(super) fn imported(
 
     names(texts, &mut world, &mut found, &tetrahedron_of, &triangle_of, &mut notes)?;
     let masses = masses(texts, deck, &mut world, &mut unused)?;
-    let materials = materials(texts, deck, &mut world, &mut notes)?;
+    let mut beside = Beside { masses, ..Beside::default() };
+    let materials = materials(texts, deck, &mut world, &mut beside, &mut notes)?;
+    beside.ties = ties(texts, &mut world)?;
     for scope in world.spaces.iter().flat_map(|space| &space.scopes) {
         for tie in &scope.ties {
             let of = if tie.region.is_empty() { &tie.name } else { &tie.region };
@@ -100,14 +105,17 @@ pub(super) fn imported(
     let count = found.elements.len();
     let (mesh, mut of_mesh) = found.mesh(raise_order)?;
     notes.append(&mut of_mesh);
-    let mut left: Vec<String> = masses.into_iter().collect();
-    left.extend(unused.into_iter().map(|(name, count)| format!("{count} {name}")));
+    let mut left: Vec<String> = unused.into_iter().map(|(name, count)| format!("{count} {name}")).collect();
     if let Some((count, place)) = deck.unknown {
         left.push(format!("{count} keyword(s) that are not known here, the first in {}", texts.named(place)));
     }
     notes.extend(notes::not_used(count, &left));
     let materials = materials.into_iter().filter(|material| mesh.groups().contains(&material.group)).collect();
-    Ok(Imported { mesh, notes, materials })
+    beside.ties.retain(|tie| {
+        mesh.surface_groups().any(|surface| surface == tie.group)
+            || mesh.parts().node_groups.iter().any(|group| group.name == tie.group)
+    });
+    Ok(Imported { mesh, notes, materials, beside })
 }
 
 /// Groups of elements, surfaces and nodes. A name that several parts or the assembly have is that of the assembly, and has the
@@ -235,13 +243,30 @@ fn shown(world: &World<'_>, space: usize, name: &str) -> String {
     }
 }
 
-/// Masses on nodes in a sentence, with their sum.
+/// Regions that move with a reference node.
+fn ties(texts: &Texts<'_>, world: &mut World<'_>) -> Result<Vec<DeckTie>, ImportError> {
+    let mut found = Vec::new();
+    for space in 0..world.spaces.len() {
+        for tie in world.spaces[space].scopes.clone().iter().flat_map(|scope| &scope.ties) {
+            let mut nodes = Vec::new();
+            if !tie.point.is_empty() {
+                world.referred(texts, true, space, &referred(&tie.point, None), tie.place, 0, &mut nodes)?;
+            }
+            let at = nodes.first().map(|node| world.positions[*node as usize]);
+            let group = shown(world, space, &tie.region);
+            found.push(DeckTie { kind: format!("*{}", tie.keyword), group, is_rigid: tie.is_rigid, at });
+        }
+    }
+    Ok(found)
+}
+
+/// Masses on nodes.
 fn masses(
     texts: &Texts<'_>,
     deck: &Deck,
     world: &mut World<'_>,
     unused: &mut BTreeMap<String, usize>,
-) -> Result<Option<String>, ImportError> {
+) -> Result<Vec<DeckMass>, ImportError> {
     let (mut named, mut masses) = (HashSet::new(), Vec::new());
     for space in 0..world.spaces.len() {
         for scope in world.spaces[space].scopes.clone() {
@@ -250,7 +275,10 @@ fn masses(
                 for element in members.iter().filter(|e| world.elements[**e as usize].1.kind == Kind::Mass) {
                     named.insert(*element);
                     let at = world.positions[world.nodes_of(texts, *element as usize)?[0] as usize];
-                    masses.push((at, mass.mass));
+                    if mass.mass == 0.0 {
+                        continue;
+                    }
+                    masses.push(DeckMass { kind: "MASS".to_owned(), at, mass: mass.mass });
                 }
             }
         }
@@ -260,7 +288,7 @@ fn masses(
         let name = deck.types.iter().find(|name| *name == "MASS").map_or("MASS", String::as_str);
         *unused.entry(format!("{name} without a number")).or_insert(0) += all - named.len();
     }
-    Ok(notes::masses("MASS", &masses))
+    Ok(masses)
 }
 
 /// The materials of solid sections.
@@ -268,6 +296,7 @@ fn materials(
     texts: &Texts<'_>,
     deck: &Deck,
     world: &mut World<'_>,
+    beside: &mut Beside,
     notes: &mut Vec<String>,
 ) -> Result<Vec<DeckMaterial>, ImportError> {
     let mut found = Vec::new();
@@ -305,7 +334,20 @@ fn materials(
                     "the material {} of {group} is not read: Young's modulus {young}, Poisson's ratio {poisson}, density {density}",
                     section.material
                 )),
-                Err(why) => notes.push(format!("the material {} of {group} is not read: {why}", section.material)),
+                Err(why) => {
+                    let elastic = material.and_then(AbaqusMaterial::without_density);
+                    match elastic.filter(|[young, poisson]| *young > 0.0 && *poisson > -1.0 && *poisson < 0.5) {
+                        Some([young_modulus, poisson_ratio]) => {
+                            let name = section.material.clone();
+                            notes.push(format!(
+                                "the material {name} of {group} has no *DENSITY (its Young's modulus is {young_modulus:?}, its Poisson's \
+                                 ratio {poisson_ratio:?})"
+                            ));
+                            beside.without_density.push(Elastic { group, name, young_modulus, poisson_ratio });
+                        }
+                        None => notes.push(format!("the material {} of {group} is not read: {why}", section.material)),
+                    }
+                }
             }
         }
     }

@@ -359,13 +359,15 @@ impl Reader<'_, '_> {
         let region = ["SURFACE", "NSET", "TIE NSET", "PIN NSET", "ELSET"].iter().find_map(|key| block.parameter(key));
         let region = region.unwrap_or_default().to_owned();
         let name = block.parameter("CONSTRAINT NAME").unwrap_or_default().to_owned();
-        self.scope().ties.push(Tie { name, keyword, is_rigid, region });
+        let point = block.parameter("REF NODE").unwrap_or_default().to_owned();
+        let place = block.place;
+        self.scope().ties.push(Tie { name, keyword, is_rigid, region, point, place });
         Ok(())
     }
 }
 
 /// A number or a set, perhaps of an instance.
-fn referred(word: &str, instance: Option<&str>) -> Reference {
+pub(super) fn referred(word: &str, instance: Option<&str>) -> Reference {
     let word = word.trim_matches('"');
     let (of, rest) = word.split_once('.').map_or((None, word), |(of, rest)| (Some(of), rest));
     match (rest.parse(), of) {

@@ -42,6 +42,14 @@ impl Material {
         Ok(())
     }
 
+    /// Young's modulus and Poisson's ratio, where only the density is missing.
+    pub(super) fn without_density(&self) -> Option<[f64; 2]> {
+        match (&self.why, &self.elastic[..]) {
+            (None, [line]) if self.density.is_empty() && line.len() >= 2 => Some([line[0], line[1]]),
+            _ => None,
+        }
+    }
+
     /// Young's modulus, Poisson's ratio and the density; or why there are none.
     pub(super) fn numbers(&self) -> Result<[f64; 3], String> {
         if let Some(why) = &self.why {
@@ -49,11 +57,7 @@ impl Material {
         }
         for (keyword, lines, count) in [("ELASTIC", &self.elastic, 2), ("DENSITY", &self.density, 1)] {
             if lines.first().is_none_or(|line| line.len() < count) {
-                let other = self.elastic.first().filter(|_| keyword == "DENSITY");
-                let known = other.map_or_else(String::new, |line| {
-                    format!(" (its Young's modulus is {:?}, its Poisson's ratio {:?})", line[0], line[1])
-                });
-                return Err(format!("it has no *{keyword} with numbers{known}"));
+                return Err(format!("it has no *{keyword} with numbers"));
             }
             if lines.len() > 1 {
                 return Err(format!("its *{keyword} is a table over temperature"));

@@ -112,6 +112,9 @@ pub(crate) struct Tie {
     pub(crate) is_rigid: bool,
     /// A surface, or sets of nodes or elements, as the file has it.
     pub(crate) region: String,
+    /// The reference node: its number or a set with it alone.
+    pub(crate) point: String,
+    pub(crate) place: Place,
 }
 
 /// Definitions of a part, an instance or the assembly.

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use fem_tet10::Material;
 
+use crate::beside::{Beside, DeckMass, DeckTie, Elastic};
 use crate::deck_material::DeckMaterial;
 use crate::error::ImportError;
 use crate::imported::Imported;
@@ -33,6 +34,7 @@ struct Deck {
     /// Kinds of materials that are not read.
     others: HashMap<u64, String>,
     masses: Vec<Mass>,
+    ties: Vec<Tie>,
     mass_of_weight: f64,
     unused: BTreeMap<String, usize>,
     unknown: Option<(usize, Place)>,
@@ -42,6 +44,15 @@ struct Element {
     place: Place,
     label: u64,
     property: u64,
+    nodes: Vec<u64>,
+}
+
+/// An RBE2 or RBE3: nodes that move with another.
+struct Tie {
+    place: Place,
+    kind: &'static str,
+    label: u64,
+    point: u64,
     nodes: Vec<u64>,
 }
 
@@ -94,8 +105,10 @@ pub(super) fn imported(
     let mut notes = Vec::new();
     deck.elements(texts, &rows, &mut found, &mut notes)?;
     let with_tetrahedra: HashSet<u64> = deck.tetrahedra.iter().map(|element| element.property).collect();
-    let materials = deck.materials(&with_tetrahedra, &mut notes);
-    let mut left = deck.masses(texts, &rows, &found.positions)?;
+    let mut beside = Beside::default();
+    let materials = deck.materials(&with_tetrahedra, &mut beside, &mut notes);
+    let mut left = deck.masses(texts, &rows, &found.positions, &mut beside)?;
+    let mut ties = deck.ties(texts, &rows, &mut found)?;
     let count = found.elements.len();
     let (mesh, mut of_mesh) = found.mesh(raise_order)?;
     notes.append(&mut of_mesh);
@@ -108,7 +121,9 @@ pub(super) fn imported(
     }
     notes.extend(notes::not_used(count, &left));
     let materials = materials.into_iter().filter(|material| mesh.groups().contains(&material.group)).collect();
-    Ok(Imported { mesh, notes, materials })
+    ties.retain(|tie| mesh.parts().node_groups.iter().any(|group| group.name == tie.group));
+    beside.ties = ties;
+    Ok(Imported { mesh, notes, materials, beside })
 }
 
 fn group_of(property: u64) -> String {
@@ -176,8 +191,14 @@ impl Deck {
                     has_inertia,
                 });
             }
-            "RBE2" => self.count("RBE2 (in a scene: a marker with tie = \"rigid\")"),
-            "RBE3" => self.count("RBE3 (in a scene: a marker with tie = \"mean\")"),
+            "RBE2" => {
+                self.count("RBE2 (in a scene: a marker with tie = \"rigid\")");
+                self.tie(texts, card)?;
+            }
+            "RBE3" => {
+                self.count("RBE3 (in a scene: a marker with tie = \"mean\")");
+                self.tie(texts, card)?;
+            }
             name if SOLIDS.contains(&name) => {
                 self.solids.entry(name.to_owned()).or_insert((0, card.place)).0 += 1;
             }
@@ -252,14 +273,15 @@ impl Deck {
         Ok(())
     }
 
-    /// Masses on nodes in a sentence, with their sum.
+    /// Masses on nodes; a sentence on each whose place is not known.
     fn masses(
         &mut self,
         texts: &Texts<'_>,
         rows: &HashMap<u64, u32>,
         positions: &[[f64; 3]],
+        beside: &mut Beside,
     ) -> Result<Vec<String>, ImportError> {
-        let (mut masses, mut elsewhere) = (Vec::new(), (0, 0.0));
+        let mut elsewhere = (0, 0.0);
         let mut with_inertia = 0;
         for Mass { place, node, system, mass, offset, has_inertia } in &self.masses {
             with_inertia += usize::from(*has_inertia);
@@ -281,11 +303,12 @@ impl Deck {
                 }
             };
             match place {
-                Some(place) => masses.push((place, mass)),
+                Some(_) if mass == 0.0 => {}
+                Some(at) => beside.masses.push(DeckMass { kind: "CONM2".to_owned(), at, mass }),
                 None => elsewhere = (elsewhere.0 + 1, elsewhere.1 + mass),
             }
         }
-        let mut left: Vec<String> = notes::masses("CONM2", &masses).into_iter().collect();
+        let mut left = Vec::new();
         if elsewhere.0 > 0 {
             left.push(format!("{} CONM2 with offsets in systems of angles ({:.4e})", elsewhere.0, elsewhere.1));
         }
@@ -295,8 +318,68 @@ impl Deck {
         Ok(left)
     }
 
+    /// Takes an RBE2 or RBE3.
+    fn tie(&mut self, texts: &Texts<'_>, card: &Card<'_>) -> Result<(), ImportError> {
+        let (label, mut nodes) = (card.label(texts, 1)?, Vec::new());
+        let is_label = |field: usize| {
+            let text = card.field(field);
+            !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+        };
+        let (kind, point) = if card.name == "RBE2" {
+            // A number with a point at the end is one of thermal expansion.
+            nodes.extend((4..=card.len()).filter(|field| is_label(*field)).map(|field| card.label(texts, field)));
+            ("RBE2", card.label(texts, 2)?)
+        } else {
+            // Weight, directions and nodes, again and again; words begin what is of another kind.
+            let mut field = 5;
+            while field <= card.len() && !card.field(field).starts_with(|letter: char| letter.is_ascii_alphabetic()) {
+                if card.field(field).contains('.') {
+                    field += 2;
+                } else {
+                    if is_label(field) {
+                        nodes.push(card.label(texts, field));
+                    }
+                    field += 1;
+                }
+            }
+            ("RBE3", card.label(texts, 3)?)
+        };
+        let nodes = nodes.into_iter().collect::<Result<_, _>>()?;
+        self.ties.push(Tie { place: card.place, kind, label, point, nodes });
+        Ok(())
+    }
+
+    /// Ties as groups of nodes.
+    fn ties(
+        &self,
+        texts: &Texts<'_>,
+        rows: &HashMap<u64, u32>,
+        found: &mut Tetrahedra,
+    ) -> Result<Vec<DeckTie>, ImportError> {
+        let mut ties = Vec::new();
+        for Tie { place, kind, label, point, nodes } in &self.ties {
+            let row = |node: &u64| {
+                rows.get(node).copied().ok_or_else(|| {
+                    let found = format!("{kind} {label} has node {node}, which is not there");
+                    texts.refuse(*place, found, "check the nodes of the deck, and that all its files are there")
+                })
+            };
+            let nodes = nodes.iter().map(row).collect::<Result<_, _>>()?;
+            let at = Some(found.positions[row(point)? as usize]);
+            let group = format!("{kind}_{label}");
+            ties.push(DeckTie { kind: (*kind).to_owned(), group: group.clone(), is_rigid: *kind == "RBE2", at });
+            found.node_groups.push((group, nodes));
+        }
+        Ok(ties)
+    }
+
     /// The materials of the properties that tetrahedra have.
-    fn materials(&self, with_tetrahedra: &HashSet<u64>, notes: &mut Vec<String>) -> Vec<DeckMaterial> {
+    fn materials(
+        &self,
+        with_tetrahedra: &HashSet<u64>,
+        beside: &mut Beside,
+        notes: &mut Vec<String>,
+    ) -> Vec<DeckMaterial> {
         let mut found = Vec::new();
         for (property, label) in self.properties.iter().filter(|(property, _)| with_tetrahedra.contains(property)) {
             let group = group_of(*property);
@@ -324,6 +407,13 @@ impl Deck {
                 let name = format!("MAT1 {label}");
                 let material = Material { young_modulus, poisson_ratio, density };
                 found.push(DeckMaterial { group: group.clone(), name, material });
+            } else if young_modulus > 0.0 && poisson_ratio > -1.0 && poisson_ratio < 0.5 && density == 0.0 {
+                notes.push(format!(
+                    "the material MAT1 {label} of {group} has no density (its Young's modulus is {young_modulus:?}, its Poisson's ratio \
+                     {poisson_ratio:?})"
+                ));
+                let name = format!("MAT1 {label}");
+                beside.without_density.push(Elastic { group: group.clone(), name, young_modulus, poisson_ratio });
             } else {
                 notes.push(format!(
                     "the material MAT1 {label} of {group} is not read: Young's modulus {young_modulus}, Poisson's ratio \

@@ -8,6 +8,7 @@ use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatRef};
 use fem_tet10::Mesh;
 use keys::Hash;
+use mesh_import::Beside;
 use modal::Modes;
 use scene::{Body, Scene};
 use sealed::{Declared, Kind, Number, SealedError, SealedFile, Writer};
@@ -109,7 +110,7 @@ impl Builder {
         let Some(body) = assembled.elements() else { return Ok(model) };
         let Some(store) = &assembled.store else { return Err(without_store(cache, scene)) };
 
-        let arrays = MeshArrays::new(&meshed.mesh, &meshed.mesh_notes, &[]);
+        let arrays = MeshArrays::new(&meshed.mesh, &meshed.mesh_notes, &[], &Beside::default());
         let mut named = Named { scene, datasets: Vec::new() };
         named.add_groups(&meshed.mesh);
         named.add_modes(&model, meshed);

@@ -97,7 +97,7 @@ impl Store {
         }
         let imported = made()?;
         if let Some(place) = place.filter(|_| !self.cache.is_closed()) {
-            let arrays = MeshArrays::new(&imported.mesh, &imported.notes, &imported.materials);
+            let arrays = MeshArrays::new(&imported.mesh, &imported.notes, &imported.materials, &imported.beside);
             let texts = BTreeMap::from(arrays.texts());
             self.write(&place, texts, &arrays.declared(&scene.units.length), |writer| arrays.write(writer));
         }

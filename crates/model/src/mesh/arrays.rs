@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use fem_tet10::{Mesh, MeshError, MeshParts, NodeGroup, SurfaceGroup};
-use mesh_import::{DeckMaterial, Imported};
+use mesh_import::{Beside, DeckMaterial, Imported};
 use sealed::{Array, Declared, Kind, SealedError, SealedFile, Writer};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +13,9 @@ const GROUPS: &str = "mesh_groups";
 const NOTES: &str = "mesh_notes";
 /// The text with the materials that the mesh file gives to groups; a body file has none, but what was made of them.
 const MATERIALS: &str = "mesh_materials";
+
+/// The text with what else a deck says; other meshes and body files have none.
+const BESIDE: &str = "mesh_beside";
 
 /// The part of a mesh that has no numbers.
 #[derive(Serialize, Deserialize)]
@@ -32,6 +35,7 @@ pub(crate) struct MeshArrays {
     groups: Groups,
     notes: Vec<String>,
     materials: Vec<DeckMaterial>,
+    beside: Beside,
     positions: Vec<f64>,
     node_tags: Vec<u64>,
     tetrahedra: Vec<u32>,
@@ -47,8 +51,8 @@ pub(crate) struct MeshArrays {
 }
 
 impl MeshArrays {
-    /// `notes` say what of the mesh file was left out, `materials` are those that it gives to groups.
-    pub fn new(mesh: &Mesh, notes: &[String], materials: &[DeckMaterial]) -> Self {
+    /// `notes` say what of the mesh file was left out, `materials` are those that it gives to groups, `beside` is what else it says.
+    pub fn new(mesh: &Mesh, notes: &[String], materials: &[DeckMaterial], beside: &Beside) -> Self {
         let parts = mesh.parts();
         let index_of: BTreeMap<u64, u32> = parts.node_tags.iter().copied().zip(0..).collect();
         let index = |tag: &u64| index_of.get(tag).copied().unwrap_or(u32::MAX);
@@ -79,18 +83,21 @@ impl MeshArrays {
             },
             notes: notes.to_vec(),
             materials: materials.to_vec(),
+            beside: beside.clone(),
             node_tags: parts.node_tags,
             tetrahedron_tags: parts.element_tags,
         }
     }
 
     /// The texts that go with the arrays, by name.
-    pub fn texts(&self) -> [(String, String); 3] {
+    pub fn texts(&self) -> [(String, String); 4] {
         // All their keys are texts: it cannot fail.
         let groups = serde_json::to_string(&self.groups).unwrap_or_default();
         let notes = serde_json::to_string(&self.notes).unwrap_or_default();
         let materials = serde_json::to_string(&self.materials).unwrap_or_default();
-        [(GROUPS.to_owned(), groups), (NOTES.to_owned(), notes), (MATERIALS.to_owned(), materials)]
+        let beside = serde_json::to_string(&self.beside).unwrap_or_default();
+        [(GROUPS, groups), (NOTES, notes), (MATERIALS, materials), (BESIDE, beside)]
+            .map(|(name, text)| (name.to_owned(), text))
     }
 
     /// The arrays; lengths in the `unit` of the scene.
@@ -164,6 +171,7 @@ pub(crate) fn read(file: &SealedFile, source: String) -> Result<Imported, Sealed
     let notes = file.text(NOTES).and_then(|text| serde_json::from_str(text).ok()).ok_or_else(|| unread("notes"))?;
     let materials = file.text(MATERIALS).and_then(|text| serde_json::from_str(text).ok());
     let materials = materials.ok_or_else(|| unread("materials"))?;
+    let beside = file.text(BESIDE).map(|text| serde_json::from_str(text).map_err(|_| unread("masses"))).transpose()?;
     let numbers = |name: &str| Ok::<_, SealedError>(file.read::<u64>(name)?.values);
     let node_tags = numbers("mesh/node_tags")?;
     let triangle_tags = numbers("mesh/group_triangle_tags")?;
@@ -206,5 +214,5 @@ pub(crate) fn read(file: &SealedFile, source: String) -> Result<Imported, Sealed
         node_tags,
     };
     let mesh = Mesh::new(parts).map_err(|error: MeshError| damaged(error.to_string()))?;
-    Ok(Imported { mesh, notes, materials })
+    Ok(Imported { mesh, notes, materials, beside: beside.unwrap_or_default() })
 }

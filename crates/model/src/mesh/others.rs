@@ -1,10 +1,12 @@
-//! Materials of a mesh file that are others than those of the scene.
+//! Materials and masses of a mesh file that are others than those of the scene.
 
-use fem_tet10::{Material, Materials, Mesh};
-use mesh_import::DeckMaterial;
+use fem_tet10::{Material, Materials, Mesh, PointMass};
+use mesh_import::{Beside, DeckMass, DeckMaterial};
 
 /// Numbers that are apart by less, relative to the larger, are the same, written with fewer digits.
 const APART: f64 = 0.01;
+/// Places that are apart by less of the size of the mesh are the same.
+const ON: f64 = 1e-6;
 
 /// Says which materials of a mesh file are not those that the scene gives to the same elements.
 pub(crate) fn other_materials(mesh: &Mesh, of_file: &[DeckMaterial], of_scene: &Materials) -> Vec<String> {
@@ -24,6 +26,20 @@ pub(crate) fn other_materials(mesh: &Mesh, of_file: &[DeckMaterial], of_scene: &
         ))
     };
     of_file.iter().filter_map(other).collect()
+}
+
+/// Says which masses of a mesh file the scene has not.
+pub(crate) fn other_masses(mesh: &Mesh, of_file: &Beside, of_scene: &[PointMass]) -> Option<String> {
+    let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() <= ON * mesh.diagonal());
+    // Several masses of the file at one place are one of the scene.
+    let at_place =
+        |at: [f64; 3]| of_file.masses.iter().filter(|mass| near(mass.at, at)).map(|mass| mass.mass).sum::<f64>();
+    let is_used = |deck: &DeckMass| {
+        let of_scene: f64 = of_scene.iter().filter(|mass| near(mass.at, deck.at)).map(|mass| mass.mass).sum();
+        let of_deck = at_place(deck.at);
+        (of_scene - of_deck).abs() <= APART * of_deck.abs().max(of_scene.abs())
+    };
+    of_file.unused_masses(is_used)
 }
 
 fn are_apart(a: &Material, b: &Material) -> bool {

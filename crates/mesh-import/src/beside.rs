@@ -1,0 +1,70 @@
+//! Masses, ties and elasticities of a deck, which a scene can have, too.
+
+use serde::{Deserialize, Serialize};
+
+use crate::notes;
+
+/// Masses, ties and elasticities of a deck, in its own units.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Beside {
+    /// Masses at points.
+    pub masses: Vec<DeckMass>,
+    /// Nodes that move with a point.
+    pub ties: Vec<DeckTie>,
+    /// Materials without a density.
+    pub without_density: Vec<Elastic>,
+}
+
+/// A mass at a point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DeckMass {
+    /// Kind of element that it is, such as CONM2.
+    pub kind: String,
+    /// Position.
+    pub at: [f64; 3],
+    /// Mass.
+    pub mass: f64,
+}
+
+/// Nodes that move with a point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DeckTie {
+    /// Card or keyword, such as RBE2.
+    pub kind: String,
+    /// Group of the mesh with the nodes.
+    pub group: String,
+    /// True if the nodes are rigid; else their mean follows the point.
+    pub is_rigid: bool,
+    /// Position of the point, where the deck has it.
+    pub at: Option<[f64; 3]>,
+}
+
+/// Elasticity of a group of the mesh whose density is not given.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Elastic {
+    /// Group of the mesh.
+    pub group: String,
+    /// Name of the material.
+    pub name: String,
+    /// Young's modulus.
+    pub young_modulus: f64,
+    /// Poisson's ratio.
+    pub poisson_ratio: f64,
+}
+
+impl Beside {
+    /// A sentence on the masses that are not used, with their sum.
+    pub fn unused_masses(&self, is_used: impl Fn(&DeckMass) -> bool) -> Option<String> {
+        let mut kinds: Vec<&str> = self.masses.iter().map(|mass| &mass.kind[..]).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let left: Vec<String> = kinds
+            .into_iter()
+            .filter_map(|kind| {
+                let of_kind = self.masses.iter().filter(|mass| mass.kind == kind && !is_used(mass));
+                notes::masses(kind, &of_kind.map(|mass| (mass.at, mass.mass)).collect::<Vec<_>>())
+            })
+            .collect();
+        (!left.is_empty()).then(|| format!("not used: {}", left.join(", ")))
+    }
+}

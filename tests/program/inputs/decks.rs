@@ -1,0 +1,82 @@
+//! `flexframe new` of decks, and what commands say of what a deck has and a scene has not. Needs gmsh.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::program::{done, json, numbers};
+
+/// The bar of 200 x 10 x 10 as a deck of this ending, with more lines before its end.
+fn deck(folder: &Path, name: &str, more: &str) -> String {
+    let geometry = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/model/tests/data/bar.geo");
+    let path = folder.join(name);
+    let gmsh = Command::new("gmsh").args(["-3", "-order", "2", "-v", "0", geometry, "-o"]).arg(&path).status();
+    assert!(gmsh.unwrap().success());
+    let text = std::fs::read_to_string(&path).unwrap().replace("ENDDATA", "");
+    std::fs::write(&path, text + more).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// Closed form: the mass of the bar, 200 x 10 x 10 times its density, and those of the deck; a mass beside the body is carried by it. Units are
+/// inches by the material.
+#[test]
+fn a_scene_of_a_deck_has_its_units_its_material_and_its_masses() {
+    let folder = tempfile::tempdir().unwrap();
+    let more = "PSOLID,1,7\nMAT1,7,1.+7,,.33,2.54-4\nGRID,90001,,210.,0.,0.\nCONM2,90002,5,,.1\nCONM2,90003,90001,,.5\n\
+                CONM2,90006,90005,,.7\nGRID,90005,,300.,0.,0.\nRBE3,90004,,90001,123456,1.,123,5,6\n,7,8\nCBAR,90005,1,1,2,0.,0.,1.\n";
+    let mesh = deck(folder.path(), "bar.bdf", more);
+    let scene = folder.path().join("bar.toml");
+    let said = done(&["new", &mesh]);
+    assert!(said.contains("wrote"), "{said}");
+    let text = std::fs::read_to_string(&scene).unwrap();
+    for words in [
+        "the materials of its file look like inches (stress in psi)",
+        "(forces in lbf, stresses in psi)",
+        "units = { length = \"in\", mass = \"lbf s²/in\", time = \"s\" }",
+        "{ at = [200.0, -5.0, -5.0], mass = 0.1 }",
+        "{ at = [210.0, 0.0, 0.0], mass = 0.5, spread = ",
+        "young_modulus = 10000000.0, poisson_ratio = 0.33, density = 0.000254",
+        "# Node sets of the mesh: \"RBE3_90004\".",
+        "# [body.markers.\"RBE3_90004\"]",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let report = |scene: &Path| {
+        let report = json(&["modes", scene.to_str().unwrap()]);
+        let warnings: Vec<String> =
+            report["warnings"].as_array().unwrap().iter().map(|text| text.as_str().unwrap().to_owned()).collect();
+        (report, warnings)
+    };
+    let (found, warnings) = report(&scene);
+    let mass = found["body"]["mass"].as_f64().unwrap();
+    assert!((mass / (20_000.0 * 2.54e-4 + 0.6) - 1.0).abs() < 1e-4, "{mass}");
+    let [cards, masses] = &warnings[..] else { panic!("{warnings:?}") };
+    assert!(cards.contains("read: 768 tetrahedra; not used: 1 CBAR, 1 RBE3"), "{cards}");
+    assert!(masses.contains("not used: 1 CONM2 (7.0000e-1"), "{masses}");
+    // Without them the masses are told.
+    let (before, rest) = text.split_once("point_masses = [").unwrap();
+    let without = folder.path().join("without.toml");
+    std::fs::write(&without, before.to_owned() + rest.split_once("\n]\n").unwrap().1).unwrap();
+    let (found, warnings) = report(&without);
+    assert!(warnings.iter().any(|text| text.contains("not used: 3 CONM2 (1.3000e0")), "{warnings:?}");
+    assert_eq!(numbers(&found["body"]["natural_frequencies"]).len(), 10);
+}
+
+/// Closed form: the numbers of the deck.
+#[test]
+fn a_deck_without_a_density_keeps_its_elasticity() {
+    let folder = tempfile::tempdir().unwrap();
+    let more = "*NSET, NSET=end\n1,2,3,4\n*SOLID SECTION, ELSET=bar, MATERIAL=alu\n*MATERIAL, NAME=ALU\n*ELASTIC\n70000., .33\n";
+    let mesh = deck(folder.path(), "bar.inp", more);
+    done(&["new", &mesh]);
+    let text = std::fs::read_to_string(folder.path().join("bar.toml")).unwrap();
+    for words in [
+        "young_modulus = 70000.0, poisson_ratio = 0.33, density = 2.7e-9",
+        "It gives no density",
+        "length = \"mm\"",
+        "# Node sets of the mesh: \"end\".",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let found = json(&["modes", folder.path().join("bar.toml").to_str().unwrap()]);
+    assert!(found["warnings"].to_string().contains("the material alu of bar has no *DENSITY"), "{}", found["warnings"]);
+}
