@@ -123,7 +123,8 @@ fn what_is_not_used_is_counted_and_named() {
     let bar = Bar::new();
     let more = "PARAM,WTMASS,.001\nCORD2R,7,,0.,0.,0.,1.,0.,0.\n,0.,1.,0.\nCONM2,9001,1,7,7.85-1,0.,0.,.5\nRBE2,9002,1,123456,2\n\
                 RBE3,9003,,1,123,1.,123,2,3\nCBAR,9004,1,1,2,0.,0.,1.\nCELAS2,9005,1.+3,1,1\nPSHELL,9,1,.1\nCTRIA3,9006,9,1,2,3\n\
-                SPC1,1,123,1\nSECRET,1\nENDDATA\nMORE\n";
+                SPC1,1,123,1\nDEQATN  2       f(b,c) = b*c\n        + b,\n+       + c\nBSURF,1,1,2,3,4,5,6,7,\n8,9,10\n\
+                CTRIA6,9007,9,1,2,3,,2\nSECRET,1\nENDDATA\nMORE\n";
     let [x, y, z] = bar.nodes.iter().find(|(label, _)| *label == 1).unwrap().1;
     let text = format!("{}{}{more}", grids(&bar, "", |x| x), elements(&bar));
     let Imported { mut notes, beside, mesh, .. } =
@@ -144,7 +145,9 @@ fn what_is_not_used_is_counted_and_named() {
         "1 CBAR",
         "1 CELAS2",
         "1 PSHELL",
-        "1 triangles with PSHELL",
+        "2 triangles with PSHELL",
+        "1 DEQATN",
+        "1 BSURF",
         "1 SPC1",
         "1 card(s) that are not known here, the first in line",
         "1 lines after ENDDATA",

@@ -155,7 +155,8 @@ impl Deck {
                 self.tetrahedra.push(element);
             }
             "CTRIA3" | "CTRIAR" => self.triangles.push(element(texts, card, &[3])?),
-            "CTRIA6" => self.triangles.push(element(texts, card, &[3, 6])?),
+            // Nodes on its edges may be missing.
+            "CTRIA6" => self.triangles.push(element(texts, card, &[3])?),
             "PSOLID" => {
                 if self.properties.insert(card.label(texts, 1)?, card.label(texts, 2)?).is_some() {
                     let found = format!("PSOLID {} a second time", card.field(1));

@@ -106,6 +106,7 @@ pub(super) fn cards<'t>(texts: &'t Texts<'_>) -> Result<Bulk<'t>, ImportError> {
     let mut bulk = Bulk { cards: Vec::new(), lines_after: 0 };
     let mut label = "";
     let (mut is_over, mut is_in_quotes) = (false, false);
+    let (mut is_open, mut is_in_equation) = (false, false);
     for data in &lines[begin..] {
         let text = data.text.split('$').next().unwrap_or_default().trim_end();
         if text.trim().is_empty() {
@@ -133,7 +134,25 @@ pub(super) fn cards<'t>(texts: &'t Texts<'_>) -> Result<Bulk<'t>, ImportError> {
             let help = "write the deck without superelements";
             return Err(texts.refuse(data.place, "a second part of bulk data", help));
         }
-        let line = fields(texts, Data { place: data.place, text })?;
+        // The commas of an equation are none between fields.
+        let starts_equation = text.trim_start().get(..6).is_some_and(|word| word.eq_ignore_ascii_case("DEQATN"));
+        if starts_equation {
+            bulk.cards.push(Card { place: data.place, name: "DEQATN".to_owned(), fields: Vec::new() });
+        }
+        is_in_equation = starts_equation || (is_in_equation && text.starts_with([' ', '+', '*', ',']));
+        if is_in_equation {
+            continue;
+        }
+        // A line that ends in a comma goes on in the next, which may begin with a number at once.
+        let goes_on = is_open && text.trim_start().starts_with(|first: char| first.is_ascii_digit());
+        is_open = text.ends_with(',');
+        let line = if goes_on {
+            let mut data: Vec<&str> = text.split(',').map(str::trim).take(8).collect();
+            data.resize(8, "");
+            Line { head: "", data, label: "" }
+        } else {
+            fields(texts, Data { place: data.place, text })?
+        };
         if line.head.is_empty() || line.head.starts_with(['+', '*']) {
             let [of_line, of_card] = [line.head, label].map(|label| label.trim_start_matches(['+', '*']));
             let is_apart = !of_line.is_empty() && !of_card.is_empty() && !of_line.eq_ignore_ascii_case(of_card);
