@@ -82,7 +82,10 @@ struct File {
 /// The mesh of a file.
 pub(crate) fn read(files: &[ReadFile], source: &Path, raise_order: bool) -> Result<Imported, ImportError> {
     let texts = Texts::new(files);
-    let mut lines = Lines { texts: &texts, lines: texts.lines()?, at: 0 };
+    let mut all = texts.lines()?;
+    // Both ends of a line of Windows are ends.
+    all.dedup_by(|next, before| next.text.is_empty() && next.place == before.place);
+    let mut lines = Lines { texts: &texts, lines: all, at: 0 };
     let mut file = File::default();
     while let Some(dataset) = lines.dataset()? {
         file.take(dataset, &mut lines)?;
@@ -117,8 +120,16 @@ impl<'t> Lines<'t> {
         Ok(None)
     }
 
-    /// The next line of a dataset; none at its end.
+    /// The next line of a dataset that is not empty; none at its end.
     fn next(&mut self) -> Result<Option<Data<'t>>, ImportError> {
+        while self.lines.get(self.at).is_some_and(|data| data.text.trim().is_empty()) {
+            self.at += 1;
+        }
+        self.line()
+    }
+
+    /// The next line of a dataset; none at its end.
+    fn line(&mut self) -> Result<Option<Data<'t>>, ImportError> {
         let Some(data) = self.lines.get(self.at) else {
             let place = self.lines.last().map(|data| data.place).unwrap_or(Place::FIRST);
             let help = "the file is cut off: write it anew";
@@ -259,7 +270,10 @@ impl File {
     fn group(&mut self, width: usize, head: Data<'_>, lines: &mut Lines<'_>) -> Result<(), ImportError> {
         let numbers = lines.wholes(head, 8)?;
         let count = lines.label(head, numbers[7])? as usize;
-        let name = lines.expected("the name of a group")?.text;
+        let name = match lines.line()? {
+            Some(name) => name.text,
+            None => return Err(lines.refuse(head, "the name of a group after it")),
+        };
         let name = name.replace('"', "'").split_whitespace().collect::<Vec<_>>().join(" ");
         let name = if name.is_empty() { format!("group_{}", numbers[0]) } else { name };
         let members = lines.labels(count.saturating_mul(width))?;

@@ -97,7 +97,7 @@ fn what_is_not_used_is_counted_and_named() {
     let bar = Bar::new();
     let more = "*ELEMENT, TYPE=MASS, ELSET=m\n9001, 1\n*MASS, ELSET=m\n7.85e-4\n*ELEMENT, TYPE=SPRINGA, ELSET=k\n9002, 1, 2\n\
                 *SPRING, ELSET=k\n\n10.\n*EQUATION\n2\n1, 1, 1., 2, 1, -1.\n*RIGID BODY, REF NODE=1, NSET=root\n*COUPLING, \
-                CONSTRAINT NAME=hub, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 3\n*SECRET\n1\n";
+                CONSTRAINT NAME=hub, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 3\n*MODEL CHANGE, TYPE=CONTACT PAIR, ADD\na, b\n*ELEMENT, TYPE=B31, ELSET=edges\n9003, 1, 2,\n9004, 1, 2,\n*SECRET\n1\n";
     let text = format!(
         "*NODE\n{}*ELEMENT, TYPE=C3D10, ELSET=all\n{}*NSET, NSET=root\n{}{more}",
         bar.node_lines(plain),
@@ -116,6 +116,8 @@ fn what_is_not_used_is_counted_and_named() {
         "1 MASS (7.8500e-4",
         "point_masses = [{ at = [",
         "1 SPRINGA",
+        "2 B31",
+        "1 *MODEL CHANGE",
         "1 *SPRING",
         "1 *EQUATION",
         "1 *RIGID BODY of root",
@@ -186,7 +188,8 @@ fn written(bar: &Bar, dice: &mut Dice) -> String {
         elements += &dice.spelled("*ELSET, ELSET=ALL,GENERATE\n1, 99999\n");
     }
     let sets = format!("*NSET,\nNSET=root\n{}*Nset, nset=inner\n{}*nset, nset=tip\ninner\n", bar.at(0.0), bar.at(3.0));
-    let section = dice.spelled("*SOLID SECTION, ELSET=all, MATERIAL=Steel\n,\n");
+    let space = ["", " "][dice.up_to(2)];
+    let section = dice.spelled(&format!("*SOLID{space}SECTION, ELSET=all, MATERIAL=Steel\n,\n"));
     let material = dice.spelled("*MATERIAL, NAME=STEEL\n*ELASTIC\n210e3,.3\n*DENSITY\n7.85e-9\n");
     let mut blocks = [nodes, elements, sets, section];
     // Any order is one deck.

@@ -69,6 +69,9 @@ impl<'b> File<'b> {
             + &group(2, "root", 8, &self.triangles)
             + &group(3, "tip", 7, &tip)
             + &group(4, "edge", 8, &[1])
+            + &group(5, "nothing", 8, &[])
+            + "\n"
+            + &group(6, "", 7, &tip)
     }
 }
 
@@ -102,6 +105,7 @@ fn all_datasets_of_groups_give_one_body() {
             dataset(groups, &file.groups(width)),
             dataset(2414, "results\n")
         );
+        let text = if width == 2 { text.replace('\n', "\r\n") } else { text };
         let Imported { mesh, notes, .. } =
             bar.read("bar.unv", &text).unwrap_or_else(|error| panic!("{groups}: {error}"));
         assert!((volume(&mesh) - 3.0).abs() < 1e-4, "{groups}: {}", volume(&mesh));
@@ -110,10 +114,11 @@ fn all_datasets_of_groups_give_one_body() {
         assert_eq!(mesh.parts().surfaces[0].triangles.len(), file.triangles.len(), "{groups}");
         assert!(mean_of(&mesh, "root")[0].abs() < 1e-9 && (mean_of(&mesh, "tip")[0] - 3.0).abs() < 1e-9, "{groups}");
         let said = notes.join("\n");
-        for words in ["the group edge has no", "1 beams", "1 dataset 2414"] {
+        assert_eq!(mesh.group_nodes("group_6").unwrap(), mesh.group_nodes("tip").unwrap(), "{groups}");
+        for words in ["the group edge has no", "the group nothing has no", "1 beams", "1 dataset 2414"] {
             assert!(said.contains(words), "{groups}: {words}: {said}");
         }
-        assert_eq!(notes.len(), 2, "{notes:?}");
+        assert_eq!(notes.len(), 3, "{notes:?}");
     }
 }
 

@@ -92,6 +92,8 @@ impl Reader<'_, '_> {
             "COUPLING" => self.tie(block, "COUPLING", next != Some("DISTRIBUTING"))?,
             // They say of what kind the coupling is before them.
             "KINEMATIC" | "DISTRIBUTING" => {}
+            // Contact is none of the mesh.
+            "MODEL CHANGE" if block.is("TYPE", "CONTACT PAIR") => self.count(block),
             keyword if makes_mesh(keyword) => {
                 let found = format!("*{keyword}, which makes or moves nodes and elements and is not read");
                 let help = "write the deck with all its nodes and elements, as preprocessors do";
@@ -238,6 +240,8 @@ impl Reader<'_, '_> {
         });
         let set = block.parameter("ELSET").map(str::to_owned);
         let count = kind.nodes();
+        // Some write a comma after each element.
+        let ends_in_commas = block.data.last().is_some_and(|data| data.text.ends_with(','));
         let mut waiting: Vec<&str> = Vec::new();
         let mut first = block.place;
         for (line, data) in block.data.iter().enumerate() {
@@ -248,7 +252,7 @@ impl Reader<'_, '_> {
             // Where the number of nodes is not known, a line that ends in a comma goes on.
             let is_whole = match count {
                 Some(count) => waiting.len() > count,
-                None => !data.text.ends_with(','),
+                None => ends_in_commas || !data.text.ends_with(','),
             };
             if !is_whole {
                 if line + 1 == block.data.len() {

@@ -54,7 +54,40 @@ const MAKE_MESH: [&str; 11] = [
 ];
 
 /// Keywords that are counted and named.
-const COUNTED: [&str; 53] = [
+const COUNTED: [&str; 86] = [
+    "MODEL CHANGE",
+    "FLUID SECTION",
+    "HEAT TRANSFER",
+    "FLUID CONSTANTS",
+    "SPECIFIC GAS CONSTANT",
+    "SENSITIVITY",
+    "RADIATE",
+    "FILM",
+    "NODAL THICKNESS",
+    "DFLUX",
+    "CFLUX",
+    "REFINE MESH",
+    "USER ELEMENT",
+    "COUPLED TEMPERATURE-DISPLACEMENT",
+    "VISCO",
+    "CREEP",
+    "USER SECTION",
+    "GREEN",
+    "SUBSTRUCTURE GENERATE",
+    "GAP CONDUCTANCE",
+    "CONTACT DAMPING",
+    "CONSTRAINT",
+    "HYPERELASTIC",
+    "HYPERFOAM",
+    "MOHR COULOMB",
+    "DEFORMATION PLASTICITY",
+    "COMPLEX FREQUENCY",
+    "DESIGN VARIABLES",
+    "OBJECTIVE",
+    "NETWORK MPC",
+    "CYCLIC HARDENING",
+    "CLEARANCE",
+    "NORMAL",
     "AMPLITUDE",
     "BASE MOTION",
     "BEAM SECTION",
@@ -123,4 +156,30 @@ pub(super) fn makes_mesh(keyword: &str) -> bool {
 /// True of a keyword that may be named: others may be words of any file that the deck includes.
 pub(super) fn is_known(keyword: &str) -> bool {
     COUNTED.contains(&keyword)
+}
+
+/// Keywords of two words that CalculiX knows without the space, too.
+const TOGETHER: [&str; 16] = [
+    "SOLID SECTION",
+    "SHELL SECTION",
+    "MEMBRANE SECTION",
+    "SURFACE SECTION",
+    "BEAM SECTION",
+    "RIGID BODY",
+    "END PART",
+    "END INSTANCE",
+    "END ASSEMBLY",
+    "END STEP",
+    "NODE FILE",
+    "NODE PRINT",
+    "EL FILE",
+    "EL PRINT",
+    "CONTACT PAIR",
+    "DESIGN VARIABLES",
+];
+
+/// A keyword with the space that it may lack.
+pub(super) fn spaced(keyword: String) -> String {
+    let known = TOGETHER.iter().find(|known| known.replace(' ', "") == keyword);
+    known.map_or(keyword, |known| (*known).to_owned())
 }

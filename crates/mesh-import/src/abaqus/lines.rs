@@ -1,5 +1,6 @@
 //! The lines of a deck: keywords with their parameters and the lines of data under them.
 
+use crate::abaqus::keywords::spaced;
 use crate::error::ImportError;
 use crate::texts::{Data, Place, Texts};
 
@@ -54,7 +55,7 @@ impl<'t> Reading<'t, '_> {
         if let Some(rest) = text.strip_prefix('*') {
             let mut parts = rest.split(',');
             let first = parts.next().unwrap_or_default();
-            let keyword = first.split_whitespace().collect::<Vec<_>>().join(" ").to_uppercase();
+            let keyword = spaced(first.split_whitespace().collect::<Vec<_>>().join(" ").to_uppercase());
             self.open = rest.ends_with(',');
             // What it includes stands in its place.
             if keyword != "INCLUDE" {
