@@ -23,6 +23,7 @@ mod scheme;
 mod simulation;
 mod state;
 mod system;
+mod tolerance;
 mod vibration;
 
 pub use body::center_of_mass::CenterOfMass;
@@ -90,6 +91,7 @@ pub use system::relaxed::RelaxError;
 pub use system::simulation::SystemSimulation;
 pub use system::simulation::observation::SystemObservation;
 pub use system::simulation::setup::{Assembled, ShapeLimit, SystemSetup};
+pub use tolerance::{ErrorKinds, StatedError};
 pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 pub use vibration::system::{

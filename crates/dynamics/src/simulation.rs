@@ -1,7 +1,6 @@
 //! A run: a body, a method, the steps that lead through it, and the times at which it is observed.
 
 pub(crate) mod account;
-pub(crate) mod allowance;
 pub(crate) mod builder;
 pub mod checkpoint;
 pub(crate) mod events;
@@ -26,7 +25,6 @@ use crate::observation::moment::Moment;
 use crate::observation::observer::{Observer, StepEnd};
 use crate::observation::observers::Observers;
 use crate::simulation::account::EnergyAccount;
-use crate::simulation::allowance::Allowance;
 use crate::simulation::checkpoint::{
     CheckpointError, counts, decode, encode, equal_room, expect, from_words, to_words,
 };
@@ -37,6 +35,8 @@ use crate::simulation::longest_step::LongestStep;
 use crate::simulation::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, Segment, StepControl};
 use crate::simulation::setup::{Beginning, Setup};
 use crate::simulation::stats::Stats;
+use crate::tolerance::allowance::Allowance;
+use crate::tolerance::{ErrorKinds, ErrorMeasure};
 
 /// Where [`Simulation::advance`] has come to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,8 +101,7 @@ enum Walk {
         steps: Option<EqualSteps>,
     },
     Halved {
-        tolerance: f64,
-        allowance: Allowance,
+        measure: ErrorMeasure,
         longest_try: f64,
         #[serde(with = "equal_room")]
         steps: Option<HalvedSteps>,
@@ -130,9 +129,8 @@ impl Walk {
                 expect("the step", step == found)?;
                 steps.iter().try_for_each(EqualSteps::check)
             }
-            (Self::Halved { tolerance, .. }, Self::Halved { tolerance: found, allowance, longest_try, steps }) => {
-                expect("the tolerance", tolerance == found)?;
-                allowance.check()?;
+            (Self::Halved { measure, .. }, Self::Halved { measure: found, longest_try, steps }) => {
+                measure.check_saved(found)?;
                 expect("the longest step to try", *longest_try > 0.0)?;
                 steps.iter().try_for_each(HalvedSteps::check)
             }
@@ -171,7 +169,8 @@ impl Simulation {
         let walk = match setup.control {
             StepControl::Fixed(step) => Walk::Equal { step, steps: None },
             StepControl::Tolerance(tolerance) => {
-                Walk::Halved { tolerance, allowance: Allowance::default(), longest_try: f64::INFINITY, steps: None }
+                let measure = ErrorMeasure::new(tolerance, setup.end, f64::EPSILON);
+                Walk::Halved { measure, longest_try: f64::INFINITY, steps: None }
             }
         };
         let drive = setup.physics.drive.as_ref().map(|drive| &drive.speed.history);
@@ -424,7 +423,11 @@ impl Simulation {
 
     /// Cost of the run so far.
     pub fn stats(&self) -> Stats {
-        Stats { evaluations: self.motion.evaluations(), ..self.stats }
+        let error = match &self.walk {
+            Walk::Halved { measure, .. } => Some(measure.stated()),
+            Walk::Equal { .. } => None,
+        };
+        Stats { evaluations: self.motion.evaluations(), error, ..self.stats }
     }
 
     /// Goes on to the next row, event or stop, or as far as `max_steps` tries lead. Where a row falls on an event or the stop
@@ -528,8 +531,8 @@ impl Simulation {
             step.begin(&*self.motion, end, halved);
         }
         match &mut self.walk {
-            Walk::Halved { tolerance, allowance, longest_try, steps: Some(steps) } => {
-                let allowed = allowance.of_step(*tolerance, h / self.end);
+            Walk::Halved { measure, longest_try, steps: Some(steps) } => {
+                let allowed = measure.allowed(h);
                 let estimate = match self.motion.controlled_step(h, end, allowed) {
                     Ok(estimate) => estimate,
                     Err(error @ StepError::NoErrorEstimate { .. }) => return Err(error),
@@ -537,19 +540,19 @@ impl Simulation {
                     Err(_) => ErrorEstimate { step: f64::INFINITY, doubled: f64::INFINITY },
                 };
                 if estimate.step <= allowed {
-                    allowance.accept(end);
+                    measure.taken(end, &ErrorKinds { place: estimate.step, ..ErrorKinds::default() }, 0.0);
                     steps.accept(Allowance::may_double(&estimate, allowed));
                     // A step that only the segment's end made short says nothing about the next segment.
                     *longest_try = longest_try.max(steps.length());
                     return Ok(true);
                 }
                 self.stats.rejected += 2;
-                allowance.reject(time, end);
+                measure.refused(time, end);
                 if steps.reject(estimate.step / allowed) {
                     *longest_try = steps.length();
                     Ok(false)
                 } else {
-                    Err(StepError::Tolerance { time, step: h, tolerance: *tolerance })
+                    Err(StepError::Tolerance { time, step: h, tolerance: measure.tolerance })
                 }
             }
             _ => self.motion.step(h, end).map(|()| true),

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::simulation::checkpoint::{CheckpointError, counts, expect, fixed_room};
+use crate::tolerance::StatedError;
 
 /// Cost of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -21,12 +22,15 @@ pub struct Stats {
     pub shortest: f64,
     /// Length of the longest step taken.
     pub longest: f64,
+    /// Error of the steps by their estimates; none of fixed steps.
+    #[serde(skip)] // the step control sums it up
+    pub error: Option<StatedError>,
 }
 
 impl Stats {
     /// Before the first step.
     pub(crate) const NONE: Self =
-        Self { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 };
+        Self { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0, error: None };
 
     /// Counts steps of a length that were taken.
     pub(crate) fn take(&mut self, steps: u64, length: f64) {

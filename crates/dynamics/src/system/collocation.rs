@@ -3,6 +3,8 @@
 //!
 //! Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5 and IV.8; Eqs. (J5)–(J7) of `docs/method/systems.md`.
 
+pub(crate) mod two_step;
+
 use nalgebra::{Complex, Matrix3, Vector3};
 
 /// Stages of a step.
@@ -58,6 +60,8 @@ pub(crate) struct Collocation {
     pub times: [f64; STAGES],
     /// b: the weights of their rates.
     pub weights: [f64; STAGES],
+    /// A
+    pub matrix: Matrix3<f64>,
     /// A⁻¹
     pub inverse: Matrix3<f64>,
     /// κ_r, and one of the two complex κ: the eigenvalues of A⁻¹.
@@ -140,6 +144,7 @@ impl Collocation {
             is_explicit: false,
             times,
             weights,
+            matrix: a,
             inverse,
             real,
             complex,

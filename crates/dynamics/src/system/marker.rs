@@ -92,6 +92,11 @@ impl Marker {
         self.body
     }
 
+    /// Its distance from the origin of its body, where that is not deformed, or from the global one.
+    pub(crate) fn distance(&self) -> f64 {
+        self.position.norm()
+    }
+
     /// True if the modes move and turn it as another on the same body.
     pub fn moves_as(&self, other: &Self) -> bool {
         self.position == other.position

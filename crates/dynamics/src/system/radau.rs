@@ -7,18 +7,19 @@
 //! x' = v + M⁻¹Gᵀμ,     y' = forces + Gᵀλ,     g = 0,     G v = 0        at each stage
 //! ```
 
+pub(in crate::system) mod bound;
 mod end;
+mod estimate;
 mod exchange;
 mod explicit;
 mod law_work;
 mod laws;
 mod newton;
+pub(in crate::system) mod past;
 mod springs;
 pub(in crate::system) mod stage_rates;
 mod stepping;
 mod within;
-
-pub(in crate::system) use stepping::EXACTNESS;
 
 use nalgebra::{Complex, Vector3};
 
@@ -26,7 +27,6 @@ use crate::body::motion_state::MotionState;
 use crate::conservative::{ConservativeBody, get, part};
 use crate::equations::Equations;
 use crate::error::{RateError, SetupError};
-use crate::matrix::lists::larger;
 use crate::state::State;
 use crate::system::collocation::{Collocation, STAGES, SystemScheme};
 use crate::system::description::System;
@@ -37,9 +37,13 @@ use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::coupling::CoupledCoordinate;
 use crate::system::joint::force::FrictionSlope;
 use crate::system::joint::work::JointWork;
+use crate::system::marker::Marker;
+use crate::system::radau::bound::{Bound, Estimate};
 use crate::system::radau::law_work::LawWork;
+use crate::system::radau::past::Past;
 use crate::system::radau::stage_rates::StageRates;
 use crate::system::stage::{BodyStart, Stage, Start};
+use crate::tolerance::ErrorKinds;
 
 /// The step whose Newton matrix is the metric in which a system is assembled, as a part of the shortest period.
 const ASSEMBLY: f64 = 1.0;
@@ -51,8 +55,12 @@ const CLOSED: f64 = 1e-10;
 /// The cost of a step and its estimated error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tried {
-    /// Estimated error, relative to the size of the bodies.
-    pub error: f64,
+    /// Estimated errors: see [`ErrorKinds`].
+    pub errors: ErrorKinds,
+    /// Vibration that the step has forgotten beside them, over the largest deformation.
+    pub forgotten: f64,
+    /// True if the largest of them falls with the order of the scheme, and not with that of its embedded formula.
+    pub(super) has_order_of_scheme: bool,
     /// Passes of Newton's method.
     pub passes: usize,
     /// Length of the step to the first kink of a law within it, which such a step ends before. Looked for under a tolerance.
@@ -99,9 +107,10 @@ pub struct SystemMotion {
     pub(super) matrices: Matrices,
     room: Room,
     law_work: LawWork,
-    /// Time over which errors are shared; infinite where it is not known.
-    pub(in crate::system) span: f64,
-    /// The largest energy so far.
+    pub(super) past: Past,
+    /// Size of the largest body: what places are measured by.
+    size: f64,
+    /// The largest energy so far, for Newton's method: also that which forces give within a step.
     pub(super) largest_energy: f64,
     /// The same of the motion alone: kinetic and strain energy where steps began.
     pub(super) largest_moving: f64,
@@ -122,6 +131,8 @@ pub struct SystemMotion {
 #[derive(Debug, Clone)]
 struct Room {
     real: Solution<f64>,
+    /// For what drifts.
+    held: Solution<f64>,
     complex: Solution<Complex<f64>>,
     y_rates: [Vec<f64>; STAGES],
     /// Rates of an explicit stage.
@@ -184,6 +195,7 @@ impl SystemMotion {
             matrices: Matrices::new(&system, &patterns),
             room: Room {
                 real: Solution::new(coordinates, &patterns),
+                held: Solution::new(coordinates, &patterns),
                 complex: Solution::new(coordinates, &patterns),
                 y_rates: std::array::from_fn(|_| zeros()),
                 stage_rates: StageRates::new(&flexible, [joints, elements]),
@@ -193,7 +205,8 @@ impl SystemMotion {
                 spring_energies: vec![0.0; joints + elements],
             },
             law_work,
-            span: f64::INFINITY,
+            past: Past::new(coordinates, flexible.len()),
+            size: size_of_bodies(&system, states),
             patterns,
             bodies,
             system,
@@ -218,7 +231,9 @@ impl SystemMotion {
             SystemScheme::Gauss => Collocation::gauss(),
             SystemScheme::Rkmk4 => Collocation::rkmk4(),
         };
-        Self { scheme, last_length: 0.0, ..self }
+        let mut motion = Self { scheme, ..self };
+        motion.forget_last_step();
+        motion
     }
 
     /// Finds the coordinates of the joints, and the sums of the couplings that have none, where the system is at first.
@@ -383,48 +398,46 @@ impl SystemMotion {
     }
 
     /// Tries a step of length `h` that ends at `end`, with Newton's method as exact as `exactness`, and goes on where
-    /// its error is at most `tolerance`.
+    /// its error is at most `allowed`. The error is measured as in a run that is as long as this step.
     ///
     /// # Errors
     /// [`Failed`]; the state stays.
-    pub fn try_step(&mut self, h: f64, end: f64, exactness: f64, tolerance: f64) -> Result<Tried, Failed> {
-        self.try_step_over_kinks(h, end, [exactness, tolerance], false)
+    pub fn try_step(&mut self, h: f64, end: f64, exactness: f64, allowed: f64) -> Result<Tried, Failed> {
+        self.try_step_of(h, end, &Bound::of_one_step(exactness, allowed), false)
     }
 
-    /// The same; a step over a kink that a law tells is not taken under a tolerance, unless it is to be.
-    pub(super) fn try_step_over_kinks(
-        &mut self,
-        h: f64,
-        end: f64,
-        [exactness, tolerance]: [f64; 2],
-        over_kinks: bool,
-    ) -> Result<Tried, Failed> {
-        let over_kinks = over_kinks || !tolerance.is_finite();
+    /// The same in a run; a step over a kink that a law tells is not taken under a tolerance, unless it is to be.
+    pub(super) fn try_step_of(&mut self, h: f64, end: f64, bound: &Bound, over_kinks: bool) -> Result<Tried, Failed> {
+        let over_kinks = over_kinks || !bound.allowed.is_finite();
         self.begin();
         let branch_time = self.time + 0.5 * h;
         self.evaluate_first(branch_time)?;
         if self.scheme.is_explicit {
-            return self.try_explicit_step(h, [end, branch_time], tolerance, over_kinks);
+            return self.try_explicit_step(h, [end, branch_time], bound, over_kinks);
         }
         self.predict(h);
         let energy = self.largest_energy;
-        let mut passes = self.newton(h, exactness, FrictionSlope::Tangent);
+        let mut passes = self.newton(h, bound, FrictionSlope::Tangent);
         if passes == Err(Failed::Newton) && self.law_work.has_friction {
             self.predict(h);
-            passes = self.newton(h, exactness, FrictionSlope::Secant);
+            passes = self.newton(h, bound, FrictionSlope::Secant);
         }
-        let tried = passes.map(|passes| Tried {
-            error: larger(self.error(h), self.energy_error_in_run(h)),
-            passes,
-            kink: if over_kinks { None } else { self.length_to_kink(h) },
+        let tried = passes.map(|passes| {
+            let mut estimate = self.errors(h, bound.span);
+            estimate.errors.energy = self.energy_error(h);
+            let forgotten = estimate.forget(bound);
+            let Estimate { errors, has_order_of_scheme, .. } = estimate;
+            let has_order_of_scheme = has_order_of_scheme && errors.energy < errors.largest();
+            let kink = if over_kinks { None } else { self.length_to_kink(h) };
+            Tried { errors, forgotten, has_order_of_scheme, passes, kink }
         });
-        let is_taken = tried.as_ref().is_ok_and(|tried| tried.error <= tolerance && tried.kink.is_none());
+        let is_taken = tried.as_ref().is_ok_and(|tried| bound.ratio(&tried.errors) <= 1.0 && tried.kink.is_none());
         if !is_taken {
             // That of a step that is too long says nothing about a shorter one.
             self.largest_energy = energy;
         }
         let tried = tried?;
-        if tried.error.is_nan() {
+        if tried.errors.largest().is_nan() {
             return Err(Failed::Newton);
         }
         if is_taken {
@@ -435,11 +448,17 @@ impl SystemMotion {
             self.last_length = h;
             self.find_bend();
             self.find_stage_rates();
+            self.keep_past();
             self.reach_end();
             let weights = self.scheme.weights.map(|weight| h * weight);
             self.land([end, branch_time], h, weights)?;
         }
         Ok(tried)
+    }
+
+    /// The next step begins without the polynomials of the last.
+    pub(in crate::system) fn forget_last_step(&mut self) {
+        (self.last_length, self.past.steps) = (0.0, 0);
     }
 
     /// Takes the state as the start of a step.
@@ -473,4 +492,17 @@ impl SystemMotion {
         self.evaluations += 1;
         Ok(())
     }
+}
+
+/// The size of the largest body: its radius of gyration, or the distance of a marker from its origin. Of points alone, that between them.
+fn size_of_bodies(system: &System, states: &[MotionState]) -> f64 {
+    let radii = system.bodies.iter().map(ConservativeBody::radius_of_gyration);
+    let arms = || system.connections.markers().filter(|marker| marker.body().is_some()).map(Marker::distance);
+    let size = radii.chain(arms()).fold(0.0, f64::max);
+    if size > 0.0 {
+        return size;
+    }
+    let first = states.first().map_or_else(Vector3::zeros, |state| state.origin_global);
+    let spread = states.iter().map(|state| (state.origin_global - first).norm()).fold(0.0, f64::max);
+    if spread > 0.0 { spread } else { 1.0 }
 }

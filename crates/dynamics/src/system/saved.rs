@@ -12,6 +12,7 @@ use crate::system::collocation::STAGES;
 use crate::system::joint::coordinate::JointCoordinates;
 use crate::system::joint::work::JointWork;
 use crate::system::radau::SystemMotion;
+use crate::system::radau::past::Past;
 use crate::system::stage::vector;
 
 /// A motion in a checkpoint.
@@ -21,6 +22,7 @@ pub(super) struct SavedMotion {
     bodies: Vec<State>,
     last: Vec<Vec<f64>>,
     last_length: f64,
+    past: Past,
     multipliers: Vec<Vec<f64>>,
     joints: Vec<(JointCoordinates, JointWork)>,
     elements: Vec<JointWork>,
@@ -56,6 +58,7 @@ impl SystemMotion {
             bodies: self.bodies.clone(),
             last: self.last.concat(),
             last_length: self.last_length,
+            past: self.past.clone(),
             multipliers: self.multipliers.to_vec(),
             joints: self.start.joints.iter().copied().zip(self.joint_works.iter().copied()).collect(),
             elements: self.element_works.clone(),
@@ -70,8 +73,19 @@ impl SystemMotion {
     /// # Errors
     /// [`CheckpointError`] for lists of other lengths, and numbers that are not finite.
     pub(super) fn take_up(&mut self, saved: SavedMotion) -> Result<(), CheckpointError> {
-        let SavedMotion { time, bodies, last, last_length, multipliers, joints, elements, held, sums, evaluations } =
-            saved;
+        let SavedMotion {
+            time,
+            bodies,
+            last,
+            last_length,
+            past,
+            multipliers,
+            joints,
+            elements,
+            held,
+            sums,
+            evaluations,
+        } = saved;
         let lists = [bodies.len(), last.len(), multipliers.len()];
         expect("the number of bodies", lists == [self.bodies.len(), 2 * STAGES, STAGES])?;
         for ((body, state), own) in self.system.bodies.iter().zip(&bodies).zip(&self.bodies) {
@@ -90,6 +104,8 @@ impl SystemMotion {
         finite("a spring or a bushing", elements.iter().flat_map(JointWork::list))?;
         finite("the motion", last.iter().chain(&multipliers).flatten().chain(&sums).chain([&time, &last_length]))?;
         counts(&[evaluations])?;
+        past.check(&self.past)?;
+        self.past = past;
         (self.time, self.bodies, self.last_length, self.evaluations) = (time, bodies, last_length, evaluations);
         for (own, saved) in
             self.last.iter_mut().flatten().chain(&mut self.multipliers).zip(last.iter().chain(&multipliers))

@@ -29,10 +29,11 @@ use crate::simulation::longest_step::LongestStep;
 use crate::simulation::plan::{EqualSteps, Plan, Rows, Segment, StepControl};
 use crate::simulation::stats::Stats;
 use crate::system::joint::observation::JointObservation;
-use crate::system::radau::{EXACTNESS, SystemMotion};
+use crate::system::radau::SystemMotion;
 use crate::system::simulation::last_step::{EXACT, LastStep, of_step};
 use crate::system::simulation::observation::SystemObservation;
 use crate::system::simulation::setup::{Assembled, ShapeLimit, SystemSetup, assemble, size};
+use crate::tolerance::ErrorMeasure;
 
 /// First step that is tried under step control, as a part of the run.
 const FIRST: f64 = 1e-3;
@@ -51,6 +52,8 @@ pub struct SystemSimulation {
     plan: Plan,
     walk: Walk,
     control: StepControl,
+    /// Under step control.
+    measure: Option<ErrorMeasure>,
     rows: Rows,
     end: f64,
     steps_since_row: u64,
@@ -114,7 +117,6 @@ impl SystemSimulation {
         let shape_limit = setup.shape_limit();
         let SystemSetup { system, states, relaxed, scheme, control, end, rows, points } = setup;
         let mut motion = SystemMotion::new(system, &states)?.with_scheme(scheme);
-        motion.span = end;
         let size = size(motion.system(), &states);
         let assembled = assemble(&mut motion, &states, relaxed, [size, end])?;
         let is_implied = motion.implied_rows();
@@ -137,6 +139,10 @@ impl SystemSimulation {
             looked_at: SystemObservation::new(system, &points),
             observers: Observers::NONE,
             last_step: is_within.then(|| Box::new(LastStep::new(&motion, &points))),
+            measure: match control {
+                StepControl::Fixed(_) => None,
+                StepControl::Tolerance(tolerance) => Some(SystemMotion::measure(tolerance, end - motion.time())),
+            },
             motion,
             control,
             rows,
@@ -218,7 +224,8 @@ impl SystemSimulation {
 
     /// Cost of the run so far.
     pub fn stats(&self) -> Stats {
-        Stats { evaluations: self.motion.evaluations(), ..self.stats }
+        let error = self.measure.as_ref().map(ErrorMeasure::stated);
+        Stats { evaluations: self.motion.evaluations(), error, ..self.stats }
     }
 
     /// Room for the motion of a body.
@@ -396,12 +403,9 @@ impl SystemSimulation {
         Ok(())
     }
 
-    /// Error that Newton's method may leave.
+    /// Error that Newton's method may leave in steps that go again to a time within one.
     fn exactness(&self) -> f64 {
-        match self.control {
-            StepControl::Fixed(_) => EXACT,
-            StepControl::Tolerance(tolerance) => EXACTNESS * tolerance,
-        }
+        self.measure.as_ref().map_or(EXACT, |measure| measure.exactness(self.stats.shortest.min(measure.span)))
     }
 
     /// Number of the first row at an interval after a time.
@@ -568,29 +572,25 @@ impl SystemSimulation {
 
     /// Tries a step. Returns its length where it was taken.
     fn try_step(&mut self, segment: &Segment) -> Result<Option<f64>, StepError> {
-        match self.control {
-            StepControl::Fixed(_) => {
-                let Some((h, end)) = self.walk.equal.next_step() else { return Ok(None) };
-                let time = self.motion.time();
-                let tried = self.motion.try_step(h, end, EXACT, f64::INFINITY);
-                tried.map(|_| Some(h)).map_err(|failed| self.reason_or(of_step(failed, time, h)))
-            }
-            StepControl::Tolerance(tolerance) => {
-                let mut h = self.walk.next.min(self.walk.longest);
-                let taken = self.motion.try_towards(segment.end, tolerance, &mut h);
-                let taken = taken.map_err(|error| self.reason_or(error))?;
-                // What only the segment made short says nothing about the next one.
-                if taken.is_none() || h < self.walk.next {
-                    self.walk.next = h;
-                } else {
-                    self.walk.next = self.walk.next.max(h);
-                }
-                if taken.is_none() {
-                    self.stats.rejected += 1;
-                }
-                Ok(taken)
-            }
+        let Some(measure) = &mut self.measure else {
+            let Some((h, end)) = self.walk.equal.next_step() else { return Ok(None) };
+            let time = self.motion.time();
+            let tried = self.motion.try_step(h, end, EXACT, f64::INFINITY);
+            return tried.map(|_| Some(h)).map_err(|failed| self.reason_or(of_step(failed, time, h)));
+        };
+        let mut h = self.walk.next.min(self.walk.longest);
+        let taken = self.motion.try_towards(segment.end, measure, &mut h);
+        let taken = taken.map_err(|error| self.reason_or(error))?;
+        // What only the segment made short says nothing about the next one.
+        if taken.is_none() || h < self.walk.next {
+            self.walk.next = h;
+        } else {
+            self.walk.next = self.walk.next.max(h);
         }
+        if taken.is_none() {
+            self.stats.rejected += 1;
+        }
+        Ok(taken)
     }
 
     /// The reason of a step that could not be done where it is found: joints that lock where the motion is, or stops that a fixed step goes

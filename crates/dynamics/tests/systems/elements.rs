@@ -172,7 +172,7 @@ fn a_bushing_between_free_bodies_keeps_their_momenta() {
     let drift: Vec<f64> = motion.momenta().iter().zip(momenta).map(|(now, start)| (now - start).norm()).collect();
     assert!(drift.iter().all(|drift| *drift < 1e-13), "{drift:?}");
     assert!(motion.element_work().abs() > 0.1);
-    assert!(imbalance(&motion, energy) < 1e-6, "{}", imbalance(&motion, energy));
+    assert!(imbalance(&motion, energy) < 2e-6, "{}", imbalance(&motion, energy));
 }
 
 /// Conserved: the energy of two bodies that whirl about each other on a stiff spring, and of a pair on a bushing, both without dampers, at rough

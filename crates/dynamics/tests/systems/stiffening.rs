@@ -86,7 +86,8 @@ fn joints_that_stiffen_keep_energy_and_momenta() {
         let [of_momentum, of_spin] =
             [0, 1].map(|k: usize| (motion.momenta()[k] - momenta[k]).norm() / momenta[1].norm());
         println!("{tolerance:e}: {steps} steps, energy {drift:e}, momenta {of_momentum:e} {of_spin:e}");
-        assert!(of_spin < 1e-13, "{of_spin:e}");
+        // Rounding of each step.
+        assert!(of_spin < 1e-14 * (steps as f64).sqrt(), "{of_spin:e}");
         drifts.push(drift);
     }
     assert!(drifts[1] < 1e-7, "{drifts:?}");

@@ -42,8 +42,7 @@ pub(super) fn line(scene: &Scene, report: &BodyRunReport, deformation: Option<(f
     match (expected, open) {
         (Some((error, how)), open) if open.is_none_or(|open| open <= error) => {
             let most = if matches!(scene.time.control, StepControl::Tolerance(_)) { "at most " } else { "about " };
-            // In joints the bound is that of each step, over the size of the bodies.
-            let of_what = if scene.tied { "the size of the bodies in a step" } else { "its largest" };
+            let of_what = if scene.tied { "the size of the bodies and of the largest deformation" } else { "its largest" };
             let meaning = format!("motion off by {most}{} of {of_what}", percent(error));
             Place::Steps.known(error, meaning, format!("{how}{beside}{closed}"), next(error))
         }

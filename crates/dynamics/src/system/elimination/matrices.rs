@@ -22,6 +22,8 @@ pub(in crate::system) struct Matrices {
     pub of_mass: JointMatrix<f64>,
     pub real: NewtonMatrix<f64>,
     pub complex: NewtonMatrix<Complex<f64>>,
+    /// As if a step were a part of the run: what springs and shapes hold does not drift.
+    pub drift: NewtonMatrix<f64>,
 }
 
 /// The Newton matrix of one κ.
@@ -45,6 +47,7 @@ impl Matrices {
             of_mass: JointMatrix::new(&patterns.rows, coordinates),
             real: NewtonMatrix::new(system, patterns),
             complex: NewtonMatrix::new(system, patterns),
+            drift: NewtonMatrix::new(system, patterns),
         }
     }
 
@@ -70,6 +73,12 @@ impl Matrices {
         compliant.for_each(|(is_left_out, row)| *is_left_out = row.is_slack());
         let Self { compliant, is_left_out, real, .. } = self;
         real.factor(kappa, system, patterns, stage, compliant, is_left_out)
+    }
+
+    /// Factor of the Newton matrix for what drifts where a stage is, after that of a step.
+    pub fn factor_drift(&mut self, system: &System, patterns: &Patterns, stage: &Stage, kappa: f64) -> bool {
+        let Self { compliant, is_left_out, drift, .. } = self;
+        drift.factor(kappa, system, patterns, stage, compliant, is_left_out)
     }
 
     /// Energy that a small motion of the bodies, in their axes, puts into the compliant rows.

@@ -2,11 +2,15 @@
 //!
 //! Eqs. (J18) of `docs/method/systems.md`.
 
-use crate::matrix::lists::larger;
-use crate::system::elimination::newton::sizes;
+use crate::system::elimination::newton::Solution;
+use crate::system::radau::bound::Bound;
 use crate::system::radau::stage_rates::StageRates;
 use crate::system::radau::{Failed, SystemMotion, Tried};
 use crate::system::reactions::Index1;
+use crate::tolerance::ErrorKinds;
+
+/// Error of the scheme over that of the embedded formula to this power, of an oscillation whose amplitude is a hundredth of the size.
+const OF_EMBEDDED: [f64; 2] = [4.0, 1.25];
 
 /// Where in the step a stage is.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +36,7 @@ impl SystemMotion {
         &mut self,
         h: f64,
         times: [f64; 2],
-        tolerance: f64,
+        bound: &Bound,
         over_kinks: bool,
     ) -> Result<Tried, Failed> {
         let [end, branch_time] = times;
@@ -40,23 +44,30 @@ impl SystemMotion {
         for place in PLACES {
             self.next_rates(h, branch_time, place)?;
         }
-        let error = self.explicit_error(h, times)?;
+        self.explicit_error(h, times)?;
         let energy = self.largest_energy;
         self.raise_energies(h);
-        let error = larger(error, self.energy_error_in_run(h));
+        let embedded = self.errors_of_places([h, bound.span], self.largest_moving);
+        let [factor, power] = OF_EMBEDDED;
+        let of_scheme = embedded.with(&embedded, |error, _| {
+            let of_scheme = factor * error.powf(power);
+            if of_scheme <= error { of_scheme } else { error }
+        });
+        let errors = ErrorKinds { energy: self.energy_error(h), ..of_scheme };
         let kink = if over_kinks { None } else { self.length_to_kink(h) };
-        if error <= tolerance && kink.is_none() {
+        if bound.ratio(&errors) <= 1.0 && kink.is_none() {
             self.last_length = h;
+            self.keep_past();
             let weights = self.scheme.weights.map(|weight| h * weight);
             self.land([end, branch_time], h, weights)?;
         } else {
             // That of a step that is too long says nothing about a shorter one.
             self.largest_energy = energy;
         }
-        if error.is_nan() {
+        if errors.largest().is_nan() {
             return Err(Failed::Newton);
         }
-        Ok(Tried { error, passes: 1, kink })
+        Ok(Tried { errors, forgotten: 0.0, has_order_of_scheme: true, passes: 1, kink })
     }
 
     /// Rates at the start of the step.
@@ -126,7 +137,7 @@ impl SystemMotion {
 
     /// Takes the last stage to the end of the step, and finds the error of the step: what a formula of order three with the velocities there
     /// would have instead of those of the fourth stage.
-    fn explicit_error(&mut self, h: f64, times: [f64; 2]) -> Result<f64, Failed> {
+    fn explicit_error(&mut self, h: f64, times: [f64; 2]) -> Result<(), Failed> {
         let Self { stages: [.., stage], system, start, scheme, velocity_multipliers, last, room, evaluations, .. } =
             self;
         for (which, list) in [&mut stage.x, &mut stage.y].into_iter().enumerate() {
@@ -137,13 +148,13 @@ impl SystemMotion {
         stage.evaluate(system, start, times)?;
         stage.find_x_rates(system, &velocity_multipliers[0])?;
         *evaluations += 1;
-        let [x, y] = &mut room.change;
+        let Solution { x, y, .. } = &mut room.real;
         for (k, x) in x.iter_mut().enumerate() {
             *x = (last[2][0][k] - h * stage.x_rates[k]) / 6.0;
         }
         y.fill(0.0);
         stage.to_body_axes(system, x, y);
-        Ok(sizes(system, x, h)[0])
+        Ok(())
     }
 }
 

@@ -7,9 +7,6 @@ use crate::system::marker::Marker;
 use crate::system::radau::SystemMotion;
 use crate::system::radau::law_work::{LawWork, Path};
 
-/// The least part of a run for which the error of a step by the energy of laws counts.
-const LEAST_PART: f64 = 1e-3;
-
 impl SystemMotion {
     /// The path of a step by collocation whose stages are known, or of an explicit one, and room for the works of laws along it.
     fn path(&mut self, h: f64) -> (Path<'_>, &mut LawWork) {
@@ -41,11 +38,6 @@ impl SystemMotion {
         let Self { stages: [.., last], system, .. } = self;
         let [moving, _] = last.energies(system, h);
         0.5 * made / self.energy_scale().max(moving).max(exchanged)
-    }
-
-    /// The same over the part of the run that the step is.
-    pub(super) fn energy_error_in_run(&mut self, h: f64) -> f64 {
-        self.energy_error(h) / (h / self.span).max(LEAST_PART)
     }
 
     /// Length of the step to the first kink of a law within it; none without.

@@ -1,4 +1,4 @@
-//! Newton's method for the stages of a step, and the error of the step.
+//! Newton's method for the stages of a step.
 
 use nalgebra::Complex;
 
@@ -8,6 +8,7 @@ use crate::system::collocation::STAGES;
 use crate::system::constraints::Compliant;
 use crate::system::elimination::newton::{Frozen, sizes};
 use crate::system::joint::force::FrictionSlope;
+use crate::system::radau::bound::Bound;
 use crate::system::radau::{Failed, Room, SystemMotion};
 use crate::system::stage::Stage;
 
@@ -73,7 +74,8 @@ impl SystemMotion {
     }
 
     /// Newton's method for the stages. Returns the number of passes.
-    pub(super) fn newton(&mut self, h: f64, exactness: f64, by: FrictionSlope) -> Result<usize, Failed> {
+    pub(super) fn newton(&mut self, h: f64, bound: &Bound, by: FrictionSlope) -> Result<usize, Failed> {
+        let Bound { exactness, enough, .. } = *bound;
         // With compliant rows the first changes fall faster than the later ones, which turn the axes of stiff forces.
         let slowest = if self.system.connections.is_rigid() { 0.0 } else { STIFF_RATE };
         let (mut last, mut since) = (f64::INFINITY, 0);
@@ -81,7 +83,7 @@ impl SystemMotion {
             self.evaluate_stages(h)?;
             self.find_energy(h);
             since = if self.factor(h, pass == 1, by)? { 1 } else { since + 1 };
-            let [position, change] = self.improve(h);
+            let [position, change] = self.improve(h, bound.span.is_finite());
             if !change.is_finite() {
                 // The next try begins with them.
                 self.multipliers.iter_mut().chain(&mut self.velocity_multipliers).for_each(|of| of.fill(0.0));
@@ -92,7 +94,8 @@ impl SystemMotion {
                 return Ok(pass);
             }
             if rate > 2.0 || (rate > 0.9 && since > 3 && change > ROUNDING) {
-                return Err(Failed::Newton);
+                // Where rows nearly imply each other rounding comes early.
+                return if change.max(last) <= enough { Ok(pass) } else { Err(Failed::Newton) };
             }
             last = change;
             // The error that is left, by the rate of convergence.
@@ -101,7 +104,7 @@ impl SystemMotion {
                 return Ok(pass);
             }
         }
-        Err(Failed::Newton)
+        if last <= enough { Ok(MAX_PASSES) } else { Err(Failed::Newton) }
     }
 
     /// Takes the energy at the start of a step of length `h` into account.
@@ -134,8 +137,9 @@ impl SystemMotion {
         Ok(())
     }
 
-    /// One pass. Returns the size of the change of positions, and that with its energy.
-    fn improve(&mut self, h: f64) -> [f64; 2] {
+    /// One pass. Returns the size of the change of positions, and that with its energy and, where the errors of steps are measured, with
+    /// the change of deformation.
+    fn improve(&mut self, h: f64, is_measured: bool) -> [f64; 2] {
         let Self {
             stages,
             scheme,
@@ -146,6 +150,8 @@ impl SystemMotion {
             multipliers,
             velocity_multipliers,
             largest_energy,
+            past,
+            largest_moving,
             ..
         } = self;
         let Room { real, complex, y_rates, change: residuals, .. } = room;
@@ -206,7 +212,9 @@ impl SystemMotion {
             } else {
                 (energy / *largest_energy).sqrt()
             };
-            largest = larger(larger(largest, position), of_energy);
+            // Where energies are large and stiff bodies hardly bend, the norm of the energy does not see what they bend by.
+            let of_deformation = if is_measured { past.relative_deformation(system, dx, *largest_moving) } else { 0.0 };
+            largest = larger(larger(largest, larger(position, of_deformation)), of_energy);
             stages[i].add_in_body_axes(system, dx, dy);
             for row in 0..multipliers[i].len() {
                 multipliers[i][row] += change(real.lambda[row], complex.lambda[row]);
@@ -216,28 +224,7 @@ impl SystemMotion {
         [moved, largest]
     }
 
-    /// The estimated error of a step whose stages are known.
-    pub(super) fn error(&mut self, h: f64) -> f64 {
-        let Self { stages, scheme, system, room, matrices, patterns, first, .. } = self;
-        let real = &mut room.real;
-        for k in 0..system.coordinates() {
-            let mut difference = [first.x_rates[k], first.y_rates[k]];
-            for i in 0..STAGES {
-                let rate = (0..STAGES).map(|j| scheme.inverse[(i, j)] * stages[j].x[k]).sum::<f64>() / h;
-                difference[0] -= scheme.at_start[i] * rate;
-                difference[1] -= scheme.at_start[i] * stages[i].y_rates[k];
-            }
-            [real.x[k], real.y[k]] = difference;
-        }
-        stages[1].to_body_axes(system, &mut real.x, &mut real.y);
-        real.lambda.fill(0.0);
-        real.mu.fill(0.0);
-        let frozen = Frozen { system, stage: &stages[1], patterns, matrices };
-        frozen.solve(real, &matrices.real);
-        sizes(system, &real.x, h)[0]
-    }
-
-    /// Keeps the bend of the step, after [`Self::error`], which has found it: what is stiff has none.
+    /// Keeps the bend of the step, after [`Self::errors`], which has found it: what is stiff has none.
     pub(super) fn find_bend(&mut self) {
         let Self { stages, system, room, scheme, bend: [x, y], .. } = self;
         for (bend, change) in [(&mut *x, &room.real.x), (&mut *y, &room.real.y)] {

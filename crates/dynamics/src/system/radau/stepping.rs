@@ -2,55 +2,78 @@
 
 use crate::conservative::part;
 use crate::error::{RateError, StepError};
+use crate::system::radau::bound::Bound;
 use crate::system::radau::{Failed, SystemMotion, Tried};
+use crate::tolerance::ErrorMeasure;
 
-/// Error of Newton's method over the tolerance: of positions relative to the bodies, and in the norm of the energy. Ten times as
-/// much costs a fifth less work, but the multipliers of stiff bodies, and the work of drives, are then off by per cents.
-pub(in crate::system) const EXACTNESS: f64 = 1e-3;
+/// Error of a step that is rounding.
+const ROUNDING: f64 = 1e-13;
+/// The most that a step may grow by: the estimate of two steps is a bad one where the second is much longer. Before there is one, it may
+/// grow by more.
+const GROWTH: f64 = 1.6;
+const FIRST_GROWTH: f64 = 4.0;
+/// After a step that has forgotten vibration, the next may be longer by this.
+const FORGETTING_GROWTH: f64 = 1.25;
 
 /// Tries of a step to end at a kink of a law, before it goes over one.
 const KINK_TRIES: usize = 3;
 
 impl SystemMotion {
-    /// Goes to `end` with steps whose estimated error is at most `tolerance`; `h` is the first try, and the next one after.
+    /// Goes to `end` with steps whose estimated errors sum to at most `tolerance`; `h` is the first try, and the next one after.
     /// Returns the number of steps. Where a load or a drive jumps, end a call there.
     ///
     /// # Errors
     /// [`StepError`] where no step is short enough.
     pub fn advance(&mut self, end: f64, tolerance: f64, h: &mut f64) -> Result<u64, StepError> {
+        let mut measure = Self::measure(tolerance, end - self.time);
         let mut steps = 0;
         while self.time < end {
-            steps += u64::from(self.try_towards(end, tolerance, h)?.is_some());
+            steps += u64::from(self.try_towards(end, &mut measure, h)?.is_some());
         }
         Ok(steps)
     }
 
-    /// Tries one step towards `end` with an estimated error of at most `tolerance`, about as long as `h`, which becomes the
-    /// length of the next try. Returns the length of the step where it was taken.
+    /// Measures the errors of the steps of a run of a span.
+    pub(in crate::system) fn measure(tolerance: f64, span: f64) -> ErrorMeasure {
+        ErrorMeasure::new(tolerance, span, ROUNDING)
+    }
+
+    /// Tries one step towards `end` whose estimated error is at most its share of the tolerance, about as long as `h`, which becomes
+    /// the length of the next try. Returns the length of the step where it was taken.
     ///
     /// # Errors
     /// [`StepError`] where no step is short enough.
     pub(in crate::system) fn try_towards(
         &mut self,
         end: f64,
-        tolerance: f64,
+        measure: &mut ErrorMeasure,
         h: &mut f64,
     ) -> Result<Option<f64>, StepError> {
-        let left = end - self.time;
+        let (start, left) = (self.time, end - self.time);
         let parts = (left / *h).ceil().max(1.0);
         let length = if *h * 1.01 >= left { left } else { left / parts };
         let to = if length == left { end } else { self.time + length };
+        let growth = if self.past.steps < 2 { FIRST_GROWTH } else { GROWTH };
         let (mut length, mut to, mut taken, mut is_cut) = (length, to, None, false);
-        let mut tried = self.try_step(length, to, EXACTNESS * tolerance, tolerance);
+        let mut bound = Bound::of(measure, length);
+        let mut tried = self.try_step_of(length, to, &bound, false);
         for cut in 1..=KINK_TRIES {
             let Ok(Tried { kink: Some(before), .. }) = tried else { break };
             (length, to, is_cut) = (before, self.time + before, true);
-            tried = self.try_step_over_kinks(length, to, [EXACTNESS * tolerance, tolerance], cut == KINK_TRIES);
+            bound = Bound::of(measure, length);
+            tried = self.try_step_of(length, to, &bound, cut == KINK_TRIES);
         }
         match tried {
-            Ok(Tried { error, passes, .. }) => {
-                let mut factor = (0.9 * (tolerance / error.max(1e-300)).powf(0.25)).clamp(0.2, 4.0);
-                if error <= tolerance {
+            Ok(Tried { errors, forgotten, has_order_of_scheme, passes, .. }) => {
+                let ratio = bound.ratio(&errors);
+                // What is allowed falls with the step as well.
+                let power = if has_order_of_scheme { 1.0 / 5.0 } else { 1.0 / 3.0 };
+                let mut factor = (0.9 * ratio.max(1e-300).powf(-power)).clamp(0.2, growth);
+                if ratio <= 1.0 {
+                    measure.taken(to, &errors, forgotten);
+                    if forgotten > 0.0 {
+                        factor = FORGETTING_GROWTH;
+                    }
                     taken = Some(length);
                     if is_cut {
                         // Beyond the kink the polynomials do not go on.
@@ -64,6 +87,7 @@ impl SystemMotion {
                     // A last step that was cut short says little of the next.
                     *h = if factor >= 1.0 { h.max(length * factor) } else { length * factor };
                 } else {
+                    measure.refused(start, to);
                     *h = length * factor.min(0.9);
                 }
             }
@@ -72,7 +96,7 @@ impl SystemMotion {
             Err(Failed::Rates(_)) => *h = 0.25 * length,
         }
         if *h < 1e-13 * end {
-            return Err(StepError::Tolerance { time: self.time, step: *h, tolerance });
+            return Err(StepError::Tolerance { time: self.time, step: *h, tolerance: measure.tolerance });
         }
         Ok(taken)
     }
@@ -83,7 +107,7 @@ impl SystemMotion {
     /// # Errors
     /// [`RateError`] where the inertia of a body is singular.
     pub(in crate::system) fn pass_discontinuity(&mut self) -> Result<(), RateError> {
-        self.last_length = 0.0;
+        self.forget_last_step();
         if self.system.connections.joints.iter().all(|joint| joint.drive.is_none()) {
             return Ok(());
         }

@@ -16,6 +16,7 @@ impl SystemMotion {
         self.bodies.iter_mut().zip(&other.bodies).for_each(|(own, other)| own.copy_from(other));
         let lists = |of: &Self| -> [f64; 4] { [of.last_length, of.largest_energy, of.largest_moving, of.jump_work] };
         [self.last_length, self.largest_energy, self.largest_moving, self.jump_work] = lists(other);
+        self.past.copy_from(&other.past);
         for (own, other) in self.last.iter_mut().flatten().zip(other.last.iter().flatten()) {
             own.copy_from_slice(other);
         }
@@ -30,11 +31,6 @@ impl SystemMotion {
         self.joint_works.copy_from_slice(&other.joint_works);
         self.element_works.copy_from_slice(&other.element_works);
         self.held.copy_from_slice(&other.held);
-    }
-
-    /// The next step begins without the polynomials of the last.
-    pub(in crate::system) fn forget_last_step(&mut self) {
-        self.last_length = 0.0;
     }
 
     /// Takes other states of the bodies, at the time of the first. Works and impulses are counted from there; full turns of joints go
@@ -53,7 +49,8 @@ impl SystemMotion {
         self.joint_works.fill(JointWork::default());
         self.element_works.fill(JointWork::default());
         self.held.fill([0.0; 2]);
-        [self.jump_work, self.last_length] = [0.0; 2];
+        self.jump_work = 0.0;
+        self.forget_last_step();
         Ok(())
     }
 

@@ -4,13 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::simulation::account::EnergyAccount;
 use crate::simulation::checkpoint::{CheckpointError, counts, decode, encode, expect, finite};
-use crate::simulation::checkpoint::{fixed_room, from_words, to_words};
+use crate::simulation::checkpoint::{equal_room, fixed_room, from_words, to_words};
 use crate::simulation::plan::Progress;
 use crate::simulation::stats::Stats;
 use crate::system::collocation::STAGES;
 use crate::system::radau::stage_rates::StageRates;
 use crate::system::saved::SavedMotion;
 use crate::system::simulation::{Due, SystemSimulation, Walk};
+use crate::tolerance::ErrorMeasure;
 
 #[derive(Serialize, Deserialize)]
 struct Saved {
@@ -23,6 +24,8 @@ struct Saved {
     account: EnergyAccount,
     exchanged: Vec<f64>,
     stats: Stats,
+    #[serde(with = "equal_room")]
+    measure: Option<ErrorMeasure>,
     last_step: Option<SavedStep>,
 }
 
@@ -56,6 +59,7 @@ impl SystemSimulation {
             account: self.account,
             exchanged: self.exchanged.clone(),
             stats: self.stats,
+            measure: self.measure,
             last_step,
         })?)?))
     }
@@ -68,9 +72,13 @@ impl SystemSimulation {
     pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, CheckpointError> {
         let saved: Vec<u8> = from_words(checkpoint)?;
         let saved: Saved = decode(&saved)?;
-        let Saved { motion, plan, walk, steps_since_row, due, account, exchanged, stats, last_step } = saved;
+        let Saved { motion, plan, walk, steps_since_row, due, account, exchanged, stats, measure, last_step } = saved;
         counts(&[steps_since_row, due.rows])?;
         stats.check()?;
+        match (&self.measure, &measure) {
+            (Some(own), Some(saved)) => own.check_saved(saved)?,
+            (own, saved) => expect("the kind of step control", own.is_none() && saved.is_none())?,
+        }
         expect("the number of bodies", exchanged.len() == self.exchanged.len())?;
         finite("the energy exchanged", exchanged.iter())?;
         walk.equal.check()?;
@@ -79,7 +87,7 @@ impl SystemSimulation {
         self.motion.take_up(motion)?;
         self.plan.set_progress(&plan)?;
         (self.walk, self.account, self.exchanged, self.stats) = (walk, account, exchanged, stats);
-        (self.due, self.steps_since_row) = (due, steps_since_row);
+        (self.due, self.steps_since_row, self.measure) = (due, steps_since_row, measure);
         self.events.forget();
         self.pending_event = None;
         expect("the last step", last_step.is_some() == self.last_step.is_some())?;

@@ -31,7 +31,7 @@ pub struct SystemSetup {
     pub relaxed: bool,
     /// How it is stepped.
     pub scheme: SystemScheme,
-    /// How long the steps are. A tolerance is that of each step, relative to the size of the bodies.
+    /// How long the steps are. A tolerance bounds the sum of the errors of all steps, as it does of a body alone.
     pub control: StepControl,
     /// When it ends.
     pub end: f64,

@@ -30,10 +30,10 @@ pub(crate) struct Allowance {
 }
 
 impl Allowance {
-    /// The error that is allowed to a step that is this `part` of the run.
-    pub(crate) fn of_step(&self, tolerance: f64, part: f64) -> f64 {
+    /// The error that is allowed to a step that is this `part` of the run, where steps err by `rounding` at least.
+    pub(crate) fn of_step(&self, tolerance: f64, part: f64, rounding: f64) -> f64 {
         // Where the share is below rounding, a shorter step would be no better.
-        let share = (tolerance * part).max(f64::EPSILON);
+        let share = (tolerance * part).max(rounding);
         if self.rejected < TRIES_AT_JUMP {
             return share;
         }
@@ -76,14 +76,14 @@ mod tests {
     fn a_step_across_a_jump_may_take_a_part_of_the_tolerance_after_some_tries() {
         let (mut allowance, tolerance) = (Allowance::default(), 1e-6);
         for end in [0.8, 0.6, 0.5, 0.4, 0.35, 0.32] {
-            assert_eq!(allowance.of_step(tolerance, 1e-3), 1e-9);
+            assert_eq!(allowance.of_step(tolerance, 1e-3, f64::EPSILON), 1e-9);
             allowance.reject(0.2, end);
             // What is taken before the jump is no way across it.
             allowance.accept(0.25);
         }
-        let part = allowance.of_step(tolerance, 1e-3);
+        let part = allowance.of_step(tolerance, 1e-3, f64::EPSILON);
         assert_eq!(part, tolerance / 64.0);
         allowance.accept(0.8);
-        assert_eq!(allowance.of_step(tolerance, 1e-3), 1e-9);
+        assert_eq!(allowance.of_step(tolerance, 1e-3, f64::EPSILON), 1e-9);
     }
 }
