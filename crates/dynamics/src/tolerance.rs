@@ -14,7 +14,8 @@ use crate::tolerance::allowance::Allowance;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ErrorKinds {
-    /// Place over the size of the largest body, and attitude, rad: the largest of all bodies. Of a body alone, all that it counts.
+    /// Place over the size of the largest body, and attitude, rad: the largest of all bodies; what neither springs nor shapes hold back, four
+    /// times, since the motion carries it on. Of a body alone, all that it counts.
     pub place: f64,
     /// Deformation over its largest so far, both as root mean squares over the mass: the largest of all bodies.
     pub deformation: f64,
@@ -85,12 +86,21 @@ pub(crate) struct ErrorMeasure {
     rounding: f64,
     allowance: Allowance,
     stated: StatedError,
+    /// True if the last try was not taken.
+    pub is_refused: bool,
 }
 
 impl ErrorMeasure {
     /// Bounds the sum by `tolerance` in a run of this `span`, whose steps err by `rounding` at least.
     pub fn new(tolerance: f64, span: f64, rounding: f64) -> Self {
-        Self { tolerance, span, rounding, allowance: Allowance::default(), stated: StatedError::default() }
+        Self {
+            tolerance,
+            span,
+            rounding,
+            allowance: Allowance::default(),
+            stated: StatedError::default(),
+            is_refused: false,
+        }
     }
 
     /// Error that is allowed to a step of length `h`.
@@ -110,6 +120,7 @@ impl ErrorMeasure {
 
     /// A step to `end` was taken, which has forgotten some vibration beside its errors.
     pub fn taken(&mut self, end: f64, errors: &ErrorKinds, forgotten: f64) {
+        self.is_refused = false;
         self.stated.forgotten += forgotten;
         self.allowance.accept(end);
         self.stated.sum += errors.largest();
@@ -118,6 +129,7 @@ impl ErrorMeasure {
 
     /// A step from `start` to `end` was not taken.
     pub fn refused(&mut self, start: f64, end: f64) {
+        self.is_refused = true;
         self.allowance.reject(start, end);
     }
 

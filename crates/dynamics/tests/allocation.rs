@@ -116,7 +116,7 @@ fn steps_of_a_system_with_joints_allocate_nothing() {
     };
     let mut at_start = SystemMotion::new(system, &[start(100.0), start(190.0)]).unwrap();
     at_start.assemble().unwrap();
-    for (scheme, end) in [(SystemScheme::Radau, 1.0), (SystemScheme::Rkmk4, 1e-2)] {
+    for (scheme, end) in [(SystemScheme::Radau, 2e-2), (SystemScheme::Rkmk4, 1e-2)] {
         let mut motion = at_start.clone().with_scheme(scheme);
         let mut h = 1e-5;
         motion.advance(1e-3, 1e-8, &mut h).unwrap();

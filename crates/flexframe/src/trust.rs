@@ -28,15 +28,9 @@ pub(crate) fn of_run(
 ) -> TrustCard {
     let name = |number: usize| reports.get(number).filter(|_| reports.len() > 1).map(|report| report.name.clone());
     let mut lines = Vec::new();
-    // Of bodies in joints alone: others have bounds of their own, and long tables need not be read for them.
-    let tied = system.bodies.iter().zip(reports).zip(models).enumerate().filter(|(_, ((scene, _), _))| scene.tied);
-    let deformations = tied.filter_map(|(number, ((_, report), model))| {
-        steps::largest_deformation(model, results, number).map(|size| (size, report.name.as_str()))
-    });
-    let least = deformations.min_by(|a, b| a.0.total_cmp(&b.0));
     for ((number, model), scene) in models.iter().enumerate().zip(&system.bodies) {
         let scene_file = scene.path.file_name().unwrap_or_default().to_string_lossy();
-        let of_steps = reports.get(number).map(|report| steps::line(scene, report, least, &scene_file));
+        let of_steps = reports.get(number).map(|report| steps::line(scene, report, &scene_file));
         lines.extend(of_steps.map(|line| line.of(name(number))));
         lines.push(mesh::line(model, results, number, &scene_file).of(name(number)));
         let of_body = check.map(|check| check.bodies.get(number));

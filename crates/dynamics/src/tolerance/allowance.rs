@@ -20,7 +20,7 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 /// Jumps met so far, and the place that is being tried.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct Allowance {
-    /// End of the first try in vain at a place.
+    /// End of the shortest try in vain at a place.
     place: f64,
     /// Tries in vain that began before it.
     #[serde(with = "postcard::fixint::le")]
@@ -58,6 +58,8 @@ impl Allowance {
         if start >= self.place {
             (self.place, self.rejected) = (end, 0);
         }
+        // Shorter tries say where the place is.
+        self.place = self.place.min(end);
         self.rejected += 1;
     }
 

@@ -16,4 +16,5 @@ mod rotor;
 mod run;
 mod stiff;
 mod stiffening;
+mod tolerance;
 mod vibrations;

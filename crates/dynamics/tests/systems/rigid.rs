@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::mechanism::{Link, Mechanism, angle};
 
-const GRAVITY: f64 = 9.81;
+pub const GRAVITY: f64 = 9.81;
 
 pub fn weight(mass: f64) -> SharedLoad {
     let body = ReducedBody::rigid(1.0, Vector3::zeros(), Matrix3::identity(), RigidMotion::free()).unwrap();
@@ -20,7 +20,7 @@ pub fn weight(mass: f64) -> SharedLoad {
 }
 
 /// A bar of 1 m and 1 kg, hung by its end at an angle from below.
-fn pendulum(amplitude: f64) -> SystemMotion {
+pub fn pendulum(amplitude: f64) -> SystemMotion {
     let mut mechanism = Mechanism::default();
     let center = [0.5 * amplitude.sin(), -0.5 * amplitude.cos()];
     let link = mechanism.link(Link {

@@ -44,7 +44,7 @@ impl Bound {
     /// Bounds of a step that is no part of a run.
     pub fn of_one_step(exactness: f64, allowed: f64) -> Self {
         let span = f64::INFINITY;
-        Self { exactness, enough: exactness, allowed, span, forgettable: 0.0, allowed_energy: allowed }
+        Self { exactness, enough: 0.0, allowed, span, forgettable: 0.0, allowed_energy: allowed }
     }
 
     /// Bounds of a step of length `h` in a run.

@@ -16,6 +16,8 @@ use crate::tolerance::ErrorKinds;
 
 /// A velocity counts by what it moves in the run: springs and shapes hold it back within this part of it.
 const HELD_WITHIN: f64 = 0.25;
+/// Errors of places that nothing holds back count so many times: the motion carries them on, and many a motion makes them larger.
+const CARRIED: f64 = 4.0;
 /// Times 1/(ζ_k ω_k) after which a mode has forgotten its errors.
 const FORGOTTEN: f64 = 3.0;
 /// Error of the order of the scheme, over that of the embedded formula to this power, of an oscillation whose amplitude is one.
@@ -30,12 +32,24 @@ impl SystemMotion {
     /// span, what nobody bounds is only looked at for NaN.
     pub(super) fn errors(&mut self, h: f64, span: f64) -> Estimate {
         let energy = self.energy_so_far();
-        let fine = (span.is_finite() && self.find_two_step(h)).then(|| {
+        let Self { stages, system, matrices, patterns, scheme, .. } = self;
+        let kappa = scheme.real / (HELD_WITHIN * span);
+        let is_in_run = span.is_finite();
+        let is_regular = !is_in_run || matrices.factor_drift(system, patterns, &stages[1], kappa);
+        let kinds = |motion: &mut Self| {
+            let errors = motion.errors_of_places([h, span], energy);
+            if !is_in_run {
+                return errors;
+            }
+            let [place, drift] = if is_regular { motion.lasting(kappa, energy) } else { [f64::NAN; 2] };
+            ErrorKinds { place: larger(errors.place, CARRIED * place), drift, ..errors }
+        };
+        let fine = (is_in_run && self.find_two_step(h)).then(|| {
             self.filter_twice();
-            ErrorKinds { drift: self.drift(span, energy), ..self.errors_of_places([h, span], energy) }
+            kinds(self)
         });
         self.find_embedded(h);
-        let embedded = ErrorKinds { drift: self.drift(span, energy), ..self.errors_of_places([h, span], energy) };
+        let embedded = kinds(self);
         let is_gauss = self.scheme.at_end.is_some();
         let errors = match &fine {
             Some(fine) => fine.with(&embedded, |fine, embedded| {
@@ -195,8 +209,7 @@ impl SystemMotion {
         let (mut place, mut deformed) = (0.0, 0.0);
         for (b, body) in system.bodies.iter().enumerate() {
             let own = system.first[b]..system.first[b + 1];
-            place = larger(place, vector(x, own.start).norm() / *size);
-            place = larger(place, vector(x, own.start + 3).norm());
+            place = larger(place, largest_place(&x[own.clone()], *size));
             let mut square = 0.0;
             for (k, q) in x[own.start + 6..own.end].iter().enumerate() {
                 let (omega, zeta) = (body.circular_frequencies[k], body.damping_ratios[k]);
@@ -213,28 +226,35 @@ impl SystemMotion {
         ErrorKinds { place, deformation: deformed, ..ErrorKinds::default() }
     }
 
-    /// The change of velocities by an estimate, less what springs and shapes hold back, over the largest speed so far.
-    fn drift(&mut self, span: f64, energy: f64) -> f64 {
-        if !span.is_finite() || energy == 0.0 {
-            return 0.0;
-        }
-        let Self { stages, system, room, matrices, patterns, scheme, .. } = self;
-        let kappa = scheme.real / (HELD_WITHIN * span);
-        if !matrices.factor_drift(system, patterns, &stages[1], kappa) {
-            return f64::NAN;
-        }
+    /// The parts of an estimate that springs and shapes do not hold back in a run, through the matrix of that κ: the largest change of
+    /// place; and the change of velocities, over the largest speed so far.
+    fn lasting(&mut self, kappa: f64, energy: f64) -> [f64; 2] {
+        let Self { stages, system, room, matrices, patterns, size, .. } = self;
         let Room { real, held, .. } = room;
+        let frozen = Frozen { system, stage: &stages[1], patterns, matrices };
+        held.clear();
+        held.x.copy_from_slice(&real.x);
+        frozen.solve(held, &matrices.drift);
+        let of_body = |body: usize| largest_place(&held.x[system.first[body]..], *size);
+        let place = kappa * (0..system.bodies.len()).map(of_body).fold(0.0, larger);
+        if energy == 0.0 {
+            return [place, 0.0];
+        }
         held.clear();
         held.y.copy_from_slice(&real.y);
-        let frozen = Frozen { system, stage: &stages[1], patterns, matrices };
         frozen.solve(held, &matrices.drift);
         let of_body = |(b, body): (usize, &ConservativeBody)| {
             let [velocity, spin] = [0, 3].map(|part| kappa * kappa * vector(&held.x, system.first[b] + part));
             body.mass() * velocity.norm_squared() + spin.dot(&(body.undeformed_inertia() * spin))
         };
         let square: f64 = system.bodies.iter().enumerate().map(of_body).sum();
-        (square / (2.0 * energy)).sqrt()
+        [place, (square / (2.0 * energy)).sqrt()]
     }
+}
+
+/// Place over the size of bodies, or attitude, of a body whose coordinates come first.
+fn largest_place(x: &[f64], size: f64) -> f64 {
+    larger(vector(x, 0).norm() / size, vector(x, 3).norm())
 }
 
 /// The deformation of a body, as root mean square over its mass, at the start of a step or after changes since.

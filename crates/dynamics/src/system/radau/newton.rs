@@ -18,6 +18,8 @@ const ROUNDING: f64 = 1e-13;
 const STILL: f64 = 1e-8;
 /// The rate of convergence that is counted on at most where forces are stiff.
 const STIFF_RATE: f64 = 0.1;
+/// Where rounding keeps Newton's method from the end, what velocities may be off by, over what places may.
+const OF_VELOCITIES: f64 = 1e3;
 /// Passes of Newton's method before a step is given up.
 const MAX_PASSES: usize = 20;
 
@@ -78,7 +80,7 @@ impl SystemMotion {
         let Bound { exactness, enough, .. } = *bound;
         // With compliant rows the first changes fall faster than the later ones, which turn the axes of stiff forces.
         let slowest = if self.system.connections.is_rigid() { 0.0 } else { STIFF_RATE };
-        let (mut last, mut since) = (f64::INFINITY, 0);
+        let ([mut last_position, mut last], mut since) = ([f64::INFINITY; 2], 0);
         for pass in 1..=MAX_PASSES {
             self.evaluate_stages(h)?;
             self.find_energy(h);
@@ -95,16 +97,17 @@ impl SystemMotion {
             }
             if rate > 2.0 || (rate > 0.9 && since > 3 && change > ROUNDING) {
                 // Where rows nearly imply each other rounding comes early.
-                return if change.max(last) <= enough { Ok(pass) } else { Err(Failed::Newton) };
+                let is_enough = position.max(last_position) <= enough && change.max(last) <= OF_VELOCITIES * enough;
+                return if is_enough { Ok(pass) } else { Err(Failed::Newton) };
             }
-            last = change;
+            (last_position, last) = (position, change);
             // The error that is left, by the rate of convergence.
             let left = change * rate.max(slowest) / (1.0 - rate.min(0.9));
             if left <= exactness || change <= ROUNDING {
                 return Ok(pass);
             }
         }
-        if last <= enough { Ok(MAX_PASSES) } else { Err(Failed::Newton) }
+        if last_position <= enough && last <= OF_VELOCITIES * enough { Ok(MAX_PASSES) } else { Err(Failed::Newton) }
     }
 
     /// Takes the energy at the start of a step of length `h` into account.

@@ -70,9 +70,14 @@ impl SystemMotion {
                 let power = if has_order_of_scheme { 1.0 / 5.0 } else { 1.0 / 3.0 };
                 let mut factor = (0.9 * ratio.max(1e-300).powf(-power)).clamp(0.2, growth);
                 if ratio <= 1.0 {
+                    let was_refused = measure.is_refused;
                     measure.taken(to, &errors, forgotten);
                     if forgotten > 0.0 {
                         factor = FORGETTING_GROWTH;
+                    }
+                    if was_refused {
+                        // What was too long is tried again after one more step.
+                        factor = factor.min(1.0);
                     }
                     taken = Some(length);
                     if is_cut {

@@ -48,9 +48,13 @@ pub struct BodyRunReport {
     pub right_unsummed: bool,
     /// True if the balance of energy tells of the motion: its steps resolve all modes, so that work and dissipation are summed closely.
     pub energy_tells: bool,
-    /// Expected error of fixed steps, relative to the largest motion; `None` under step control, and where it was not estimated.
+    /// Expected error of fixed steps, relative to the largest motion; under step control the sum of the estimates of all steps. `None` where
+    /// it was not estimated.
     #[serde(serialize_with = "json::optional")]
     pub step_error: Option<f64>,
+    /// Vibration that steps under control did not resolve and so damped, over the largest deformation of a body.
+    #[serde(serialize_with = "json::number")]
+    pub forgotten_vibration: f64,
     /// The effects of this body and whether each was computed; none of the paper's formulation, which has its own.
     #[serde(serialize_with = "json::object")]
     pub effects: Vec<(&'static str, bool)>,
