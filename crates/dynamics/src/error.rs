@@ -82,6 +82,11 @@ pub enum SetupError {
         "the joints cannot be closed at the beginning: \"{joint}\" stays open by {left:.3e} and its rate by {rate:.3e}; put its bodies so that its markers meet, give velocities that the joints allow, or remove a joint that contradicts the others"
     )]
     NotAssembled { joint: Box<str>, left: f64, rate: f64 },
+    /// Joints that no motion fits, though they are closed and their rates are.
+    #[error(
+        "the joints contradict each other at the beginning: {joints} are closed there, but their accelerations do not fit each other by {acceleration:.3e} (length per time²), so the mechanism cannot move as it has to; free a direction of one of them, let a drive or a gear go, or put a bushing in place of one of these joints"
+    )]
+    Contradiction { joints: Box<str>, acceleration: f64 },
     /// An equation of a joint from outside whose derivatives are not its own.
     #[error(
         "at the beginning {name} of the equation {equation} of the joint \"{joint}\" is {found}, and differences of its residual give {expected}; let `by_position` and `by_turn` be the derivatives of `residual`, in the axes of the first marker"
@@ -180,6 +185,11 @@ pub enum StepError {
         "at time {time}: the joints lock: {joints} hold each other, and no motion of the bodies satisfies them all; let the motion stop before it stretches its links there, put a spring or a bushing in place of one of these joints, or let a body bend"
     )]
     Locked { time: f64, joints: Box<str> },
+    /// Rows of joints that contradict each other. `gap`: the largest residual, as a length.
+    #[error(
+        "at time {time}: {joints} contradict each other: their joints open by {gap:.3e}, and no place of the bodies near by closes them all, so the mechanism cannot move as it has to; free a direction of one of them, let a drive or a gear go, put a bushing in place of one of these joints, or let a body bend"
+    )]
+    Open { time: f64, joints: Box<str>, gap: f64 },
     /// Step control of a scheme that does not estimate its error.
     #[error("at time {time}: this scheme does not estimate its error; give it a step instead of a tolerance")]
     NoErrorEstimate { time: f64 },

@@ -89,6 +89,7 @@ pub use system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 pub use system::radau::{Failed, SystemMotion, Tried};
 pub use system::relaxed::RelaxError;
 pub use system::simulation::SystemSimulation;
+pub use system::simulation::second_order::Branching;
 pub use system::simulation::observation::SystemObservation;
 pub use system::simulation::setup::{Assembled, ShapeLimit, SystemSetup};
 pub use tolerance::{ErrorKinds, StatedError};

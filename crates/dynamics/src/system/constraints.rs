@@ -2,9 +2,18 @@
 
 use crate::system::connections::Connections;
 use crate::system::elimination::number::Number;
+use crate::system::joint::row::Row;
 use crate::system::joint::wrench::RowWrench;
 use crate::system::marker::motion::MarkerWrench;
 use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
+
+/// Gives a row of those on two markers, with the value and the rate of the drive.
+pub(crate) type RowForm = fn(&[Row], usize, [&MarkerPlace; 2], [f64; 2]) -> RowWrench;
+
+/// The rows as steps have them.
+pub(crate) fn near(rows: &[Row], number: usize, places: [&MarkerPlace; 2], driven: [f64; 2]) -> RowWrench {
+    rows[number].wrench(places, driven)
+}
 
 /// One end of a row: the entries of G for the coordinates of one body.
 #[derive(Debug, Clone)]
@@ -86,10 +95,12 @@ impl Constraints {
         }
     }
 
-    /// Finds g, its own rate and G at a time, by the branch of another. Turns of joints are next to what is expected of them.
+    /// Finds g, its own rate and G at a time, by the branch of another. Turns of joints are next to what is expected of them; `form`
+    /// gives a row of a list.
     pub fn find<'a>(
         &mut self,
         connections: &Connections,
+        form: RowForm,
         expected_turn: impl Fn(usize, [&MarkerPlace; 2]) -> f64,
         times: [f64; 2],
         place: impl Fn(usize) -> BodyPlace<'a>,
@@ -103,8 +114,8 @@ impl Constraints {
             let driven = joint.driven_at(times);
             for (markers, rows) in joint.groups().filter(|(_, rows)| !rows.is_empty()) {
                 let places = places_of(markers);
-                for of_row in rows {
-                    let wrench = of_row.wrench(places.each_ref(), driven);
+                for number in 0..rows.len() {
+                    let wrench = form(rows, number, places.each_ref(), driven);
                     (self.residuals[row], self.own_rates[row]) = (wrench.residual, wrench.own_rate);
                     clear(&mut self.ends[row]);
                     add(&mut self.ends[row], markers, &places, &place, &wrench, 1.0);

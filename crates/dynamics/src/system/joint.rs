@@ -5,6 +5,7 @@ pub(crate) mod coordinate;
 pub(crate) mod coupling;
 pub(crate) mod drive;
 pub(crate) mod equation;
+pub(crate) mod far;
 pub(crate) mod force;
 pub(crate) mod law;
 pub(crate) mod observation;

@@ -16,6 +16,7 @@ mod law_work;
 mod laws;
 mod newton;
 pub(in crate::system) mod past;
+pub(in crate::system) mod rows;
 mod springs;
 pub(in crate::system) mod stage_rates;
 mod stepping;
@@ -33,6 +34,7 @@ use crate::system::description::System;
 use crate::system::elimination::matrices::Matrices;
 use crate::system::elimination::newton::Solution;
 use crate::system::elimination::patterns::Patterns;
+use crate::system::geometry::rank::Judgement;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::coupling::CoupledCoordinate;
 use crate::system::joint::force::FrictionSlope;
@@ -74,6 +76,13 @@ pub enum Failed {
     Newton,
     /// The rates cannot be found.
     Rates(RateError),
+    /// Rows of joints and couplings contradict each other, and stay open by a length.
+    Open {
+        /// Their names.
+        joints: Box<str>,
+        /// The largest residual, as a length.
+        gap: f64,
+    },
 }
 
 impl From<RateError> for Failed {
@@ -105,6 +114,11 @@ pub struct SystemMotion {
     /// Rates at the stages of the last step of what steps sum up.
     pub(super) stage_rates: [StageRates; STAGES],
     pub(super) matrices: Matrices,
+    /// Which rows others imply, and the time at which that was last judged.
+    pub(super) judgement: Option<Judgement>,
+    judged_at: Option<f64>,
+    /// True if steps that fail can be shorter.
+    is_controlled: bool,
     room: Room,
     law_work: LawWork,
     pub(super) past: Past,
@@ -193,6 +207,9 @@ impl SystemMotion {
             bend: [zeros(), zeros()],
             stage_rates: std::array::from_fn(|_| StageRates::new(&flexible, [joints, elements])),
             matrices: Matrices::new(&system, &patterns),
+            judgement: None,
+            judged_at: None,
+            is_controlled: false,
             room: Room {
                 real: Solution::new(coordinates, &patterns),
                 held: Solution::new(coordinates, &patterns),
@@ -367,12 +384,20 @@ impl SystemMotion {
     /// # Errors
     /// [`Failed`] where the inertia of a body is singular.
     pub fn assemble(&mut self) -> Result<[f64; 2], Failed> {
+        self.close_joints()?;
+        self.assemble_here()
+    }
+
+    /// The same from where the joints are all but closed.
+    pub(super) fn assemble_here(&mut self) -> Result<[f64; 2], Failed> {
+        self.forget_judgement();
         let mut left = self.assemble_by(self.time)?;
         for _ in 0..MAX_ASSEMBLIES {
             if self.is_closed(left) {
                 break;
             }
             // After a large move, the matrices were those of where the bodies had been.
+            self.forget_judgement();
             left = self.assemble_by(self.time)?;
         }
         Ok(left)
@@ -390,6 +415,7 @@ impl SystemMotion {
     fn assemble_by(&mut self, branch_time: f64) -> Result<[f64; 2], Failed> {
         self.begin();
         self.evaluate_first(branch_time)?;
+        self.judge();
         let [.., last] = &mut self.stages;
         last.x.copy_from_slice(&self.first.x);
         last.y.copy_from_slice(&self.first.y);
@@ -412,6 +438,8 @@ impl SystemMotion {
         self.begin();
         let branch_time = self.time + 0.5 * h;
         self.evaluate_first(branch_time)?;
+        self.judge();
+        self.is_controlled = bound.allowed.is_finite();
         if self.scheme.is_explicit {
             return self.try_explicit_step(h, [end, branch_time], bound, over_kinks);
         }

@@ -10,7 +10,9 @@ mod observation;
 mod wrenches;
 
 use crate::body::shapes::PointShapes;
-use crate::conservative::{get, part};
+use nalgebra::{DMatrix, DVector, Vector6};
+
+use crate::conservative::{ConservativeBody, get, part};
 use crate::equations::Equations;
 use crate::error::RateError;
 use crate::observation::Observation;
@@ -34,10 +36,13 @@ impl SystemMotion {
     pub fn find_reactions(&mut self) -> Result<(), RateError> {
         self.begin();
         self.evaluate_first(self.time)?;
+        self.judge();
         let after = self.time + short_time(&self.system, &self.first.velocities);
         let Self { first, stages: [scratch, ..], system, start, matrices, patterns, reactions, .. } = self;
         let times = [start.time, after];
         Index1 { system, start, matrices, patterns, scratch }.find(first, times, reactions)?;
+        self.share_reactions();
+        let Self { first, system, reactions, .. } = self;
         let forces = &mut first.x_rates;
         forces.fill(0.0);
         first.constraints.add_forces(reactions, forces);
@@ -47,6 +52,35 @@ impl SystemMotion {
             body.add_forces([&force_global, &vector(forces, 3)], &forces[6..], &mut first.evaluations[b]);
         }
         Ok(())
+    }
+
+    /// Shares what rows that imply each other bear so that Σ |f|² + |m|²/L² over the joints is least: by geometry alone, whatever the
+    /// masses, the units and the order of the joints.
+    fn share_reactions(&mut self) {
+        let Self { first, system, judgement, reactions, .. } = self;
+        let Some(known) = judgement else { return };
+        if known.rank.idle.is_empty() || !known.is_of_now() {
+            return;
+        }
+        let wrenches = first.wrenches_of_rows(system, known.tree.size);
+        let joint_of_row = &known.tree.joint_of_row;
+        // Wrenches of joints by a list of multipliers.
+        let sums = |multipliers: &[f64]| -> Vec<f64> {
+            let mut sums = vec![Vector6::zeros(); system.connections.groups().count()];
+            for ((multiplier, wrench), joint) in multipliers.iter().zip(&wrenches).zip(joint_of_row) {
+                sums[*joint] += wrench * *multiplier;
+            }
+            sums.iter().flat_map(|sum| sum.iter().copied().collect::<Vec<f64>>()).collect()
+        };
+        let idle: Vec<DVector<f64>> = known.rank.idle.iter().map(|u| DVector::from_vec(sums(u))).collect();
+        let now = DVector::from_vec(sums(reactions));
+        let count = idle.len();
+        let gram = DMatrix::from_fn(count, count, |i, k| idle[i].dot(&idle[k]));
+        let right = DVector::from_fn(count, |i, _| idle[i].dot(&now));
+        let Some(parts) = gram.cholesky().map(|factor| factor.solve(&right)) else { return };
+        for (u, part) in known.rank.idle.iter().zip(parts.iter()) {
+            reactions.iter_mut().zip(u).for_each(|(reaction, u)| *reaction -= part * u);
+        }
     }
 
     /// Fills `out` with the motion of a body, and that of points on it, after [`Self::find_reactions`].
@@ -148,9 +182,53 @@ impl Index1<'_> {
         }
         stage.constraints.add_rates(1.0, &scratch.x_rates, out);
         out.iter_mut().for_each(|sum| *sum = -*sum);
+        scratch.constraints.residuals.copy_from_slice(out);
         matrices.of_mass.solve(&patterns.rows, out);
+        if is_uneven(system) {
+            (0..SWEEPS).for_each(|sweep| self.refine(stage, sweep == 0, out));
+        }
         Ok(())
     }
+
+    /// A sweep of refinement of M a = Gᵀλ, G a = t: the factor of G M⁻¹Gᵀ alone loses digits where light bodies bear heavy ones.
+    fn refine(&mut self, stage: &Stage, is_first: bool, lambda: &mut [f64]) {
+        let Self { system, matrices, patterns, scratch, .. } = self;
+        let Stage { x: accelerations, y: left, velocities: impulse, constraints, constraint_rates: change, .. } = &mut **scratch;
+        let own = |b: usize| system.first[b]..system.first[b + 1];
+        left.fill(0.0);
+        stage.constraints.add_forces(lambda, left);
+        if is_first {
+            accelerations.copy_from_slice(left);
+            stage.inertia.iter().enumerate().for_each(|(b, of)| of.solve(&mut accelerations[own(b)]));
+        }
+        impulse.copy_from_slice(accelerations);
+        stage.inertia.iter().enumerate().for_each(|(b, of)| of.multiply(&mut impulse[own(b)]));
+        left.iter_mut().zip(&*impulse).for_each(|(left, of)| *left -= of);
+        // t − G a − G M⁻¹ (Gᵀλ − M a)
+        impulse.copy_from_slice(left);
+        stage.inertia.iter().enumerate().for_each(|(b, of)| of.solve(&mut impulse[own(b)]));
+        change.copy_from_slice(&constraints.residuals);
+        stage.constraints.add_rates(-1.0, accelerations, change);
+        stage.constraints.add_rates(-1.0, impulse, change);
+        matrices.of_mass.solve(&patterns.rows, change);
+        lambda.iter_mut().zip(&*change).for_each(|(lambda, change)| *lambda += change);
+        stage.constraints.add_forces(change, left);
+        stage.inertia.iter().enumerate().for_each(|(b, of)| of.solve(&mut left[own(b)]));
+        accelerations.iter_mut().zip(&*left).for_each(|(sum, change)| *sum += change);
+    }
+}
+
+/// Sweeps of refinement, and the ratio of masses or of moments of inertia from which they are done.
+const SWEEPS: usize = 2;
+const UNEVEN: f64 = 1e3;
+
+/// True if some bodies are much lighter than others.
+fn is_uneven(system: &System) -> bool {
+    let ratio = |of: fn(&ConservativeBody) -> f64| {
+        let all = || system.bodies.iter().map(of);
+        all().fold(0.0, f64::max) / all().fold(f64::INFINITY, f64::min)
+    };
+    ratio(ConservativeBody::mass) > UNEVEN || ratio(|body| body.undeformed_inertia().trace()) > UNEVEN
 }
 
 /// A time in which nothing turns far.

@@ -9,9 +9,12 @@
 //!
 //! Eqs. (J9) of `docs/method/systems.md`; with large modes (L7) and (L11).
 
+use crate::body::motion_state::MotionState;
 use crate::conservative::{get, part};
+use crate::equations::Equations;
 use crate::system::elimination::inverse::{Inertia, Inverse};
 use crate::system::elimination::joint_matrix::JointMatrix;
+use crate::system::geometry::rank::Judgement;
 use crate::system::radau::{Failed, SystemMotion};
 use crate::system::reactions::{Passing, find_row_accelerations, short_time};
 use crate::system::stage::{put, vector};
@@ -49,6 +52,7 @@ impl SystemMotion {
     /// [`RelaxError`].
     pub fn relax(&mut self) -> Result<[f64; 2], RelaxError> {
         let mut left = self.assemble()?;
+        let given: Vec<_> = (0..self.bodies.len()).map(|body| self.state(body)).collect::<Result<_, _>>().map_err(Failed::Rates)?;
         let is_bent = self.system.bodies.iter().any(|body| body.manifold.is_some());
         for _ in 0..PASSES {
             if is_bent {
@@ -57,9 +61,21 @@ impl SystemMotion {
                 let (multipliers, _) = self.rigid_forces()?;
                 self.deform(&multipliers);
             }
+            self.give_velocities(&given)?;
             left = self.assemble()?;
         }
         Ok(left)
+    }
+
+    /// Gives the origins of the bodies the velocities, and the bodies the angular velocities, of other states: a body that deforms keeps
+    /// its momenta, not these.
+    fn give_velocities(&mut self, given: &[MotionState]) -> Result<(), Failed> {
+        for (b, given) in given.iter().enumerate() {
+            let mut state = self.state(b)?;
+            (state.velocity_global, state.omega_body) = (given.velocity_global, given.omega_body);
+            self.bodies[b] = self.system.bodies[b].state_of(&state).map_err(|_| Failed::Newton)?;
+        }
+        Ok(())
     }
 
     /// With large modes forces change as the bodies bend, so the shapes come from Newton's method with their tangent: (L7) with the
@@ -90,7 +106,7 @@ impl SystemMotion {
             x_rates[modes].fill(0.0);
         }
         let mut change = Vec::new();
-        let Self { first, stages: [scratch, ..], system, start, patterns, matrices, .. } = self;
+        let Self { first, stages: [scratch, ..], system, start, patterns, .. } = self;
         let passing = Passing { x: &first.x, x_rates: &x_rates, velocities: &velocities };
         let times = [start.time, start.time + short_time(system, &velocities)];
         find_row_accelerations((system, start), scratch, passing, times, &mut change);
@@ -115,7 +131,8 @@ impl SystemMotion {
         change.iter_mut().for_each(|sum| *sum = -*sum);
         let mut of_rigid = JointMatrix::new(&patterns.rows, system.coordinates());
         of_rigid.assemble(&patterns.rows, &first.constraints, &inverses);
-        of_rigid.factor(&patterns.rows, &mut matrices.is_left_out, true);
+        let is_implied = Judgement::first(system, &first.posture(system), false).rank.is_implied;
+        of_rigid.factor(&patterns.rows, &is_implied);
         of_rigid.solve(&patterns.rows, &mut change);
         let mut by_joints = vec![0.0; system.coordinates()];
         first.constraints.add_forces(&change, &mut by_joints);
@@ -124,19 +141,6 @@ impl SystemMotion {
         }
         acceleration.iter_mut().zip(&by_joints).for_each(|(sum, part)| *sum += part);
         Ok((change, acceleration))
-    }
-
-    /// For each row of the joints and couplings, true if others imply it where bodies are rigid: what such rows share is not
-    /// determined by rigid bodies. The system is where it has been assembled.
-    pub(super) fn implied_rows(&self) -> Vec<bool> {
-        let Self { first, system, patterns, .. } = self;
-        let mut is_implied = vec![false; system.rows()];
-        if let Some(inverses) = rigid_inverses(&first.inertia) {
-            let mut of_rigid = JointMatrix::new(&patterns.rows, system.coordinates());
-            of_rigid.assemble(&patterns.rows, &first.constraints, &inverses);
-            of_rigid.factor(&patterns.rows, &mut is_implied, true);
-        }
-        is_implied
     }
 
     /// Sets q by these multipliers, and p so that q̇ is zero.

@@ -117,6 +117,7 @@ impl SystemMotion {
         }
         self.element_works = elements;
         self.held = held;
+        self.forget_judgement();
         [self.largest_energy, self.largest_moving, self.jump_work] = sums;
         Ok(())
     }

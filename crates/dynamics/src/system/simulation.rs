@@ -4,6 +4,7 @@ mod last_step;
 mod locked;
 pub(crate) mod observation;
 mod saved;
+pub(crate) mod second_order;
 pub(crate) mod setup;
 mod stops;
 
@@ -16,6 +17,7 @@ use crate::body::shapes::PointShapes;
 use crate::conservative::ConservativeBody;
 use crate::error::{SetupError, StepError};
 use crate::load::SharedLoad;
+use crate::matrix::lists::larger;
 use crate::observation::Observation;
 use crate::observation::energies::Energies;
 use crate::observation::moment::Moment;
@@ -32,6 +34,7 @@ use crate::system::joint::observation::JointObservation;
 use crate::system::radau::SystemMotion;
 use crate::system::simulation::last_step::{EXACT, LastStep, of_step};
 use crate::system::simulation::observation::SystemObservation;
+use crate::system::simulation::second_order::Branching;
 use crate::system::simulation::setup::{Assembled, ShapeLimit, SystemSetup, assemble, size};
 use crate::tolerance::ErrorMeasure;
 
@@ -63,8 +66,9 @@ pub struct SystemSimulation {
     size: f64,
     assembled: Vec<Assembled>,
     redundant: Vec<(String, usize)>,
-    /// For each row, true if others imply it at the beginning.
-    is_implied: Vec<bool>,
+    branching: Option<Branching>,
+    /// The largest residual at the ends of steps, as a length over the size of the system.
+    largest_residual: f64,
     stats: Stats,
     account: EnergyAccount,
     /// Energy exchanged of each body, see [`Self::exchanged`].
@@ -118,7 +122,7 @@ impl SystemSimulation {
         let SystemSetup { system, states, relaxed, scheme, control, end, rows, points } = setup;
         let mut motion = SystemMotion::new(system, &states)?.with_scheme(scheme);
         let size = size(motion.system(), &states);
-        let assembled = assemble(&mut motion, &states, relaxed, [size, end])?;
+        let (assembled, branching) = assemble(&mut motion, &states, relaxed, [size, end])?;
         let is_implied = motion.implied_rows();
         let implied = motion.system().connections.sums(is_implied.iter().map(|is_implied| usize::from(*is_implied)));
         let redundant = implied.into_iter().filter(|(_, rows)| *rows > 0).map(|(name, rows)| (name.to_owned(), rows));
@@ -154,7 +158,8 @@ impl SystemSimulation {
             size,
             assembled,
             redundant,
-            is_implied,
+            branching,
+            largest_residual: 0.0,
             stats: Stats::NONE,
             account: EnergyAccount::default(),
             events: Events::default(),
@@ -202,6 +207,16 @@ impl SystemSimulation {
     /// what they bear is then not determined by rigid bodies, but by how the bodies give.
     pub fn redundant(&self) -> &[(String, usize)] {
         &self.redundant
+    }
+
+    /// The branches of the motion at the beginning, if there are two.
+    pub fn branching(&self) -> Option<&Branching> {
+        self.branching.as_ref()
+    }
+
+    /// The largest residual of all rows of joints and couplings at the ends of the steps so far, as a length over the size of the system.
+    pub fn largest_residual(&self) -> f64 {
+        self.largest_residual
     }
 
     /// Degrees of freedom that the joints leave rigid bodies at the beginning.
@@ -317,7 +332,7 @@ impl SystemSimulation {
     pub fn set_states(&mut self, states: &[MotionState]) -> Result<(), SetupError> {
         let mut motion = self.motion().clone();
         motion.set_states(states)?;
-        self.assembled = assemble(&mut motion, states, false, [self.size, self.end])?;
+        (self.assembled, self.branching) = assemble(&mut motion, states, false, [self.size, self.end])?;
         let stays = self.plan.are_same(motion.time(), self.time());
         self.motion = motion;
         self.account = EnergyAccount::default();
@@ -596,16 +611,21 @@ impl SystemSimulation {
     /// The reason of a step that could not be done where it is found: joints that lock where the motion is, or stops that a fixed step goes
     /// into; otherwise the error as it is.
     fn reason_or(&mut self, error: StepError) -> StepError {
-        let named =
-            |joints: Vec<String>| joints.iter().map(|joint| format!("\"{joint}\"")).collect::<Vec<_>>().join(", ");
         let time = self.motion.time();
-        let locked = self.motion.locked_joints(&self.is_implied);
-        if !locked.is_empty() {
-            return StepError::Locked { time, joints: named(locked).into() };
+        let step = match error {
+            StepError::Open { .. } => return error,
+            StepError::Newton { step, .. } | StepError::Tolerance { step, .. } | StepError::TurnTooLarge { step, .. } => step,
+            _ => 0.0,
+        };
+        if let Some(joints) = self.motion.locked_joints(step) {
+            return StepError::Locked { time, joints: joints.into() };
         }
         let StepError::Newton { step, .. } = error else { return error };
         match self.motion.stops_within(step) {
-            Some((joints, contact)) => StepError::Stops { time, step, joints: named(joints).into(), contact },
+            Some((joints, contact)) => {
+                let named = joints.iter().map(|joint| format!("\"{joint}\"")).collect::<Vec<_>>().join(", ");
+                StepError::Stops { time, step, joints: named.into(), contact }
+            }
             None => error,
         }
     }
@@ -613,6 +633,7 @@ impl SystemSimulation {
     /// Counts a step that was taken.
     fn count(&mut self, length: f64) {
         self.stats.take(1, length);
+        self.largest_residual = larger(self.largest_residual, self.motion.residual_of_last_step());
         self.steps_since_row += 1;
         let mut total = [0.0; 2];
         for (body, exchanged) in self.exchanged.iter_mut().enumerate() {

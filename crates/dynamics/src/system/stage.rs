@@ -8,11 +8,13 @@ use crate::conservative::{Slow, get, part, set};
 use crate::equations::Equations;
 use crate::error::RateError;
 use crate::matrix::lists::larger;
-use crate::system::constraints::{Compliant, Constraints};
+use crate::system::constraints::{Compliant, Constraints, near};
 use crate::system::description::System;
 use crate::system::element::Stored;
 use crate::system::elimination::inverse::Inertia;
+use crate::system::geometry::tree::Posture;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates, turn_along};
+use crate::system::joint::far::far_wrench;
 use crate::system::joint::force::{Forces, FrictionSlope};
 use crate::system::joint::work::JointWork;
 use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
@@ -136,7 +138,35 @@ impl Stage {
         let Self { x, constraints, positions, attitudes, q, evaluations, .. } = self;
         let expected_turn = |joint: usize, places: [&MarkerPlace; 2]| start.turn(system, joint, places, x);
         let places = Places { system, positions, attitudes, q, evaluations };
-        constraints.find(&system.connections, expected_turn, times, |b| places.of(b));
+        constraints.find(&system.connections, near, expected_turn, times, |b| places.of(b));
+    }
+
+    /// The same of markers that may be turned far against each other, with these turns of joints, which go on.
+    pub fn find_far_constraints(&mut self, system: &System, turns: &mut [f64], times: [f64; 2]) {
+        for (joint, turn) in turns.iter_mut().enumerate() {
+            *turn = self.turn_of(system, joint, *turn);
+        }
+        let Self { constraints, positions, attitudes, q, evaluations, .. } = self;
+        let places = Places { system, positions, attitudes, q, evaluations };
+        constraints.find(&system.connections, far_wrench, |joint, _| turns[joint], times, |b| places.of(b));
+    }
+
+    /// Where its bodies and joints are, once it has its rows.
+    pub fn posture(&self, system: &System) -> Posture<'_> {
+        let Self { positions, attitudes, constraints, .. } = self;
+        let points = system.connections.joints.iter().map(|joint| self.places(system, &joint.markers)[1].position);
+        Posture { positions, attitudes, ends: &constraints.ends, points: points.collect() }
+    }
+
+    /// Where the two markers of a joint, or of a part of it, are.
+    pub fn places(&self, system: &System, markers: &[Marker; 2]) -> [MarkerPlace; 2] {
+        markers.each_ref().map(|of| of.place(of.body().map(|b| self.body_place(system, b)).as_ref()))
+    }
+
+    /// The turn of a joint next to what is expected of it.
+    fn turn_of(&self, system: &System, joint: usize, expected_turn: f64) -> f64 {
+        let places = self.places(system, &system.connections.joints[joint].markers);
+        Coordinate::Turn.wrench(places.each_ref(), expected_turn).residual
     }
 
     /// Finds velocities, rates, g and G at a time; laws with branches are taken as they are at the branch time.

@@ -10,6 +10,7 @@ mod flexible;
 mod hard;
 mod laws;
 mod linear;
+mod linkages;
 mod mechanism;
 mod rigid;
 mod rotor;

@@ -1,8 +1,8 @@
 //! G Z⁻¹ Gᵀ over the rows of all joints, and its factor L D Lᵀ.
 //!
 //! The matrix is sparse in blocks of joints: two of them meet where they share a body. Joints are eliminated in an order of
-//! least degree, so a chain or a tree costs in proportion to its joints. Rows that others imply have pivots of zero; they
-//! are left out, and their multipliers are zero.
+//! least degree, so a chain or a tree costs in proportion to its joints. Rows that others imply are left out, and their
+//! multipliers are zero; which they are is a matter of geometry (`geometry/rank.rs`).
 
 use nalgebra::Complex;
 
@@ -10,11 +10,8 @@ use crate::system::constraints::{Constraints, End};
 use crate::system::elimination::inverse::Inverse;
 use crate::system::elimination::number::Number;
 
-/// A pivot below this part of its diagonal entry belongs to a row that others imply. Of a diagonal entry counts the smallest part
-/// by one body, times the number of bodies: a body of hardly any mass has a large part, and the row is not implied for that.
-const DEPENDENT: f64 = 1e-8;
 /// A pivot below this part of its diagonal entry is rounding.
-const ROUNDING: f64 = 1e-13;
+const ROUNDING: f64 = 1e-15;
 
 /// Which blocks there are, and in which order they are eliminated: constants of a system.
 #[derive(Debug, Clone)]
@@ -156,8 +153,6 @@ pub(crate) struct JointMatrix<T> {
     /// 1/D; zero for rows that are left out.
     inverse_pivots: Vec<T>,
     diagonal: Vec<f64>,
-    /// The smallest part of each diagonal entry by one body, times the number of bodies.
-    least: Vec<f64>,
     /// A column of Z⁻¹ Gᵀ.
     column: Vec<T>,
     /// A block before it is divided by the pivots.
@@ -173,7 +168,6 @@ impl<T: Number> JointMatrix<T> {
             entries: vec![zero; pattern.entries],
             inverse_pivots: vec![zero; pattern.len()],
             diagonal: vec![0.0; pattern.len()],
-            least: vec![0.0; pattern.len()],
             column: vec![zero; coordinates],
             scratch: vec![zero; max_below * widest * widest],
         }
@@ -182,7 +176,6 @@ impl<T: Number> JointMatrix<T> {
     /// Assembles G Z⁻¹ Gᵀ.
     pub fn assemble(&mut self, pattern: &Pattern, constraints: &Constraints, inverses: &[Inverse<T>]) {
         self.entries.fill(T::from_real(0.0));
-        self.least.fill(f64::INFINITY);
         for (columns, inverse) in pattern.columns.iter().zip(inverses) {
             for Column { end, rows } in columns {
                 let g = end.entries(constraints);
@@ -193,10 +186,6 @@ impl<T: Number> JointMatrix<T> {
                     let mut sum = T::from_real(0.0);
                     row.entries(constraints).iter().zip(&*z_g).for_each(|(g, z)| sum += z.scale(*g));
                     self.entries[*entry] += sum;
-                    if row.row == end.row {
-                        let bodies = constraints.ends[end.row].len() as f64;
-                        self.least[end.row] = self.least[end.row].min(bodies * sum.modulus());
-                    }
                 }
             }
         }
@@ -209,8 +198,8 @@ impl<T: Number> JointMatrix<T> {
         }
     }
 
-    /// Finds the factor. Rows whose `is_left_out` is true are left out; with `find_them`, those that others imply become so.
-    pub fn factor(&mut self, pattern: &Pattern, is_left_out: &mut [bool], find_them: bool) {
+    /// Finds the factor without the rows whose `is_left_out` is true.
+    pub fn factor(&mut self, pattern: &Pattern, is_left_out: &[bool]) {
         for joint in 0..pattern.order.len() {
             let n = pattern.rows(joint);
             for i in 0..n {
@@ -227,13 +216,9 @@ impl<T: Number> JointMatrix<T> {
                     pivot -= l * l * d;
                 }
                 let row = first + k;
-                if find_them {
-                    let diagonal = self.diagonal[row];
-                    let least = (DEPENDENT * self.least[row].min(diagonal)).max(ROUNDING * diagonal);
-                    is_left_out[row] = pivot.real() <= least || pivot.real().is_nan();
-                }
                 self.entries[block + k * n + k] = pivot;
-                let inverse = if is_left_out[row] { T::from_real(0.0) } else { pivot.recip() };
+                let is_rounding = pivot.modulus() <= ROUNDING * self.diagonal[row];
+                let inverse = if is_left_out[row] || is_rounding { T::from_real(0.0) } else { pivot.recip() };
                 self.inverse_pivots[row] = inverse;
                 for i in k + 1..n {
                     let mut sum = self.entries[block + i * n + k];
@@ -246,17 +231,6 @@ impl<T: Number> JointMatrix<T> {
             }
             self.eliminate(pattern, joint);
         }
-    }
-
-    /// The pivot of a row as a part of its diagonal entry, of which the smallest part by one body counts as in [`Self::factor`];
-    /// infinite for a row that is left out.
-    pub fn pivot_part(&self, row: usize) -> f64 {
-        1.0 / (self.inverse_pivots[row].modulus() * self.least[row].min(self.diagonal[row]))
-    }
-
-    /// The diagonal entry of a row before it was factored.
-    pub fn diagonal(&self, row: usize) -> f64 {
-        self.diagonal[row]
     }
 
     /// Divides the blocks below a joint by its factor, and takes their products from those that they meet.
@@ -369,6 +343,7 @@ mod tests {
 
     use super::*;
     use crate::system::connections::Connections;
+    use crate::system::constraints::near;
     use crate::system::elimination::inverse::Inertia;
     use crate::system::joint::Joint;
     use crate::system::marker::{BodyPlace, Marker};
@@ -388,6 +363,7 @@ mod tests {
         let mut constraints = Constraints::new(&connections, &first);
         constraints.find(
             &connections,
+            near,
             |_, _| 0.0,
             [0.0; 2],
             |body| BodyPlace {
@@ -423,9 +399,7 @@ mod tests {
             constraints.add_rates(1.0, &forces, &mut y);
             let mut matrix = JointMatrix::new(&pattern, 8 * bodies);
             matrix.assemble(&pattern, &constraints, &inverses);
-            let mut is_left_out = vec![false; pattern.len()];
-            matrix.factor(&pattern, &mut is_left_out, true);
-            assert!(is_left_out.iter().all(|is_left_out| !is_left_out));
+            matrix.factor(&pattern, &vec![false; pattern.len()]);
             matrix.solve(&pattern, &mut y);
             x.iter().zip(&y).for_each(|(x, y)| assert!((x - y).abs() < 1e-10, "{bodies} {closes}: {x} {y}"));
         }

@@ -60,7 +60,7 @@ impl Matrices {
             }
         }
         of_mass.assemble(&patterns.rows, &stage.constraints, mass);
-        of_mass.factor(&patterns.rows, is_left_out, true);
+        of_mass.factor(&patterns.rows, is_left_out);
         true
     }
 
@@ -117,7 +117,7 @@ impl<T: Number> NewtonMatrix<T> {
         patterns: &Patterns,
         stage: &Stage,
         compliant: &[Compliant],
-        is_left_out: &mut [bool],
+        is_left_out: &[bool],
     ) -> bool {
         self.kappa = kappa;
         for ((body, inertia), inverse) in system.bodies.iter().zip(&stage.inertia).zip(&mut self.bodies) {
@@ -129,7 +129,7 @@ impl<T: Number> NewtonMatrix<T> {
         self.rows.assemble(pattern, &stage.constraints, &self.bodies);
         let compliant = (system.rows()..).zip(compliant).filter(|(_, row)| !row.is_slack());
         compliant.for_each(|(row, of)| self.rows.add_compliance(pattern, row, of.resistance(kappa).recip()));
-        self.rows.factor(pattern, is_left_out, false);
+        self.rows.factor(pattern, is_left_out);
         true
     }
 }

@@ -37,7 +37,9 @@ impl SystemMotion {
         self.keep_spring_energies();
         self.keep_coordinates();
         let since = self.time;
-        self.end(times, h)?;
+        self.project_positions(times, h)?;
+        self.watch(times)?;
+        self.project_velocities(times)?;
         self.count_held(self.time - since);
         self.add_exchange(weights);
         self.settle_springs(weights);
@@ -48,6 +50,12 @@ impl SystemMotion {
     /// Projects the end of a step, and takes it for the state. Returns the largest residual and rate that are left.
     /// The second time says which branches of the drives hold.
     pub(super) fn end(&mut self, times: [f64; 2], h: f64) -> Result<[f64; 2], Failed> {
+        let left = self.project_positions(times, h)?;
+        Ok([left, self.project_velocities(times)?])
+    }
+
+    /// Moves the bodies at the end of a step so that the rows that are kept close. Returns the largest residual that is left.
+    fn project_positions(&mut self, times: [f64; 2], h: f64) -> Result<f64, Failed> {
         let Self { stages: [.., last], system, start, matrices, patterns, room, scheme, .. } = self;
         last.place(system, start);
         last.find_constraints(system, start, times);
@@ -93,7 +101,13 @@ impl SystemMotion {
                 break;
             }
         }
-        // Velocities.
+        Ok(left)
+    }
+
+    /// Projects the velocities at the end of a step, and takes it for the state. Returns the largest rate that is left.
+    fn project_velocities(&mut self, times: [f64; 2]) -> Result<f64, Failed> {
+        let Self { stages: [.., last], system, start, matrices, patterns, room, .. } = self;
+        let real = &mut room.real;
         last.evaluate(system, start, times)?;
         self.evaluations += 1;
         real.y.fill(0.0);
@@ -141,6 +155,6 @@ impl SystemMotion {
             start.joints[joint] = last.joint_coordinates(system, start, joint);
         }
         self.time = times[0];
-        Ok([left, rates])
+        Ok(rates)
     }
 }

@@ -80,6 +80,9 @@ impl SystemMotion {
         let Bound { exactness, enough, .. } = *bound;
         // With compliant rows the first changes fall faster than the later ones, which turn the axes of stiff forces.
         let slowest = if self.system.connections.is_rigid() { 0.0 } else { STIFF_RATE };
+        // Near a singular position what rounds off in a residual moves bodies by more.
+        let weakest = self.judgement.as_ref().map_or(1.0, |known| known.rank.smallest.min(1.0));
+        let rounding = ROUNDING / weakest;
         let ([mut last_position, mut last], mut since) = ([f64::INFINITY; 2], 0);
         for pass in 1..=MAX_PASSES {
             self.evaluate_stages(h)?;
@@ -92,10 +95,10 @@ impl SystemMotion {
                 return Err(Failed::Newton);
             }
             let rate = if since == 1 { 0.5 } else { change / last };
-            if position <= ROUNDING && rate > 0.3 {
+            if position <= rounding && rate > 0.3 {
                 return Ok(pass);
             }
-            if rate > 2.0 || (rate > 0.9 && since > 3 && change > ROUNDING) {
+            if rate > 2.0 || (rate > 0.9 && since > 3 && change > rounding) {
                 // Where rows nearly imply each other rounding comes early.
                 let is_enough = position.max(last_position) <= enough && change.max(last) <= OF_VELOCITIES * enough;
                 return if is_enough { Ok(pass) } else { Err(Failed::Newton) };
@@ -103,7 +106,7 @@ impl SystemMotion {
             (last_position, last) = (position, change);
             // The error that is left, by the rate of convergence.
             let left = change * rate.max(slowest) / (1.0 - rate.min(0.9));
-            if left <= exactness || change <= ROUNDING {
+            if left <= exactness || change <= rounding {
                 return Ok(pass);
             }
         }

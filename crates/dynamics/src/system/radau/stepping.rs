@@ -97,6 +97,7 @@ impl SystemMotion {
                 }
             }
             Err(Failed::Newton) => *h = 0.4 * length,
+            Err(Failed::Open { joints, gap }) => return Err(StepError::Open { time: to, joints, gap }),
             Err(Failed::Rates(error)) if length < 1e-12 * end => return Err(error.in_step(self.time, length)),
             Err(Failed::Rates(_)) => *h = 0.25 * length,
         }
@@ -128,7 +129,7 @@ impl SystemMotion {
         match self.assemble_by(branch_time) {
             Ok(_) => {}
             Err(Failed::Rates(error)) => return Err(error),
-            Err(Failed::Newton) => return Err(RateError::Inertia),
+            Err(Failed::Newton | Failed::Open { .. }) => return Err(RateError::Inertia),
         }
         let after = energies(self)?;
         self.jump_work -= self.count_impulses(&rates_before);

@@ -28,6 +28,13 @@ impl SystemMotion {
         }
         self.stage_rates.iter_mut().zip(&other.stage_rates).for_each(|(own, other)| own.copy_from(other));
         self.start.joints.copy_from_slice(&other.start.joints);
+        self.matrices.is_left_out.copy_from_slice(&other.matrices.is_left_out);
+        if let (Some(own), Some(other)) = (&mut self.judgement, &other.judgement) {
+            own.rank.is_implied.copy_from_slice(&other.rank.is_implied);
+        } else {
+            self.judgement.clone_from(&other.judgement);
+        }
+        (self.judged_at, self.is_controlled) = (other.judged_at, other.is_controlled);
         self.joint_works.copy_from_slice(&other.joint_works);
         self.element_works.copy_from_slice(&other.element_works);
         self.held.copy_from_slice(&other.held);
@@ -51,6 +58,7 @@ impl SystemMotion {
         self.held.fill([0.0; 2]);
         self.jump_work = 0.0;
         self.forget_last_step();
+        self.forget_judgement();
         Ok(())
     }
 

@@ -69,6 +69,7 @@ pub(super) fn of_step(failed: Failed, time: f64, step: f64) -> StepError {
     match failed {
         Failed::Newton => StepError::Newton { time, step },
         Failed::Rates(error) => error.in_step(time, step),
+        Failed::Open { joints, gap } => StepError::Open { time: time + step, joints, gap },
     }
 }
 

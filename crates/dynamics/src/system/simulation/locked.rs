@@ -1,39 +1,67 @@
-//! Joints that lock: their rows hold each other, and no motion of the bodies satisfies them.
+//! Joints that lock: no motion of the bodies follows the drives.
 //!
-//! Where joints lock, forces y of their rows are in balance on rigid bodies, G M⁻¹ Gᵀ y ≈ 0, though no row is implied by others
-//! at the beginning. The row with the smallest pivot of that matrix gives y; the joints that y loads are those that lock.
+//! b are the rates of the rows that close loops by the drives alone, σ and u the weakest singular value of these rows by the free
+//! motions of the tree, and its vector. Where a linkage locks,
+//!
+//! ```text
+//! s = |u·b| / (σ |b|)
+//! ```
+//!
+//! grows as 1/σ; where it passes a singular position it stays, Eqs. (J27) of `docs/method/systems.md`.
 
-use crate::system::elimination::joint_matrix::JointMatrix;
+use nalgebra::DMatrix;
+
+use crate::system::geometry::rank::Judgement;
 use crate::system::radau::SystemMotion;
-use crate::system::relaxed::rigid_inverses;
+use crate::system::radau::rows::names;
 
-/// A pivot below this part of its diagonal entry locks. Of a link at an angle α to where it locks it is about α².
-const LOCKED: f64 = 1e-2;
-/// A joint with less than this part of the largest share is not named.
-const SHARE: f64 = 0.01;
+/// s above which a linkage locks.
+const LOCKED: f64 = 1e3;
+/// s above which one locks that would be there within a step, and the part of the way there.
+const NEAR: f64 = 10.0;
+const WITHIN: f64 = 0.3;
 
 impl SystemMotion {
-    /// Names of the joints and couplings that lock where the system is; empty where none do. `is_implied`: the rows that others
-    /// imply at the beginning.
-    pub(super) fn locked_joints(&mut self, is_implied: &[bool]) -> Vec<String> {
+    /// Names of the joints and couplings that lock where the system is, or within a step from there; `None` where none do.
+    pub(super) fn locked_joints(&mut self, step: f64) -> Option<String> {
         self.begin();
-        if self.evaluate_first(self.time).is_err() {
-            return Vec::new();
+        self.evaluate_first(self.time).ok()?;
+        let Self { first, system, .. } = self;
+        let Judgement { loops, rank, .. } = Judgement::first(system, &first.posture(system), true);
+        let kept: Vec<usize> = (0..loops.rows.len()).filter(|a| !rank.is_implied[loops.rows[*a]]).collect();
+        let rates = &first.constraints.own_rates;
+        let b: Vec<f64> = kept
+            .iter()
+            .map(|a| {
+                let row = loops.rows[*a];
+                let of_tree = loops.balance[*a].iter().map(|(of_tree, multiplier)| multiplier * rates[*of_tree]);
+                (rates[row] + of_tree.sum::<f64>()) / loops.sizes[row]
+            })
+            .collect();
+        let length = b.iter().map(|b| b * b).sum::<f64>().sqrt();
+        if kept.is_empty() || length == 0.0 {
+            return None;
         }
-        let Self { first, system, patterns, .. } = self;
-        let Some(inverses) = rigid_inverses(&first.inertia) else { return Vec::new() };
-        let mut of_rigid = JointMatrix::new(&patterns.rows, system.coordinates());
-        of_rigid.assemble(&patterns.rows, &first.constraints, &inverses);
-        of_rigid.factor(&patterns.rows, &mut is_implied.to_vec(), false);
-        let pivots = (0..is_implied.len()).filter(|row| !is_implied[*row]).map(|row| (row, of_rigid.pivot_part(row)));
-        let Some((row, _)) = pivots.filter(|(_, part)| *part < LOCKED).min_by(|a, b| a.1.total_cmp(&b.1)) else {
-            return Vec::new();
-        };
-        let mut y = vec![0.0; is_implied.len()];
-        y[row] = 1.0;
-        of_rigid.solve(&patterns.rows, &mut y);
-        let shares = system.connections.sums(y.iter().enumerate().map(|(row, y)| y * y * of_rigid.diagonal(row)));
-        let largest = shares.iter().map(|(_, share)| *share).fold(0.0, f64::max);
-        shares.into_iter().filter(|(_, share)| *share >= SHARE * largest).map(|(name, _)| name.to_owned()).collect()
+        let matrix = DMatrix::from_fn(kept.len(), loops.matrix.nrows(), |i, k| loops.matrix[(k, kept[i])]);
+        let svd = matrix.try_svd(true, false, 1e-14, 1000)?;
+        let weakest = svd.singular_values.imin();
+        let (sigma, u) = (svd.singular_values[weakest], svd.u.as_ref()?.column(weakest).into_owned());
+        let along = u.iter().zip(&b).map(|(u, b)| u * b).sum::<f64>().abs();
+        let s = along / (sigma * length);
+        let loop_length = loops.lengths[loops.rows[kept[u.iamax()]]];
+        let is_near = s > NEAR && step * along > WITHIN * sigma * sigma * loop_length;
+        if s.is_nan() || s <= LOCKED && !is_near {
+            return None;
+        }
+        let parts: Vec<(usize, f64)> = kept.iter().zip(&u).map(|(a, u)| (*a, *u)).collect();
+        let idle = loops.idle_row(&parts);
+        let shares = idle.iter().zip(&loops.sizes).map(|(u, size)| (u * size).powi(2));
+        Some(names(&system.connections.sums(shares)))
+    }
+
+    /// For each row of the joints and couplings, true if others imply it where bodies are rigid: what such rows share is not
+    /// determined by rigid bodies. The system is where it has been assembled.
+    pub(super) fn implied_rows(&self) -> Vec<bool> {
+        Judgement::first(&self.system, &self.first.posture(&self.system), false).rank.is_implied
     }
 }

@@ -14,6 +14,7 @@ use crate::system::description::System;
 use crate::system::joint::equation::{Misfit, misfit};
 use crate::system::radau::SystemMotion;
 use crate::system::relaxed::RelaxError;
+use crate::system::simulation::second_order::Branching;
 use crate::vibration::system::CommonSpin;
 use crate::vibration::system::configuration::Configuration;
 
@@ -111,13 +112,13 @@ pub(super) fn size(system: &System, states: &[MotionState]) -> f64 {
 /// A body that does not resist a motion.
 const SINGULAR: SetupError = SetupError::Value { what: "the inertia of a body", found: 0.0, expected: "above 0" };
 
-/// Moves the bodies so that the joints close, and finds by how much.
+/// Moves the bodies so that the joints close, and finds by how much; and the branches of the motion, if there are two.
 pub(super) fn assemble(
     motion: &mut SystemMotion,
     states: &[MotionState],
     relaxed: bool,
     [size, end]: [f64; 2],
-) -> Result<Vec<Assembled>, SetupError> {
+) -> Result<(Vec<Assembled>, Option<Branching>), SetupError> {
     refuse_wrong_derivatives(motion)?;
     let open = motion.largest_gap().map_err(|_| SINGULAR)?;
     let done = if relaxed { motion.relax() } else { motion.assemble().map_err(RelaxError::from) };
@@ -137,6 +138,7 @@ pub(super) fn assemble(
         let joint = open.map_or_else(Box::default, |(joint, _)| joint.into());
         return Err(SetupError::NotAssembled { joint, left, rate: rates });
     }
+    let branching = motion.test_start()?;
     let changed = |(body, state): (usize, &MotionState)| {
         let now = motion.state(body).map_err(|_| SINGULAR)?;
         Ok(Assembled {
@@ -146,7 +148,8 @@ pub(super) fn assemble(
             angular_velocity: (now.omega_body - state.omega_body).norm(),
         })
     };
-    states.iter().enumerate().map(changed).collect()
+    let changes = states.iter().enumerate().map(changed).collect::<Result<_, SetupError>>()?;
+    Ok((changes, branching))
 }
 
 /// Refuses equations from outside whose derivatives are not theirs.

@@ -3,11 +3,12 @@
 use faer::Mat;
 
 use crate::conservative::ConservativeBody;
-use crate::system::constraints::Constraints;
+use crate::system::constraints::{Constraints, near};
 use crate::system::description::System;
 use crate::system::elimination::inverse::{Inertia, Inverse};
 use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
-use crate::system::relaxed::rigid_inverses;
+use crate::system::geometry::rank::Judgement;
+use crate::system::geometry::tree::Posture;
 use crate::vibration::system::body::BodyTerms;
 use crate::vibration::system::configuration::{BodyConfiguration, Configuration};
 use crate::vibration::system::error::SteadyError;
@@ -157,13 +158,14 @@ impl Terms {
         }
         self.of_mass = JointMatrix::new(&self.pattern, system.coordinates());
         self.of_mass.assemble(&self.pattern, constraints, &self.mass_inverses);
-        self.of_mass.factor(&self.pattern, &mut self.is_implied, true);
-        let rigid = rigid_inverses(&inertias).ok_or(SteadyError::Inertia)?;
-        let mut is_implied = self.is_implied.clone();
-        let mut of_rigid = JointMatrix::new(&self.pattern, system.coordinates());
-        of_rigid.assemble(&self.pattern, constraints, &rigid);
-        of_rigid.factor(&self.pattern, &mut is_implied, true);
-        let rank = is_implied.iter().filter(|is_implied| !**is_implied).count();
+        let places: Vec<_> = at.bodies.iter().map(|body| (body.origin, body.body_from_global)).collect();
+        let (positions, attitudes): (Vec<_>, Vec<_>) = places.into_iter().unzip();
+        let points = system.connections.joints.iter().map(|joint| at.places(&joint.markers)[1].position).collect();
+        let posture = Posture { positions: &positions, attitudes: &attitudes, ends: &constraints.ends, points };
+        self.is_implied = Judgement::first(system, &posture, true).rank.is_implied;
+        self.of_mass.factor(&self.pattern, &self.is_implied);
+        let of_rigid = Judgement::first(system, &posture, false).rank.is_implied;
+        let rank = of_rigid.iter().filter(|is_implied| !**is_implied).count();
         self.rigid_motions = (6 * system.bodies.len()).saturating_sub(rank);
         Ok(())
     }
@@ -204,7 +206,7 @@ impl Terms {
 /// g and G where the bodies are.
 fn constraints_at(system: &System, at: &Configuration) -> Constraints {
     let mut constraints = Constraints::new(&system.connections, &system.first);
-    constraints.find(&system.connections, |joint, _| at.turns[joint], [at.time; 2], |body| at.place(body));
+    constraints.find(&system.connections, near, |joint, _| at.turns[joint], [at.time; 2], |body| at.place(body));
     constraints
 }
 

@@ -29,6 +29,11 @@ pub struct TiedReport {
     pub rigid_dofs: usize,
     /// Joints with rows that others imply where bodies are rigid, and how many.
     pub redundant: Vec<(String, usize)>,
+    /// The largest residual of all rows of joints and couplings at the ends of the steps, as a length over the size of the system.
+    #[serde(serialize_with = "json::number")]
+    pub largest_residual: f64,
+    /// Where the motion branches at the beginning: joints, with their rates on the branch that was taken and on the other.
+    pub branches: Vec<(String, [f64; 2])>,
     /// Changes by which the joints closed at the beginning, of the bodies that were not where they had to be.
     pub assembled: Vec<AssembledReport>,
     /// Size of the system.
@@ -123,6 +128,8 @@ impl TiedReport {
             rows: system.joints().iter().map(|joint| joint.row_count()).sum(),
             rigid_dofs: simulation.rigid_dofs(),
             redundant: simulation.redundant().to_vec(),
+            largest_residual: simulation.largest_residual(),
+            branches: simulation.branching().map(|of| of.joints.clone()).unwrap_or_default(),
             assembled: assembled.filter(is_told).collect(),
             size,
             steps: simulation.stats().accepted,
@@ -152,7 +159,7 @@ impl TiedReport {
 
 impl fmt::Display for TiedReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { bodies, joints, rows, rigid_dofs, redundant, assembled, .. } = self;
+        let Self { bodies, joints, rows, rigid_dofs, redundant, largest_residual, branches, assembled, .. } = self;
         let s = |count: usize| if count == 1 { "" } else { "s" };
         writeln!(
             f,
@@ -170,6 +177,23 @@ impl fmt::Display for TiedReport {
                 "           others imply rows of {}: the reactions there are not determined by rigid bodies, but by how the \
                  bodies give",
                 list.join(", ")
+            )?;
+        }
+        if *largest_residual > TOLD {
+            let residual = quantity(rounded(*largest_residual, 2));
+            writeln!(f, "           joints were open by up to {residual} of the size of the system at the ends of steps")?;
+        }
+        if !branches.is_empty() {
+            let of = |which: usize| {
+                let rates = branches.iter().map(|(joint, rates)| format!("{joint} {}", quantity(rounded(rates[which], 4))));
+                rates.collect::<Vec<_>>().join(", ")
+            };
+            writeln!(
+                f,
+                "  branches the motion can begin in two ways; it goes by the one that is nearest to the velocities in the scene, with \
+                 the rates {}; the other has {}",
+                of(0),
+                of(1)
             )?;
         }
         for AssembledReport { body, moved, turned, velocity, angular_velocity } in assembled {
