@@ -193,7 +193,8 @@ impl Index1<'_> {
     /// A sweep of refinement of M a = Gᵀλ, G a = t: the factor of G M⁻¹Gᵀ alone loses digits where light bodies bear heavy ones.
     fn refine(&mut self, stage: &Stage, is_first: bool, lambda: &mut [f64]) {
         let Self { system, matrices, patterns, scratch, .. } = self;
-        let Stage { x: accelerations, y: left, velocities: impulse, constraints, constraint_rates: change, .. } = &mut **scratch;
+        let Stage { x: accelerations, y: left, velocities: impulse, constraints, constraint_rates: change, .. } =
+            &mut **scratch;
         let own = |b: usize| system.first[b]..system.first[b + 1];
         left.fill(0.0);
         stage.constraints.add_forces(lambda, left);

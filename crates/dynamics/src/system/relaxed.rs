@@ -52,7 +52,8 @@ impl SystemMotion {
     /// [`RelaxError`].
     pub fn relax(&mut self) -> Result<[f64; 2], RelaxError> {
         let mut left = self.assemble()?;
-        let given: Vec<_> = (0..self.bodies.len()).map(|body| self.state(body)).collect::<Result<_, _>>().map_err(Failed::Rates)?;
+        let given: Vec<_> =
+            (0..self.bodies.len()).map(|body| self.state(body)).collect::<Result<_, _>>().map_err(Failed::Rates)?;
         let is_bent = self.system.bodies.iter().any(|body| body.manifold.is_some());
         for _ in 0..PASSES {
             if is_bent {

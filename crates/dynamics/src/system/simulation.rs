@@ -614,7 +614,9 @@ impl SystemSimulation {
         let time = self.motion.time();
         let step = match error {
             StepError::Open { .. } => return error,
-            StepError::Newton { step, .. } | StepError::Tolerance { step, .. } | StepError::TurnTooLarge { step, .. } => step,
+            StepError::Newton { step, .. }
+            | StepError::Tolerance { step, .. }
+            | StepError::TurnTooLarge { step, .. } => step,
             _ => 0.0,
         };
         if let Some(joints) = self.motion.locked_joints(step) {

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use dynamics::{
-    ConservativeBody, Coupling, Expression, History, Joint, JointDrive, Marker, MotionState, Physics, PointForce, PointShapes,
-    Reached, Rows, SetupError, StepControl, StepError, System, SystemMotion, SystemScheme, SystemSetup,
+    ConservativeBody, Coupling, Expression, History, Joint, JointDrive, Marker, MotionState, Physics, PointForce,
+    PointShapes, Reached, Rows, SetupError, StepControl, StepError, System, SystemMotion, SystemScheme, SystemSetup,
     SystemSimulation,
 };
 use modal::{BodyPoint, ReducedBody, RigidMotion};
@@ -270,5 +270,41 @@ fn a_platform_falls_through_its_flat_position() {
         println!("{tolerance:e}: {steps} steps, {at:?}, residual {:e}", simulation.largest_residual());
         assert!(at.z < -0.1 && at.x.abs() < 1e-5 && at.y.abs() < 1e-5, "{tolerance:e}: {at}");
         assert!(steps < 500 && simulation.largest_residual() < 1e-9, "{steps}");
+    }
+}
+
+/// Conserved and by symmetry: what two hinges of one door bear does not depend on its inertia or on their order, and each bears half of
+/// its weight.
+#[test]
+fn two_hinges_share_a_door_by_geometry() {
+    let axes = Matrix3::identity();
+    let bears = |inertia: f64, is_upper_first: bool| -> [Vector3<f64>; 2] {
+        let hinge = |z: f64| {
+            let ends = [
+                Marker::on_ground(Vector3::z() * z, axes),
+                Marker::on_rigid(0, Vector3::new(-0.5, 0.0, z - 0.5), axes),
+            ];
+            Joint::revolute(if z > 0.0 { "upper" } else { "lower" }, ends)
+        };
+        let mut joints = vec![hinge(0.0), hinge(1.0)];
+        if is_upper_first {
+            joints.reverse();
+        }
+        let system = System::new(vec![body(2.0, inertia, GRAVITY)], joints).unwrap();
+        let mut simulation =
+            run(system, vec![state(Vector3::new(0.5, 0.0, 0.5), Vector3::zeros())], 1e-6, 1.0).unwrap();
+        assert_eq!((simulation.rigid_dofs(), simulation.redundant().len()), (1, 1));
+        let seen = simulation.observation().unwrap();
+        let mut forces: Vec<_> = seen.joints.iter().map(|joint| joint.reaction_global.force_global).collect();
+        if is_upper_first {
+            forces.reverse();
+        }
+        [forces[0], forces[1]]
+    };
+    let first = bears(0.1, false);
+    assert!(first.iter().all(|force| (force.z - GRAVITY).abs() < 1e-9), "{first:?}");
+    for other in [bears(1.0, false), bears(0.1, true)] {
+        let off = [0, 1].map(|k| (other[k] - first[k]).norm());
+        assert!(off.iter().all(|off| *off < 1e-9), "{first:?} {other:?}");
     }
 }

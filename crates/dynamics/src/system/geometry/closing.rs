@@ -1,4 +1,4 @@
-//! Closes the joints by small motions of the bodies, without their masses: Eqs. (J25) of `docs/method/systems.md`.
+//! Closes the joints by small motions of the bodies, without their masses: Eq. (J35) of `docs/method/systems.md`.
 
 use nalgebra::{Matrix3, Vector3, Vector6};
 

@@ -1,4 +1,4 @@
-//! Rows that close loops over the joints of a tree: Eqs. (J23) of `docs/method/systems.md`.
+//! Rows that close loops over the joints of a tree: Eq. (J31) of `docs/method/systems.md`.
 
 use std::collections::BTreeMap;
 
@@ -48,8 +48,7 @@ impl Loops {
             }
         };
         let way_of = |row: usize| -> Vec<usize> {
-            let paths: Vec<Vec<usize>> =
-                at.ends[row].iter().map(|end| tree.path(end.body).collect()).collect();
+            let paths: Vec<Vec<usize>> = at.ends[row].iter().map(|end| tree.path(end.body).collect()).collect();
             let mut way: Vec<usize> = paths.iter().flatten().copied().collect();
             way.sort_unstable();
             way.dedup();
@@ -64,8 +63,7 @@ impl Loops {
         for (row, way) in rows.iter().zip(&ways) {
             let on_way = way.iter().filter_map(|body| Some(tree.links[*body]?.joint));
             let numbers: Vec<usize> = on_way.chain(joints_of(*row)).collect();
-            let points: Vec<Vector3<f64>> =
-                numbers.iter().map(|joint| at.points[*joint]).collect();
+            let points: Vec<Vector3<f64>> = numbers.iter().map(|joint| at.points[*joint]).collect();
             let mean = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
             let radius = points.iter().map(|point| (point - mean).norm()).fold(0.0, f64::max);
             // Joints at one place, but for rounding, have no radius.
@@ -223,8 +221,7 @@ impl Loops {
             }
             twists[body] = twist;
             let omega: Vector3<f64> = twist.fixed_rows::<3>(3).into();
-            let velocity =
-                Vector3::from(twist.fixed_rows::<3>(0)) + omega.cross(&(at.positions[body] - tree.middle));
+            let velocity = Vector3::from(twist.fixed_rows::<3>(0)) + omega.cross(&(at.positions[body] - tree.middle));
             put(&mut out, system.first[body], &(at.attitudes[body] * velocity));
             put(&mut out, system.first[body] + 3, &(at.attitudes[body] * omega));
         }

@@ -1,4 +1,4 @@
-//! Rows that others imply, by a pivoted factor of the rows that close loops: Eqs. (J24) of `docs/method/systems.md`.
+//! Rows that others imply, by a pivoted factor of the rows that close loops: Eq. (J31) of `docs/method/systems.md`.
 
 use nalgebra::{DMatrix, RowDVector};
 

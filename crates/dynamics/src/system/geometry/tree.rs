@@ -1,4 +1,4 @@
-//! A tree of joints from the ground: Eqs. (J23) of `docs/method/systems.md`.
+//! A tree of joints from the ground: Eq. (J31) of `docs/method/systems.md`.
 
 use nalgebra::{DMatrix, Matrix3, Matrix6, Vector3, Vector6};
 
@@ -165,13 +165,14 @@ impl Tree {
     }
 }
 
-/// Largest distance of a joint or the origin of a body from their middle, or the largest radius of gyration, if that is more.
+/// Largest distance of a joint or the origin of a body from their middle; the largest radius of gyration where all are at one place.
 pub(crate) fn size_of_system(system: &System, at: &Posture<'_>) -> f64 {
     let middle = Tree::middle_of(at);
     let places = at.points.iter().chain(at.positions).map(|place| (place - middle).norm());
+    let size = places.fold(0.0, f64::max);
+    // One body whose joints are at its origin.
     let radii = system.bodies.iter().map(|body| body.radius_of_gyration());
-    let size = places.chain(radii).fold(0.0, f64::max);
-    if size > 0.0 { size } else { 1.0 }
+    if size > 0.0 { size } else { radii.fold(0.0, f64::max) }
 }
 
 /// Columns that are independent of each other, in their order: the rest is below `limit` beside them.

@@ -1,4 +1,4 @@
-//! Rows of joints whose markers are turned far against each other: angles in the place of their sines, Eqs. (J26) of
+//! Rows of joints whose markers are turned far against each other: angles in the place of their sines, Eq. (J35) of
 //! `docs/method/systems.md`. Near to where a joint is closed they are its rows.
 
 use std::f64::consts::TAU;

@@ -96,7 +96,8 @@ impl SystemMotion {
         }
         if left > CLEARANCE {
             let rows = rank.idle_part(&residuals);
-            let joints = names(&system.connections.sums(rows.iter().zip(&loops.sizes).map(|(u, size)| (u * size).powi(2))));
+            let joints =
+                names(&system.connections.sums(rows.iter().zip(&loops.sizes).map(|(u, size)| (u * size).powi(2))));
             let most = residuals.iter().zip(&loops.sizes).map(|(g, size)| (g / size).abs()).fold(0.0, f64::max);
             return Err(Failed::Open { joints: joints.into(), gap: most });
         }
@@ -158,7 +159,9 @@ impl SystemMotion {
     /// Counts the turns of joints that drives turn by the value of the drive; sums of couplings go along.
     fn count_driven_turns(&mut self) {
         let Self { system, start, time, .. } = self;
-        for (number, joint) in system.connections.joints.iter().enumerate().filter(|(_, joint)| joint.is_turned_by_drive()) {
+        for (number, joint) in
+            system.connections.joints.iter().enumerate().filter(|(_, joint)| joint.is_turned_by_drive())
+        {
             let off = joint.driven_at([*time; 2])[0] - start.joints[number].turn;
             let turns = (off / TAU).round() * TAU;
             if turns != 0.0 {

@@ -7,7 +7,7 @@
 //! s = |u·b| / (σ |b|)
 //! ```
 //!
-//! grows as 1/σ; where it passes a singular position it stays, Eqs. (J27) of `docs/method/systems.md`.
+//! grows as 1/σ; where it passes a singular position it stays, Eq. (J34) of `docs/method/systems.md`.
 
 use nalgebra::DMatrix;
 

@@ -1,4 +1,4 @@
-//! The start of a run, to second order: rows that others imply there have accelerations that may not fit, Eqs. (J28) of
+//! The start of a run, to second order: rows that others imply there have accelerations that may not fit, Eq. (J33) of
 //! `docs/method/systems.md`.
 //!
 //! With u the multipliers of rows that do nothing to the bodies, u·(Ġv + ġ_t) has to be zero. Where it is not and one motion n is free,
@@ -35,7 +35,8 @@ impl SystemMotion {
     /// # Errors
     /// [`SetupError::Contradiction`] where no motion fits the rows.
     pub(super) fn test_start(&mut self) -> Result<Option<Branching>, SetupError> {
-        const SINGULAR: SetupError = SetupError::Value { what: "the inertia of a body", found: 0.0, expected: "above 0" };
+        const SINGULAR: SetupError =
+            SetupError::Value { what: "the inertia of a body", found: 0.0, expected: "above 0" };
         self.begin();
         self.evaluate_first(self.time).map_err(|_| SINGULAR)?;
         let judged = Judgement::first(&self.system, &self.first.posture(&self.system), true);

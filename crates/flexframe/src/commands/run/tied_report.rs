@@ -181,11 +181,15 @@ impl fmt::Display for TiedReport {
         }
         if *largest_residual > TOLD {
             let residual = quantity(rounded(*largest_residual, 2));
-            writeln!(f, "           joints were open by up to {residual} of the size of the system at the ends of steps")?;
+            writeln!(
+                f,
+                "           joints were open by up to {residual} of the size of the system at the ends of steps"
+            )?;
         }
         if !branches.is_empty() {
             let of = |which: usize| {
-                let rates = branches.iter().map(|(joint, rates)| format!("{joint} {}", quantity(rounded(rates[which], 4))));
+                let rates =
+                    branches.iter().map(|(joint, rates)| format!("{joint} {}", quantity(rounded(rates[which], 4))));
                 rates.collect::<Vec<_>>().join(", ")
             };
             writeln!(
