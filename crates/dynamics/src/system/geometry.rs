@@ -2,5 +2,6 @@
 
 pub(crate) mod closing;
 pub(crate) mod loops;
+pub(crate) mod posture;
 pub(crate) mod rank;
 pub(crate) mod tree;

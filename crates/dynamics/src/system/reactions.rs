@@ -55,7 +55,7 @@ impl SystemMotion {
     }
 
     /// Shares what rows that imply each other bear so that Σ |f|² + |m|²/L² over the joints is least: by geometry alone, whatever the
-    /// masses, the units and the order of the joints.
+    /// masses, the units and the order of the joints, Eq. (J36).
     fn share_reactions(&mut self) {
         let Self { first, system, judgement, reactions, .. } = self;
         let Some(known) = judgement else { return };

@@ -12,7 +12,7 @@ use crate::system::constraints::{Compliant, Constraints, near};
 use crate::system::description::System;
 use crate::system::element::Stored;
 use crate::system::elimination::inverse::Inertia;
-use crate::system::geometry::tree::Posture;
+use crate::system::geometry::posture::Posture;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates, turn_along};
 use crate::system::joint::far::far_wrench;
 use crate::system::joint::force::{Forces, FrictionSlope};

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, Vector3, Vector6};
 
 use crate::system::description::System;
-use crate::system::geometry::tree::{Held, Posture, Tree, moved, scaled, size_of, wrench_about};
+use crate::system::geometry::posture::Posture;
+use crate::system::geometry::tree::{Held, Tree, moved, scaled, size_of, wrench_about};
 use crate::system::stage::put;
 
 /// Part of a wrench that is rounding, where both ways to the root meet.
@@ -228,7 +229,7 @@ impl Loops {
         out
     }
 
-    /// Multipliers of all rows for these of rows that close loops over their sizes, of length one.
+    /// Multipliers of all rows for these of rows that close loops over their sizes, of length one: Eq. (J32).
     pub fn idle_row(&self, parts: &[(usize, f64)]) -> Vec<f64> {
         let mut out = vec![0.0; self.sizes.len()];
         for (a, part) in parts {

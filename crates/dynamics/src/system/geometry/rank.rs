@@ -4,9 +4,10 @@ use nalgebra::{DMatrix, RowDVector};
 
 use crate::system::description::System;
 use crate::system::geometry::loops::Loops;
-use crate::system::geometry::tree::{Posture, Tree};
+use crate::system::geometry::posture::Posture;
+use crate::system::geometry::tree::Tree;
 
-/// What a row adds to others, over its size, below which they imply it, where the joints are closed.
+/// Part of a row over its size, beside others, below which they imply it where the joints are closed.
 pub(crate) const IMPLIED: f64 = 1e-7;
 /// Rows that were held before stay so, unless others are this many times better.
 const HELD: f64 = 4.0;

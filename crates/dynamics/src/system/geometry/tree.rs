@@ -1,25 +1,13 @@
 //! A tree of joints from the ground: Eq. (J31) of `docs/method/systems.md`.
 
-use nalgebra::{DMatrix, Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{DMatrix, Matrix6, Vector3, Vector6};
 
-use crate::system::constraints::End;
 use crate::system::description::System;
+use crate::system::geometry::posture::Posture;
 use crate::system::stage::vector;
 
 /// A row of a joint that its other rows leave less than this part of is implied by them.
 const IMPLIED: f64 = 1e-7;
-
-/// Where the bodies and joints of a system are.
-#[derive(Debug, Clone)]
-pub(crate) struct Posture<'a> {
-    /// Origins of the bodies, global, and their transformation matrices.
-    pub positions: &'a [Vector3<f64>],
-    pub attitudes: &'a [Matrix3<f64>],
-    /// The ends of the rows.
-    pub ends: &'a [Vec<End>],
-    /// The second marker of each joint, global.
-    pub points: Vec<Vector3<f64>>,
-}
 
 /// Joints that hold each body by one way from the ground, or from the first body of those that float.
 #[derive(Debug, Clone)]
@@ -45,7 +33,7 @@ pub(crate) struct Link {
     pub parent: Option<usize>,
 }
 
-/// What a link holds and leaves free where its bodies are. Wrenches are forces and moments about its point over its length, twists
+/// Rows that a link holds where its bodies are, and twists that it leaves free. Wrenches are forces and moments about its point over its length, twists
 /// velocities of that point and the length times angular velocities.
 #[derive(Debug, Clone)]
 pub(crate) struct Held {
@@ -136,7 +124,7 @@ impl Tree {
         std::iter::successors(Some(body), up).filter(|body| self.links[*body].is_some())
     }
 
-    /// What a joint holds of the body `on`, with this length.
+    /// The hold of a joint on the body `on`, with this length.
     pub fn held(&self, at: &Posture<'_>, joint: usize, on: usize, length: f64) -> Held {
         let point = at.points[joint];
         let all: Vec<usize> = (self.first_row[joint]..self.first_row[joint + 1]).collect();

@@ -31,11 +31,11 @@ impl SystemMotion {
             return;
         }
         *judged_at = Some(*time);
-        let posture = first.posture(system);
+        // The steps of a tree allocate nothing.
         match judgement {
             Some(known) if known.tree.is_all() || !known.is_of_now() => return,
-            Some(known) => known.again(system, &posture),
-            None => *judgement = Some(Judgement::first(system, &posture, true)),
+            Some(known) => known.again(system, &first.posture(system)),
+            None => *judgement = Some(Judgement::first(system, &first.posture(system), true)),
         }
         if let Some(known) = judgement {
             matrices.is_left_out[..system.rows()].copy_from_slice(&known.rank.is_implied);
