@@ -591,11 +591,11 @@ impl SystemSimulation {
             let Some((h, end)) = self.walk.equal.next_step() else { return Ok(None) };
             let time = self.motion.time();
             let tried = self.motion.try_step(h, end, EXACT, f64::INFINITY);
-            return tried.map(|_| Some(h)).map_err(|failed| self.reason_or(of_step(failed, time, h)));
+            return tried.map(|_| Some(h)).map_err(|failed| self.motion.reason_or(of_step(failed, time, h)));
         };
         let mut h = self.walk.next.min(self.walk.longest);
         let taken = self.motion.try_towards(segment.end, measure, &mut h);
-        let taken = taken.map_err(|error| self.reason_or(error))?;
+        let taken = taken.map_err(|error| self.motion.reason_or(error))?;
         // What only the segment made short says nothing about the next one.
         if taken.is_none() || h < self.walk.next {
             self.walk.next = h;
@@ -606,30 +606,6 @@ impl SystemSimulation {
             self.stats.rejected += 1;
         }
         Ok(taken)
-    }
-
-    /// The reason of a step that could not be done where it is found: joints that lock where the motion is, or stops that a fixed step goes
-    /// into; otherwise the error as it is.
-    fn reason_or(&mut self, error: StepError) -> StepError {
-        let time = self.motion.time();
-        let step = match error {
-            StepError::Open { .. } => return error,
-            StepError::Newton { step, .. }
-            | StepError::Tolerance { step, .. }
-            | StepError::TurnTooLarge { step, .. } => step,
-            _ => 0.0,
-        };
-        if let Some(joints) = self.motion.locked_joints(step) {
-            return StepError::Locked { time, joints: joints.into() };
-        }
-        let StepError::Newton { step, .. } = error else { return error };
-        match self.motion.stops_within(step) {
-            Some((joints, contact)) => {
-                let named = joints.iter().map(|joint| format!("\"{joint}\"")).collect::<Vec<_>>().join(", ");
-                StepError::Stops { time, step, joints: named.into(), contact }
-            }
-            None => error,
-        }
     }
 
     /// Counts a step that was taken.

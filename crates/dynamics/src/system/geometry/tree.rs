@@ -73,7 +73,8 @@ impl Tree {
             .filter_map(|joint| {
                 let [i, j] = ends(joint);
                 let on = if j == bodies { i } else { j };
-                (i != j).then(|| tree.held(at, joint, on, tree.size).rows).map(|rows| (joint, rows))
+                let all = (tree.first_row[joint]..tree.first_row[joint + 1]).collect();
+                (i != j).then(|| tree.held_by(at, (joint, all), on, tree.size).rows).map(|rows| (joint, rows))
             })
             .collect();
         order.sort_by_key(|(_, rows)| std::cmp::Reverse(rows.len()));
@@ -124,10 +125,16 @@ impl Tree {
         std::iter::successors(Some(body), up).filter(|body| self.links[*body].is_some())
     }
 
-    /// The hold of a joint on the body `on`, with this length.
+    /// The hold of a joint of the tree on the body `on`, with this length: by the same rows wherever the system is, since which of rows that
+    /// hold the same come first is a matter of rounding.
     pub fn held(&self, at: &Posture<'_>, joint: usize, on: usize, length: f64) -> Held {
+        let rows = (self.first_row[joint]..self.first_row[joint + 1]).filter(|row| self.holds[*row]);
+        self.held_by(at, (joint, rows.collect()), on, length)
+    }
+
+    /// The hold of the independent ones of some rows of a joint.
+    fn held_by(&self, at: &Posture<'_>, (joint, all): (usize, Vec<usize>), on: usize, length: f64) -> Held {
         let point = at.points[joint];
-        let all: Vec<usize> = (self.first_row[joint]..self.first_row[joint + 1]).collect();
         let of_row = |row: usize| {
             let end = at.ends[row].iter().find(|end| end.body == on);
             let wrench = end.map_or_else(Vector6::zeros, |end| wrench_about(at, on, &end.entries, &point));

@@ -28,7 +28,8 @@ impl SystemMotion {
         let mut measure = Self::measure(tolerance, end - self.time);
         let mut steps = 0;
         while self.time < end {
-            steps += u64::from(self.try_towards(end, &mut measure, h)?.is_some());
+            let taken = self.try_towards(end, &mut measure, h);
+            steps += u64::from(taken.map_err(|error| self.reason_or(error))?.is_some());
         }
         Ok(steps)
     }

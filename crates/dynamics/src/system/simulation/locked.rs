@@ -11,6 +11,7 @@
 
 use nalgebra::DMatrix;
 
+use crate::error::StepError;
 use crate::system::geometry::rank::Judgement;
 use crate::system::radau::SystemMotion;
 use crate::system::radau::rows::names;
@@ -22,8 +23,32 @@ const NEAR: f64 = 10.0;
 const WITHIN: f64 = 0.3;
 
 impl SystemMotion {
+    /// The reason of a step that could not be done where it is found: joints that lock where the motion is, or stops that a fixed step goes
+    /// into; otherwise the error as it is.
+    pub(in crate::system) fn reason_or(&mut self, error: StepError) -> StepError {
+        let time = self.time();
+        let step = match error {
+            StepError::Open { .. } => return error,
+            StepError::Newton { step, .. }
+            | StepError::Tolerance { step, .. }
+            | StepError::TurnTooLarge { step, .. } => step,
+            _ => 0.0,
+        };
+        if let Some(joints) = self.locked_joints(step) {
+            return StepError::Locked { time, joints: joints.into() };
+        }
+        let StepError::Newton { step, .. } = error else { return error };
+        match self.stops_within(step) {
+            Some((joints, contact)) => {
+                let named = joints.iter().map(|joint| format!("\"{joint}\"")).collect::<Vec<_>>().join(", ");
+                StepError::Stops { time, step, joints: named.into(), contact }
+            }
+            None => error,
+        }
+    }
+
     /// Names of the joints and couplings that lock where the system is, or within a step from there; `None` where none do.
-    pub(super) fn locked_joints(&mut self, step: f64) -> Option<String> {
+    fn locked_joints(&mut self, step: f64) -> Option<String> {
         self.begin();
         self.evaluate_first(self.time).ok()?;
         let Self { first, system, .. } = self;
