@@ -151,7 +151,7 @@ fn joints_lower_the_damping_of_modes_and_that_is_told() {
 }
 
 /// The tolerance is kept for the deformation of a body that hardly bends, and the card tells what steps have damped of it. Independent
-/// reference: a run at 1e-9.
+/// reference: a run at 1e-7.
 #[test]
 fn a_small_deformation_is_as_right_as_the_tolerance_says() {
     let folder = tempfile::tempdir().unwrap();
@@ -182,15 +182,15 @@ fn a_small_deformation_is_as_right_as_the_tolerance_says() {
         let results = Results::open(Path::new(report["results"].as_str().unwrap()), &COLUMNS).unwrap();
         (results.numbers("bodies/bar/energy/strain").unwrap().to_vec(), line)
     };
-    let (rough, told) = of_steps("1e-4", "1e-4*(1-cos(100*t))");
-    let (fine, silent) = of_steps("1e-9", "1e-4*(1-cos(100*t))");
+    let (rough, told) = of_steps("1e-5", "1e-4*(1-cos(100*t))");
+    let (fine, _) = of_steps("1e-7", "1e-4*(1-cos(100*t))");
     let largest = fine.iter().copied().fold(0.0, f64::max);
     let off = rough.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest;
     println!("off by {off:e}: {told}");
-    // Of the energy, twice the amplitude.
-    assert!(off < 2e-3, "{rough:?} {fine:?}");
-    assert!(told.contains("of the largest deformation; bounded by `tolerance`"), "{told}");
-    assert!(!silent.contains("was damped"), "{silent}");
+    // Of the energy, twice the amplitude; measured: 1e-4.
+    assert!(off < 2e-4, "{rough:?} {fine:?}");
+    assert!(told.contains("and of the largest deformation"), "{told}");
+    assert!(told.contains("of the largest deformation was damped"), "{told}");
 }
 
 /// Outputs that damping makes go with velocities are left out of the sums of a shock, and that is told.
