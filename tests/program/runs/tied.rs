@@ -126,6 +126,7 @@ markers = { root = { group = "left" } }
 
 [modes]
 flexible = 6
+damping_ratio = 0.01
 
 [[loads]]
 kind = "gravity"
@@ -160,8 +161,8 @@ fn a_joint_to_the_ground_moves_a_body_as_its_constraint_does() {
     let swing = expected.iter().fold(0.0_f64, |most, angle| most.max(angle.abs()));
     println!("{off:e} rad of {swing}; {steps_tied} steps, and {steps_held} with the constraint");
     assert!(swing > 1.0 && off < 2e-5, "{off:e}");
-    // The stiffest shape of the joint does not limit its steps.
-    assert!(10 * steps_tied < steps_held, "{steps_tied} {steps_held}");
+    // The stiffest shape of the joint does not limit its steps, once what it rings with is damped: it has 60 000 periods in the run.
+    assert!(steps_tied < 10_000, "{steps_tied}");
 }
 
 /// Closed form: friction F tanh(v / v_f) that holds 95 % of F creeps at v_f artanh(0.95); the arm starts at rest.

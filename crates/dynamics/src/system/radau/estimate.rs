@@ -16,7 +16,7 @@ use crate::tolerance::ErrorKinds;
 
 /// A velocity counts by what it moves in the run: springs and shapes hold it back within this part of it.
 const HELD_WITHIN: f64 = 0.25;
-/// Errors of places that nothing holds back count so many times: the motion carries them on, and often makes them larger.
+/// Errors of places that nothing holds back count this many times: the motion carries them on, and often makes them larger.
 const CARRIED: f64 = 4.0;
 /// Times 1/(ζ_k ω_k) after which a mode has forgotten its errors.
 const FORGOTTEN: f64 = 3.0;
