@@ -210,10 +210,16 @@ impl SystemMotion {
         for (b, body) in system.bodies.iter().enumerate() {
             let own = system.first[b]..system.first[b + 1];
             place = larger(place, largest_place(&x[own.clone()], *size));
+            let shapes = &x[own.start + 6..own.end];
+            let [shift, turn] = [0, 3].map(|part| vector(x, own.start + part));
+            let rigid = body.mass() * shift.norm_squared() + turn.dot(&(body.undeformed_inertia() * turn));
+            let bent: f64 = shapes.iter().map(|q| q * q).sum();
+            // Of a vibration in which the body moves as well as bends, as joints make it, only the bending is damped.
+            let part_bent = if bent > 0.0 { bent / (bent + rigid) } else { 1.0 };
             let mut square = 0.0;
-            for (k, q) in x[own.start + 6..own.end].iter().enumerate() {
+            for (k, q) in shapes.iter().enumerate() {
                 let (omega, zeta) = (body.circular_frequencies[k], body.damping_ratios[k]);
-                let memory = FORGOTTEN / (omega * zeta.min(zeta.recip()) * span);
+                let memory = FORGOTTEN / (omega * zeta.min(zeta.recip()) * part_bent * span);
                 let weight = if span.is_finite() { memory.max(h / span).min(1.0) } else { 1.0 };
                 square += (q * weight).powi(2);
             }
