@@ -74,7 +74,7 @@ pub enum History<T = Table, E = Expression> {
         /// Length T.
         duration: f64,
     },
-    /// Straight lines between given values.
+    /// Straight lines or cubics between given values.
     Table(T),
     /// A formula in t.
     Expression(E),
@@ -222,7 +222,7 @@ impl History {
     }
 
     /// Longest step that sees the factor as it is in a stretch of time around `branch_time` that has no discontinuity: a sixteenth
-    /// of a period of what swings, so that Simpson's rule errs by 1e-5 of it. Straight lines are seen by any step; for
+    /// of a period of what swings, so that Simpson's rule errs by 1e-5 of it. Straight lines and cubics are seen by any step; for
     /// expressions see [`FormulaSteps`](crate::history::formula_steps::FormulaSteps).
     pub(crate) fn longest_step(&self, branch_time: f64) -> f64 {
         let of_period = |period: f64| period / 16.0;

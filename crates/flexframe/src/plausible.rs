@@ -8,7 +8,7 @@ use dynamics::Effect;
 use fem_tet10::{Material, Materials};
 use modal::NoCycles;
 use model::{BodyMarker, Doubt, Meshed, Model};
-use scene::{Body, Choice, Load, Scene, System, Units};
+use scene::{Body, Choice, Interpolation, Joint, Load, Scene, System, TablePoints, Units, tables_of};
 
 use crate::report::quantity;
 use crate::rows::units::UnitLabels;
@@ -50,7 +50,32 @@ pub fn doubts_of_system(system: &System) -> Vec<String> {
             move |doubt| name.as_ref().map_or_else(|| String::clone(&doubt), |name| format!("body {name}: {doubt}"));
         doubts_of_scene(scene).into_iter().map(named).collect::<Vec<_>>()
     };
-    system.bodies.iter().flat_map(of_body).collect()
+    system.bodies.iter().flat_map(of_body).chain(struck_drives(system)).collect()
+}
+
+/// Drives whose coordinate goes along straight lines of a table: its rate jumps where they meet.
+pub(crate) fn struck_drives(system: &System) -> Vec<String> {
+    let end = system.bodies.first().map_or(0.0, |scene| scene.time.end);
+    let of_joint = |joint: &Joint| {
+        let tables = joint.drive.as_ref().map_or_else(Vec::new, |drive| tables_of(&drive.history));
+        let lines = tables.into_iter().filter(|table| table.interpolation == Interpolation::Linear);
+        let jumps = lines.filter_map(|TablePoints { points, .. }| {
+            let (times, values) = points.iter().map(|[t, v]| (*t, *v)).unzip();
+            let table = dynamics::Table::new(times, values).ok()?;
+            let [first, last] = [points.first()?[0], points.last()?[0]];
+            let is_inside = |time: &&f64| **time > first.max(0.0) && **time < last.min(end);
+            Some(table.discontinuities().iter().filter(is_inside).count())
+        });
+        let jumps: usize = jumps.sum();
+        (jumps > 0).then(|| {
+            format!(
+                "joint {}: the drive goes along straight lines between the points of its table, so its speed jumps {jumps} times, and each \
+                 jump strikes the bodies; `interpolation = \"monotone-cubic\"` beside the points has a speed without jumps",
+                joint.name
+            )
+        })
+    };
+    system.joints.iter().filter_map(of_joint).collect()
 }
 
 fn of_materials(materials: &Materials, units: &Units) -> Vec<String> {

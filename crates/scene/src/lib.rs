@@ -53,7 +53,7 @@ pub use dynamics::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
 pub use file::{text_from, text_of};
-pub use loads::history::{DrivenSpeed, Formula, History, TablePoints};
+pub use loads::history::{DrivenSpeed, Formula, History, Interpolation, TablePoints};
 pub use loads::load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use matrix_import::MatrixFiles;
 pub use methods::{METHODS, method_named};
@@ -61,6 +61,7 @@ pub use scene::{Body, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, S
 pub use schema::json_schema;
 pub use system::System;
 pub use text::assign::{AssignError, assign};
+pub use text::files::tables_of;
 pub use text::place::Place;
 pub use text::shorten::shorten;
 pub use text::suggest::one_of;

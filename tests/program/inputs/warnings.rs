@@ -10,7 +10,7 @@ use flexframe::dynamics::Rows;
 use flexframe::model::{Builder, Cache, Model};
 use flexframe::modes::{modes, reduce};
 use flexframe::run::{RunError, RunReport, RunSettings, results_path, run};
-use flexframe::scene::Scene;
+use flexframe::scene::{Scene, System};
 use flexframe::surface::Surface;
 use results::{Results, unfinished};
 
@@ -322,4 +322,39 @@ fn of_a_mesh_that_was_not_read_whole() {
     is_told(&report.warnings);
     is_told(&Results::open(&report.results, &COLUMNS).unwrap().metadata.warnings);
     assert!(builder.cache.notes().warnings.is_empty(), "{:?}", builder.cache.notes());
+}
+
+/// A wheel that a table turns, with the rest of the history.
+fn wheel(rest: &str) -> RunReport {
+    let text = format!(
+        "{UNITS}[bodies.wheel]\nrigid = {{ mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 2]] }}\n\
+         markers = {{ hub = {{ at = [0, 0, 0] }} }}\n[[joints]]\nname = \"axle\"\nkind = \"revolute\"\naxis = [0, 0, 1]\n\
+         between = [\"ground\", \"wheel.hub\"]\n\
+         drive = {{ amplitude = 1.0, history = {{ kind = \"table\", points = [[0, 0], [0.5, 1], [1.25, 1.5], [2, 1.2]]{rest} }} }}\n\
+         [time]\nend = 2.0\ntolerance = 1e-6\n[output]\ninterval = 0.1\n"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let system = System::parse(&text, "wheel.toml").unwrap();
+    let report = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
+    let results = Results::open(&report.results, &COLUMNS).unwrap();
+    let [angle, rate] = ["angle", "rate"].map(|name| results.numbers(&format!("joints/axle/{name}")).unwrap()[4]);
+    // Independent reference: PchipInterpolator of SciPy at 0.4, and its derivative; straight lines.
+    let expected = match rest {
+        "" => [0.8, 2.0],
+        _ => [0.870_326_436_781_609_3, 1.541_701_149_425_287],
+    };
+    assert!((angle - expected[0]).abs() < 1e-9 && (rate - expected[1]).abs() < 1e-7, "{angle} {rate} {expected:?}");
+    report
+}
+
+#[test]
+fn of_a_drive_along_straight_lines() {
+    let [lines, cubics] = ["", ", interpolation = \"monotone-cubic\""].map(wheel);
+    assert!(lines.warnings.iter().any(|warning| warning.contains("its speed jumps 2 times")), "{:?}", lines.warnings);
+    assert!(cubics.warnings.is_empty(), "{:?}", cubics.warnings);
+    for (report, words) in
+        [(lines, "4 points of the scene: straight lines"), (cubics, "4 points of the scene: monotone cubics")]
+    {
+        assert!(report.to_string().contains(&format!("  table    {words}\n")), "{report}");
+    }
 }

@@ -23,9 +23,11 @@ struct Piece {
     samples: Vec<f64>,
 }
 
-/// Fewest and most intervals in a piece.
+/// Intervals that one of few pieces begins with, and most intervals in a piece.
 const FEWEST: usize = 64;
 const MOST: usize = 1 << 15;
+/// Intervals that pieces begin with, in all but for one in each: what lies between many discontinuities is short.
+const FEWEST_IN_ALL: usize = 1 << 14;
 /// Most intervals in all pieces, but for one in each.
 const MAX_IN_ALL: usize = 1 << 22;
 /// Distance of the lines from the history, of its largest value.
@@ -38,13 +40,13 @@ impl Course {
     pub(crate) fn new(history: &History, end: f64, among: usize) -> Self {
         let stops = stops(&[history], end);
         let largest = history.largest(end);
-        let most = max_intervals(history, among, stops.len());
+        let counts = intervals(history, among, stops.len());
         let mut start = 0.0;
         let mut resolved = true;
         let mut pieces = Vec::with_capacity(stops.len());
         for stop in stops {
             if stop > start {
-                let (piece, follows) = Piece::new(history, start, stop, CLOSE * largest, most);
+                let (piece, follows) = Piece::new(history, start, stop, CLOSE * largest, counts);
                 pieces.push(piece);
                 resolved &= follows;
                 start = stop;
@@ -66,7 +68,7 @@ impl Course {
                 continue;
             }
             let found = histories.iter().zip(&courses).map(|(history, course)| {
-                Piece::new(history, start, stop, CLOSE * course.largest, max_intervals(history, among, stops.len()))
+                Piece::new(history, start, stop, CLOSE * course.largest, intervals(history, among, stops.len()))
             });
             let found: Vec<(Piece, bool)> = found.collect();
             let count = found.iter().map(|(piece, _)| piece.samples.len() - 1).max().unwrap_or(1);
@@ -186,11 +188,12 @@ fn stops(histories: &[&History], end: f64) -> Vec<f64> {
     stops
 }
 
-/// Most intervals in each of `pieces` of a history, `among` others that cost more than closed forms do.
-fn max_intervals(history: &History, among: usize, pieces: usize) -> usize {
+/// Fewest and most intervals in each of `pieces` of a history, `among` others that cost more than closed forms do.
+fn intervals(history: &History, among: usize, pieces: usize) -> [usize; 2] {
     // What a value costs is in the number of samples as its square root: the walks for the size have the other part.
     let share = history.cost().sqrt() * among.max(1) as f64;
-    ((MAX_IN_ALL / pieces).clamp(1, MOST) as f64 / share).max(1.0) as usize
+    let most = ((MAX_IN_ALL / pieces).clamp(1, MOST) as f64 / share).max(1.0) as usize;
+    [(FEWEST_IN_ALL / pieces).clamp(1, FEWEST).min(most), most]
 }
 
 impl Piece {
@@ -201,8 +204,8 @@ impl Piece {
         Self { step: (stop - start) / n as f64, samples: (0..=n).map(at).collect() }
     }
 
-    fn new(history: &History, start: f64, stop: f64, close: f64, most: usize) -> (Self, bool) {
-        let mut n = FEWEST.min(most);
+    fn new(history: &History, start: f64, stop: f64, close: f64, [fewest, most]: [usize; 2]) -> (Self, bool) {
+        let mut n = fewest;
         loop {
             // Three points between the samples: one in the middle could fall on the waves of the history.
             let (piece, finer) = (Self::of(history, start, stop, n), Self::of(history, start, stop, 4 * n));
@@ -314,8 +317,8 @@ mod tests {
             let table = dynamics::Table::new(times, values).unwrap();
             let course = Course::new(&History::Table(table), f64::from(discontinuities), 1);
             let samples: usize = course.pieces.iter().map(|piece| piece.samples.len()).sum();
-            // The straight lines of a table are followed by however few. Measured: 195 000 and 4 200 000.
-            assert!(course.resolved && samples < MAX_IN_ALL + 2 * course.pieces.len(), "{samples}");
+            // The straight lines of a table are followed by however few. Measured: 18 000 and 600 000.
+            assert!(course.resolved && samples <= FEWEST_IN_ALL + 2 * course.pieces.len(), "{samples}");
             assert!((course.magnitude_integral / (0.5 * f64::from(discontinuities)) - 1.0).abs() < 1e-3);
         }
     }

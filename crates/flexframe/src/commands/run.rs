@@ -35,7 +35,7 @@ pub use error::{RunError, RunFailure};
 pub use estimate::Estimate;
 pub(crate) use metadata::units;
 pub use metadata::{metadata, metadata_of_system};
-pub use report::{RunReport, SystemReport};
+pub use report::{RunReport, SystemReport, TableInUse};
 pub use settings::{RunProgress, RunSettings};
 pub use tied_report::{AssembledReport, HeldReport, StepLimitReport, TiedReport};
 pub use watch::{Watch, Watched};
@@ -48,6 +48,7 @@ use crate::files::outputs::outputs_of_system;
 pub use crate::files::results_path::results_path;
 use crate::files::scene_file;
 use crate::motion::{Beginning, begin};
+use crate::plausible;
 use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;
 use crate::trust;
@@ -87,6 +88,8 @@ fn conclude(
     (mut report, mut writer): (RunReport, Writer<Row>),
     mut progress: impl FnMut(RunProgress),
 ) -> Result<RunReport, RunError> {
+    report.tables = TableInUse::all(system);
+    report.warnings.extend(plausible::struck_drives(system));
     let file = report.results.file_name().unwrap_or_default().to_string_lossy().into_owned();
     if !settings.rows_alone {
         let started = Instant::now();

@@ -1,7 +1,7 @@
 //! Histories of a scene as functions of time.
 
 use dynamics::{Expression, SetupError, Table};
-use scene::{Formula, History, Scene, TablePoints, key_path};
+use scene::{Formula, History, Interpolation, Scene, TablePoints, key_path};
 
 use crate::error::BuildError;
 
@@ -25,9 +25,12 @@ pub(crate) fn history(scene: &Scene, key: &str, history: &History) -> Result<dyn
         let made = factors.map(|(i, factor)| self::history(scene, &format!("{key}.factors[{i}]"), factor));
         dynamics::History::Product { factors: made.collect::<Result<_, _>>()? }
     } else {
-        let table = |TablePoints { points, .. }: &TablePoints| {
+        let table = |TablePoints { points, interpolation, .. }: &TablePoints| {
             let (times, values) = points.iter().map(|[t, v]| (*t, *v)).unzip();
-            Table::new(times, values)
+            match interpolation {
+                Interpolation::Linear => Table::new(times, values),
+                Interpolation::MonotoneCubic => Table::monotone_cubic(times, values),
+            }
         };
         let expression = |Formula { formula, discontinuities }: &Formula| {
             Ok(Expression::new(formula, discontinuities.clone())?.with_discontinuities_until(scene.time.end))

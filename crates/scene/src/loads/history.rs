@@ -11,7 +11,7 @@ pub type History = dynamics::History<TablePoints, Formula>;
 /// A velocity given over time: radians per time of a hinge, length per time of a slider.
 pub type DrivenSpeed = dynamics::DrivenSpeed<TablePoints, Formula>;
 
-/// A table: straight lines between points, the first and the last value held before and after them.
+/// A table: straight lines or cubics between points, the first and the last value held before and after them.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TablePoints {
@@ -21,6 +21,20 @@ pub struct TablePoints {
     /// The CSV file that the points come from, already resolved against the folder of the scene file;
     /// `None` if they stand in the scene.
     pub file: Option<PathBuf>,
+    /// The way from point to point; default straight lines.
+    #[serde(default)]
+    pub interpolation: Interpolation,
+}
+
+/// How a table goes from point to point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Interpolation {
+    /// Straight lines: the rate jumps at each point.
+    #[default]
+    Linear,
+    /// Cubics whose rate does not jump, and which rise and fall only where the points do.
+    MonotoneCubic,
 }
 
 /// A formula in the time `t`.

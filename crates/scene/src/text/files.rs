@@ -22,7 +22,7 @@ impl System {
     pub fn tables(&self) -> impl Iterator<Item = &TablePoints> {
         let of_joints = self.joints.iter().flat_map(|joint| joint.drive.iter().chain(&joint.motor));
         let of_bodies = self.bodies.iter().flat_map(Scene::histories);
-        of_bodies.chain(of_joints.map(|drive| &drive.history)).flat_map(tables)
+        of_bodies.chain(of_joints.map(|drive| &drive.history)).flat_map(tables_of)
     }
 }
 
@@ -46,10 +46,10 @@ impl Scene {
 }
 
 /// The tables of a history.
-fn tables(history: &History) -> Vec<&TablePoints> {
+pub fn tables_of(history: &History) -> Vec<&TablePoints> {
     match history {
         History::Table(table) => vec![table],
-        History::Product { factors } => factors.iter().flat_map(tables).collect(),
+        History::Product { factors } => factors.iter().flat_map(tables_of).collect(),
         _ => Vec::new(),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use scene::{History, Load, Scene, SceneError, TablePoints};
+use scene::{History, Interpolation, Load, Scene, SceneError, TablePoints};
 
 const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
@@ -30,7 +30,11 @@ fn two_columns_in_every_writing() {
         let scene = read(folder.path(), text.as_bytes()).unwrap_or_else(|error| panic!("{text:?}: {error}"));
         let Load::Force(force) = &scene.loads[0] else { panic!("not a force") };
         let file = Some(folder.path().join("pulse.csv"));
-        assert_eq!(force.history, History::Table(TablePoints { points: points.clone(), file }), "{text:?}");
+        assert_eq!(
+            force.history,
+            History::Table(TablePoints { points: points.clone(), file, interpolation: Interpolation::Linear }),
+            "{text:?}"
+        );
     }
 }
 

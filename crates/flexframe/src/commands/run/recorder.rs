@@ -149,6 +149,7 @@ impl<'a> Recorder<'a> {
             title: scene.title.clone(),
             units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
             results: writer.path().to_path_buf(),
+            tables: Vec::new(),
             rows,
             estimate,
             formulation: scene.time.method.formulation.to_owned(),

@@ -1,7 +1,9 @@
 //! Report of `flexframe run`.
 
+use std::fmt;
 use std::path::PathBuf;
 
+use scene::{Interpolation, System, TablePoints};
 use serde::Serialize;
 
 use super::body_report::BodyRunReport;
@@ -23,6 +25,8 @@ pub struct RunReport {
     /// The results file.
     #[serde(serialize_with = "json::path")]
     pub results: PathBuf,
+    /// Tables of loads, motions and drives, and how they go from point to point.
+    pub tables: Vec<TableInUse>,
     /// Rows in it.
     pub rows: u64,
     /// The estimate before it.
@@ -54,6 +58,43 @@ pub struct RunReport {
     pub warnings: Vec<String>,
     /// Where the time went, seconds.
     pub times: Times,
+}
+
+/// A table of a history.
+#[derive(Debug, Clone, Serialize)]
+pub struct TableInUse {
+    /// Its file; `None` if it stands in the scene.
+    #[serde(serialize_with = "json::optional_path")]
+    pub file: Option<PathBuf>,
+    /// The number of its points.
+    pub points: usize,
+    /// The way from point to point.
+    pub interpolation: Interpolation,
+}
+
+impl TableInUse {
+    /// The tables of a scene.
+    pub(super) fn all(system: &System) -> Vec<Self> {
+        let of = |table: &TablePoints| Self {
+            file: table.file.clone(),
+            points: table.points.len(),
+            interpolation: table.interpolation,
+        };
+        system.tables().map(of).collect()
+    }
+}
+
+impl fmt::Display for TableInUse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.file {
+            Some(file) => write!(f, "{}, {} points", file.display(), self.points)?,
+            None => write!(f, "{} points of the scene", self.points)?,
+        }
+        f.write_str(match self.interpolation {
+            Interpolation::Linear => ": straight lines",
+            Interpolation::MonotoneCubic => ": monotone cubics",
+        })
+    }
 }
 
 /// All bodies together in the last row.

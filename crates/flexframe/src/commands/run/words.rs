@@ -38,6 +38,9 @@ impl fmt::Display for RunReport {
             writeln!(f, "  motion   {} steps, {:.0} steps per second", self.steps, self.steps_per_second)?;
             writeln!(f, "  energy   {} {} at the end", quantity(self.system.final_energy), units.energy())?;
         }
+        for table in &self.tables {
+            writeln!(f, "  table    {table}")?;
+        }
         if let Some(check) = &self.check {
             check.write_in_run(f)?;
         }

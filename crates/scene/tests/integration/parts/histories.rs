@@ -1,6 +1,6 @@
 //! How loads go with time. Tables in files have a test of their own.
 
-use scene::{Formula, History, Load, TablePoints};
+use scene::{Formula, History, Interpolation, Load, TablePoints};
 
 const HALF_SINE: &str = "history = { kind = \"half-sine\", start = 0.0, duration = 0.02 }";
 
@@ -36,7 +36,19 @@ fn every_kind() {
         }),
         (
             "kind = 'table', points = [[0, 1], [2, 3.5]]",
-            History::Table(TablePoints { points: vec![[0.0, 1.0], [2.0, 3.5]], file: None }),
+            History::Table(TablePoints {
+                points: vec![[0.0, 1.0], [2.0, 3.5]],
+                file: None,
+                interpolation: Interpolation::Linear,
+            }),
+        ),
+        (
+            "kind = 'table', points = [[0, 1], [2, 3.5]], interpolation = 'monotone-cubic'",
+            History::Table(TablePoints {
+                points: vec![[0.0, 1.0], [2.0, 3.5]],
+                file: None,
+                interpolation: Interpolation::MonotoneCubic,
+            }),
         ),
         (
             "kind = 'expression', formula = 'sin(2*pi*t)'",
