@@ -47,6 +47,19 @@ pub(crate) struct Reduction {
 impl Reduction {
     pub fn new(model: &MeshModel<'_, '_>, survey: Survey, decision: &Decision) -> Result<Self, BuildError> {
         let Survey { modes, modal, spin, statics, of_markers, backbones, advice } = survey;
+        // Large modes are those of the body without the rigid part.
+        if let (false, Some(marker)) =
+            (decision.bent.large.is_empty(), model.markers.iter().find(|of| of.rigid_nodes().is_some()))
+        {
+            let key = key_path(&key_path("body.markers", marker.name()), "tie");
+            let help =
+                "tie its `\"nodes\"` to a rigid body by a fixed joint, or give `large_deflection = false` in [effects]";
+            let found = "a rigid part of a body with large modes";
+            return Err(model
+                .scene
+                .refuse(&key, found, "`\"mean\"` or `\"nodes\"`, whose shapes large modes know", help)
+                .into());
+        }
         let of_markers = of_markers.filter(|_| decision.keep > 0);
         let warps = of_markers.as_ref().map_or_else(Vec::new, |of| warps(&model.markers, model.mesh, of.as_ref()));
         let mut backbones = backbones;
@@ -87,18 +100,6 @@ impl Reduction {
             }
             None => (modes, modal, bent),
         };
-        if let (false, Some(marker)) =
-            (bent.large.is_empty(), model.markers.iter().find(|of| of.rigid_nodes().is_some()))
-        {
-            let key = key_path(&key_path("body.markers", marker.name()), "tie");
-            let help =
-                "tie its `\"nodes\"` to a rigid body by a fixed joint, or give `large_deflection = false` in [effects]";
-            let found = "a rigid part of a body with large modes";
-            return Err(model
-                .scene
-                .refuse(&key, found, "`\"mean\"` or `\"nodes\"`, whose shapes large modes know", help)
-                .into());
-        }
         let (modal, stress, large, of_spin) = if !bent.large.is_empty() {
             let all = bent.all();
             let stressing = statics.without_parts(model, &modes, &all)?;

@@ -1,5 +1,7 @@
 //! Places with axes on a mesh: the nodes that carry them, the forces of their unit wrenches, and how modes move them.
 
+use std::collections::BTreeMap;
+
 use faer::prelude::ReborrowMut;
 use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Location, Mesh, Patch, Strip};
@@ -141,7 +143,7 @@ impl MeshMarker {
                 Err(scene.refuse(&key_path(&key, "tie"), found, "`\"mean\"` or `\"nodes\"`", help).into())
             }
             Tie::Nodes | Tie::Rigid => {
-                let nodes = nodes(scene, mesh, region, &key)?;
+                let nodes = nodes(scene, mesh, region, &key, marker.tie)?;
                 let part = 1.0 / nodes.len() as f64;
                 let of_node = |node: &u32| (part, Place::of_point(vec![*node], vec![1.0], None, mesh));
                 let parts: Vec<_> = nodes.iter().map(of_node).collect();
@@ -278,11 +280,7 @@ fn patch(scene: &Scene, mesh: &Mesh, region: &Region, key: &str) -> Result<Patch
         Region::Group(name) if mesh.surface_groups().any(|surface| surface == name) => {
             return mesh.surface_patch(name).map_err(|error| refuse_mesh(scene, &key_path(key, "group"), &error));
         }
-        Region::Group(name) if mesh.groups().contains(name) => {
-            let help = "name a physical surface, or give the faces within a `box` or a `radius`";
-            let found = format!("the physical volume {name:?}");
-            return Err(scene.refuse(&key_path(key, "group"), found, "a surface of the body", help).into());
-        }
+        Region::Group(name) if mesh.groups().contains(name) => return Ok(volume_patch(mesh, name)),
         Region::Group(_) => return Ok(of_nodes(region_nodes(scene, mesh, region, key, 1)?)),
         Region::Ball { at, radius } => {
             let at = Vector3::from(*at);
@@ -296,6 +294,22 @@ fn patch(scene: &Scene, mesh: &Mesh, region: &Region, key: &str) -> Result<Patch
         let help = "make it larger, or give `at` alone for a point of the body";
         scene.refuse(key, "a part of the body without a whole face in it", "faces of the body", help).into()
     })
+}
+
+/// The nodes of a physical volume, each with its part in the volumes of the elements around it, as if these were straight: ten equal parts
+/// of an element have its centroid.
+fn volume_patch(mesh: &Mesh, name: &str) -> Patch {
+    let is_in = |element: &usize| mesh.element_groups(*element).iter().any(|group| mesh.groups()[*group] == name);
+    let mut volumes = BTreeMap::new();
+    for element in (0..mesh.elements().len()).filter(is_in) {
+        let nodes = &mesh.elements()[element];
+        let [a, b, c, d] = [0, 1, 2, 3].map(|corner| Vector3::from(mesh.positions()[nodes[corner] as usize]));
+        let volume = (b - a).cross(&(c - a)).dot(&(d - a)).abs();
+        nodes.iter().for_each(|node| *volumes.entry(*node).or_insert(0.0) += volume);
+    }
+    let whole: f64 = volumes.values().sum();
+    let (nodes, weights) = volumes.into_iter().map(|(node, volume)| (node, volume / whole)).unzip();
+    Patch::new(nodes, weights, mesh.positions())
 }
 
 /// The faces in a part of the mesh in strips.
@@ -350,12 +364,13 @@ pub(crate) fn faces(mesh: &Mesh, region: &Region) -> Option<Vec<[u32; 6]>> {
 }
 
 /// The nodes in a part of the mesh, few enough to be tied one by one.
-fn nodes(scene: &Scene, mesh: &Mesh, region: &Region, key: &str) -> Result<Vec<u32>, BuildError> {
+fn nodes(scene: &Scene, mesh: &Mesh, region: &Region, key: &str, tie: Tie) -> Result<Vec<u32>, BuildError> {
     let nodes = region_nodes(scene, mesh, region, key, 1)?;
     if nodes.len() <= MAX_NODES {
         return Ok(nodes);
     }
-    let found = format!("{} nodes to be tied one by one", nodes.len());
-    let help = "each adds three static shapes: take fewer nodes, or faces as `patches`";
+    let what = if tie == Tie::Rigid { "to move as one rigid body" } else { "to be tied one by one" };
+    let found = format!("{} nodes {what}", nodes.len());
+    let help = "each takes three static shapes: take fewer nodes, or faces as `patches`, or `tie = \"mean\"`";
     Err(scene.refuse(&key_path(key, "tie"), found, format!("{MAX_NODES} nodes or fewer"), help).into())
 }

@@ -207,7 +207,7 @@ fn joints_of_markers_that_do_not_tell_their_turns_and_regions_without_faces_are_
              [[joints]]\nkind = '{kind}'\nbetween = ['body.root', 'ground']\n{axis}\n{TIME}"
         )
     };
-    for marker in ["{ box = [[10, -1, -1], [11, 1, 1]] }", "{ group = 'bar' }", "{ group = 'rot' }"] {
+    for marker in ["{ box = [[10, -1, -1], [11, 1, 1]] }", "{ group = 'rot' }"] {
         let scene = parse(&nodes("fixed", marker, ""));
         let error = Model::build(&scene, |_| ()).unwrap_err().to_string();
         assert!(error.contains("body.markers.root"), "{error}");
@@ -216,6 +216,47 @@ fn joints_of_markers_that_do_not_tell_their_turns_and_regions_without_faces_are_
     let (system, models) = system(&nodes("fixed", "{ at = [0, 0, 0] }", ""));
     assert_eq!(models[0].markers[0].unknown_turns, UnknownTurns::None);
     assert_eq!(tie(&system, &models).unwrap().len(), 1);
+}
+
+const CUBE: &str = "mesh = '../../../fem-tet10/tests/data/cube.msh'\nmaterial = { young_modulus = 70e3, poisson_ratio = 0.3, density = 2.7e-9 }\n";
+
+/// Closed form: the centroid of the cube; a force on the mean of a volume works on the motion of the centre of mass of a free body, in
+/// which no mode moves it.
+#[test]
+fn a_physical_volume_is_a_region_of_each_tie() {
+    let of = |tie: &str, body: &str, group: &str| {
+        let marker = format!("markers = {{ all = {{ group = '{group}', tie = '{tie}' }} }}");
+        parse(&format!("{HEAD}[body]\n{body}{marker}\n[modes]\nflexible = 3\n{TIME}"))
+    };
+    let mean = build(&of("mean", CUBE, "cube"));
+    let center = mean.markers[0].point.position_body();
+    assert!(center.norm() < 1e-9, "{center}");
+    let bar = build(&of("mean", BAR, "bar"));
+    // Beside the modes, which do not move the mean of a straight bar of equal elements, its own shapes do.
+    let moved = bar.markers[0].point.columns()[6..9].iter().map(Vector3::norm).fold(0.0, f64::max);
+    let tip = bar.body.circular_frequencies.len();
+    assert!(moved < 0.05 / bar.body.mass.sqrt() && tip == 9, "{moved} {tip}");
+    for tie in ["nodes", "rigid"] {
+        let model = build(&of(tie, CUBE, "cube"));
+        assert!(model.markers[0].point.position_body().norm() < 2.0, "{tie}");
+        let refused = Model::build(&of(tie, BAR, "bar"), |_| ()).unwrap_err().to_string();
+        assert!(refused.contains("1625 nodes to"), "{refused}");
+    }
+}
+
+/// All nodes of a body in a rigid part leave no mode that might be large.
+#[test]
+fn large_modes_of_a_rigid_part_are_refused_whatever_is_left_of_the_body() {
+    for group in ["group = 'cube'", "box = [[-1, -1, -1], [1, 11, 11]]"] {
+        for large in ["large = 1", "large = [2]"] {
+            let scene = parse(&format!(
+                "{HEAD}[body]\n{CUBE}markers = {{ all = {{ {group}, tie = 'rigid' }} }}\n[modes]\nflexible = 2\n{large}\n\
+                 [effects]\nlarge_deflection = true\n{TIME}"
+            ));
+            let refused = Model::build(&scene, |_| ()).unwrap_err().to_string();
+            assert!(refused.contains("a rigid part of a body with large modes"), "{refused}");
+        }
+    }
 }
 
 /// Conserved: forces on nodes and on patches add up to that on their mean, which moves as their mean does.
