@@ -99,6 +99,9 @@ impl Details {
     }
 }
 
+/// The beginning of the line of a message that says what to do.
+const CURE: &str = "\n = ";
+
 /// The object that stands for a failure under `--json`.
 #[derive(Debug, Serialize)]
 pub struct FailureReport {
@@ -110,9 +113,11 @@ pub struct FailureReport {
 }
 
 impl FailureReport {
-    /// A failure of a kind, with a message.
-    pub fn new(kind: Kind, message: impl Into<String>, details: Details) -> Self {
-        Self { kind, exit_code: kind.exit_code(), message: message.into(), details }
+    /// A failure of a kind, with a message. A cure that only the message has, in its last line after ` = `, is help, too.
+    pub fn new(kind: Kind, message: impl Into<String>, mut details: Details) -> Self {
+        let message = message.into();
+        details.help = details.help.or_else(|| Some(message.rsplit_once(CURE)?.1.to_owned()));
+        Self { kind, exit_code: kind.exit_code(), message, details }
     }
 
     /// The exit code of the program.

@@ -282,3 +282,22 @@ fn a_signal_before_the_motion_ends_the_program_with_words() {
         }
     }
 }
+
+/// Whichever error a command ends with, its cure is told under a key of its own.
+#[test]
+fn a_cure_that_only_the_message_has_is_help() {
+    let ring = Ring::new();
+    let scene = ring.scene(&[]);
+    let out = ring.out();
+    std::fs::create_dir_all(&out).unwrap();
+    ["frf.csv", "gradient.csv"].iter().for_each(|name| std::fs::write(format!("{out}/{name}"), "mine").unwrap());
+    for arguments in [
+        &["frf", &scene, "--frequencies", "1:2:2", "-o", &out, "--json"][..],
+        &["gradient", &scene, "-o", &out, "--json"],
+    ] {
+        let output = flexframe(arguments);
+        let object: Value = serde_json::from_slice(&output.stderr).unwrap();
+        let (_, cure) = object["message"].as_str().unwrap().rsplit_once("\n = ").unwrap();
+        assert_eq!(object["help"], cure, "{object}");
+    }
+}
