@@ -14,6 +14,9 @@ const FACES: [[usize; 6]; 4] = [[0, 1, 2, 4, 5, 6], [0, 3, 1, 7, 9, 4], [1, 3, 2
 /// A node that is farther from the middle of its edge, in lengths of the longest edge, may be on another edge.
 const FAR: f64 = 0.25;
 
+/// Stands for a node on an edge that a tetrahedron of ten nodes lacks.
+pub(crate) const MISSING: u32 = u32::MAX;
+
 /// The elements of a file and their names, by indices.
 #[derive(Debug, Default)]
 pub(crate) struct Tetrahedra {
@@ -21,7 +24,7 @@ pub(crate) struct Tetrahedra {
     pub(crate) node_tags: Vec<u64>,
     pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) element_tags: Vec<u64>,
-    /// Nodes of each tetrahedron, 4 or 10.
+    /// Nodes of each tetrahedron, 4 or 10, of which some on edges may be [`MISSING`].
     pub(crate) elements: Vec<Vec<u32>>,
     /// Names of groups and their tetrahedra.
     pub(crate) groups: Vec<(String, Vec<u32>)>,
@@ -50,10 +53,10 @@ impl Tetrahedra {
     /// The mesh, and a sentence on each name that nothing is left of.
     pub(crate) fn mesh(mut self, raise_order: bool) -> Result<(Mesh, Vec<String>), ImportError> {
         let mut notes = Vec::new();
-        let linear = self.elements.iter().filter(|nodes| nodes.len() == 4).count();
+        let linear = self.elements.iter().filter(|nodes| !is_whole(nodes)).count();
         if linear > 0 && !raise_order {
             return Err(self.refuse(
-                format!("it has {linear} tetrahedra of first order"),
+                format!("it has {linear} tetrahedra of first order, or without nodes on some of their edges"),
                 "mesh with second-order elements, or set raise_order = true in [body] for straight edges with nodes in their middle",
             ));
         }
@@ -176,13 +179,11 @@ impl Tetrahedra {
                 (0..6).min_by(|i, j| far(*i).total_cmp(&far(*j))).unwrap_or(0)
             })
         };
-        for nodes in self.elements.iter().filter(|nodes| nodes.len() == 10) {
+        for nodes in self.elements.iter().filter(|nodes| is_whole(nodes)) {
             *orders.entry(order_of(nodes, &self.positions)).or_insert(0) += 1;
         }
-        let order = orders
-            .iter()
-            .max_by_key(|(order, count)| (**count, **order))
-            .map_or([0, 1, 2, 3, 4, 5], |(order, _)| *order);
+        let order =
+            orders.iter().max_by_key(|(order, count)| (**count, **order)).map_or(OF_NASTRAN, |(order, _)| *order);
         let mut each = order;
         each.sort_unstable();
         if each != [0, 1, 2, 3, 4, 5] {
@@ -193,7 +194,7 @@ impl Tetrahedra {
         }
         // In a sliver the middles of two edges are so near to each other that they are mistaken, which is no other order.
         let mut shared: HashMap<[u32; 2], u32> = HashMap::new();
-        let is_usual = |nodes: &&Vec<u32>| nodes.len() == 10 && order_of(nodes, &self.positions) == order;
+        let is_usual = |nodes: &&Vec<u32>| is_whole(nodes) && order_of(nodes, &self.positions) == order;
         for nodes in self.elements.iter().filter(is_usual) {
             for (edge, [a, b]) in EDGES.iter().enumerate() {
                 shared.insert(edge_key(nodes[*a], nodes[*b]), nodes[4 + order[edge]]);
@@ -210,10 +211,10 @@ impl Tetrahedra {
                     || shared.get(&edge_key(nodes[*a], nodes[*b])).is_some_and(|other| *other != nodes[node])
             })
         };
-        let count = self.elements.iter().filter(|nodes| nodes.len() == 10).count();
+        let count = self.elements.iter().filter(|nodes| is_whole(nodes)).count();
         let numbered = self.elements.iter().zip(&self.element_tags);
         let others: Vec<u64> = numbered
-            .filter(|(nodes, _)| nodes.len() == 10 && order_of(nodes, &self.positions) != order && is_other(nodes))
+            .filter(|(nodes, _)| is_whole(nodes) && order_of(nodes, &self.positions) != order && is_other(nodes))
             .map(|(_, tag)| *tag)
             .collect();
         if let Some(first) = others.first() {
@@ -226,19 +227,24 @@ impl Tetrahedra {
             ));
         }
         let mut between: HashMap<[u32; 2], u32> = HashMap::new();
-        let mut ordered = vec![[0; 10]; self.elements.len()];
+        let mut ordered = vec![[MISSING; 10]; self.elements.len()];
         for (found, nodes) in ordered.iter_mut().zip(&self.elements) {
             found[..4].copy_from_slice(&nodes[..4]);
             if nodes.len() == 10 {
                 for (edge, [a, b]) in EDGES.iter().enumerate() {
                     found[4 + edge] = nodes[4 + order[edge]];
-                    between.insert(edge_key(nodes[*a], nodes[*b]), found[4 + edge]);
+                    if found[4 + edge] != MISSING {
+                        between.insert(edge_key(nodes[*a], nodes[*b]), found[4 + edge]);
+                    }
                 }
             }
         }
         let mut next = self.node_tags.iter().max().copied().unwrap_or(0);
-        for (found, nodes) in ordered.iter_mut().zip(&self.elements).filter(|(_, nodes)| nodes.len() == 4) {
+        for (found, nodes) in ordered.iter_mut().zip(&self.elements).filter(|(_, nodes)| !is_whole(nodes)) {
             for (edge, [a, b]) in EDGES.iter().enumerate() {
+                if found[4 + edge] != MISSING {
+                    continue;
+                }
                 let ends = [nodes[*a], nodes[*b]];
                 let (positions, tags) = (&mut self.positions, &mut self.node_tags);
                 found[4 + edge] = *between.entry(edge_key(ends[0], ends[1])).or_insert_with(|| {
@@ -252,6 +258,14 @@ impl Tetrahedra {
         }
         Ok(ordered)
     }
+}
+
+/// The order of nodes on edges where no element shows it: that of Nastran, the only one that leaves some out.
+const OF_NASTRAN: [usize; 6] = [0, 1, 2, 3, 5, 4];
+
+/// True of a tetrahedron with all its ten nodes.
+fn is_whole(nodes: &[u32]) -> bool {
+    nodes.len() == 10 && !nodes.contains(&MISSING)
 }
 
 fn edge_key(a: u32, b: u32) -> [u32; 2] {

@@ -74,6 +74,7 @@ fn materials_of_nastran_belong_to_the_elements_of_their_properties() {
         format!("MAT1    {:>8}{:>8}{:>8}{:>8}{:>8}\nPSOLID  {:>8}{:>8}\n", 7, "70000.", "", ".33", "2.7-9", 1, 7),
         format!("MAT1*   {:>16}{:>16}{:>16}{:>16}\n*       {:>16}\nPSOLID,1,7\n", 7, "70000.", "", ".33", "2.7E-9"),
         "mat1,7,70000.,26315.789473684,,2.7E-6\npsolid,1,7\nPARAM,WTMASS,.001\n".to_owned(),
+        "SOL 103\nCEND\n PARAM, WTMASS, .001\nBEGIN BULK\nMAT1,7,70000.,,.33,2.7-6\nPSOLID,1,7\n".to_owned(),
     ] {
         let found = read(&folder, "bar.bdf", &format!("{cards}{text}"));
         let [deck] = &found.materials[..] else { panic!("{cards}: {:?} {:?}", found.materials, found.notes) };

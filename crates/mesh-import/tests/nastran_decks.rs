@@ -94,7 +94,8 @@ fn coordinates_are_read_in_their_systems() {
         ("CORD2R,1,,0.,0.,0.,0.,0.,1.\n,0.,0.,3.\nGRID,9001,1", ["line 1", "on a line"]),
         ("$\n=,*(1),=", ["line 2", "expected a card"]),
         ("GRID,1,,0.,0.,0.,,,,+A\n+B,1", ["line 2", "continues no card"]),
-        ("GRID,1\nCTETRA,1,1,1,1,1,1,1", ["line 2", "5 nodes"]),
+        ("GRID,1\nCTETRA,1,1,1,1,1", ["line 2", "3 nodes"]),
+        ("GRID,1\nCTETRA,1,1,1,1,,1", ["line 2", "field 6"]),
         ("GRID,1\nCTETRA,1,1,1,1,1,2", ["line 2", "node 2"]),
         ("GRID,1\nCHEXA,1,1,1,1,1,2", ["line 2", "1 CHEXA"]),
         ("GRID,1\nGRID,1,,2.", ["line 2", "twice"]),
@@ -325,4 +326,19 @@ fn elements_of_first_order_are_raised() {
     let settings = ImportSettings { raise_order: true, ..ImportSettings::default() };
     let mesh = mesh_import::read_mesh(&bar.folder.path().join("four.bdf"), &settings).unwrap().mesh;
     assert!((volume(&mesh) - 3.0).abs() < 1e-9 && (mean_of(&mesh, "ref_1")[1] - 0.5).abs() < 0.1);
+    // Nodes on edges that some elements lack are those of their neighbours, or new.
+    let some: String = (bar.elements.iter().enumerate())
+        .map(|(number, e)| {
+            let word =
+                |k: usize| if k > 4 && (number + k).is_multiple_of(3) { String::new() } else { e[k].to_string() };
+            let words: Vec<String> = (1..11).map(word).collect();
+            format!("CTETRA,{},1,{},+\n+,{}\n", e[0], words[..6].join(","), words[6..].join(","))
+        })
+        .collect();
+    let text = format!("{}{some}", grids(&bar, "", |x| x));
+    let said = bar.read("some.bdf", &text).unwrap_err().to_string();
+    assert!(said.contains("without nodes on some"), "{said}");
+    let mesh = mesh_import::read_mesh(&bar.folder.path().join("some.bdf"), &settings).unwrap().mesh;
+    assert!((volume(&mesh) - 3.0).abs() < 1e-9);
+    assert_eq!(mesh.positions().len(), bar.nodes.len());
 }

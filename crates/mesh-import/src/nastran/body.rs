@@ -13,7 +13,7 @@ use crate::nastran::cards::{Bulk, Card};
 use crate::nastran::kinds::{SHELLS, SOLIDS, is_silent, known};
 use crate::nastran::systems::Space;
 use crate::notes;
-use crate::tetrahedra::Tetrahedra;
+use crate::tetrahedra::{MISSING, Tetrahedra};
 use crate::texts::{Place, Texts};
 
 /// Names of groups of elements; more are none that anybody reads.
@@ -151,12 +151,10 @@ impl Deck {
             }
             "CORD1R" | "CORD1C" | "CORD1S" | "CORD2R" | "CORD2C" | "CORD2S" => self.space.system(texts, card)?,
             "CTETRA" => {
-                let element = element(texts, card, &[4, 10])?;
+                let element = tetrahedron(texts, card)?;
                 self.tetrahedra.push(element);
             }
-            "CTRIA3" | "CTRIAR" => self.triangles.push(element(texts, card, &[3])?),
-            // Nodes on its edges may be missing.
-            "CTRIA6" => self.triangles.push(element(texts, card, &[3])?),
+            "CTRIA3" | "CTRIAR" | "CTRIA6" => self.triangles.push(triangle(texts, card)?),
             "PSOLID" => {
                 if self.properties.insert(card.label(texts, 1)?, card.label(texts, 2)?).is_some() {
                     let found = format!("PSOLID {} a second time", card.field(1));
@@ -233,6 +231,9 @@ impl Deck {
     ) -> Result<(), ImportError> {
         let nodes_of = |element: &Element| -> Result<Vec<u32>, ImportError> {
             let row = |label: &u64| {
+                if *label == 0 {
+                    return Ok(MISSING);
+                }
                 rows.get(label).copied().ok_or_else(|| {
                     let found = format!("element {} has node {label}, which is not there", element.label);
                     texts.refuse(element.place, found, "check the nodes of the deck, and that all its files are there")
@@ -429,22 +430,26 @@ impl Deck {
     }
 }
 
-/// An element with one of these numbers of nodes.
-fn element(texts: &Texts<'_>, card: &Card<'_>, counts: &[usize]) -> Result<Element, ImportError> {
+/// A tetrahedron: four corners, and ten nodes where any on an edge is there. Those that are missing are 0.
+fn tetrahedron(texts: &Texts<'_>, card: &Card<'_>) -> Result<Element, ImportError> {
     let label = card.label(texts, 1)?;
-    let property = card.whole(texts, 2)?.unwrap_or(label);
-    let most = counts.iter().copied().max().unwrap_or(0);
-    // Fields after the nodes of a triangle are its thickness and angle.
-    let last = if card.name == "CTETRA" { card.len() } else { card.len().min(2 + most) };
-    let filled = (3..=last).rev().find(|field| !card.field(*field).is_empty()).unwrap_or(2);
-    let count = filled - 2;
-    if !counts.contains(&count) {
-        let each = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ");
-        let found = format!("{} {label} with {count} nodes, expected {each}", card.name);
-        let help =
-            "check the card and the lines that continue it; elements with nodes on some of their edges are not read";
-        return Err(texts.refuse(card.place, found, help));
+    let count = card.len().saturating_sub(2);
+    if !(4..=10).contains(&count) {
+        let found = format!("CTETRA {label} with {count} nodes, expected 4 to 10");
+        return Err(texts.refuse(card.place, found, "check the card and the lines that continue it"));
     }
-    let nodes = (3..=filled).map(|field| card.label(texts, field)).collect::<Result<_, _>>()?;
-    Ok(Element { place: card.place, label, property, nodes })
+    let mut nodes = (3..=6).map(|field| card.label(texts, field)).collect::<Result<Vec<_>, _>>()?;
+    if count > 4 {
+        for field in 7..=12 {
+            nodes.push(card.whole(texts, field)?.unwrap_or(0));
+        }
+    }
+    Ok(Element { place: card.place, label, property: card.whole(texts, 2)?.unwrap_or(label), nodes })
+}
+
+/// The corners of a triangle. Nodes on its edges may be missing, and what is after them is its thickness and angle.
+fn triangle(texts: &Texts<'_>, card: &Card<'_>) -> Result<Element, ImportError> {
+    let label = card.label(texts, 1)?;
+    let nodes = (3..=5).map(|field| card.label(texts, field)).collect::<Result<_, _>>()?;
+    Ok(Element { place: card.place, label, property: card.whole(texts, 2)?.unwrap_or(label), nodes })
 }

@@ -104,6 +104,13 @@ pub(super) fn cards<'t>(texts: &'t Texts<'_>) -> Result<Bulk<'t>, ImportError> {
     let lines = texts.lines()?;
     let begin = lines.iter().position(|line| begins_bulk(line.text)).map_or(0, |at| at + 1);
     let mut bulk = Bulk { cards: Vec::new(), lines_after: 0 };
+    // Parameters may stand before the cards, too.
+    for data in &lines[..begin] {
+        let is_parameter = data.text.trim_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case("PARAM"));
+        if is_parameter && let Ok(line) = fields(texts, Data { place: data.place, text: data.text.trim_start() }) {
+            bulk.cards.push(Card { place: data.place, name: "PARAM".to_owned(), fields: line.data });
+        }
+    }
     let mut label = "";
     let (mut is_over, mut is_in_quotes) = (false, false);
     let (mut is_open, mut is_in_equation) = (false, false);
