@@ -191,7 +191,7 @@ tolerance = 1e-4
 interval = 0.1
 "#;
     let folder = tempfile::tempdir().unwrap();
-    let system = System::parse(scene, &folder.path().join("arm.toml")).unwrap();
+    let system = System::parse(scene, folder.path().join("arm.toml")).unwrap();
     let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
     let [held] = &report.tied[0].held[..] else { panic!("{:?}", report.tied) };
     let expected = 1e-5 * 0.95_f64.atanh();
