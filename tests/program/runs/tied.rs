@@ -218,3 +218,99 @@ fn a_run_tells_that_stops_act_on_a_flexible_body() {
         assert_eq!(report.to_string().contains("beyond its modes"), !expected.is_empty());
     }
 }
+
+/// A light body on a stiff bushing hangs at rest: its sag has less energy than places of the allowed error.
+const HANGING: &str = r#"
+title = "A light body on a stiff bushing"
+units = { length = "m", mass = "kg", time = "s" }
+[bodies.pendulum]
+rigid = { mass = 1.0, center_of_mass = [0, 0, -1], inertia = [[1e-3, 0, 0], [0, 1e-3, 0], [0, 0, 1e-3]] }
+markers = { hinge = { at = [0, 0, 0] }, end = { at = [0, 0, -1] } }
+[[bodies.pendulum.loads]]
+kind = "gravity"
+direction = [0, 0, -1]
+amplitude = 9.81
+[bodies.dot]
+rigid = { mass = 1e-4, center_of_mass = [0, 0, -1], inertia = [[1e-10, 0, 0], [0, 1e-10, 0], [0, 0, 1e-10]] }
+markers = { end = { at = [0, 0, -1] } }
+[[bodies.dot.loads]]
+kind = "gravity"
+direction = [0, 0, -1]
+amplitude = 9.81
+[[joints]]
+name = "hinge"
+kind = "revolute"
+between = ["ground", "pendulum.hinge"]
+axis = [0, 1, 0]
+[[bushings]]
+name = "pad"
+between = ["pendulum.end", "dot.end"]
+stiffness = { translation = [1e9, 1e9, 1e9], rotation = [1e3, 1e3, 1e3] }
+[time]
+end = 1.0
+tolerance = 1e-6
+"#;
+
+/// A gear whose motor has a full torque from one instant to the next, after a rest.
+const GEAR: &str = r#"
+title = "A gear that begins at rest"
+units = { length = "m", mass = "kg", time = "s" }
+[bodies.first]
+rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[0.5, 0, 0], [0, 0.5, 0], [0, 0, 0.5]] }
+markers = { axle = { at = [0, 0, 0] } }
+[bodies.second]
+rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[0.5, 0, 0], [0, 0.5, 0], [0, 0, 0.5]] }
+markers = { axle = { at = [0, 0, 0] } }
+initial = { position = [1, 0, 0] }
+[[joints]]
+name = "driven"
+kind = "revolute"
+between = ["ground", "first.axle"]
+axis = [0, 0, 1]
+motor = { amplitude = 58.0, history = { kind = "table", points = [[0, 0], [0.25, 0], [0.250000001, 1]] } }
+[[joints]]
+name = "geared"
+kind = "revolute"
+between = ["ground", "second.axle"]
+axis = [0, 0, 1]
+[[couplings]]
+kind = "gear"
+joints = ["driven", "geared"]
+ratio = -2.5
+[time]
+end = 1.25
+tolerance = 1e-6
+"#;
+
+/// Runs a scene of rigid bodies at tolerances.
+fn at_tolerances(tolerances: &[&str], scene: &str, check: impl Fn(&Results)) {
+    for tolerance in tolerances {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = scene.replace("tolerance = 1e-6", &format!("tolerance = {tolerance}"));
+        let system = System::parse(&scene, &folder.path().join("scene.toml")).unwrap();
+        let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ())
+            .unwrap_or_else(|error| panic!("{tolerance}: {error}"));
+        check(&Results::open(&report.results, &COLUMNS).unwrap());
+    }
+}
+
+/// Closed form: nothing moves.
+#[test]
+fn a_light_body_that_hangs_at_rest_stays_there() {
+    at_tolerances(&["1e-3", "1e-5", "1e-6", "1e-8"], HANGING, |results| {
+        let angles = results.numbers("joints/hinge/angle").unwrap();
+        assert!(angles.iter().all(|angle| angle.abs() < 1e-9), "{angles:?}");
+    });
+}
+
+/// Closed form: a torque M on inertias J and J/r² turns the first by M t²/(2 J (1 + 1/r²)) in the second after the rest.
+#[test]
+fn a_gear_whose_motor_begins_within_an_instant_turns_as_it_must() {
+    at_tolerances(&["1e-4", "1e-6", "1e-8"], GEAR, |results| {
+        let [driven, geared] = ["driven", "geared"]
+            .map(|joint| *results.numbers(&format!("joints/{joint}/angle")).unwrap().last().unwrap());
+        let expected = 0.5 * 58.0 / (0.5 * (1.0 + 1.0 / 6.25));
+        assert!((driven - expected).abs() < 1e-6 * expected, "{driven} for {expected}");
+        assert!((driven + 2.5 * geared).abs() < 1e-9 * expected, "{driven} {geared}");
+    });
+}

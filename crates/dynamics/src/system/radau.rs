@@ -307,6 +307,11 @@ impl SystemMotion {
         Ok(body.energies(state.time, &e).map_or(0.0, |energies| energies.internal + energies.translation))
     }
 
+    /// Size of the largest body: errors of places are counted over it.
+    pub(in crate::system) fn size(&self) -> f64 {
+        self.size
+    }
+
     /// The turn and the slide of a joint, with their rates. Turns are counted from the beginning on.
     pub fn joint_coordinates(&self, joint: usize) -> JointCoordinates {
         self.start.joints[joint]

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::motion_state::MotionState;
 use crate::body::shapes::PointShapes;
 use crate::conservative::ConservativeBody;
+use crate::equations::Equations;
 use crate::error::{SetupError, StepError};
 use crate::load::SharedLoad;
 use crate::matrix::lists::larger;
@@ -64,6 +65,8 @@ pub struct SystemSimulation {
     shape_limit: Option<ShapeLimit>,
     points: Vec<Vec<PointShapes>>,
     size: f64,
+    /// Sum of the largest forces of the loads of each body.
+    forces: f64,
     assembled: Vec<Assembled>,
     redundant: Vec<(String, usize)>,
     branching: Option<Branching>,
@@ -130,6 +133,8 @@ impl SystemSimulation {
         let system = motion.system();
         let loads: Vec<SharedLoad> = system.bodies().iter().flat_map(|body| body.loads()).cloned().collect();
         let longest_step = LongestStep::new(&loads, system.joints().iter().flat_map(|joint| joint.histories()), end)?;
+        let force = |body: &ConservativeBody| (body.mass() * body.sizes_of_loads(end).acceleration).sqrt();
+        let forces = system.bodies().iter().map(force).sum();
         let is_within = matches!(rows, Rows::Interval(_));
         Ok(Self {
             // Rows do not end steps.
@@ -156,6 +161,7 @@ impl SystemSimulation {
             shape_limit,
             points,
             size,
+            forces,
             assembled,
             redundant,
             branching,
@@ -248,16 +254,18 @@ impl SystemSimulation {
         Observation::new(self.motion.system().bodies()[body].flexible(), self.points[body].len())
     }
 
-    /// Energy of bodies that have moved by the error of a step since the beginning: what has moved less has work that steps do not see.
+    /// Energy of bodies that have moved by the error that is allowed since the beginning, a part of the size of the largest, and the work of
+    /// their loads over it: what has moved less has work that steps do not see.
     fn unseen_energy(&self) -> f64 {
         let elapsed = self.account.elapsed(self.time());
         let part = match self.control {
             StepControl::Fixed(_) => FIXED_ERROR,
             StepControl::Tolerance(tolerance) => tolerance,
         };
-        let of_body =
-            |body: &ConservativeBody| 0.5 * body.mass() * (BEGINS * part * body.radius_of_gyration() / elapsed).powi(2);
-        if elapsed > 0.0 { self.motion.system().bodies().iter().map(of_body).sum() } else { 0.0 }
+        let mass: f64 = self.motion.system().bodies().iter().map(ConservativeBody::mass).sum();
+        let moved = part * self.motion.size();
+        let speed = BEGINS * moved / elapsed;
+        if elapsed > 0.0 { 0.5 * mass * speed * speed + self.forces * moved } else { 0.0 }
     }
 
     /// Fills `out`, one for each body, with the motion at the time that has been reached.
