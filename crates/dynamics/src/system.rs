@@ -9,6 +9,7 @@ pub(crate) mod constraints;
 pub(crate) mod description;
 pub(crate) mod element;
 pub(crate) mod elimination;
+mod frame;
 pub(crate) mod geometry;
 mod invariants;
 pub(crate) mod joint;

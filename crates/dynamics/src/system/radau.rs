@@ -34,6 +34,7 @@ use crate::system::description::System;
 use crate::system::elimination::matrices::Matrices;
 use crate::system::elimination::newton::Solution;
 use crate::system::elimination::patterns::Patterns;
+use crate::system::frame::Frame;
 use crate::system::geometry::rank::Judgement;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::coupling::CoupledCoordinate;
@@ -193,6 +194,7 @@ impl SystemMotion {
             time,
             start: Start {
                 time,
+                frame: Frame::of(&system, &bodies, time),
                 bodies: Vec::with_capacity(flexible.len()),
                 q: zeros(),
                 p: zeros(),
@@ -484,6 +486,15 @@ impl SystemMotion {
             self.keep_past();
             self.reach_end();
             let weights = self.scheme.weights.map(|weight| h * weight);
+            if !self.scheme.is_explicit {
+                let Self { stages: [.., stage], system, start, scheme, stage_rates, .. } = self;
+                // Σ_i b_i a_ij = b_j (1 − c_j).
+                let forces = |k: usize| {
+                    let parts = stage_rates.iter().zip(weights.iter().zip(scheme.times));
+                    parts.map(|(rates, (weight, time))| weight * (1.0 - time) * rates.y[k]).sum::<f64>()
+                };
+                stage.correct_centers((system, start), h, forces);
+            }
             self.land([end, branch_time], h, weights)?;
         }
         Ok(tried)
@@ -500,11 +511,7 @@ impl SystemMotion {
         self.start.bodies.clear();
         for (b, (body, state)) in self.system.bodies.iter().zip(&self.bodies).enumerate() {
             let list = body.list(state);
-            let slow = list.slow();
-            let body_from_global = list.attitude().global_to_body();
-            let [position, momentum, pi] = [part::POSITION, part::MOMENTUM, part::PI].map(|part| get(slow, part));
-            let angular_momentum = position.cross(&momentum) + body_from_global.tr_mul(&pi);
-            self.start.bodies.push(BodyStart { position, body_from_global, momentum, angular_momentum });
+            self.start.bodies.push(BodyStart::new(body, state, &self.start.frame, self.time));
             let modes = self.system.first[b] + 6..self.system.first[b + 1];
             self.start.q[modes.clone()].copy_from_slice(list.q());
             self.start.p[modes].copy_from_slice(list.p());

@@ -9,6 +9,7 @@ use crate::observation::moment::Moment;
 use crate::simulation::checkpoint::{CheckpointError, counts, expect, finite, fixed_room};
 use crate::state::State;
 use crate::system::collocation::STAGES;
+use crate::system::frame::Frame;
 use crate::system::joint::coordinate::JointCoordinates;
 use crate::system::joint::work::JointWork;
 use crate::system::radau::SystemMotion;
@@ -19,6 +20,7 @@ use crate::system::stage::vector;
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct SavedMotion {
     time: f64,
+    frame: Frame,
     bodies: Vec<State>,
     last: Vec<Vec<f64>>,
     last_length: f64,
@@ -55,6 +57,7 @@ impl SystemMotion {
     pub(super) fn saved(&self) -> SavedMotion {
         SavedMotion {
             time: self.time,
+            frame: self.start.frame,
             bodies: self.bodies.clone(),
             last: self.last.concat(),
             last_length: self.last_length,
@@ -75,6 +78,7 @@ impl SystemMotion {
     pub(super) fn take_up(&mut self, saved: SavedMotion) -> Result<(), CheckpointError> {
         let SavedMotion {
             time,
+            frame,
             bodies,
             last,
             last_length,
@@ -102,10 +106,12 @@ impl SystemMotion {
         finite("the time for which friction has held", held.iter().flatten())?;
         expect("the number of springs and bushings", elements.len() == self.element_works.len())?;
         finite("a spring or a bushing", elements.iter().flat_map(JointWork::list))?;
+        finite("the frame", frame.numbers())?;
         finite("the motion", last.iter().chain(&multipliers).flatten().chain(&sums).chain([&time, &last_length]))?;
         counts(&[evaluations])?;
         past.check(&self.past)?;
         self.past = past;
+        self.start.frame = frame;
         (self.time, self.bodies, self.last_length, self.evaluations) = (time, bodies, last_length, evaluations);
         for (own, saved) in
             self.last.iter_mut().flatten().chain(&mut self.multipliers).zip(last.iter().chain(&multipliers))

@@ -4,14 +4,16 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{f_inverse, transformation_matrix};
 
 use crate::conservative::Evaluation;
-use crate::conservative::{Slow, get, part, set};
+use crate::conservative::{ConservativeBody, Slow, get, part, set};
 use crate::equations::Equations;
 use crate::error::RateError;
 use crate::matrix::lists::larger;
+use crate::state::State;
 use crate::system::constraints::{Compliant, Constraints, near};
 use crate::system::description::System;
 use crate::system::element::Stored;
 use crate::system::elimination::inverse::Inertia;
+use crate::system::frame::Frame;
 use crate::system::geometry::posture::Posture;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates, turn_along};
 use crate::system::joint::far::far_wrench;
@@ -24,8 +26,8 @@ use crate::system::marker::{BodyPlace, Marker, MarkerPlace, tangent_of};
 #[derive(Debug, Clone)]
 pub(crate) struct Start {
     pub time: f64,
-    /// Position of the origin, global; attitude; linear momentum, and angular momentum about the global origin, global; of
-    /// each body.
+    /// The frame of the momenta.
+    pub frame: Frame,
     pub bodies: Vec<BodyStart>,
     /// q and p of all bodies, at the places of their coordinates.
     pub q: Vec<f64>,
@@ -48,18 +50,33 @@ impl Start {
 /// The start of one body.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BodyStart {
+    /// Position of the origin, and its distance from the centre of the frame, global.
     pub position: Vector3<f64>,
+    pub arm: Vector3<f64>,
     pub body_from_global: Matrix3<f64>,
+    /// Linear momentum in the frame, and angular momentum about its centre, global.
     pub momentum: Vector3<f64>,
     pub angular_momentum: Vector3<f64>,
+}
+
+impl BodyStart {
+    /// A body with its momenta in a frame, at a time.
+    pub fn new(body: &ConservativeBody, state: &State, frame: &Frame, time: f64) -> Self {
+        let list = body.list(state);
+        let [position, momentum, pi] = [part::POSITION, part::MOMENTUM, part::PI].map(|part| get(list.slow(), part));
+        let body_from_global = list.attitude().global_to_body();
+        let (arm, momentum) = (position - frame.center_at(time), momentum - frame.velocity() * body.mass());
+        let angular_momentum = arm.cross(&momentum) + body_from_global.tr_mul(&pi);
+        Self { position, arm, body_from_global, momentum, angular_momentum }
+    }
 }
 
 /// A time within a step, with increments since its start.
 #[derive(Debug, Clone)]
 pub(crate) struct Stage {
-    /// Δr (global), the rotation vector (body axes), Δq: of each body.
+    /// Δr in the frame (global), the rotation vector (body axes), Δq: of each body.
     pub x: Vec<f64>,
-    /// ΔP, Δh about the global origin (global), Δp.
+    /// ΔP, Δh about the centre of the frame (global), Δp.
     pub y: Vec<f64>,
     pub evaluations: Vec<Evaluation>,
     pub constraints: Constraints,
@@ -71,9 +88,14 @@ pub(crate) struct Stage {
     pub x_rates: Vec<f64>,
     pub y_rates: Vec<f64>,
     pub inertia: Vec<Inertia>,
-    /// Transformation matrices of the bodies and positions of their origins.
+    /// Transformation matrices of the bodies and positions of their origins, without the way of the frame since the start.
     pub attitudes: Vec<Matrix3<f64>>,
     pub positions: Vec<Vector3<f64>>,
+    /// Positions from the centre of the frame.
+    pub arms: Vec<Vector3<f64>>,
+    /// The velocity of the frame, and its way since the start.
+    pub frame_velocity: Vector3<f64>,
+    pub way: Vector3<f64>,
     /// q of all bodies.
     q: Vec<f64>,
     forces: Vec<f64>,
@@ -108,6 +130,9 @@ impl Stage {
             inertia: system.bodies.iter().map(Inertia::of).collect(),
             attitudes: vec![Matrix3::identity(); system.bodies.len()],
             positions: vec![Vector3::zeros(); system.bodies.len()],
+            arms: vec![Vector3::zeros(); system.bodies.len()],
+            frame_velocity: Vector3::zeros(),
+            way: Vector3::zeros(),
             q: zeros(),
             forces: zeros(),
             scratch: zeros(),
@@ -125,7 +150,8 @@ impl Stage {
             let first = system.first[b];
             let theta = vector(&self.x, first + 3);
             self.attitudes[b] = transformation_matrix(&theta) * body.body_from_global;
-            self.positions[b] = body.position + vector(&self.x, first);
+            let moved = vector(&self.x, first);
+            (self.positions[b], self.arms[b]) = (body.position + moved, body.arm + moved);
             for k in first + 6..system.first[b + 1] {
                 self.q[k] = start.q[k] + self.x[k];
             }
@@ -172,17 +198,18 @@ impl Stage {
     /// Finds velocities, rates, g and G at a time; laws with branches are taken as they are at the branch time.
     pub fn evaluate(&mut self, system: &System, start: &Start, times: [f64; 2]) -> Result<(), RateError> {
         self.place(system, start);
+        self.go_with_frame(start, times[0]);
         for (b, (body, from)) in system.bodies.iter().zip(&start.bodies).enumerate() {
             let (first, end) = (system.first[b], system.first[b + 1]);
             let e = &mut self.evaluations[b];
-            let (position, attitude) = (self.positions[b], self.attitudes[b]);
+            let (arm, attitude) = (self.arms[b], self.attitudes[b]);
             let momentum = from.momentum + vector(&self.y, first);
             let angular_momentum = from.angular_momentum + vector(&self.y, first + 3);
-            let pi = attitude * (angular_momentum - position.cross(&momentum));
+            let pi = attitude * (angular_momentum - arm.cross(&momentum));
             let mut slow = *e.at.slow();
             set(&mut slow, part::THETA, &vector(&self.x, first + 3));
-            set(&mut slow, part::POSITION, &position);
-            set(&mut slow, part::MOMENTUM, &momentum);
+            set(&mut slow, part::POSITION, &(self.positions[b] + self.way));
+            set(&mut slow, part::MOMENTUM, &(momentum + self.frame_velocity * body.mass()));
             set(&mut slow, part::PI, &pi);
             e.at.set_slow(&slow);
             let [q, p] = e.at.modes_mut();
@@ -199,7 +226,7 @@ impl Stage {
             let force = get(rates, part::MOMENTUM);
             let moment = get(rates, part::PI) - pi.cross(&e.omega_body);
             put(&mut self.y_rates, first, &force);
-            put(&mut self.y_rates, first + 3, &(position.cross(&force) + attitude.tr_mul(&moment)));
+            put(&mut self.y_rates, first + 3, &(arm.cross(&force) + attitude.tr_mul(&moment)));
             for k in 0..end - first - 6 {
                 self.y_rates[first + 6 + k] = e.rates.p()[k] + body.linear_rate(k, e.at.q()[k], e.at.p()[k]);
             }
@@ -219,21 +246,31 @@ impl Stage {
         Ok(())
     }
 
-    /// Kinetic and strain energy, and that which the forces give bodies at rest within a time if no joint holds them.
+    /// Takes the frame to a time.
+    fn go_with_frame(&mut self, start: &Start, time: f64) {
+        self.frame_velocity = start.frame.velocity();
+        self.way = self.frame_velocity * (time - start.time);
+    }
+
+    /// Kinetic and strain energy in the frame, and that which the forces give bodies at rest within a time if no joint holds them.
     pub fn energies(&mut self, system: &System, time: f64) -> [f64; 2] {
         let (mut moving, mut pushed) = (0.0, 0.0);
         for (b, body) in system.bodies.iter().enumerate() {
             let own = system.first[b]..system.first[b + 1];
-            let own_velocities = &self.velocities[own.clone()];
-            self.forces[own.clone()].copy_from_slice(own_velocities);
-            self.inertia[b].multiply(&mut self.forces[own.clone()]);
-            moving += 0.5 * own_velocities.iter().zip(&self.forces[own.clone()]).map(|(v, p)| v * p).sum::<f64>();
+            let in_frame = vector(&self.velocities, own.start) - self.attitudes[b] * self.frame_velocity;
+            let [own_velocities, momenta] = [&mut self.scratch, &mut self.forces];
+            own_velocities[own.clone()].copy_from_slice(&self.velocities[own.clone()]);
+            put(own_velocities, own.start, &in_frame);
+            momenta[own.clone()].copy_from_slice(&own_velocities[own.clone()]);
+            self.inertia[b].multiply(&mut momenta[own.clone()]);
+            let pairs = own_velocities[own.clone()].iter().zip(&momenta[own.clone()]);
+            moving += 0.5 * pairs.map(|(v, p)| v * p).sum::<f64>();
             let strained = self.q[own.start + 6..own.end].iter().zip(&body.circular_frequencies);
             moving += 0.5 * strained.map(|(q, omega)| (omega * q).powi(2)).sum::<f64>();
             let [force, impulse] = [&mut self.scratch, &mut self.forces];
             for list in [&mut *force, &mut *impulse] {
                 list[own.clone()].copy_from_slice(&self.y_rates[own.clone()]);
-                about_body_origin(&mut list[own.clone()], &self.positions[b], &self.attitudes[b]);
+                about_body_origin(&mut list[own.clone()], &self.arms[b], &self.attitudes[b]);
             }
             self.inertia[b].solve(&mut impulse[own.clone()]);
             let power = impulse[own.clone()].iter().zip(&force[own]).map(|(v, f)| v * f).sum::<f64>();
@@ -244,21 +281,21 @@ impl Stage {
 
     /// Turns changes of x and y to the axes and origins of the bodies.
     pub fn to_body_axes(&self, system: &System, x: &mut [f64], y: &mut [f64]) {
-        for (b, (position, attitude)) in self.positions.iter().zip(&self.attitudes).enumerate() {
+        for (b, (arm, attitude)) in self.arms.iter().zip(&self.attitudes).enumerate() {
             let first = system.first[b];
             let moved = attitude * vector(x, first);
             put(x, first, &moved);
-            about_body_origin(&mut y[first..first + 6], position, attitude);
+            about_body_origin(&mut y[first..first + 6], arm, attitude);
         }
     }
 
     /// The inverse of [`Self::to_body_axes`].
     pub fn to_global_axes(&self, system: &System, x: &mut [f64], y: &mut [f64]) {
-        for (b, (position, attitude)) in self.positions.iter().zip(&self.attitudes).enumerate() {
+        for (b, (arm, attitude)) in self.arms.iter().zip(&self.attitudes).enumerate() {
             let first = system.first[b];
             let moved = attitude.tr_mul(&vector(x, first));
             put(x, first, &moved);
-            about_global_origin(&mut y[first..first + 6], position, attitude);
+            about_center(&mut y[first..first + 6], arm, attitude);
         }
     }
 
@@ -310,14 +347,21 @@ impl Stage {
     }
 
     /// Takes the motion to where increments at three stages lead by these factors, and gives it the rates that they have there by those.
-    pub fn follow(&mut self, system: &System, start: &Start, increments: [&[f64]; 3], [to, rates]: [[f64; 3]; 2]) {
+    pub fn follow(
+        &mut self,
+        (system, start): (&System, &Start),
+        time: f64,
+        increments: [&[f64]; 3],
+        [to, rates]: [[f64; 3]; 2],
+    ) {
         let [a, b, c] = increments;
         let of = |factors: [f64; 3], k: usize| factors[0] * a[k] + factors[1] * b[k] + factors[2] * c[k];
         (0..self.x.len()).for_each(|k| self.x[k] = of(to, k));
         self.place(system, start);
+        self.go_with_frame(start, time);
         (0..self.velocities.len()).for_each(|k| self.velocities[k] = of(rates, k));
         for (attitude, first) in self.attitudes.iter().zip(&system.first) {
-            let velocity = attitude * vector(&self.velocities, *first);
+            let velocity = attitude * (vector(&self.velocities, *first) + self.frame_velocity);
             // ω = T(θ)ᵀ θ', the inverse of `f_inverse`.
             let omega = tangent_of(&vector(&self.x, first + 3)).tr_mul(&vector(&self.velocities, first + 3));
             put(&mut self.velocities, *first, &velocity);
@@ -397,11 +441,11 @@ impl Stage {
                 }
             }
         }
-        let Self { element_forces: forces, forces: total, positions, attitudes, .. } = self;
+        let Self { element_forces: forces, forces: total, arms, attitudes, .. } = self;
         total.copy_from_slice(forces);
-        for (b, (position, attitude)) in positions.iter().zip(&*attitudes).enumerate() {
+        for (b, (arm, attitude)) in arms.iter().zip(&*attitudes).enumerate() {
             let first = system.first[b];
-            about_global_origin(&mut total[first..first + 6], position, attitude);
+            about_center(&mut total[first..first + 6], arm, attitude);
         }
         self.y_rates.iter_mut().zip(&*total).for_each(|(rate, force)| *rate += force);
     }
@@ -415,7 +459,7 @@ impl Stage {
 
     /// Finds the places and motions of markers.
     fn find_marker_motions(&mut self, system: &System, markers: &[Marker]) {
-        let Self { marker_places, marker_motions, positions, attitudes, q, evaluations, velocities, .. } = self;
+        let Self { marker_places, marker_motions, positions, attitudes, q, evaluations, velocities, way, .. } = self;
         let places = Places { system, positions, attitudes, q, evaluations };
         marker_places.clear();
         marker_motions.clear();
@@ -423,7 +467,8 @@ impl Stage {
             let body = marker.body().map(|b| places.of(b));
             let place = marker.place(body.as_ref());
             let own = marker.body().map_or(&[][..], |b| &velocities[system.first[b]..system.first[b + 1]]);
-            marker_motions.push(marker.motion(&place, body.as_ref(), own));
+            let motion = marker.motion(&place, body.as_ref(), own);
+            marker_motions.push(MarkerMotion { position_global: motion.position_global + *way, ..motion });
             marker_places.push(place);
         }
     }
@@ -467,7 +512,7 @@ impl Stage {
             for k in first..end {
                 self.x_rates[k] = self.velocities[k] + self.forces[k];
             }
-            let velocity = self.attitudes[b].tr_mul(&vector(&self.x_rates, first));
+            let velocity = self.attitudes[b].tr_mul(&vector(&self.x_rates, first)) - self.frame_velocity;
             put(&mut self.x_rates, first, &velocity);
             let [theta, omega] = [&self.x, &self.x_rates].map(|list| vector(list, first + 3));
             let rate = f_inverse(&theta, &omega).map_err(RateError::Turn)?;
@@ -482,7 +527,7 @@ impl Stage {
         self.constraints.add_forces(multipliers, &mut self.forces);
         for b in 0..system.bodies.len() {
             let (first, end) = (system.first[b], system.first[b + 1]);
-            about_global_origin(&mut self.forces[first..end], &self.positions[b], &self.attitudes[b]);
+            about_center(&mut self.forces[first..end], &self.arms[b], &self.attitudes[b]);
         }
         out.iter_mut().zip(self.y_rates.iter().zip(&self.forces)).for_each(|(out, (rate, force))| *out = rate + force);
     }
@@ -564,18 +609,19 @@ impl<'a> Places<'a> {
 /// Passes of a projection before it is left as it is.
 const MAX_PROJECTIONS: usize = 20;
 
-/// Turns a force and a moment about the body's origin (body axes) into a force and a moment about the global origin (global).
-pub(crate) fn about_global_origin(force: &mut [f64], position: &Vector3<f64>, body_from_global: &Matrix3<f64>) {
+/// Turns a force and a moment about the body's origin (body axes) into a force and a moment about the centre of the frame (global), from which the
+/// origin is this far.
+pub(crate) fn about_center(force: &mut [f64], arm: &Vector3<f64>, body_from_global: &Matrix3<f64>) {
     let [f, moment] = [0, 3].map(|first| body_from_global.tr_mul(&vector(force, first)));
     put(force, 0, &f);
-    put(force, 3, &(position.cross(&f) + moment));
+    put(force, 3, &(arm.cross(&f) + moment));
 }
 
-/// The inverse of [`about_global_origin`].
-pub(crate) fn about_body_origin(force: &mut [f64], position: &Vector3<f64>, body_from_global: &Matrix3<f64>) {
+/// The inverse of [`about_center`].
+pub(crate) fn about_body_origin(force: &mut [f64], arm: &Vector3<f64>, body_from_global: &Matrix3<f64>) {
     let [f, moment] = [vector(force, 0), vector(force, 3)];
     put(force, 0, &(body_from_global * f));
-    put(force, 3, &(body_from_global * (moment - position.cross(&f))));
+    put(force, 3, &(body_from_global * (moment - arm.cross(&f))));
 }
 
 pub(crate) fn vector(list: &[f64], first: usize) -> Vector3<f64> {

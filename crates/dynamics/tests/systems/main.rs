@@ -6,6 +6,7 @@ mod dense;
 mod described;
 mod elements;
 mod equation;
+mod far;
 mod flexible;
 mod hard;
 mod laws;

@@ -9,7 +9,7 @@ use crate::state::attitude_at;
 use crate::system::collocation::STAGES;
 use crate::system::joint::force::FrictionSlope;
 use crate::system::radau::{Failed, SystemMotion};
-use crate::system::stage::{about_global_origin, put, vector};
+use crate::system::stage::{about_center, put, vector};
 
 /// The largest turn of a body, rad, for which the matrices of where it began are good. Only an assembly goes beyond.
 const FAR: f64 = 0.3;
@@ -124,13 +124,14 @@ impl SystemMotion {
             let (first, end_of_body) = (system.first[b], system.first[b + 1]);
             let [impulse, angular_impulse] =
                 [0, 3].map(|part| last.attitudes[b].tr_mul(&vector(&real.y, first + part)));
-            about_global_origin(&mut real.y[first..end_of_body], &last.positions[b], &last.attitudes[b]);
+            about_center(&mut real.y[first..end_of_body], &last.arms[b], &last.attitudes[b]);
             let turned = attitude_at(&state.values, 0).advanced_by(&vector(&last.x, first + 3));
             let momentum = start.bodies[b].momentum + vector(&last.y, first) + vector(&real.y, first);
             let angular_momentum =
                 start.bodies[b].angular_momentum + vector(&last.y, first + 3) + vector(&real.y, first + 3);
-            let position = last.positions[b];
-            let pi = turned.to_body(&(angular_momentum - position.cross(&momentum)));
+            let position = last.positions[b] + last.way;
+            let pi = turned.to_body(&(angular_momentum - last.arms[b].cross(&momentum)));
+            let momentum = momentum + last.frame_velocity * body.mass();
             let mut list = body.list_mut(state);
             list.set_attitude(turned);
             let mut slow = *list.slow();

@@ -84,7 +84,7 @@ impl SystemMotion {
         x.copy_from_slice(&last.velocities);
         for (b, attitude) in last.attitudes.iter().enumerate() {
             let first = system.first[b];
-            let velocity = attitude.tr_mul(&vector(x, first));
+            let velocity = attitude.tr_mul(&vector(x, first)) - last.frame_velocity;
             put(x, first, &velocity);
         }
         y.copy_from_slice(&rates.y);

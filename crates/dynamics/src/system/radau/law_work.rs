@@ -58,8 +58,9 @@ impl Path<'_> {
     fn follow(&self, part: f64, stage: &mut Stage) -> [f64; 2] {
         let Self { system, start, scheme, increments, h } = self;
         let rates = scheme.rates_at(part).map(|factor| factor / h);
-        stage.follow(system, start, *increments, [scheme.at(part), rates]);
-        [start.time + part * h, start.time + 0.5 * h]
+        let time = start.time + part * h;
+        stage.follow((system, start), time, *increments, [scheme.at(part), rates]);
+        [time, start.time + 0.5 * h]
     }
 }
 

@@ -142,6 +142,7 @@ impl SystemMotion {
         for (b, body) in self.system.bodies.iter().enumerate() {
             let first = self.system.first[b];
             let mut state = body.motion_state(&self.bodies[b])?;
+            // Nothing has moved on.
             state.origin_global = last.positions[b];
             state.attitude = state.attitude.advanced_by(&vector(&last.x, first + 3));
             let before = *body.list(&self.bodies[b]).slow();

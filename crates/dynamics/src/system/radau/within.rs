@@ -12,7 +12,7 @@ use crate::system::stage::vector;
 impl SystemMotion {
     /// Takes over the motion of another with the same system, but for the count of its evaluations, without allocating.
     pub(in crate::system) fn copy_from(&mut self, other: &Self) {
-        self.time = other.time;
+        (self.time, self.start.frame) = (other.time, other.start.frame);
         self.bodies.iter_mut().zip(&other.bodies).for_each(|(own, other)| own.copy_from(other));
         let lists = |of: &Self| -> [f64; 4] { [of.last_length, of.largest_energy, of.largest_moving, of.jump_work] };
         [self.last_length, self.largest_energy, self.largest_moving, self.jump_work] = lists(other);
@@ -96,10 +96,11 @@ impl SystemMotion {
         // Momenta that bend have impulses that do.
         for (b, (body, state)) in self.system.bodies.iter().zip(&mut self.bodies).enumerate() {
             let first = self.system.first[b];
-            let [impulse, about_global] = [0, 3].map(|part| bend * vector(&after.bend[1], first + part));
+            let [impulse, about_center] = [0, 3].map(|part| bend * vector(&after.bend[1], first + part));
             let mut list = body.list_mut(state);
             let mut slow = *list.slow();
-            let moment = about_global - get(&slow, part::POSITION).cross(&impulse);
+            let arm = get(&slow, part::POSITION) - self.start.frame.center_at(time);
+            let moment = about_center - arm.cross(&impulse);
             for (which, more) in [(part::IMPULSE, impulse), (part::ANGULAR_IMPULSE, moment)] {
                 let sum = get(&slow, which) + more;
                 set(&mut slow, which, &sum);
