@@ -18,7 +18,7 @@ const GAUSS: [[f64; 2]; 4] = [
 ];
 /// A growth below this part of the fastest pole is none, or below that of the pole itself: double poles, as rigid motions have in a spin,
 /// have the root of rounding.
-const NO_GROWTH: [f64; 2] = [1e-10, 1e-6];
+const NO_GROWTH: [f64; 2] = [1e-8, 1e-6];
 /// A decay below this part of the pole is none.
 const NO_DECAY: f64 = 1e-6;
 /// Panels shorter than this part of the band's end are none.

@@ -86,7 +86,7 @@ fn the_materials_of_a_deck_are_those_of_its_scene_and_another_one_is_told() {
     let both = "*SOLID SECTION, ELSET=arm, MATERIAL=AW 6082\n*SOLID SECTION, ELSET=head, MATERIAL=AW 6082\n";
     let (text, model, notes) = of(both);
     // 6 mm would look like metres: the density says more.
-    for words in ["densities of its file look like millimetres", "\"AW 6082\"", "material = { young_modulus = 70000.0"]
+    for words in ["materials of its file look like millimetres", "\"AW 6082\"", "material = { young_modulus = 70000.0"]
     {
         assert!(text.contains(words), "{words}: {text}");
     }

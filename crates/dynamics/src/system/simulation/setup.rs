@@ -109,8 +109,20 @@ pub(super) fn size(system: &System, states: &[MotionState]) -> f64 {
     spread.chain(radii).fold(f64::MIN_POSITIVE, f64::max)
 }
 
+/// Gap of a joint over the rounding of places that may be rounding.
+const OPEN_BY_ROUNDING: f64 = 1e5;
 /// A body that does not resist a motion.
 const SINGULAR: SetupError = SetupError::Value { what: "the inertia of a body", found: 0.0, expected: "above 0" };
+
+/// The error of joints that stay open; where that may be rounding, far from the origin, it says so.
+fn not_assembled(motion: &SystemMotion, joint: Box<str>, [left, rate]: [f64; 2]) -> SetupError {
+    match motion.rounding_of_places() {
+        Some([distance, rounding]) if left < OPEN_BY_ROUNDING * rounding => {
+            SetupError::TooFar { joint, left, distance, rounding }
+        }
+        _ => SetupError::NotAssembled { joint, left, rate },
+    }
+}
 
 /// Moves the bodies so that the joints close, and finds by how much; and the branches of the motion, if there are two.
 pub(super) fn assemble(
@@ -127,7 +139,7 @@ pub(super) fn assemble(
         (Err(RelaxError::Rest(error)), _) => return Err(error.into()),
         // Bodies that are too far from where they have to be.
         (Err(_), Some((joint, [left, rate]))) => {
-            return Err(SetupError::NotAssembled { joint: joint.into(), left, rate });
+            return Err(not_assembled(motion, joint.into(), [left, rate]));
         }
         (Err(_), None) => return Err(SINGULAR),
     };
@@ -136,7 +148,7 @@ pub(super) fn assemble(
     if is_open(left, size) || is_open(rates, size / end + fastest.fold(0.0, f64::max)) {
         let open = motion.largest_gap().ok().flatten();
         let joint = open.map_or_else(Box::default, |(joint, _)| joint.into());
-        return Err(SetupError::NotAssembled { joint, left, rate: rates });
+        return Err(not_assembled(motion, joint, [left, rates]));
     }
     let branching = motion.test_start()?;
     let changed = |(body, state): (usize, &MotionState)| {
