@@ -180,7 +180,7 @@ impl SystemMotion {
     /// The largest residual of all rows where the system is, as a length over the size of the system.
     ///
     /// # Errors
-    /// [`RateError`](crate::RateError) where a body's velocities cannot be found.
+    /// [`RateError`] where a body's velocities cannot be found.
     pub fn largest_residual(&mut self) -> Result<f64, RateError> {
         self.begin();
         self.evaluate_first(self.time)?;
