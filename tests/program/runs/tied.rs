@@ -287,7 +287,7 @@ fn at_tolerances(tolerances: &[&str], scene: &str, check: impl Fn(&Results)) {
     for tolerance in tolerances {
         let folder = tempfile::tempdir().unwrap();
         let scene = scene.replace("tolerance = 1e-6", &format!("tolerance = {tolerance}"));
-        let system = System::parse(&scene, &folder.path().join("scene.toml")).unwrap();
+        let system = System::parse(&scene, folder.path().join("scene.toml")).unwrap();
         let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ())
             .unwrap_or_else(|error| panic!("{tolerance}: {error}"));
         check(&Results::open(&report.results, &COLUMNS).unwrap());
