@@ -1,6 +1,6 @@
 //! The program and what it says, as tests call it from the root of the repository.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
@@ -14,6 +14,13 @@ pub(crate) fn root() -> PathBuf {
 pub(crate) fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
     command.args(arguments).current_dir(root());
+    command
+}
+
+/// The program in a folder, where nothing was computed before.
+pub(crate) fn command_in(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = command(arguments);
+    command.env("FLEXFRAME_CACHE", "").current_dir(folder);
     command
 }
 

@@ -116,6 +116,11 @@ pub enum SetupError {
     Inertia(#[from] rigid_kin::InertiaError),
 }
 
+impl SetupError {
+    /// A body that does not resist a motion.
+    pub(crate) const SINGULAR: Self = Self::Value { what: "the inertia of a body", found: 0.0, expected: "above 0" };
+}
+
 /// Somebody else's error: of equations, schemes, methods and observers from outside. Two of them are equal if they are copies of
 /// one.
 #[derive(Debug, Clone)]

@@ -41,6 +41,14 @@ impl ErrorKinds {
         self.list().into_iter().fold(0.0, |most, kind| if kind <= most { most } else { kind })
     }
 
+    /// Errors of the order of a scheme, by errors of its embedded formula: a factor times a power of each, but not more than it.
+    pub(crate) fn of_scheme(&self, [factor, power]: [f64; 2]) -> Self {
+        self.with(self, |error, _| {
+            let of_scheme = factor * error.powf(power);
+            if of_scheme <= error { of_scheme } else { error }
+        })
+    }
+
     /// A function of the kinds of two, kind by kind.
     pub(crate) fn with(&self, other: &Self, of: impl Fn(f64, f64) -> f64) -> Self {
         let (own, other) = (self.list(), other.list());

@@ -140,3 +140,13 @@ impl<'f> Texts<'f> {
         Ok(())
     }
 }
+
+/// A number as decks have it: 1., -.5, 1E3 or 1D3.
+pub(crate) fn number(text: &str) -> Option<f64> {
+    // `parse` knows words, such as nan, that no deck has.
+    if !text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E' | b'd' | b'D')) {
+        return None;
+    }
+    let number: f64 = text.replace(['d', 'D'], "e").parse().ok()?;
+    number.is_finite().then_some(number)
+}

@@ -9,7 +9,7 @@ use crate::error::ImportError;
 use crate::imported::Imported;
 use crate::notes;
 use crate::tetrahedra::Tetrahedra;
-use crate::texts::{Data, Place, Texts};
+use crate::texts::{self, Data, Place, Texts};
 
 /// Header, units and coordinate systems: nodes of 2411 and 781 are in the system of their part.
 const SILENT: [u64; 3] = [151, 164, 2420];
@@ -166,8 +166,7 @@ impl<'t> Lines<'t> {
 
     /// Three coordinates.
     fn coordinates<'w>(&self, data: Data<'_>, words: impl Iterator<Item = &'w str>) -> Result<[f64; 3], ImportError> {
-        let number = |word: &str| word.replace(['d', 'D'], "e").parse().ok().filter(|number: &f64| number.is_finite());
-        let numbers: Option<Vec<f64>> = words.map(number).collect();
+        let numbers: Option<Vec<f64>> = words.map(texts::number).collect();
         numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| self.refuse(data, "three coordinates"))
     }
 

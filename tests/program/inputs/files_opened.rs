@@ -5,7 +5,6 @@ use std::fs;
 use std::mem::MaybeUninit;
 use std::os::fd::OwnedFd;
 use std::path::Path;
-use std::process::Command;
 
 use flexframe::fmu::marker;
 use flexframe::model::Builder;
@@ -13,8 +12,10 @@ use flexframe::scene::System;
 use rustix::fs::inotify;
 use rustix::io::Errno;
 
+use crate::program::command_in;
+
 /// A tetrahedron of a deck that includes another, its reduced body, and a body of matrices.
-const EVERY_KEY: &str = r#"
+pub(super) const EVERY_KEY: &str = r#"
 title = "every key with a path"
 units = { length = "m", mass = "kg", time = "s" }
 
@@ -77,12 +78,6 @@ const INCLUDED: &str = "\
 *ELEMENT, TYPE=C3D10, ELSET=all\n1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10\n";
 const SWEEP: &str = "scene = \"every.toml\"\n[parameters]\n\"time.end\" = [0.01]\n\
                      [results]\ntip = { final = \"bodies/meshed/points/tip/displacement\" }\n";
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(arguments).env("FLEXFRAME_CACHE", "").current_dir(folder);
-    command
-}
 
 /// How much a command opens of the list of files of its scene.
 enum Opens {
@@ -160,7 +155,7 @@ fn each_command_opens_what_is_in_the_list_of_files_that_are_read() {
     let dofs: Vec<String> = (1..=9).flat_map(|node| (1..=6).map(move |dof| format!("{node}.{dof}\n"))).collect();
     fs::write(folder.join("dofs.txt"), dofs.concat()).unwrap();
     for arguments in [["reduce", "body.toml", "-o", "body.h5"], ["run", "every.toml", "-o", "."]] {
-        let output = command(folder, &arguments).output().unwrap();
+        let output = command_in(folder, &arguments).output().unwrap();
         assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     }
     let system = System::read(folder.join("every.toml")).unwrap();
@@ -221,7 +216,7 @@ fn each_command_opens_what_is_in_the_list_of_files_that_are_read() {
         (&["report", "every.h5", "--live", "-o", "o/l.html"], "o/l.html", &["every.h5"], Opens::Part),
         (&["export", "every.h5", "--csv", "o"], "o/every.csv", &["every.h5"], Opens::Part),
     ] {
-        let answer = command(folder, arguments).output().unwrap();
+        let answer = command_in(folder, arguments).output().unwrap();
         let said = String::from_utf8_lossy(&answer.stderr);
         let seen: BTreeSet<String> = watch.opened().intersection(&inputs).cloned().collect();
         let of_scene: BTreeSet<String> = match opens {
@@ -243,7 +238,7 @@ fn each_command_opens_what_is_in_the_list_of_files_that_are_read() {
             let _ = fs::remove_file(&place);
             fs::hard_link(folder.join(name), &place).unwrap();
             let arguments = [arguments, &["--overwrite"]].concat();
-            let refused = command(folder, &arguments).output().unwrap();
+            let refused = command_in(folder, &arguments).output().unwrap();
             let said = String::from_utf8_lossy(&refused.stderr);
             assert!(said.contains("this file is read by the command"), "{arguments:?} in the place of {name}: {said}");
             fs::remove_file(&place).unwrap();

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -11,55 +11,8 @@ use flexframe::model::Builder;
 use flexframe::run::{RunError, RunSettings, resume, run};
 use flexframe::scene::System;
 
-/// Every key with a path, in bodies and joints: only a parser reads them here, so that no body has to be right.
-const EVERY_KEY: &str = r#"
-title = "every key"
-units = { length = "m", mass = "kg", time = "s" }
-
-[bodies.meshed]
-mesh = "deck.inp"
-material = { young_modulus = 1e9, poisson_ratio = 0.3, density = 1e3 }
-modes = { flexible = 2, measured = "measured.csv" }
-loads = [
-  { kind = "gravity", direction = [0, 0, -1], amplitude = 1.0, history = { kind = "product", factors = [
-    { kind = "table", file = "first.csv" }, { kind = "table", file = "second.csv" } ] } },
-]
-
-[bodies.reduced]
-file = "body.h5"
-modes = { flexible = 2 }
-markers = { end = { at = [0, 0, 0] } }
-
-[bodies.of_matrices]
-matrices = { mass = "mass.mtx", stiffness = "stiffness.mtx", nodes = "nodes.csv", dofs = "dofs.txt" }
-modes = { flexible = 2 }
-
-[bodies.arm]
-rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }
-markers = { root = { at = [0, 0, 0] } }
-
-[bodies.wheel]
-rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }
-constraints = [ { kind = "hinge", at = [0, 0, 0], axis = [0, 0, 1], motion = { amplitude = 1.0, history = { kind = "table", file = "hinge.csv" } } } ]
-
-[[joints]]
-name = "driven"
-kind = "revolute"
-axis = [0, 0, 1]
-between = ["ground", "arm.root"]
-drive = { amplitude = 1.0, history = { kind = "table", file = "drive.csv" } }
-
-[[joints]]
-name = "with a motor"
-kind = "revolute"
-axis = [0, 0, 1]
-between = ["ground", "reduced.end"]
-motor = { amplitude = 1.0, history = { kind = "table", file = "motor.csv" } }
-
-[time]
-end = 1.0
-tolerance = 1e-4
-"#;
+use super::files_opened::EVERY_KEY;
+use crate::program::command_in;
 
 #[test]
 fn every_key_with_a_path_is_in_the_list_of_files_that_are_read() {
@@ -117,18 +70,13 @@ fn desk() -> tempfile::TempDir {
     folder
 }
 
-fn flexframe(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(arguments).env("FLEXFRAME_CACHE", "").current_dir(folder).output().unwrap()
-}
-
 fn done(folder: &Path, arguments: &[&str]) {
-    let output = flexframe(folder, arguments);
+    let output = command_in(folder, arguments).output().unwrap();
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
 }
 
 fn refused(folder: &Path, arguments: &[&str], words: &str) {
-    let output = flexframe(folder, arguments);
+    let output = command_in(folder, arguments).output().unwrap();
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success() && text.contains(words), "{arguments:?}: {text}");
 }

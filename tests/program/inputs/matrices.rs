@@ -1,15 +1,11 @@
 //! Every command on a body of matrices: it works, or says why not and what to do.
 
 use std::path::Path;
-use std::process::{Command, Output};
 
-fn flexframe(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(arguments).current_dir(folder).env("FLEXFRAME_CACHE", "").output().unwrap()
-}
+use crate::program::command_in;
 
 fn works(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
-    let output = flexframe(folder, arguments);
+    let output = command_in(folder, arguments).output().unwrap();
     let (said, error) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success(), "{arguments:?}: {error}");
     for words in words {
@@ -47,7 +43,7 @@ fn each_command_works_or_refuses_in_words() {
         (&["paper", "boom.toml", "-o", "paper"], "the paper has a free body with a mesh"),
     ] {
         let before = std::fs::read_dir(folder).unwrap().count();
-        let output = flexframe(folder, arguments);
+        let output = command_in(folder, arguments).output().unwrap();
         let error = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(3), "{arguments:?}: {error}");
         assert!(error.contains(says), "{arguments:?}: {error}");

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use flexframe::columns::COLUMNS;
-use flexframe::run::{RunError, RunProgress, RunSettings, resume, run};
+use flexframe::run::{RunError, RunProgress, RunReport, RunSettings, resume, run};
 use flexframe::scene::System;
 use results::Results;
 
@@ -165,6 +165,16 @@ fn a_joint_to_the_ground_moves_a_body_as_its_constraint_does() {
     assert!(steps_tied < 10_000, "{steps_tied}");
 }
 
+/// A scene that has run: the folder of its results, which goes with it, and its report.
+#[track_caller]
+fn ran(scene: &str, file: &Path) -> (tempfile::TempDir, RunReport) {
+    let folder = tempfile::tempdir().unwrap();
+    let system = System::parse(scene, file).unwrap();
+    let (_, report) =
+        run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap_or_else(|error| panic!("{error}: {scene}"));
+    (folder, report)
+}
+
 /// Closed form: friction F tanh(v / v_f) that holds 95 % of F creeps at v_f artanh(0.95); the arm starts at rest.
 #[test]
 fn a_run_tells_how_friction_that_holds_creeps() {
@@ -190,9 +200,7 @@ tolerance = 1e-4
 [output]
 interval = 0.1
 "#;
-    let folder = tempfile::tempdir().unwrap();
-    let system = System::parse(scene, folder.path().join("arm.toml")).unwrap();
-    let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let (_folder, report) = ran(scene, Path::new("arm.toml"));
     let [held] = &report.tied[0].held[..] else { panic!("{:?}", report.tied) };
     let expected = 1e-5 * 0.95_f64.atanh();
     assert!(held.joint == "brake" && held.time > 0.999 && (held.path / expected - 1.0).abs() < 1e-3, "{held:?}");
@@ -211,9 +219,7 @@ fn a_run_tells_that_stops_act_on_a_flexible_body() {
     let stops = "spring = { stops = { high = 0.5, stiffness = 1e4 } }\n";
     let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/hung.toml"));
     for (joint, expected) in [(joint.to_owned(), vec![]), (format!("{joint}{stops}"), vec!["hinge".to_owned()])] {
-        let system = System::parse(&format!("{}\n{joint}", HUNG.replace("end = 0.3", "end = 0.02")), file).unwrap();
-        let folder = tempfile::tempdir().unwrap();
-        let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+        let (_folder, report) = ran(&format!("{}\n{joint}", HUNG.replace("end = 0.3", "end = 0.02")), file);
         assert_eq!(report.tied[0].flexible_stops, expected);
         assert_eq!(report.to_string().contains("beyond its modes"), !expected.is_empty());
     }
@@ -285,11 +291,8 @@ tolerance = 1e-6
 /// Runs a scene of rigid bodies at tolerances.
 fn at_tolerances(tolerances: &[&str], scene: &str, check: impl Fn(&Results)) {
     for tolerance in tolerances {
-        let folder = tempfile::tempdir().unwrap();
         let scene = scene.replace("tolerance = 1e-6", &format!("tolerance = {tolerance}"));
-        let system = System::parse(&scene, folder.path().join("scene.toml")).unwrap();
-        let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ())
-            .unwrap_or_else(|error| panic!("{tolerance}: {error}"));
+        let (_folder, report) = ran(&scene, Path::new("scene.toml"));
         check(&Results::open(&report.results, &COLUMNS).unwrap());
     }
 }

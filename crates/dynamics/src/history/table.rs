@@ -65,7 +65,7 @@ impl Table {
         Ok(Self { times, values, rates, discontinuities })
     }
 
-    /// Times where a rate changes by more than the rounding of the rows: that of straight lines, or any of cubics.
+    /// Times where a rate changes by more than the rounding of the rows: the rate of straight lines, or any rate of cubics.
     pub fn discontinuities(&self) -> &[f64] {
         &self.discontinuities
     }

@@ -486,15 +486,13 @@ impl SystemMotion {
             self.keep_past();
             self.reach_end();
             let weights = self.scheme.weights.map(|weight| h * weight);
-            if !self.scheme.is_explicit {
-                let Self { stages: [.., stage], system, start, scheme, stage_rates, .. } = self;
-                // Σ_i b_i a_ij = b_j (1 − c_j).
-                let forces = |k: usize| {
-                    let parts = stage_rates.iter().zip(weights.iter().zip(scheme.times));
-                    parts.map(|(rates, (weight, time))| weight * (1.0 - time) * rates.y[k]).sum::<f64>()
-                };
-                stage.correct_centers((system, start), h, forces);
-            }
+            let Self { stages: [.., stage], system, start, scheme, stage_rates, .. } = self;
+            // Σ_i b_i a_ij = b_j (1 − c_j).
+            let forces = |k: usize| {
+                let parts = stage_rates.iter().zip(weights.iter().zip(scheme.times));
+                parts.map(|(rates, (weight, time))| weight * (1.0 - time) * rates.y[k]).sum::<f64>()
+            };
+            stage.correct_centers((system, start), h, forces);
             self.land([end, branch_time], h, weights)?;
         }
         Ok(tried)

@@ -2,7 +2,7 @@
 
 use crate::abaqus::keywords::spaced;
 use crate::error::ImportError;
-use crate::texts::{Data, Place, Texts};
+use crate::texts::{self, Data, Place, Texts};
 
 /// A keyword with its parameters and its data.
 #[derive(Debug)]
@@ -100,13 +100,5 @@ fn is_more(text: &str) -> bool {
 
 /// A number as decks have it: 1., -.5, 1E3 or 1D3; an empty field is nought.
 pub(crate) fn number(text: &str) -> Option<f64> {
-    if text.is_empty() {
-        return Some(0.0);
-    }
-    // `parse` knows words, such as nan, that no deck has.
-    if !text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E' | b'd' | b'D')) {
-        return None;
-    }
-    let number: f64 = text.replace(['d', 'D'], "e").parse().ok()?;
-    number.is_finite().then_some(number)
+    if text.is_empty() { Some(0.0) } else { texts::number(text) }
 }

@@ -1,7 +1,7 @@
 //! The cards of a deck: fields of 8 or 16 letters or between commas, and the lines that continue them.
 
 use crate::error::ImportError;
-use crate::texts::{Data, Place, Texts};
+use crate::texts::{self, Data, Place, Texts};
 
 /// A card with its fields after the name.
 #[derive(Debug)]
@@ -85,18 +85,13 @@ impl<'t> Card<'t> {
 
 /// A number as Nastran writes it, such as 7.+4.
 pub(super) fn number(text: &str) -> Option<f64> {
-    // `parse` knows words, such as nan, that no deck has.
-    if !text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E' | b'd' | b'D')) {
-        return None;
-    }
     let mut plain = text.replace(['d', 'D', 'E'], "e");
     if !plain.contains('e')
         && let Some(at) = plain.rfind(['+', '-']).filter(|at| *at > 0)
     {
         plain.insert(at, 'e');
     }
-    let number: f64 = plain.parse().ok()?;
-    number.is_finite().then_some(number)
+    texts::number(&plain)
 }
 
 /// The cards between BEGIN BULK and ENDDATA, which may both be missing.

@@ -7,7 +7,7 @@ fn slope(t: &[f64], v: &[f64]) -> (f64, f64) {
     (slope, f64::EPSILON * (v[0].abs() + v[1].abs() + slope.abs() * (t[0].abs() + t[1].abs())) / dt)
 }
 
-/// Times where pieces meet that do not lie on one line; `rates` are those of cubics, or none.
+/// Times where pieces meet that do not lie on one line; `rates` are the rates of cubics, or none.
 pub(super) fn discontinuities(times: &[f64], values: &[f64], rates: &[f64]) -> Vec<f64> {
     const FLAT: (f64, f64, bool) = (0.0, 0.0, true);
     let lines = times.windows(2).zip(values.windows(2)).enumerate().map(|(row, (t, v))| {

@@ -8,7 +8,7 @@ use crate::system::collocation::{Collocation, STAGES};
 
 /// Shortest and longest step before, over the step, with which the estimate is made: with a shorter one its weights are large.
 const RATIOS: [f64; 2] = [0.6, 30.0];
-/// Numbers of the estimate: its weights, and the powers of hλ up to the order of the error with that of the start.
+/// Numbers of the estimate: its weights, and the powers of hλ up to the order of the error with the power of the start.
 const COUNT: usize = 2 * STAGES + 1;
 /// The estimate of y' = λy begins with (hλ)⁶ over this: so does the error of Radau IIA.
 const LEADING: f64 = 7200.0;
@@ -64,7 +64,7 @@ impl Collocation {
             row(a * e, fifth * (a * e), [0.0; 3]),
             self.leading(s, ends),
         ];
-        // Each row by its size, since those of a long step before are large.
+        // Each row by its size, since the rows of a long step before are large.
         let mut matrix = SMatrix::<f64, COUNT, COUNT>::zeros();
         let mut right = SVector::<f64, COUNT>::zeros();
         for (i, row) in rows.iter().enumerate() {

@@ -75,7 +75,7 @@ impl Matrices {
         real.factor(kappa, system, patterns, stage, compliant, is_left_out)
     }
 
-    /// Factor of the Newton matrix for what drifts where a stage is, after that of a step.
+    /// Factor of the Newton matrix for what drifts where a stage is, after the factor of a step.
     pub fn factor_drift(&mut self, system: &System, patterns: &Patterns, stage: &Stage, kappa: f64) -> bool {
         let Self { compliant, is_left_out, drift, .. } = self;
         drift.factor(kappa, system, patterns, stage, compliant, is_left_out)

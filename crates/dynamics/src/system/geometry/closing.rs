@@ -37,7 +37,7 @@ pub(crate) struct Closing {
 }
 
 impl Stage {
-    /// Moves the bodies so that the joints close, from where they have been placed; their shapes stay. `turns` are those of the joints,
+    /// Moves the bodies so that the joints close, from where they have been placed; their shapes stay. `turns` are the turns of the joints,
     /// and go on; `size` is that of the system.
     pub fn close(
         &mut self,

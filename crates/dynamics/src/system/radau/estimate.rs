@@ -57,13 +57,7 @@ impl SystemMotion {
                 let fine = if is_gauss { fine * of_gauss } else { fine };
                 if fine <= embedded { fine } else { embedded }
             }),
-            None => {
-                let [factor, power] = OF_EMBEDDED;
-                embedded.with(&embedded, |error, _| {
-                    let of_scheme = factor * error.powf(power);
-                    if of_scheme <= error { of_scheme } else { error }
-                })
-            }
+            None => embedded.of_scheme(OF_EMBEDDED),
         };
         let largest = errors.largest();
         // What Gauss does not resolve it keeps: only Radau forgets.

@@ -48,12 +48,7 @@ impl SystemMotion {
         let energy = self.largest_energy;
         self.raise_energies(h);
         let embedded = self.errors_of_places([h, bound.span], self.largest_moving);
-        let [factor, power] = OF_EMBEDDED;
-        let of_scheme = embedded.with(&embedded, |error, _| {
-            let of_scheme = factor * error.powf(power);
-            if of_scheme <= error { of_scheme } else { error }
-        });
-        let errors = ErrorKinds { energy: self.energy_error(h), ..of_scheme };
+        let errors = ErrorKinds { energy: self.energy_error(h), ..embedded.of_scheme(OF_EMBEDDED) };
         let kink = if over_kinks { None } else { self.length_to_kink(h) };
         if bound.ratio(&errors) <= 1.0 && kink.is_none() {
             self.last_length = h;
@@ -135,8 +130,8 @@ impl SystemMotion {
         Ok(())
     }
 
-    /// Takes the last stage to the end of the step, and finds the error of the step: what a formula of order three with the velocities there
-    /// would have instead of those of the fourth stage.
+    /// Takes the last stage to the end of the step, and finds the estimate of its error: the difference of a formula of order three that has the
+    /// velocities there in place of the ones of the fourth stage.
     fn explicit_error(&mut self, h: f64, times: [f64; 2]) -> Result<(), Failed> {
         let Self { stages: [.., stage], system, start, scheme, velocity_multipliers, last, room, evaluations, .. } =
             self;

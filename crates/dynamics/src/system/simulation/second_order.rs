@@ -35,10 +35,8 @@ impl SystemMotion {
     /// # Errors
     /// [`SetupError::Contradiction`] where no motion fits the rows.
     pub(super) fn test_start(&mut self) -> Result<Option<Branching>, SetupError> {
-        const SINGULAR: SetupError =
-            SetupError::Value { what: "the inertia of a body", found: 0.0, expected: "above 0" };
         self.begin();
-        self.evaluate_first(self.time).map_err(|_| SINGULAR)?;
+        self.evaluate_first(self.time).map_err(|_| SetupError::SINGULAR)?;
         let judged = Judgement::first(&self.system, &self.first.posture(&self.system), true);
         if judged.rank.idle.is_empty() {
             return Ok(None);
@@ -105,7 +103,7 @@ impl SystemMotion {
         };
         let of_taken = rates(self, *taken);
         let of_other = other.map(|root| rates(self, root));
-        self.take_velocities(&along(taken * step)).map_err(|_| SINGULAR)?;
+        self.take_velocities(&along(taken * step)).map_err(|_| SetupError::SINGULAR)?;
         let Some(of_other) = of_other else { return Ok(None) };
         let most = of_taken.iter().chain(&of_other).fold(0.0_f64, |most, rate| most.max(rate.abs()));
         let joints = self.system.connections.joints.iter().zip(of_taken.into_iter().zip(of_other));

@@ -111,8 +111,6 @@ pub(super) fn size(system: &System, states: &[MotionState]) -> f64 {
 
 /// Gap of a joint over the rounding of places that may be rounding.
 const OPEN_BY_ROUNDING: f64 = 1e5;
-/// A body that does not resist a motion.
-const SINGULAR: SetupError = SetupError::Value { what: "the inertia of a body", found: 0.0, expected: "above 0" };
 
 /// The error of joints that stay open; where that may be rounding, far from the origin, it says so.
 fn not_assembled(motion: &SystemMotion, joint: Box<str>, [left, rate]: [f64; 2]) -> SetupError {
@@ -132,7 +130,7 @@ pub(super) fn assemble(
     [size, end]: [f64; 2],
 ) -> Result<(Vec<Assembled>, Option<Branching>), SetupError> {
     refuse_wrong_derivatives(motion)?;
-    let open = motion.largest_gap().map_err(|_| SINGULAR)?;
+    let open = motion.largest_gap().map_err(|_| SetupError::SINGULAR)?;
     let done = if relaxed { motion.relax() } else { motion.assemble().map_err(RelaxError::from) };
     let [left, rates] = match (done, open) {
         (Ok(left), _) => left,
@@ -141,7 +139,7 @@ pub(super) fn assemble(
         (Err(_), Some((joint, [left, rate]))) => {
             return Err(not_assembled(motion, joint.into(), [left, rate]));
         }
-        (Err(_), None) => return Err(SINGULAR),
+        (Err(_), None) => return Err(SetupError::SINGULAR),
     };
     let fastest = states.iter().map(|state| state.velocity_global.norm() + size * state.omega_body.norm());
     let is_open = |left: f64, scale: f64| left.is_nan() || left > CLOSED * scale;
@@ -152,7 +150,7 @@ pub(super) fn assemble(
     }
     let branching = motion.test_start()?;
     let changed = |(body, state): (usize, &MotionState)| {
-        let now = motion.state(body).map_err(|_| SINGULAR)?;
+        let now = motion.state(body).map_err(|_| SetupError::SINGULAR)?;
         Ok(Assembled {
             moved: (now.origin_global - state.origin_global).norm(),
             turned: now.attitude.angle_to(&state.attitude),

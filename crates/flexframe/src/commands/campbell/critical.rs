@@ -1,5 +1,6 @@
 //! Where engine orders and branches cross.
 
+use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 use dynamics::{EigenError, SpinMode, SteadySpin};
@@ -22,6 +23,11 @@ pub enum CriticalKind {
 }
 
 impl CriticalKind {
+    /// The kind at which a branch has the frequency of an order.
+    fn of_order(order: f64) -> Self {
+        if order == 0.0 { Self::ZeroFrequency } else { Self::Crossing }
+    }
+
     /// Name in tables for programs, as in JSON.
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -46,6 +52,12 @@ pub struct Critical {
     pub speed: f64,
     /// Frequency, cycles per time.
     pub frequency: f64,
+}
+
+impl Critical {
+    pub(super) fn by_order_and_speed(&self, other: &Self) -> Ordering {
+        self.order.total_cmp(&other.order).then(self.speed.total_cmp(&other.speed))
+    }
 }
 
 /// A speed at which a vibration that is damped so much that it only decays begins to swing, or stops to. It is stable on both sides.
@@ -73,7 +85,7 @@ pub(super) fn find(spin: &SteadySpin, branches: &Branches, orders: &[f64]) -> Re
                 .enumerate()
                 .min_by(|(_, a), (_, b)| off(a.circular_frequency).total_cmp(&off(b.circular_frequency)));
             if let Some((k, _)) = nearest {
-                let kind = if order == 0.0 { CriticalKind::ZeroFrequency } else { CriticalKind::Crossing };
+                let kind = CriticalKind::of_order(order);
                 all.push(Critical { kind, order, mode: k + 1, speed, frequency: order * speed / TAU });
             }
         }
@@ -87,8 +99,8 @@ pub(super) fn find(spin: &SteadySpin, branches: &Branches, orders: &[f64]) -> Re
 pub(super) fn between(branches: &Branches, orders: &[f64]) -> Vec<Critical> {
     let mut all = Vec::new();
     for &order in std::iter::once(&0.0).chain(orders) {
-        let (kind, counted) =
-            if order == 0.0 { (CriticalKind::ZeroFrequency, 1.0) } else { (CriticalKind::Crossing, 0.0) };
+        let kind = CriticalKind::of_order(order);
+        let counted = if kind == CriticalKind::ZeroFrequency { 1.0 } else { 0.0 };
         let square = |mode: &SpinMode| mode.circular_frequency.powi(2) - counted * mode.growth.powi(2);
         for (i, pair) in branches.speeds.windows(2).enumerate() {
             let [from, to] = [pair[0] * pair[0], pair[1] * pair[1]];
@@ -103,6 +115,6 @@ pub(super) fn between(branches: &Branches, orders: &[f64]) -> Vec<Critical> {
             }
         }
     }
-    all.sort_by(|a, b| (a.order, a.speed).partial_cmp(&(b.order, b.speed)).unwrap_or(std::cmp::Ordering::Equal));
+    all.sort_by(Critical::by_order_and_speed);
     all
 }

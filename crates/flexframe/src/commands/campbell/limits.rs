@@ -82,8 +82,7 @@ impl Limits {
         for pair in here.windows(2) {
             search.step(&pair[0], &pair[1], PARTS, &mut found)?;
         }
-        let by_order = |a: &Critical, b: &Critical| (a.order, a.speed).partial_cmp(&(b.order, b.speed));
-        found.critical.sort_by(|a, b| by_order(a, b).unwrap_or(std::cmp::Ordering::Equal));
+        found.critical.sort_by(Critical::by_order_and_speed);
         found.swings.sort_by(|a, b| a.speed.total_cmp(&b.speed));
         Ok(found)
     }

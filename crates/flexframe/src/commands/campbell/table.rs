@@ -138,9 +138,7 @@ impl CampbellReport {
         }
         Ok(())
     }
-}
 
-impl CampbellReport {
     fn write_swing_limits(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for &SwingLimit { mode, speed, swings_above } in &self.swing_limits {
             let (swings, decays) = if swings_above { ("above", "below") } else { ("below", "above") };

@@ -4,7 +4,7 @@ use dynamics::{PointShapes, RotationShapes};
 use faer::Mat;
 use model::{BodyMarker, MarkerPart, Model, UnknownTurns};
 use nalgebra::{Matrix3, Matrix6, Vector3};
-use scene::Scene;
+use scene::{Scene, key_path};
 
 use super::error::HandOverError;
 use super::interface::Place;
@@ -168,9 +168,7 @@ impl<'a> Reduced<'a> {
 
 /// Line and column of a point of the output in the scene file.
 fn place_of_point(scene: &Scene, name: &str) -> (usize, usize) {
-    let is_plain = name.chars().all(|letter| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_'));
-    let name = if is_plain { name.to_owned() } else { format!("{name:?}") };
-    let place = scene.place(&format!("output.points.{name}"));
+    let place = scene.place(&key_path("output.points", name));
     (place.line, place.column)
 }
 
