@@ -63,6 +63,7 @@ pub use system::System;
 pub use text::assign::{AssignError, assign};
 pub use text::files::tables_of;
 pub use text::place::Place;
+pub use text::points::{PointsError, points_of};
 pub use text::shorten::shorten;
 pub use text::suggest::one_of;
 pub use tie::joint::{

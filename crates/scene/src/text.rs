@@ -7,6 +7,7 @@ pub(crate) mod files;
 pub(crate) mod name;
 pub(crate) mod ordinary_file;
 pub(crate) mod place;
+pub(crate) mod points;
 pub(crate) mod shape;
 pub(crate) mod shorten;
 pub(crate) mod suggest;

@@ -2,11 +2,33 @@
 
 use crate::error::ShockError;
 
-/// The acceleration of a base: straight between rows, zero after the last.
+/// The acceleration of a base: straight or cubic between rows, zero after the last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BaseMotion {
     times: Vec<f64>,
     accelerations: Vec<f64>,
+    /// Rates at the rows, of cubics; none of straight lines.
+    rates: Vec<f64>,
+}
+
+/// The acceleration between two rows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Piece {
+    pub duration: f64,
+    pub ends: [f64; 2],
+    /// Changes over the piece by the rates at its ends, of a cubic.
+    pub slopes: Option<[f64; 2]>,
+}
+
+impl Piece {
+    /// The acceleration where a part of the piece is over.
+    pub fn at(&self, part: f64) -> f64 {
+        let [from, to] = self.ends;
+        let straight = from + (to - from) * part;
+        let Some([of_from, of_to]) = self.slopes else { return straight };
+        let left = 1.0 - part;
+        straight + part * left * (left * (of_from - (to - from)) - part * (of_to - (to - from)))
+    }
 }
 
 impl BaseMotion {
@@ -27,7 +49,21 @@ impl BaseMotion {
             let expected = "more than in the row before";
             return Err(ShockError::Row { what: "the time", row: k + 1, found: times[k], expected });
         }
-        Ok(Self { times, accelerations })
+        Ok(Self { times, accelerations, rates: Vec::new() })
+    }
+
+    /// With cubics between the rows, by the rate at each.
+    ///
+    /// # Errors
+    /// [`ShockError::Rates`], [`ShockError::Row`].
+    pub fn with_rates(self, rates: Vec<f64>) -> Result<Self, ShockError> {
+        if rates.len() != self.times.len() {
+            return Err(ShockError::Rates { times: self.times.len(), rates: rates.len() });
+        }
+        if let Some((k, found)) = rates.iter().enumerate().find(|(_, x)| !x.is_finite()) {
+            return Err(ShockError::Row { what: "the rate", row: k + 1, found: *found, expected: "a finite number" });
+        }
+        Ok(Self { rates, ..self })
     }
 
     /// Time from the first row to the last.
@@ -40,9 +76,12 @@ impl BaseMotion {
         self.accelerations.iter().fold(0.0, |most, a| a.abs().max(most))
     }
 
-    /// Duration, and acceleration at the beginning and at the end, of each piece.
-    pub(crate) fn pieces(&self) -> impl Iterator<Item = (f64, [f64; 2])> {
-        let durations = self.times.windows(2).map(|t| t[1] - t[0]);
-        durations.zip(self.accelerations.windows(2).map(|a| [a[0], a[1]]))
+    /// The pieces between the rows.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = Piece> {
+        (1..self.times.len()).map(|k| {
+            let duration = self.times[k] - self.times[k - 1];
+            let slopes = self.rates.get(k - 1..=k).map(|rates| [duration * rates[0], duration * rates[1]]);
+            Piece { duration, ends: [self.accelerations[k - 1], self.accelerations[k]], slopes }
+        })
     }
 }

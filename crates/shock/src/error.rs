@@ -13,6 +13,14 @@ pub enum ShockError {
         /// Its accelerations.
         accelerations: usize,
     },
+    /// Rates of cubics, not one for each row.
+    #[error("the base motion has {times} times and {rates} rates; expected as many of both")]
+    Rates {
+        /// Its times.
+        times: usize,
+        /// Its rates.
+        rates: usize,
+    },
     /// A number that is not finite or out of range.
     #[error("{what} in row {row}: found {found}, expected {expected}")]
     Row {

@@ -4,13 +4,15 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use crate::base_motion::BaseMotion;
+use crate::base_motion::{BaseMotion, Piece};
 use crate::error::ShockError;
 use crate::extremes::Extremes;
 use crate::oscillator::{Oscillator, Step, Swing};
 
 /// Steps in a period: the extremes between them are then good to 3e-7 of the largest value.
 const STEPS: f64 = 64.0;
+/// Least steps in a cubic between two rows, each of which is straight.
+const OF_CUBIC: f64 = 32.0;
 /// Most cycles of an oscillator in a base motion.
 const MAX_CYCLES: f64 = 1e6;
 
@@ -103,12 +105,12 @@ impl BaseMotion {
 
     /// Leads an oscillator through the motion and a period after it.
     fn lead(&self, watch: &mut Watch) {
-        for (duration, base) in self.pieces() {
-            watch.pass(duration, base);
+        for piece in self.pieces() {
+            watch.pass(piece);
         }
         // Free: an extreme of each sign comes within a period.
         let work = watch.work;
-        watch.pass(watch.oscillator.period(), [0.0; 2]);
+        watch.pass(Piece { duration: watch.oscillator.period(), ends: [0.0; 2], slopes: None });
         watch.work = work;
     }
 
@@ -181,15 +183,17 @@ impl Watch {
     }
 
     /// A piece of the base motion.
-    fn pass(&mut self, duration: f64, base: [f64; 2]) {
-        let count = (duration * self.oscillator.fastest() / TAU * STEPS).ceil().max(1.0);
+    fn pass(&mut self, piece: Piece) {
+        let duration = piece.duration;
+        let least = if piece.slopes.is_some() { OF_CUBIC } else { 1.0 };
+        let count = (duration * self.oscillator.fastest() / TAU * STEPS).ceil().max(least);
         let h = duration / count;
         let step = match self.step {
             Some((length, step)) if length == h => step,
             _ => self.oscillator.step(h),
         };
         self.step = Some((h, step));
-        let at = |k: f64| base[0] + (base[1] - base[0]) * (k / count);
+        let at = |k: f64| piece.at(k / count);
         for k in 0..count as usize {
             let base = [at(k as f64), at((k + 1) as f64)];
             let before = self.swing;

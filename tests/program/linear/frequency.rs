@@ -55,7 +55,7 @@ fn what_outputs_see_at_once_is_told() {
     ] {
         let outputs = outputs.iter().flat_map(|name| ["--outputs", name]);
         let of_linear = ["linearize", scene, "-o", file.to_str().unwrap(), "--overwrite"];
-        let of_frf = ["frf", scene, "--frequencies", "1:5:3", "-o", out.to_str().unwrap(), "--overwrite"];
+        let of_frf = ["frf", scene, "--frequencies", "0:5:3", "-o", out.to_str().unwrap(), "--overwrite"];
         for command in [&of_linear[..], &of_frf] {
             let arguments: Vec<&str> = command.iter().copied().chain(outputs.clone()).collect();
             let found = json(&arguments)["at_once"].clone();

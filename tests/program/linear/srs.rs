@@ -48,6 +48,25 @@ fn the_spectrum_of_a_half_sine_is_written() {
     for kind in ["svg", "pdf", "png"] {
         assert!(folder.path().join(format!("out/drop/srs.{kind}")).is_file());
     }
+    // A coarse table of the same pulse is straight or smooth between its rows, and the answer says which. Closed form: the pulse itself.
+    let sampled: String = (0..=8)
+        .map(|k| format!("{:e},{:e}\n", 1.25e-3 * f64::from(k), 98.1 * (PI * f64::from(k) / 8.0).sin()))
+        .collect();
+    std::fs::write(folder.path().join("coarse.csv"), sampled).unwrap();
+    let off = |way: &str, words: &str| {
+        let output = srs(
+            folder.path(),
+            &["coarse.csv", "--frequencies", "25:100:3", "--damping", "0", "--interpolation", way, "--overwrite"],
+        );
+        assert!(String::from_utf8_lossy(&output.stdout).contains(words), "{output:?}");
+        let csv = std::fs::read_to_string(folder.path().join("out/coarse/srs.csv")).unwrap();
+        let row: Vec<f64> = csv.lines().nth(1).unwrap().split(',').map(|field| field.parse().unwrap()).collect();
+        (row[4] / 98.1 / expected[0] - 1.0).abs()
+    };
+    let [straight, smooth] =
+        [off("linear", "straight lines between rows"), off("monotone-cubic", "monotone cubics between rows")];
+    println!("{straight:e} {smooth:e}");
+    assert!(straight > 1e-2 && smooth < 3e-3, "{straight} {smooth}");
     let again = srs(folder.path(), &["drop.csv", "--frequencies", "25:100:3"]);
     assert_eq!(again.status.code(), Some(6), "what is there is not written over");
 }
@@ -65,7 +84,7 @@ fn bad_tables_and_ranges_are_told_with_their_place() {
     let range = ["--frequencies", "1:10:5"];
     bad("t,a\n0,1\n1,two\n", &range, 3, &["bad.csv:3", "1 of them finite", "correct the line"]);
     bad("0,1\n0,2\n", &range, 3, &["bad.csv:2", "rise"]);
-    bad("0,1\n", &range, 3, &["bad.csv", "two or more"]);
+    bad("0,1\n", &range, 3, &["bad.csv:1", "two or more"]);
     bad("0,1\n1,2\n", &["--frequencies", "0:10:5"], 2, &["0 < start"]);
     bad("0,1\n1,2\n", &["--frequencies", "1:10:5", "--damping", "-1"], 2, &["damping ratio", "0 or more"]);
     bad("0,1\n1,2\n", &["--frequencies", "1:1e9:5"], 2, &["cycles", "cut the base motion"]);

@@ -5,6 +5,7 @@ use std::time::Duration;
 use flexframe::campbell::{AboutRest, Speeds};
 use flexframe::figures::View;
 use flexframe::frequencies::Frequencies;
+use scene::Interpolation;
 
 /// A number of modes.
 pub fn mode_count(text: &str) -> Result<usize, String> {
@@ -51,6 +52,15 @@ pub fn axis(text: &str) -> Result<[f64; 3], String> {
     named
         .or_else(|| three_numbers(text).filter(|v| *v != [0.0; 3]))
         .ok_or_else(|| "expected x, y, z, or three numbers that are not all zero, such as 0,0.6,0.8".to_owned())
+}
+
+/// The way from row to row of a table, by its name in scenes.
+pub fn interpolation(text: &str) -> Result<Interpolation, String> {
+    match text {
+        "linear" => Ok(Interpolation::Linear),
+        "monotone-cubic" => Ok(Interpolation::MonotoneCubic),
+        _ => Err("expected linear or monotone-cubic".to_owned()),
+    }
 }
 
 /// Three finite numbers.

@@ -65,6 +65,11 @@ impl Table {
         Ok(Self { times, values, rates, discontinuities })
     }
 
+    /// Rates at the rows, of cubics; none of straight lines.
+    pub fn rates(&self) -> &[f64] {
+        &self.rates
+    }
+
     /// Times where a rate changes by more than the rounding of the rows: the rate of straight lines, or any rate of cubics.
     pub fn discontinuities(&self) -> &[f64] {
         &self.discontinuities

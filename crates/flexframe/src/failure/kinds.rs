@@ -536,9 +536,10 @@ impl Fault for SrsError {
         match self {
             Self::Figure(_) | Self::Page(_) | Self::Write(_) => Known::default(),
             Self::Unreadable { path, .. } => Kind::Io.of(path),
-            Self::Line { path, line, .. } | Self::Order { path, line, .. } => {
-                Kind::Input.with(Details { line: Some(*line), ..Details::of_file(path) })
+            Self::Points { path, source } => {
+                Kind::Input.with(Details { line: Some(source.line), ..Details::of_file(path) })
             }
+            Self::Table { path, .. } => Kind::Input.of(path),
             Self::Shock { table, source: ShockError::Rows { .. } } => Kind::Input.of(table),
             Self::Shock { table, .. } => Kind::Usage.of(table),
             Self::Frequencies { .. } | Self::Dampings { .. } => Kind::Usage.alone(),

@@ -9,6 +9,7 @@ use crate::error::SceneError;
 use crate::loads::history::{Formula, History, TablePoints};
 use crate::text::ordinary_file::open_ordinary;
 use crate::text::place::Place;
+use crate::text::points::{PointsError, points_of};
 use crate::text::shorten::shorten;
 
 /// Content of a table.
@@ -143,57 +144,16 @@ impl Check<'_> {
         Ok(text)
     }
 
-    /// The points of a CSV text: two columns of numbers, separated by a comma, the times rising. The first line may name
-    /// the columns; empty lines and those that begin with `#` are left out. A refusal names the line of the CSV file and
-    /// the key of the scene.
+    /// The points of a CSV text. A refusal names the line of the CSV file and the key of the scene.
     fn parse_table(&self, text: &str, path: &Path, key: &str) -> Result<Vec<[f64; 2]>, SceneError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let mut points: Vec<[f64; 2]> = Vec::new();
-        let mut is_first = true;
-        // Numbers need no quotes, and a library for CSV loses the line where comments stand before it.
-        for (number, line) in (1..).zip(text.lines()) {
-            let line = line.trim();
-            if line.is_empty() || line.starts_with('#') {
-                continue;
-            }
-            let refuse = |found: String, expected: &str, help: &str| {
-                Err(Place::unseen(path, number, key.to_owned()).refuse(found, expected, help))
-            };
-            let numbers: Vec<Option<f64>> = line.split(',').map(|field| field.trim().parse().ok()).collect();
-            let names_columns = is_first && numbers.iter().all(Option::is_none);
-            is_first = false;
-            match (&numbers[..], points.last()) {
-                _ if names_columns => {}
-                (&[Some(time), Some(_)], Some(&[before, _])) if time <= before => {
-                    let expected = "times that rise from line to line";
-                    return refuse(
-                        format!("the time {time:?} after {before:?}"),
-                        expected,
-                        "put the lines in order, each time once",
-                    );
-                }
-                (&[Some(time), Some(_)], Some(&[before, _])) if self.is_lost(time - before) => {
-                    return refuse(format!("the time {time:?} after {before:?}"), &self.times_apart(), APART);
-                }
-                (&[Some(time), Some(factor)], _) if time.is_finite() && factor.is_finite() => {
-                    points.push([time, factor])
-                }
-                _ => {
-                    let expected = "two finite numbers, time and factor, with a comma between them";
-                    let count = numbers.iter().flatten().filter(|number| number.is_finite()).count();
-                    return refuse(
-                        format!("{} field(s), {count} of them finite numbers", numbers.len()),
-                        expected,
-                        "correct the line; only the first may name the columns",
-                    );
-                }
-            }
+        let place = |line: usize| Place::unseen(path, line, key.to_owned());
+        let points = points_of(text)
+            .map_err(|PointsError { line, found, expected, help }| place(line).refuse(found, expected, help))?;
+        let lost = points.windows(2).find(|pair| self.is_lost(pair[1].1[0] - pair[0].1[0]));
+        if let Some([(_, [before, _]), (line, [time, _])]) = lost {
+            let found = format!("the time {time:?} after {before:?}");
+            return Err(place(*line).refuse(found, self.times_apart(), APART));
         }
-        if points.len() < 2 {
-            let place = Place::unseen(path, 1, key.to_owned());
-            let found = format!("{} of the {PAIRS}", points.len());
-            return Err(place.refuse(found, "at least two", "write a line `time,factor` for each point"));
-        }
-        Ok(points)
+        Ok(points.into_iter().map(|(_, point)| point).collect())
     }
 }

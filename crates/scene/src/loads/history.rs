@@ -37,6 +37,16 @@ pub enum Interpolation {
     MonotoneCubic,
 }
 
+impl Interpolation {
+    /// The way in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Linear => "straight lines",
+            Self::MonotoneCubic => "monotone cubics",
+        }
+    }
+}
+
 /// A formula in the time `t`.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -6,7 +6,9 @@ use std::path::PathBuf;
 use clap::Args;
 use flexframe::given_file::GivenFile;
 use flexframe::shock;
+use scene::Interpolation;
 
+use crate::arguments::values::interpolation;
 use crate::arguments::{AboutArgs, SceneArgs};
 use crate::output;
 use crate::session::Session;
@@ -22,6 +24,9 @@ pub struct Shock {
     /// CSV file of times and values of the input, such as accelerations of the base.
     #[arg(long, value_name = "TABLE")]
     table: PathBuf,
+    /// The way of the input between rows of the table: linear or monotone-cubic.
+    #[arg(long, value_name = "WAY", default_value = "linear", value_parser = interpolation)]
+    interpolation: Interpolation,
     /// The input, such as base.acceleration.z or loads[0].
     #[arg(long, value_name = "NAME")]
     input: String,
@@ -34,11 +39,12 @@ pub struct Shock {
 
 impl Shock {
     pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
-        let Self { scene: SceneArgs { scene, json }, table, input, about, outputs } = self;
+        let Self { scene: SceneArgs { scene, json }, table, interpolation, input, about, outputs } = self;
         GivenFile::expect(&table, &[GivenFile::Table], "a CSV file of times and values (docs/reference/cli.md)")?;
         let system = session.read_system(scene)?;
         let settings = about.settings(vec![input], outputs);
-        let report = shock::shock(&system, &session.builder, &table, &settings, |p| session.bar.build(p))?;
+        let table = (table.as_path(), interpolation);
+        let report = shock::shock(&system, &session.builder, table, &settings, |p| session.bar.build(p))?;
         drop(session.bar);
         output::print(&report, json)
     }

@@ -8,9 +8,10 @@ use flexframe::frequencies::Frequencies;
 use flexframe::given_file::GivenFile;
 use flexframe::outputs::{Outputs, Written};
 use flexframe::srs::{self, SrsSettings};
+use scene::Interpolation;
 
 use crate::arguments::FileArgs;
-use crate::arguments::values::{finite, frequencies};
+use crate::arguments::values::{finite, frequencies, interpolation};
 use crate::output;
 use crate::session::Session;
 
@@ -20,12 +21,15 @@ use crate::session::Session;
 /// acceleration of the mass in both directions, during the motion and in the free vibration after it.
 #[derive(Debug, Args)]
 pub struct Srs {
-    /// CSV file of two columns, time and acceleration of the base; straight between lines, zero after the last.
+    /// CSV file of two columns, time and acceleration of the base; zero after the last line.
     #[arg(value_name = "TABLE")]
     table: PathBuf,
     /// Frequencies in cycles per time, at equal ratios: from start to end, both included, count in all.
     #[arg(long, value_name = "START:END:COUNT", value_parser = frequencies, allow_hyphen_values = true)]
     frequencies: Frequencies,
+    /// The way of the acceleration from line to line: linear or monotone-cubic.
+    #[arg(long, value_name = "WAY", default_value = "linear", value_parser = interpolation)]
+    interpolation: Interpolation,
     /// Damping ratios, 0 or more: a spectrum for each.
     #[arg(long, value_name = "ZETA,ZETA,…", value_delimiter = ',', default_values_t = [0.05], value_parser = finite, allow_hyphen_values = true)]
     damping: Vec<f64>,
@@ -41,7 +45,7 @@ pub struct Srs {
 
 impl Srs {
     pub fn execute(self, session: Session) -> Result<(), Box<dyn Error>> {
-        let Self { table, frequencies, damping, output, files, json } = self;
+        let Self { table, frequencies, interpolation, damping, output, files, json } = self;
         GivenFile::expect(
             &table,
             &[GivenFile::Table],
@@ -53,7 +57,8 @@ impl Srs {
         }
         let folder = output.unwrap_or_else(|| Path::new("out").join(table.file_stem().unwrap_or("srs".as_ref())));
         Outputs::new(vec![table.clone()], files.overwrite).claim(&srs::files(&folder))?;
-        let report = srs::srs(&table, &folder, &SrsSettings { frequencies, damping_ratios: damping })?;
+        let settings = SrsSettings { frequencies, damping_ratios: damping, interpolation };
+        let report = srs::srs(&table, &folder, &settings)?;
         drop(session.bar);
         output::print(&report, json)
     }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use figures::{FigureError, LineChart, Series, Stroke};
+use figures::{FigureError, LineChart, Scale, Series, Stroke};
 use report::{ReportError, Responses};
 use whole_file::write_whole;
 
@@ -48,10 +48,18 @@ pub(super) fn program() -> String {
     format!("flexframe {}", env!("CARGO_PKG_VERSION"))
 }
 
-/// Adds a curve to those of a chart with a logarithmic axis while there is room, where it has a point above zero.
-pub(super) fn add_curve(series: &mut Vec<Series>, label: String, points: Vec<(f64, f64)>) {
-    if series.len() < MAX_CURVES && !points.is_empty() {
-        let stroke = if series.len() < COLOURS { Stroke::Solid } else { Stroke::Dashed };
-        series.push(Series { label, points, stroke });
+/// Curves of a chart with a logarithmic axis, while there is room: their points above zero, as the acceleration at no frequency is not.
+/// Where there is none at all, the axis is linear and the curves are zero.
+pub(super) fn with_positive(curves: Vec<(String, Vec<(f64, f64)>)>) -> (Scale, Vec<Series>) {
+    let is_positive = |(_, y): &(f64, f64)| *y > 0.0;
+    let scale = if curves.iter().flat_map(|(_, points)| points).any(is_positive) { Scale::Log } else { Scale::Linear };
+    let mut series: Vec<Series> = Vec::new();
+    for (label, mut points) in curves {
+        points.retain(|point| scale == Scale::Linear || is_positive(point));
+        if series.len() < MAX_CURVES && !points.is_empty() {
+            let stroke = if series.len() < COLOURS { Stroke::Solid } else { Stroke::Dashed };
+            series.push(Series { label, points, stroke });
+        }
     }
+    (scale, series)
 }

@@ -146,23 +146,21 @@ fn chart(
     response: &FrequencyResponse,
     logarithmic: bool,
 ) -> LineChart {
-    let mut series = Vec::new();
+    let mut curves = Vec::new();
     for (j, input) in equations.inputs.iter().enumerate() {
         for (i, output) in equations.outputs.iter().enumerate() {
             let points: Vec<(f64, f64)> =
                 response.frequencies.iter().copied().zip(response.values.iter().map(|h| h[(i, j)].norm())).collect();
-            // An output that sees nothing has no place on a logarithmic axis.
-            if points.iter().all(|(_, y)| *y > 0.0) {
-                curves::add_curve(&mut series, format!("{} / {}", output.channel.name, input.name), points);
-            }
+            curves.push((format!("{} / {}", output.channel.name, input.name), points));
         }
     }
+    let (y_scale, series) = curves::with_positive(curves);
     LineChart {
         title: format!("{title}: frequency response"),
         x_label: format!("Frequency ({unit})"),
         y_label: "Magnitude".to_owned(),
         x_scale: if logarithmic { Scale::Log } else { Scale::Linear },
-        y_scale: Scale::Log,
+        y_scale,
         series,
         reference: None,
     }

@@ -8,7 +8,7 @@ mod report;
 use std::path::Path;
 
 use model::{BuildProgress, Builder};
-use scene::System;
+use scene::{Interpolation, System};
 
 pub use error::ShockResponseError;
 pub use peaks::ShockOutput;
@@ -28,11 +28,11 @@ const COUPLED: f64 = 0.02;
 pub fn shock(
     system: &System,
     builder: &Builder,
-    table: &Path,
+    (table, interpolation): (&Path, Interpolation),
     settings: &LinearSettings,
     progress: impl FnMut(BuildProgress),
 ) -> Result<ShockReport, ShockResponseError> {
-    let motion = table::read(table)?;
+    let motion = table::read(table, interpolation)?;
     let scene = &system.bodies[0];
     let model = linear_model(system, builder, settings, progress)?;
     let inputs: Vec<String> = model.equations.inputs.iter().map(|input| input.name.clone()).collect();
@@ -64,5 +64,5 @@ pub fn shock(
             mixed.join(", ")
         ));
     }
-    Ok(ShockReport::new(scene, input, &motion, &peaks, outputs, warnings))
+    Ok(ShockReport::new(scene, (input, interpolation), &motion, &peaks, outputs, warnings))
 }

@@ -9,6 +9,7 @@ pub(super) mod table;
 
 use std::path::Path;
 
+pub use scene::Interpolation;
 use shock::Spectrum;
 
 pub use error::SrsError;
@@ -25,6 +26,8 @@ pub struct SrsSettings {
     pub frequencies: Frequencies,
     /// Damping ratios: a spectrum for each.
     pub damping_ratios: Vec<f64>,
+    /// The way of the acceleration from row to row.
+    pub interpolation: Interpolation,
 }
 
 /// Computes the spectra of the base motion in a CSV file, and writes `srs.csv`, the page `srs.html`, and `srs` as SVG, PDF
@@ -39,10 +42,10 @@ pub fn srs(table: &Path, folder: &Path, settings: &SrsSettings) -> Result<SrsRep
     if !(1..=MAX_DAMPINGS).contains(&settings.damping_ratios.len()) {
         return Err(SrsError::Dampings { count: settings.damping_ratios.len() });
     }
-    let motion = table::read(table)?;
+    let motion = table::read(table, settings.interpolation)?;
     let of = |ratio: &f64| motion.spectrum(&frequencies, *ratio);
     let spectra = settings.damping_ratios.iter().map(of).collect::<Result<Vec<Spectrum>, _>>();
     let spectra = spectra.map_err(|source| SrsError::Shock { table: table.to_owned(), source })?;
-    let files = files::write(table, &spectra, folder)?;
-    Ok(SrsReport::new(table, &motion, &spectra, files))
+    let files = files::write((table, settings.interpolation), &spectra, folder)?;
+    Ok(SrsReport::new((table, settings.interpolation), &motion, &spectra, files))
 }

@@ -90,10 +90,7 @@ impl fmt::Display for TableInUse {
             Some(file) => write!(f, "{}, {} points", file.display(), self.points)?,
             None => write!(f, "{} points of the scene", self.points)?,
         }
-        f.write_str(match self.interpolation {
-            Interpolation::Linear => ": straight lines",
-            Interpolation::MonotoneCubic => ": monotone cubics",
-        })
+        write!(f, ": {}", self.interpolation.words())
     }
 }
 

@@ -72,16 +72,20 @@ impl Number {
         if names.is_empty() && !all.is_empty() {
             return Ok(all);
         }
+        const STIFF: &str = "a spring, a bushing, a joint with a spring or a body with a mesh";
         let of_name = |(i, name): (usize, &String)| {
             let known = all.iter().find(|number| number.name == *name).filter(|_| !names[..i].contains(name));
             known.cloned().ok_or_else(|| {
                 let names: Vec<String> = all.iter().map(|number| number.name.clone()).collect();
-                GradientError::Number { name: name.clone(), expected: one_of(&names) }
+                let expected = match &names[..] {
+                    [] => format!("a parameter of {STIFF}, and the scene has none of these"),
+                    names => one_of(names),
+                };
+                GradientError::Number { name: name.clone(), expected }
             })
         };
         if names.is_empty() {
-            let expected = "a spring, a bushing, a joint with a spring or a body with a mesh".to_owned();
-            return Err(GradientError::Number { name: "nothing that is stiff".to_owned(), expected });
+            return Err(GradientError::Number { name: "nothing that is stiff".to_owned(), expected: STIFF.to_owned() });
         }
         names.iter().enumerate().map(of_name).collect()
     }
@@ -142,5 +146,23 @@ fn meshed(scene: &Scene) -> Option<&MeshedBody> {
     match &scene.body {
         Body::Meshed(body) => Some(body),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_without_a_parameter_says_what_one_would_be() {
+        let text = "title = \"t\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n[bodies.a]\n\
+                    rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }\n\
+                    markers = { root = { at = [0, 0, 0] } }\n[[joints]]\nname = \"j\"\nkind = \"revolute\"\naxis = [0, 0, 1]\n\
+                    between = [\"ground\", \"a.root\"]\n[time]\nend = 1.0\nstep = 0.1\n";
+        let system = System::parse(text, "scene.toml").unwrap();
+        for names in [&[][..], &["springs[0].stiffness".to_owned()]] {
+            let told = Number::named(&system, names).unwrap_err().to_string();
+            assert!(told.contains("a spring, a bushing, a joint with a spring or a body with a mesh"), "{told}");
+        }
     }
 }

@@ -48,23 +48,17 @@ fn csv(responses: &Responses) -> String {
 }
 
 fn chart(title: &str, unit: &str, responses: &Responses) -> LineChart {
-    let mut series = Vec::new();
-    for (channel, response) in &responses.outputs {
-        let points: Vec<(f64, f64)> = responses
-            .frequencies
-            .iter()
-            .copied()
-            .zip(response.density.iter().copied())
-            .filter(|(_, y)| *y > 0.0)
-            .collect();
-        curves::add_curve(&mut series, channel.name.clone(), points);
-    }
+    let curves = responses.outputs.iter().map(|(channel, response)| {
+        let points = responses.frequencies.iter().copied().zip(response.density.iter().copied());
+        (channel.name.clone(), points.collect())
+    });
+    let (y_scale, series) = curves::with_positive(curves.collect());
     LineChart {
         title: format!("{title}: power spectral density"),
         x_label: format!("Frequency ({unit})"),
         y_label: format!("Unit² per {unit}"),
         x_scale: Scale::Log,
-        y_scale: Scale::Log,
+        y_scale,
         series,
         reference: None,
     }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use scene::Scene;
+use scene::{Interpolation, Scene};
 use serde::Serialize;
 use shock::BaseMotion;
 
@@ -21,6 +21,8 @@ pub struct ShockReport {
     pub frequency_unit: String,
     /// The input that follows the table.
     pub input: String,
+    /// The way of the input between rows of the table.
+    pub interpolation: Interpolation,
     /// Duration of the table.
     pub duration: f64,
     /// Largest magnitude in the table.
@@ -53,7 +55,7 @@ pub struct ShockMode {
 impl ShockReport {
     pub(super) fn new(
         scene: &Scene,
-        input: &str,
+        (input, interpolation): (&str, Interpolation),
         motion: &BaseMotion,
         peaks: &ModePeaks,
         outputs: Vec<ShockOutput>,
@@ -71,6 +73,7 @@ impl ShockReport {
             title: scene.title.clone(),
             frequency_unit: frequency_unit(&scene.units.time),
             input: input.to_owned(),
+            interpolation,
             duration: motion.duration(),
             peak: motion.peak(),
             modes: (0..peaks.following.len()).map(mode).collect(),
@@ -82,9 +85,10 @@ impl ShockReport {
 
 impl fmt::Display for ShockReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { title, frequency_unit: unit, input, duration, peak, modes, outputs, warnings } = self;
+        let Self { title, frequency_unit: unit, input, interpolation, duration, peak, modes, outputs, warnings } = self;
+        let between = interpolation.words();
         writeln!(f, "{title}")?;
-        writeln!(f, "  shock    {input} for {duration:.6}, at most {peak:.6e}")?;
+        writeln!(f, "  shock    {input} for {duration:.6}, at most {peak:.6e}, {between} between rows of the table")?;
         write!(
             f,
             "  {:>4}  {:>16}  {:>8}  {:>12}  {:>12}  {:>12}  {:>7}",

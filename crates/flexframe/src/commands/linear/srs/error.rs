@@ -3,8 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
+use dynamics::SetupError;
 use figures::FigureError;
 use report::ReportError;
+use scene::PointsError;
 use shock::ShockError;
 
 use crate::files::write_error::WriteError;
@@ -21,14 +23,12 @@ pub enum SrsError {
     /// The table cannot be read.
     #[error("{}: the table cannot be read: {source}\n = name a CSV file of times and accelerations of the base", path.display())]
     Unreadable { path: PathBuf, source: io::Error },
-    /// A line of the table is no row.
-    #[error("{}:{line}: found {found}, expected two finite numbers, time and acceleration of the base, with a comma between them\n = \
-             correct the line; only the first may name the columns, and lines that begin with # are left out", path.display())]
-    Line { path: PathBuf, line: usize, found: String },
-    /// A time does not rise.
-    #[error("{}:{line}: found the time {time:?} after {before:?}, expected times that rise from line to line\n = \
-             put the lines in order, each time once", path.display())]
-    Order { path: PathBuf, line: usize, before: f64, time: f64 },
+    /// The table has a line that is no point, or no two of them.
+    #[error("{}:{}: {source}", path.display(), source.line)]
+    Points { path: PathBuf, source: PointsError },
+    /// The points have no cubics between them.
+    #[error("{}: {source}", path.display())]
+    Table { path: PathBuf, source: SetupError },
     /// The motion or the settings have no spectrum.
     #[error("{}: {source}", table.display())]
     Shock { table: PathBuf, source: ShockError },

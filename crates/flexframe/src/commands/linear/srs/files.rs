@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use scene::Interpolation;
 use shock::Spectrum;
 
 use super::diagram::diagram;
@@ -19,8 +20,12 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Writes `srs.csv`, `srs.html`, and `srs` as SVG, PDF and PNG.
-pub(super) fn write(table: &Path, spectra: &[Spectrum], folder: &Path) -> Result<Vec<PathBuf>, SrsError> {
-    let (chart, page) = (diagram(table, spectra), page(table, spectra));
+pub(super) fn write(
+    (table, interpolation): (&Path, Interpolation),
+    spectra: &[Spectrum],
+    folder: &Path,
+) -> Result<Vec<PathBuf>, SrsError> {
+    let (chart, page) = (diagram(table, spectra), page(table, interpolation, spectra));
     curves::write(folder, NAME, Answer { csv: rows(spectra), chart, page })
 }
 

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use report::{Chart, Curve, Fact, Responses};
+use scene::Interpolation;
 use shock::Spectrum;
 
 use crate::commands::linear::curves::program;
 
 /// The page of some spectra of a table.
-pub(super) fn page(table: &Path, spectra: &[Spectrum]) -> Responses {
+pub(super) fn page(table: &Path, interpolation: Interpolation, spectra: &[Spectrum]) -> Responses {
     let curve = |spectrum: &Spectrum| {
         let of = |value: fn(&shock::Peaks) -> f64| spectrum.peaks.iter().map(value).collect::<Vec<f64>>();
         Curve {
@@ -23,7 +24,10 @@ pub(super) fn page(table: &Path, spectra: &[Spectrum]) -> Responses {
     Responses {
         title: format!("{name}: shock response spectrum"),
         program: program(),
-        facts: vec![Fact::new("Base motion", table.display().to_string())],
+        facts: vec![
+            Fact::new("Base motion", table.display().to_string()),
+            Fact::new("Between its rows", interpolation.words()),
+        ],
         warnings: Vec::new(),
         frequency_unit: "1/time".to_owned(),
         logarithmic: true,

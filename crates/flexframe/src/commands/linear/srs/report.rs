@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use scene::Interpolation;
 use serde::Serialize;
 use shock::{BaseMotion, Peaks, Spectrum};
 
@@ -15,6 +16,8 @@ pub struct SrsReport {
     /// The table of the base motion.
     #[serde(serialize_with = "json::path")]
     pub table: PathBuf,
+    /// The way of the acceleration from row to row.
+    pub interpolation: Interpolation,
     /// Time from its first row to its last.
     pub duration: f64,
     /// Largest magnitude of the acceleration of the base.
@@ -42,7 +45,12 @@ pub struct DampingReport {
 }
 
 impl SrsReport {
-    pub(super) fn new(table: &Path, motion: &BaseMotion, spectra: &[Spectrum], files: Vec<PathBuf>) -> Self {
+    pub(super) fn new(
+        (table, interpolation): (&Path, Interpolation),
+        motion: &BaseMotion,
+        spectra: &[Spectrum],
+        files: Vec<PathBuf>,
+    ) -> Self {
         let of = |spectrum: &Spectrum| {
             let list = |of: fn(&Peaks) -> f64| spectrum.peaks.iter().map(of).collect();
             DampingReport {
@@ -54,6 +62,7 @@ impl SrsReport {
         };
         Self {
             table: table.to_owned(),
+            interpolation,
             duration: motion.duration(),
             base_peak: motion.peak(),
             frequencies: spectra.first().map(|spectrum| spectrum.frequencies.clone()).unwrap_or_default(),
@@ -75,7 +84,12 @@ impl DampingReport {
 impl fmt::Display for SrsReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.table.display())?;
-        writeln!(f, "  base     {} long, peak acceleration {}", quantity(self.duration), quantity(self.base_peak))?;
+        let [duration, peak] = [self.duration, self.base_peak].map(quantity);
+        let between = self.interpolation.words();
+        writeln!(
+            f,
+            "  base     {duration} long, peak acceleration {peak}, {between} between rows, zero after the last"
+        )?;
         for spectrum in &self.spectra {
             let (at, worst) = spectrum.worst();
             let frequency = self.frequencies.get(at).copied().unwrap_or_default();

@@ -1,36 +1,31 @@
-//! The base motion in a CSV file: two columns, time and acceleration.
+//! The base motion in a CSV file: two columns, time and acceleration, as all tables over time.
 
+use std::io::Read;
 use std::path::Path;
 
+use dynamics::Table;
+use foreign_program::open_ordinary;
+use scene::{Interpolation, points_of};
 use shock::BaseMotion;
 
 use super::error::SrsError;
-use crate::commands::linear::table;
 
-/// Reads a base motion. The first line may name the columns; empty lines and those that begin with `#` are left out.
-pub(in crate::commands::linear) fn read(path: &Path) -> Result<BaseMotion, SrsError> {
-    let unreadable = |source| SrsError::Unreadable { path: path.to_owned(), source };
-    let (mut times, mut accelerations): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-    let mut is_first = true;
-    for (line, content) in table::lines(path).map_err(unreadable)? {
-        let fields: Vec<Option<f64>> = content.split(',').map(|field| field.trim().parse().ok()).collect();
-        let names_columns = is_first && fields.iter().all(Option::is_none);
-        is_first = false;
-        match fields[..] {
-            _ if names_columns => {}
-            [Some(time), Some(acceleration)] if time.is_finite() && acceleration.is_finite() => {
-                if let Some(before) = times.last().copied().filter(|before| time <= *before) {
-                    return Err(SrsError::Order { path: path.to_owned(), line, before, time });
-                }
-                times.push(time);
-                accelerations.push(acceleration);
-            }
-            _ => {
-                let count = fields.iter().flatten().filter(|number| number.is_finite()).count();
-                let found = format!("{} field(s), {count} of them finite numbers", fields.len());
-                return Err(SrsError::Line { path: path.to_owned(), line, found });
-            }
+/// Reads a base motion, which goes from row to row by straight lines or by cubics.
+pub(in crate::commands::linear) fn read(path: &Path, interpolation: Interpolation) -> Result<BaseMotion, SrsError> {
+    let path_of = || path.to_owned();
+    let mut text = String::new();
+    let read = open_ordinary(path).and_then(|mut file| file.read_to_string(&mut text));
+    read.map_err(|source| SrsError::Unreadable { path: path_of(), source })?;
+    let points = points_of(&text).map_err(|source| SrsError::Points { path: path_of(), source })?;
+    let (times, accelerations): (Vec<f64>, Vec<f64>) = points.into_iter().map(|(_, [t, a])| (t, a)).unzip();
+    let failed = |source| SrsError::Shock { table: path_of(), source };
+    match interpolation {
+        Interpolation::Linear => BaseMotion::new(times, accelerations).map_err(failed),
+        Interpolation::MonotoneCubic => {
+            let table = Table::monotone_cubic(times.clone(), accelerations.clone());
+            let table = table.map_err(|source| SrsError::Table { path: path_of(), source })?;
+            let motion = BaseMotion::new(times, accelerations).map_err(failed)?;
+            motion.with_rates(table.rates().to_vec()).map_err(failed)
         }
     }
-    BaseMotion::new(times, accelerations).map_err(|source| SrsError::Shock { table: path.to_owned(), source })
 }
