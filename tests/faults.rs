@@ -244,6 +244,33 @@ fn a_full_disk_leaves_the_old_picture() {
     assert_eq!(std::fs::read_dir(scene.folder.path()).unwrap().count(), 2);
 }
 
+#[test]
+fn a_full_disk_leaves_the_old_problem_for_a_cluster() {
+    let scene = Scene::new("2e-5");
+    let folder = scene.folder.path().join("problem");
+    let write = || {
+        let mut modes = flexframe(&["modes", "--solver", "slepc", "--ranks", "2", "--overwrite", "--write-only"]);
+        modes.arg(&folder).arg(&scene.path);
+        modes
+    };
+    succeed(write());
+    std::fs::write(folder.join("modes.json"), "the answer").unwrap();
+    let files = || {
+        let mut files: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.sort();
+        files.into_iter().map(|path| (std::fs::read(&path).unwrap(), path)).collect::<Vec<_>>()
+    };
+    let before = files();
+    // The largest file, K.petsc, finds no room; half of it would.
+    let blocks = std::fs::metadata(folder.join("K.petsc")).unwrap().len() / 1024;
+    let mut limited = Command::new("bash");
+    limited.args(["-c", &format!("trap '' XFSZ; ulimit -f {}; exec \"$@\"", blocks / 2), "bash"]);
+    let all = write();
+    limited.arg(all.get_program()).args(all.get_args());
+    io_failure(limited);
+    assert!(files() == before);
+}
+
 /// Conserved: a run that goes on after a signal ends in the bytes of the one that had none.
 #[test]
 fn control_c_stops_at_a_row_and_says_how_to_go_on() {

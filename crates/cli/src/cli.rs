@@ -4,9 +4,10 @@ use std::error::Error;
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use flexframe::failure::{Details, FailureReport, Kind};
 use model::{Builder, Cache};
+use toml::Value;
 
 use crate::cli_error::{self, CliError};
 use crate::commands::{
@@ -83,8 +84,14 @@ enum Command {
 pub fn main() -> ExitCode {
     // A wrong command line has to be reported before it is parsed to its end.
     let json = std::env::args_os().skip(1).take_while(|argument| argument != "--").any(|argument| argument == "--json");
-    let done = match Cli::try_parse() {
-        Ok(cli) => execute(cli, json).map_err(|error| cli_error::report(&*error)),
+    let mut command = Cli::command();
+    let parsed = command.try_get_matches_from_mut(std::env::args_os()).and_then(|mut matches| {
+        let set = values_set(&matches);
+        let cli = Cli::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command))?;
+        Ok((cli, set))
+    });
+    let done = match parsed {
+        Ok((cli, set)) => execute(cli, json).map_err(|error| cli_error::report(&*error, &set)),
         Err(error) if error.use_stderr() && !json => {
             // Where it cannot be written, the exit code still tells.
             let _ = error.print();
@@ -105,6 +112,12 @@ pub fn main() -> ExitCode {
             ExitCode::from(report.exit_code())
         }
     }
+}
+
+/// The values of `--set`.
+fn values_set(matches: &ArgMatches) -> Vec<(String, Value)> {
+    let of_command = matches.subcommand().and_then(|(_, of_command)| of_command.try_get_many("set").ok().flatten());
+    of_command.into_iter().flatten().cloned().collect()
 }
 
 fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Error>> {

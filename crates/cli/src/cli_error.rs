@@ -2,8 +2,11 @@
 
 use std::error::Error;
 use std::io;
+use std::iter::successors;
 
 use flexframe::failure::{Details, FailureReport, Kind};
+use scene::{SceneError, text_of};
+use toml::Value;
 
 /// An error of the command line, the terminal or the threads.
 #[derive(Debug, thiserror::Error)]
@@ -38,16 +41,40 @@ pub enum CliError {
     )]
     Port { port: u16, source: io::Error },
     /// The folder for a run that is played.
-    #[error("a folder for the run cannot be made: {0}\n = let TMPDIR name a folder where there is room")]
+    #[error("{0}")]
     Folder(#[source] io::Error),
     /// The summary has no form in JSON.
     #[error("the summary cannot be written as JSON: {0}\n = leave --json out, and please report this")]
     Json(#[from] serde_json::Error),
 }
 
-/// The failure of any error that ends a command.
-pub fn report(error: &(dyn Error + 'static)) -> FailureReport {
-    error.downcast_ref::<CliError>().map_or_else(|| FailureReport::of(error), CliError::report)
+/// The failure of any error that ends a command, in which values were set on the command line.
+pub fn report(error: &(dyn Error + 'static), set: &[(String, Value)]) -> FailureReport {
+    let known = || of_set_value(error, set).unwrap_or_else(|| FailureReport::of(error));
+    error.downcast_ref::<CliError>().map_or_else(known, CliError::report)
+}
+
+/// The failure of a scene in which values were set: at the option, where it is one of them, and at the line that the scene file has.
+fn of_set_value(error: &(dyn Error + 'static), set: &[(String, Value)]) -> Option<FailureReport> {
+    let refused =
+        successors(Some(error), |&error| error.source()).find_map(|error| error.downcast_ref::<SceneError>())?;
+    let place = refused.place()?;
+    let is_at =
+        |key: &str| place.key.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
+    if let Some((key, value)) = set.iter().rev().find(|(key, _)| is_at(key)) {
+        let (found, expected, help) = (refused.found(), refused.expected(), refused.help());
+        let words = match (&found, &expected) {
+            (None, expected) => format!("{} is missing", expected.as_deref().unwrap_or("a key")),
+            (Some(found), None) => format!("found {found}"),
+            (Some(found), Some(expected)) => format!("found {found}, expected {expected}"),
+        };
+        let cure = help.as_ref().map_or_else(String::new, |help| format!("\n = {help}"));
+        let details = Details { key: Some(place.key.clone()), found, expected, help, ..Details::of_file(&place.file) };
+        return Some(FailureReport::new(Kind::Input, format!("--set {key}={value}: {words}{cure}"), details));
+    }
+    let moved = refused.at_line_of(&text_of(&place.file).ok().filter(|_| !set.is_empty())?)?;
+    let whole = FailureReport::of(error);
+    Some(whole.with_message(|message| message.replacen(&refused.to_string(), &moved.to_string(), 1), moved.line()))
 }
 
 impl CliError {

@@ -3,7 +3,7 @@
 //! Before the motion begins there is nothing to lose, and a signal ends the program at once, with the programs that it has
 //! started and its temporary files; the processes of SLEPc are ended before. Then the first stops the run at its next row, and another that comes half a
 //! second later or more ends the program at once. A shell, a job scheduler and a terminal may send several for one
-//! request, only milliseconds apart.
+//! request, only milliseconds apart. Other signals that end a program end it at once, as they do without this.
 
 use std::io;
 use std::mem::MaybeUninit;
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use flexframe::failure::{Details, FailureReport, Kind};
 use flexframe::run::RunProgress;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGABRT, SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU};
 use signal_hook::{iterator, low_level};
 use slepc::Stop;
 use whole_file::remove_temporaries;
@@ -23,6 +23,10 @@ use crate::output;
 
 /// Signals that come sooner after the first belong to it.
 const ONE_REQUEST: Duration = Duration::from_millis(500);
+
+/// Signals that end the program as they end any program, once its temporary files are removed. A shell sends them by ctrl-\ and at its
+/// limit of processor time, job schedulers and watchdogs for reasons of their own.
+const ENDS: [i32; 6] = [SIGQUIT, SIGABRT, SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2];
 
 /// Listens to signals.
 pub struct Signals {
@@ -40,13 +44,18 @@ impl Signals {
         let ours = Self { in_motion: Arc::default(), stop: Arc::default(), slepc: Stop::default() };
         let (in_motion, stop, slepc) = (ours.in_motion.clone(), ours.stop.clone(), ours.slepc.clone());
         let mut signals = iterator::Signals::new([SIGINT, SIGTERM])?;
-        // `nohup` has it ignored.
-        if !is_ignored(SIGHUP) {
-            signals.add_signal(SIGHUP)?;
+        // `nohup` has the first ignored.
+        for signal in [SIGHUP].iter().chain(&ENDS).filter(|signal| !is_ignored(**signal)) {
+            signals.add_signal(*signal)?;
         }
         thread::Builder::new().name("signals".to_owned()).spawn(move || {
             let mut request = Request::default();
-            for _ in signals.forever() {
+            for signal in signals.forever() {
+                if ENDS.contains(&signal) {
+                    let _none = remove_temporaries();
+                    let _ = low_level::emulate_default_handler(signal);
+                    low_level::exit(Kind::Stopped.exit_code().into());
+                }
                 let can_stop = slepc.ask() || in_motion.load(Ordering::SeqCst);
                 match request.answer(can_stop, Instant::now()) {
                     Answer::Stop => stop.store(true, Ordering::SeqCst),

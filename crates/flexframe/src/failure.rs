@@ -120,6 +120,11 @@ impl FailureReport {
         Self { kind, exit_code: kind.exit_code(), message, details }
     }
 
+    /// The same with another message and another line.
+    pub fn with_message(self, message: impl FnOnce(&str) -> String, line: Option<usize>) -> Self {
+        Self { message: message(&self.message), details: Details { line, ..self.details }, ..self }
+    }
+
     /// The exit code of the program.
     pub fn exit_code(&self) -> u8 {
         self.exit_code

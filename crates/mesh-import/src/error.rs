@@ -29,7 +29,11 @@ pub enum ImportError {
     #[error(
         "{source_name}: the mesh cannot be read: {cause}\n = check its name and its permissions, and the room in the temporary folder"
     )]
-    Io { source_name: String, cause: io::Error },
+    Io {
+        source_name: String,
+        #[source]
+        cause: io::Error,
+    },
 }
 
 impl ImportError {

@@ -180,7 +180,12 @@ impl MeshFile {
         let io = |cause| ImportError::Io { source_name: source_name.clone(), cause };
         let folder = TemporaryFolder::new().map_err(io)?;
         let (copies, is_free) = match &self.held {
-            Held::Files(files) => (Copies::of(files, folder.path()).map_err(io)?, false),
+            Held::Files(files) => {
+                let in_folder = |cause: std::io::Error| {
+                    std::io::Error::new(cause.kind(), format!("{}: {cause}", folder.path().display()))
+                };
+                (Copies::of(files, folder.path()).map_err(in_folder).map_err(io)?, false)
+            }
             Held::InPlace => {
                 opened(&self.path)?;
                 let place = std::path::absolute(&self.path).map_err(io)?;

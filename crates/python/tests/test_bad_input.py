@@ -116,6 +116,8 @@ LAWS = {
     "NaN": (lambda motion: np.array([0.0, np.nan, 0.0]), InputError, ["found NaN as number 2"]),
     "infinity": (lambda motion: (np.inf, 0.0, 0.0), InputError, ["found inf as number 1"]),
     "nothing": (lambda motion: None, InputError, ["found None"]),
+    "a complex number": (lambda motion: np.array([1.0 + 2.0j, 0.0, 0.0]), InputError, ["complex128", "3 finite numbers"]),
+    "one of a list": (lambda motion: [np.complex64(1.0 + 2.0j), 0.0, 0.0], InputError, ["3 finite numbers"]),
     "a text": (lambda motion: "abc", InputError, ["found a str"]),
     "raises": (lambda motion: 1 / 0, ZeroDivisionError, ["division by zero"]),
     "no such point": (lambda motion: motion.position("nose"), InputError, ["found `nose`", "`center`, `corner`"]),

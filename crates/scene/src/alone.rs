@@ -19,6 +19,8 @@ pub(crate) struct BodyTexts {
 pub(crate) struct BodyText<'a> {
     /// Its name.
     pub name: &'a str,
+    /// True if there are other bodies.
+    pub has_others: bool,
     /// The scene of it alone.
     pub alone: String,
     /// The scene of all.
@@ -58,6 +60,6 @@ impl BodyTexts {
         if !output.is_empty() {
             root.insert("output", Item::Table(output));
         }
-        BodyText { name, alone: document.to_string(), whole: self.whole.clone() }
+        BodyText { name, has_others: self.bodies.len() > 1, alone: document.to_string(), whole: self.whole.clone() }
     }
 }

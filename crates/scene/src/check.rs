@@ -11,6 +11,7 @@ mod measured;
 mod modes;
 pub(crate) mod tie;
 mod time;
+pub(crate) mod units;
 
 use std::cell::Cell;
 
@@ -19,7 +20,7 @@ use nalgebra::Vector3;
 use crate::document::{Document, join};
 use crate::error::SceneError;
 use crate::loads::unit_vector::unit;
-use crate::scene::{Frame, Units};
+use crate::scene::Frame;
 use crate::text::shorten::shorten;
 
 /// Three points whose triangle has an angle with a smaller sine count as lying on one line.
@@ -125,12 +126,6 @@ impl Check<'_> {
             "a text on one line, without control characters",
             "remove line breaks, tabs and `\\u0000`",
         )
-    }
-
-    pub fn units(&self, units: &Units) -> Result<(), SceneError> {
-        self.label("units.length", &units.length)?;
-        self.label("units.mass", &units.mass)?;
-        self.label("units.time", &units.time)
     }
 
     pub fn frame(&self, frame: Option<&Frame>) -> Result<(), SceneError> {

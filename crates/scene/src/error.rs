@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::document::{NotToml, OF_A_BODY};
+use crate::document::{Document, NotToml, OF_A_BODY};
 use crate::text::example::example;
 use crate::text::place::Place;
 use crate::text::shorten::shorten;
@@ -65,6 +65,33 @@ impl SceneError {
             }
             Self::MissingKey { at, key } => Self::MissingKey { at: at.hidden().into(), key },
             Self::Invalid { at, expected, .. } => at.hidden().refuse("another value", expected, HELP),
+        }
+    }
+
+    /// The same fault at the line that its key has in another text of the scene, which lacks some keys of this one. `None` where it
+    /// has no place.
+    pub fn at_line_of(&self, text: &str) -> Option<Self> {
+        let moved = |at: &Place| {
+            let document = Document::parse(text, &at.file).ok();
+            let mut place = at.clone();
+            place.line = document.map_or(at.line, |document| document.place(&at.key).line);
+            Box::new(place)
+        };
+        match self {
+            Self::Unreadable { .. } | Self::TooLarge { .. } | Self::NotUtf8 { .. } | Self::Syntax { .. } => None,
+            Self::UnknownKey { at, key, known } => {
+                Some(Self::UnknownKey { at: moved(at), key: key.clone(), known: known.clone() })
+            }
+            Self::UnknownName { at, found, known } => {
+                Some(Self::UnknownName { at: moved(at), found: found.clone(), known: known.clone() })
+            }
+            Self::MissingKey { at, key } => Some(Self::MissingKey { at: moved(at), key: key.clone() }),
+            Self::Invalid { at, found, expected, help } => Some(Self::Invalid {
+                at: moved(at),
+                found: found.clone(),
+                expected: expected.clone(),
+                help: help.clone(),
+            }),
         }
     }
 

@@ -104,6 +104,7 @@ impl Scene {
 
         Ok(Self {
             name: body_text.as_ref().map(|text| text.name.to_owned()),
+            has_others: body_text.as_ref().is_some_and(|text| text.has_others),
             title,
             units,
             body,

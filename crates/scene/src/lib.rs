@@ -48,6 +48,7 @@ pub use body::constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use body::effects::{Choice, Effects};
 pub use body::measured::{Measured, MeasuredMode};
 pub use body::modes::{About, Damping, Flexible, Large, Modes, Rayleigh};
+pub use check::units::{BaseUnit, POUND_FORCE, UnitSize};
 pub use document::join as key_path;
 pub use dynamics::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
 pub use error::SceneError;

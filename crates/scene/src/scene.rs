@@ -23,8 +23,10 @@ use crate::tie::marker::Marker;
 /// A scene that obeys every rule which needs no mesh: all numbers are finite and in range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Name of its body in a scene of several; `None` where there is one.
+    /// Name of its body among `bodies`; `None` of a scene with `body`.
     pub name: Option<String>,
+    /// True if its file has other bodies, too.
+    pub has_others: bool,
     /// Title of the run, for headings.
     pub title: String,
     /// Labels of the units, for axes and tables.

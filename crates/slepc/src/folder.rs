@@ -8,7 +8,7 @@ use faer::MatRef;
 use foreign_program::shell_word;
 use modal::{HeldMatrix, HeldProblem};
 use serde::{Deserialize, Serialize};
-use whole_file::{WholeFile, write_whole};
+use whole_file::WholeFile;
 
 use crate::binary::{write_matrix, write_vectors};
 use crate::error::SlepcError;
@@ -50,14 +50,67 @@ struct Problem<'a> {
     tolerance: f64,
 }
 
+/// Files of a folder that take their places together, once all are whole.
+struct Files<'a> {
+    folder: &'a Path,
+    written: Vec<(PathBuf, WholeFile)>,
+}
+
+impl<'a> Files<'a> {
+    fn of(folder: &'a Path) -> Self {
+        Self { folder, written: Vec::new() }
+    }
+
+    /// Writes one, which is not in its place yet.
+    fn add<T>(&mut self, name: &str, contents: impl FnOnce(&mut WholeFile) -> io::Result<T>) -> Result<T, SlepcError> {
+        let path = self.folder.join(name);
+        let written = WholeFile::create(&path).and_then(|mut file| {
+            let done = contents(&mut file)?;
+            file.make_safe()?;
+            Ok((done, file))
+        });
+        let (done, file) = written.map_err(SlepcError::io(path.clone(), "write it"))?;
+        self.written.push((path, file));
+        Ok(done)
+    }
+
+    /// Writes K and M, the rigid motions, and the driver. Returns the digest of K and M.
+    fn add_matrices(&mut self, problem: &HeldProblem<'_>) -> Result<String, SlepcError> {
+        let mut written = |name: &str, matrix: &HeldMatrix<'_>| {
+            self.add(name, |file| hashed(file, |file| write_matrix(matrix, file)))
+        };
+        let digest = joined(written("K.petsc", &problem.stiffness)?, written("M.petsc", &problem.mass)?);
+        self.add("rigid.petsc", |file| write_vectors(problem.rigid.as_ref(), file))?;
+        self.add(DRIVER_FILE, |file| file.write_all(DRIVER.as_bytes()))?;
+        Ok(digest)
+    }
+
+    /// Writes the question for the driver: a number of modes, of the matrices with this digest.
+    fn add_problem(&mut self, problem: &HeldProblem<'_>, digest: &str, modes: usize) -> Result<(), SlepcError> {
+        let problem = Problem {
+            digest,
+            unknowns: problem.stiffness.size(),
+            modes,
+            available: problem.available,
+            rigid: problem.rigid.ncols(),
+            shift: problem.shift,
+            tolerance: TOLERANCE,
+        };
+        self.add("problem.json", |file| Ok(serde_json::to_writer_pretty(file, &problem)?))
+    }
+
+    /// Puts them into their places.
+    fn finish(self) -> Result<(), SlepcError> {
+        let finish = |(path, file): (PathBuf, WholeFile)| file.finish().map_err(SlepcError::io(path, "write it"));
+        self.written.into_iter().try_for_each(finish)
+    }
+}
+
 /// Writes K and M, the rigid motions, and the driver. Returns the digest of K and M.
 pub(crate) fn write_matrices(problem: &HeldProblem<'_>, folder: &Path) -> Result<String, SlepcError> {
-    let written = |name: &str, matrix: &HeldMatrix<'_>| {
-        write(folder, name, |file| hashed(file, |file| write_matrix(matrix, file)))
-    };
-    let digest = joined(written("K.petsc", &problem.stiffness)?, written("M.petsc", &problem.mass)?);
-    write(folder, "rigid.petsc", |file| write_vectors(problem.rigid.as_ref(), file))?;
-    write(folder, DRIVER_FILE, |file| file.write_all(DRIVER.as_bytes()))?;
+    let mut files = Files::of(folder);
+    let digest = files.add_matrices(problem)?;
+    files.finish()?;
     Ok(digest)
 }
 
@@ -69,20 +122,13 @@ pub(crate) fn write_problem(
     modes: usize,
     folder: &Path,
 ) -> Result<(), SlepcError> {
-    let problem = Problem {
-        digest,
-        unknowns: problem.stiffness.size(),
-        modes,
-        available: problem.available,
-        rigid: problem.rigid.ncols(),
-        shift: problem.shift,
-        tolerance: TOLERANCE,
-    };
     let before = folder.join("modes.json");
     if before.exists() {
         fs::remove_file(&before).map_err(SlepcError::io(before, "remove what was there"))?;
     }
-    write(folder, "problem.json", |file| Ok(serde_json::to_writer_pretty(file, &problem)?))
+    let mut files = Files::of(folder);
+    files.add_problem(problem, digest, modes)?;
+    files.finish()
 }
 
 /// Writes forces to which static responses are asked for. Returns their name, which follows from them.
@@ -90,8 +136,10 @@ pub(crate) fn write_forces(forces: MatRef<'_, f64>, folder: &Path) -> Result<Str
     let hash = hashed(io::sink(), |file| write_vectors(forces, file));
     let name = hash.map_err(SlepcError::io(folder, "write forces into it"))?.to_hex()[..NAME].to_owned();
     if !folder.join(format!("forces-{name}.json")).exists() {
-        write(folder, &format!("forces-{name}.petsc"), |file| write_vectors(forces, file))?;
-        write(folder, &format!("forces-{name}.json"), |file| writeln!(file, "{{\"count\": {}}}", forces.ncols()))?;
+        let mut files = Files::of(folder);
+        files.add(&format!("forces-{name}.petsc"), |file| write_vectors(forces, file))?;
+        files.add(&format!("forces-{name}.json"), |file| writeln!(file, "{{\"count\": {}}}", forces.ncols()))?;
+        files.finish()?;
     }
     Ok(name)
 }
@@ -134,11 +182,9 @@ pub fn write_folder(
     scene: &Path,
 ) -> Result<Vec<PathBuf>, SlepcError> {
     fs::create_dir_all(folder).map_err(SlepcError::io(folder, "make the folder"))?;
-    for before in answers(folder) {
-        fs::remove_file(&before).map_err(SlepcError::io(before, "remove what was there"))?;
-    }
-    let digest = write_matrices(problem, folder)?;
-    write_problem(problem, &digest, modes, folder)?;
+    let mut files = Files::of(folder);
+    let digest = files.add_matrices(problem)?;
+    files.add_problem(problem, &digest, modes)?;
     let script = script(ranks);
     let readme = format!(
         "{modes} modes of {}, {} unknowns: to be found by SLEPc on PETSc with MUMPS, for Python (slepc4py).\n\
@@ -150,9 +196,12 @@ pub fn write_folder(
         shell_word(folder)
     );
     for (name, text) in [("job.sh", &script), ("README.txt", &readme)] {
-        let path = folder.join(name);
-        write_whole(&path, text).map_err(SlepcError::io(path, "write it"))?;
+        files.add(name, |file| file.write_all(text.as_bytes()))?;
     }
+    for before in answers(folder) {
+        fs::remove_file(&before).map_err(SlepcError::io(before, "remove what was there"))?;
+    }
+    files.finish()?;
     Ok(WRITTEN.map(|name| folder.join(name)).to_vec())
 }
 
@@ -182,20 +231,6 @@ pub(crate) fn digest(problem: &HeldProblem<'_>) -> Result<String, SlepcError> {
 
 fn joined(stiffness: blake3::Hash, mass: blake3::Hash) -> String {
     blake3::Hasher::new().update(stiffness.as_bytes()).update(mass.as_bytes()).finalize().to_hex().to_string()
-}
-
-fn write<T>(
-    folder: &Path,
-    name: &str,
-    contents: impl FnOnce(&mut WholeFile) -> io::Result<T>,
-) -> Result<T, SlepcError> {
-    let path = folder.join(name);
-    let written = WholeFile::create(&path).and_then(|mut file| {
-        let done = contents(&mut file)?;
-        file.finish()?;
-        Ok(done)
-    });
-    written.map_err(SlepcError::io(path, "write it"))
 }
 
 /// Writes to a file. Returns the hash of what went there.

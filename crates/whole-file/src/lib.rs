@@ -26,7 +26,10 @@ use std::path::{Path, PathBuf};
 
 pub use lock::FileLock;
 pub use outputs::{OutputError, Outputs};
-pub use temporary::{TemporaryFile, TemporaryFolder, make_folder, remove_temporaries};
+pub use temporary::{
+    NoTemporaryFolder, TemporaryFile, TemporaryFolder, cure_of_temporaries, is_of_temporaries, make_folder,
+    remove_temporaries,
+};
 pub use written::{OtherEnding, Written};
 
 /// Writes `bytes` to `path`, whole or not at all.
@@ -65,17 +68,22 @@ impl WholeFile {
         Ok(Self { file: BufWriter::new(file), place: Some((temporary, path.to_owned())) })
     }
 
+    /// Brings all that was written to the disk. The file is not in its place yet.
+    ///
+    /// # Errors
+    /// Errors of the system.
+    pub fn make_safe(&mut self) -> io::Result<()> {
+        self.file.flush()?;
+        if self.place.is_some() { self.file.get_ref().sync_all() } else { Ok(()) }
+    }
+
     /// Moves the file into its place, once it is safe on the disk.
     ///
     /// # Errors
     /// Errors of the system. The file that was there before is then still there.
     pub fn finish(mut self) -> io::Result<()> {
-        self.file.flush()?;
-        if let Some((temporary, path)) = self.place {
-            self.file.get_ref().sync_all()?;
-            temporary.put(&path, true)?;
-        }
-        Ok(())
+        self.make_safe()?;
+        self.place.map_or(Ok(()), |(temporary, path)| temporary.put(&path, true))
     }
 }
 

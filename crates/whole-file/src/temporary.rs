@@ -15,6 +15,11 @@ use tempfile::{Builder, PathPersistError, TempDir, TempPath};
 
 /// The start of the names of temporary files.
 pub(crate) const PREFIX: &str = ".flexframe-";
+/// The start of the names of temporary folders.
+const FOLDER_PREFIX: &str = "flexframe-";
+/// The cure where temporary files find no room.
+const TMPDIR_CURE: &str =
+    "let the environment variable TMPDIR name a folder that is there, in which you may write, and which has room";
 /// Tries of a removal, and to wait for a thread that makes a file.
 const TRIES: usize = 200;
 /// The wait before each further try.
@@ -93,6 +98,27 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
 #[derive(Debug)]
 pub struct NoTemporaries {
     _alone: Option<MutexGuard<'static, Vec<PathBuf>>>,
+}
+
+/// The folder of temporary files takes none.
+#[derive(Debug, thiserror::Error)]
+#[error("no temporary folder can be made in {}: {source}\n = {TMPDIR_CURE}", .place.display())]
+pub struct NoTemporaryFolder {
+    place: PathBuf,
+    source: io::Error,
+}
+
+/// True of an error by which no temporary folder can be made, or one is full.
+pub fn is_of_temporaries(error: &io::Error) -> bool {
+    let is_none = error.get_ref().is_some_and(|inner| inner.is::<NoTemporaryFolder>());
+    is_none || cure_of_temporaries(error, &error.to_string()).is_some()
+}
+
+/// The cure for an error of the system by which a disk is full, where the message names a temporary folder of this program.
+pub fn cure_of_temporaries(error: &io::Error, message: &str) -> Option<&'static str> {
+    let is_full = matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded);
+    let folders = std::path::absolute(std::env::temp_dir()).ok()?.join(FOLDER_PREFIX);
+    (is_full && message.contains(&*folders.to_string_lossy())).then_some(TMPDIR_CURE)
 }
 
 /// The path of a temporary file, which is removed when this is dropped.
@@ -181,9 +207,10 @@ impl TemporaryFolder {
     /// Makes a folder in that of temporary files (`TMPDIR`). Its name is `flexframe-`, six letters.
     ///
     /// # Errors
-    /// Errors of the system.
+    /// Errors of the system, with a [`NoTemporaryFolder`] inside.
     pub fn new() -> io::Result<Self> {
-        Self::inside(&std::env::temp_dir())
+        let place = std::env::temp_dir();
+        Self::inside(&place).map_err(|source| io::Error::new(source.kind(), NoTemporaryFolder { place, source }))
     }
 
     /// Makes a folder in another one.
@@ -194,7 +221,7 @@ impl TemporaryFolder {
         // Programs that work in another folder are told of it, too.
         let folder = std::path::absolute(folder)?;
         let mut there = there();
-        let made = Builder::new().prefix("flexframe-").tempdir_in(folder).map_err(without_a_path);
+        let made = Builder::new().prefix(FOLDER_PREFIX).tempdir_in(folder).map_err(without_a_path);
         Ok(Self(Some(listed(made, |made| made.path(), &mut there)?)))
     }
 
@@ -274,6 +301,18 @@ mod tests {
         drop((file, inner));
         assert!(!file_path.exists() && !inner_path.exists() && place.is_file());
         assert!(there().iter().all(|path| !path.starts_with(folder.path())));
+    }
+
+    #[test]
+    fn a_want_of_room_for_temporary_files_is_told_from_others() {
+        let folder = TemporaryFolder::new().unwrap();
+        let full = || io::Error::from(io::ErrorKind::StorageFull);
+        let here = format!("{}: cannot be written", folder.path().join("mesh").display());
+        assert!(cure_of_temporaries(&full(), &here).unwrap().contains("TMPDIR"));
+        assert_eq!(cure_of_temporaries(&full(), "/results/a.h5: cannot be written"), None);
+        assert_eq!(cure_of_temporaries(&io::Error::from(io::ErrorKind::NotFound), &here), None);
+        let none = TemporaryFolder::inside(&folder.path().join("none")).unwrap_err();
+        assert!(!is_of_temporaries(&none) && is_of_temporaries(&io::Error::new(full().kind(), here)));
     }
 
     #[test]

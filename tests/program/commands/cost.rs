@@ -1,7 +1,7 @@
 //! The price list: complete, true to the orders of the schemes, and right about the cheapest setting.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 use std::sync::OnceLock;
 use std::time::Duration;
 
@@ -9,6 +9,8 @@ use dynamics::{Method, Observation, Rows, StepControl};
 use flexframe::cost::{CostReport, CostSettings, LadderRun, Line, Measured, Outcome, Setting, price_list};
 use model::{Builder, Model};
 use scene::{METHODS, Scene, System};
+
+use crate::program::command_in;
 
 const TARGET: f64 = 1e-4;
 
@@ -284,7 +286,7 @@ fn fields(line: &str) -> Vec<String> {
 }
 
 fn flexframe(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(folder).output().unwrap()
+    command_in(folder, arguments).output().unwrap()
 }
 
 fn scene_file(folder: &Path) -> PathBuf {

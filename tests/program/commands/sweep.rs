@@ -9,6 +9,8 @@ use flexframe::run::{self, RunSettings};
 use flexframe::scene::Scene;
 use flexframe::sweep::{Shard, SweepReport, SweepSettings, merge, sweep};
 
+use crate::program::command_in;
+
 const SCENE: &str = r#"
 title = "Blade"
 units = { length = "mm", mass = "Mg", time = "s" }
@@ -428,8 +430,7 @@ fn a_sweep_none_of_whose_rows_is_done_has_failed() {
     let sweep = fs::read_to_string(case.path("sweep.toml")).unwrap().replace("tip/displacement", "nose/displacement");
     let run = |text: &str| {
         fs::write(case.path("sweep.toml"), text).unwrap();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-        command.args(["sweep", "sweep.toml", "--overwrite"]).current_dir(case.folder.path()).output().unwrap()
+        command_in(case.folder.path(), &["sweep", "sweep.toml", "--overwrite"]).output().unwrap()
     };
     let output = run(&sweep);
     let text = String::from_utf8(output.stderr).unwrap();

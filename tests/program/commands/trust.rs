@@ -2,15 +2,16 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use flexframe::columns::COLUMNS;
 use results::Results;
 use serde_json::Value;
 
+use crate::program::command;
+
 fn flexframe(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(arguments).env("FLEXFRAME_CACHE", "").output().unwrap()
+    command(arguments).env("FLEXFRAME_CACHE", "").output().unwrap()
 }
 
 /// A rod that is held at one end and pushed across the other by a force, with its modes and how it is stepped; a mesh has the place of

@@ -8,6 +8,8 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
+use crate::program::command_in;
+
 /// A folder with a folder for temporary files.
 struct Case {
     folder: TempDir,
@@ -39,9 +41,8 @@ impl Case {
     }
 
     fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-        command.args(arguments).current_dir(self.folder.path()).env("TMPDIR", self.path("temporary"));
-        command.env("FLEXFRAME_CACHE", "").stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut command = command_in(self.folder.path(), arguments);
+        command.env("TMPDIR", self.path("temporary")).stdout(Stdio::piped()).stderr(Stdio::piped());
         command
     }
 
@@ -116,18 +117,35 @@ fn temporary_files_are_removed_by_a_signal() {
     let sweep = "scene = \"bar.toml\"\n[parameters]\n\"time.end\" = { from = 10, to = 20, count = 4 }\n[results]\n\
                  strain = { peak = \"energy/strain\" }\n";
     case.write("sweep.toml", sweep);
-    for name in ["TERM", "INT", "HUP"] {
+    for (name, ends) in [("TERM", Some(130)), ("INT", Some(130)), ("HUP", Some(130)), ("ABRT", None), ("USR1", None)] {
         let child = case.command(&["animate", "bar.toml", "-o", "bar.gif", "--frames", "2000"]).spawn().unwrap();
         until("the animation does not begin", || case.unfinished() > 0);
         signal(&child, name);
         let output = child.wait_with_output().unwrap();
-        assert_eq!((output.status.code(), case.unfinished()), (Some(130), 0), "{}", said(&output));
+        assert_eq!((output.status.code(), case.unfinished()), (ends, 0), "{}", said(&output));
         assert!(!case.path("bar.gif").exists());
+        // The signals are the same for every command.
+        if ends.is_none() {
+            continue;
+        }
         let child = case.command(&["sweep", "sweep.toml", "--no-cache"]).spawn().unwrap();
         until("the sweep does not begin", || !case.is_clean());
         signal(&child, name);
         let output = child.wait_with_output().unwrap();
-        assert!(output.status.code() == Some(130) && case.is_clean(), "{}", said(&output));
+        assert!(output.status.code() == ends && case.is_clean(), "{}", said(&output));
+    }
+}
+
+#[test]
+fn a_folder_of_temporary_files_that_is_not_there_is_named() {
+    let case = Case::new();
+    case.write("part.geo", BOX);
+    case.scene("part.toml", "part.geo");
+    for arguments in [["modes", "part.toml"], ["play", "part.toml"]] {
+        let output = case.command(&arguments).env("TMPDIR", case.path("gone")).output().unwrap();
+        assert_eq!(output.status.code(), Some(6), "{}", said(&output));
+        assert!(said(&output).contains("error: no temporary folder can be made in "), "{}", said(&output));
+        assert!(said(&output).contains("\n = let the environment variable TMPDIR name"), "{}", said(&output));
     }
 }
 

@@ -87,12 +87,8 @@ fn a_table_of_a_motor_is_never_written_over() {
     done(folder.path(), &["run", "wheel.toml", "-o", "."]);
     let table = fs::read(folder.path().join("motor.csv")).unwrap();
     // By another name, which the command takes for its own.
-    fs::hard_link(folder.path().join("motor.csv"), folder.path().join("wheel.wheel.csv")).unwrap();
-    refused(
-        folder.path(),
-        &["export", "wheel.wheel.h5", "--csv", ".", "--overwrite"],
-        "this file is read by the command",
-    );
+    fs::hard_link(folder.path().join("motor.csv"), folder.path().join("wheel.csv")).unwrap();
+    refused(folder.path(), &["export", "wheel.h5", "--csv", ".", "--overwrite"], "this file is read by the command");
     refused(
         folder.path(),
         &["linearize", "wheel.toml", "-o", "motor.csv", "--overwrite"],
@@ -134,10 +130,10 @@ fn a_run_with_joints_does_not_go_on_with_another_table() {
 fn a_pipe_among_the_files_of_a_run_is_not_waited_for() {
     let folder = desk();
     done(folder.path(), &["run", "wheel.toml", "-o", "."]);
-    fs::write(folder.path().join("wheel.wheel.csv"), "old").unwrap();
+    fs::write(folder.path().join("wheel.csv"), "old").unwrap();
     fs::remove_file(folder.path().join("motor.csv")).unwrap();
     assert!(Command::new("mkfifo").arg(folder.path().join("motor.csv")).status().unwrap().success());
-    done(folder.path(), &["export", "wheel.wheel.h5", "--csv", ".", "--overwrite"]);
+    done(folder.path(), &["export", "wheel.h5", "--csv", ".", "--overwrite"]);
 }
 
 /// docs/reference/body.md: a cache that cannot be written is a warning.
@@ -151,13 +147,8 @@ fn a_body_file_is_written_where_the_cache_cannot_be() {
                  [time]\nend = 1e-3\nstep = 1e-5\n";
     fs::write(folder.path().join("bar.toml"), scene).unwrap();
     fs::write(folder.path().join("cache"), "no folder").unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    let output = command
-        .args(["reduce", "bar.toml", "-o", "body.h5"])
-        .env("FLEXFRAME_CACHE", folder.path().join("cache"))
-        .current_dir(folder.path())
-        .output()
-        .unwrap();
+    let mut command = command_in(folder.path(), &["reduce", "bar.toml", "-o", "body.h5"]);
+    let output = command.env("FLEXFRAME_CACHE", folder.path().join("cache")).output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
     let all = format!("{said}{}", String::from_utf8_lossy(&output.stdout));

@@ -5,6 +5,8 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
+use crate::program::command_in;
+
 /// `flexframe modes` of a steel bar from this file, in a folder that has it.
 fn modes(folder: &Path, body: &str, gmsh: &str, cache: &Path) -> Output {
     let scene = format!(
@@ -13,9 +15,7 @@ fn modes(folder: &Path, body: &str, gmsh: &str, cache: &Path) -> Output {
          [time]\nend = 1.0\nstep = 0.1\n"
     );
     std::fs::write(folder.join("bar.toml"), scene).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(["modes", "bar.toml", "--json"]).current_dir(folder);
-    command
+    command_in(folder, &["modes", "bar.toml", "--json"])
         .env("FLEXFRAME_PYTHON", "no python")
         .env("FLEXFRAME_GMSH", gmsh)
         .env("FLEXFRAME_CACHE", cache)

@@ -1,11 +1,10 @@
 //! `[modes] measured`: frequencies and damping of a test in the place of the model's.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use serde_json::Value;
 
-use crate::program::numbers;
+use crate::program::{command_in, numbers};
 
 fn mesh() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/rotating_bar.msh"))
@@ -32,7 +31,7 @@ fn report(folder: &Path, measured: &str) -> Result<Value, String> {
     );
     std::fs::write(folder.join("bar.toml"), text).unwrap();
     let scene = folder.join("bar.toml");
-    let output = Command::new(env!("CARGO_BIN_EXE_flexframe")).arg("modes").arg(&scene).arg("--json").output().unwrap();
+    let output = command_in(folder, &["modes", scene.to_str().unwrap(), "--json"]).output().unwrap();
     if output.status.success() {
         Ok(serde_json::from_slice(&output.stdout).unwrap())
     } else {

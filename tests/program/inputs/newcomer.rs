@@ -7,6 +7,8 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::program::command_in;
+
 /// A clamped bar of 200 x 10 x 10 mm of steel under a force at its tip.
 const BAR: &str = r#"
 title = "Bar"
@@ -65,8 +67,8 @@ impl Desk {
     }
 
     fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-        command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null());
+        let mut command = command_in(self.0.path(), arguments);
+        command.stdin(Stdio::null());
         command
     }
 

@@ -7,6 +7,8 @@ use std::process::{Command, Output};
 
 use flexframe::fmu::marker;
 
+use crate::program::command_in;
+
 const SCENE: &str = r#"
 title = "Bar"
 units = { length = "mm", mass = "Mg", time = "s" }
@@ -186,8 +188,7 @@ impl Desk {
     }
 
     fn flexframe(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-        command.args(arguments).arg("--no-cache").current_dir(self.folder.path()).output().unwrap()
+        command_in(self.folder.path(), arguments).output().unwrap()
     }
 
     fn done(&self, arguments: &[&str]) {

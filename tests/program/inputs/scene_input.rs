@@ -52,14 +52,28 @@ fn a_key_that_leads_nowhere_is_a_wrong_argument_and_a_wrong_value_a_wrong_scene(
     for (set, code, words) in [
         ("title.end=1", 2, "`end` in a value that is a text"),
         ("time.end", 2, "expected KEY=VALUE"),
-        ("time.end=-1", 3, "`time.end`"),
-        ("time.edn=1", 3, "did you mean `end`"),
+        ("time.end=-1", 3, "error: --set time.end=-1: found -1, expected a number greater than 0\n = "),
+        ("time.edn=1", 3, "error: --set time.edn=1: found edn, expected one of `end`"),
+        ("units.length=mn", 3, "error: --set units.length=\"mn\": found \"mn\", expected `mm`"),
     ] {
         let output = flexframe(&["run", "examples/heavy_top.toml", "--set", set], "");
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(code), "{set}: {said}");
         assert!(said.contains(words), "{set}: {said}");
     }
+}
+
+/// A key that is added moves the lines behind it.
+#[test]
+fn a_fault_of_the_scene_is_shown_at_its_line_in_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("ball.toml");
+    let text = "title = \"ball\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n[time]\nend = 1.0\n[body]\n\
+                rigid = { mass = -1, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }\n";
+    std::fs::write(&scene, text).unwrap();
+    let output = flexframe(&["run", scene.to_str().unwrap(), "--set", "time.step=0.1"], "");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("ball.toml:6:18: `body.rigid.mass`: found -1"), "{said}");
 }
 
 #[test]

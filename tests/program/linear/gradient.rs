@@ -1,9 +1,11 @@
 //! `flexframe gradient` as its users meet it.
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
+
+use crate::program::command_in;
 
 /// The clamped bar with a mass at its tip, whose frequencies are two and two but for the mesh, and a prop at its tip, which parts them.
 pub(crate) fn write_scene(folder: &Path) {
@@ -25,8 +27,7 @@ pub(crate) fn write_scene(folder: &Path) {
 }
 
 pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(arguments).env("FLEXFRAME_CACHE", "").current_dir(folder).output().unwrap()
+    command_in(folder, arguments).output().unwrap()
 }
 
 pub(crate) fn report(folder: &Path, arguments: &[&str]) -> Value {

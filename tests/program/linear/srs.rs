@@ -3,12 +3,14 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
+use crate::program::command_in;
+
 fn srs(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_flexframe")).arg("srs").args(arguments).current_dir(folder).output().unwrap()
+    command_in(folder, &[&["srs"], arguments].concat()).output().unwrap()
 }
 
 /// A half sine of 10 g in 10 ms, with names of columns, a comment and an empty line.

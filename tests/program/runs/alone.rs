@@ -2,12 +2,14 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use flexframe::columns::COLUMNS;
 use flexframe::run::{RunSettings, run};
 use flexframe::scene::Scene;
 use results::Results;
+
+use crate::program::command_in;
 
 const BEAM: &str = r#"
 title = "A beam that bends far"
@@ -38,9 +40,7 @@ const MESH: &str = "mesh = \"beam.msh\"\nmaterial = { young_modulus = 6.9e10, po
 
 /// The program where nothing but the folder is: no other program is found, and nothing was computed before.
 fn flexframe(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-    command.args(arguments).current_dir(folder).env_clear().env("FLEXFRAME_CACHE", "").env("PATH", "");
-    command.output().unwrap()
+    command_in(folder, arguments).env_clear().env("FLEXFRAME_CACHE", "").env("PATH", "").output().unwrap()
 }
 
 fn done(folder: &Path, arguments: &[&str]) -> String {

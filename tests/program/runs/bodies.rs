@@ -2,7 +2,7 @@
 //! of them, or one by its name.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -11,6 +11,8 @@ use flexframe::run::{RunError, RunProgress, RunSettings, resume, run};
 use flexframe::scene::{Scene, System};
 use results::{Results, Scope, histories};
 use serde_json::Value;
+
+use crate::program::command_in;
 
 /// Two bodies that tumble and are struck, at places and times of their own.
 const SCENE: &str = include_str!("../../two.toml");
@@ -40,9 +42,8 @@ impl Desk {
     }
 
     fn flexframe(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-        command.args(arguments).current_dir(self.folder.path()).env("FLEXFRAME_CACHE", self.path("cache"));
-        command.output().unwrap()
+        let mut command = command_in(self.folder.path(), arguments);
+        command.env("FLEXFRAME_CACHE", self.path("cache")).output().unwrap()
     }
 
     /// Standard output of a command that succeeds.

@@ -11,6 +11,8 @@ use flexframe::results::Results;
 use flexframe::run::{Estimate, RunError, RunProgress, RunSettings, run};
 use flexframe::scene::Scene;
 
+use crate::program::command_in;
+
 /// A rigid body that spins.
 const SCENE: &str = r#"
 title = "Top"
@@ -113,8 +115,7 @@ fn the_terminal_and_the_summary_say_what_a_run_will_come_to() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("top.toml"), format!("{SCENE}time = {{ end = 20.0, step = 1.0 }}")).unwrap();
     let flexframe = |more: &[&str]| -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
-        command.args(["run", "top.toml", "--overwrite"]).args(more).current_dir(folder.path()).output().unwrap()
+        command_in(folder.path(), &[&["run", "top.toml", "--overwrite"], more].concat()).output().unwrap()
     };
     let told = String::from_utf8(flexframe(&[]).stderr).unwrap();
     assert!(told.contains("run: 21 rows, 1 MB, less than a second\n"), "{told}");

@@ -9,6 +9,8 @@ use flexframe::run::{RunError, RunProgress, RunReport, RunSettings, resume, run}
 use flexframe::scene::System;
 use results::Results;
 
+use crate::program::command_in;
+
 const SCENE: &str = include_str!("../../tied.toml");
 
 fn system() -> System {
@@ -101,8 +103,7 @@ fn a_scene_with_joints_is_drawn_and_a_body_of_it_alone_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let flexframe = |arguments: &[&str]| {
         let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tied.toml");
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_flexframe"));
-        command.arg(arguments[0]).arg(scene).args(&arguments[1..]).current_dir(folder.path()).output().unwrap()
+        command_in(folder.path(), &[&[arguments[0], scene], &arguments[1..]].concat()).output().unwrap()
     };
     let drawn = flexframe(&["animate", "-o", "tied.gif", "--frames", "5", "--to", "0.02"]);
     assert!(drawn.status.success(), "{}", String::from_utf8_lossy(&drawn.stderr));

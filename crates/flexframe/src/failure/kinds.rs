@@ -20,8 +20,9 @@ use scene::SceneError;
 use sealed::SealedError;
 use shock::ShockError;
 use slepc::SlepcError;
+use whole_file::{NoTemporaryFolder, cure_of_temporaries};
 
-use super::{Details, FailureReport, Kind};
+use super::{CURE, Details, FailureReport, Kind};
 use crate::commands::campbell::CampbellError;
 use crate::commands::check::CheckError;
 use crate::commands::cost::CostError;
@@ -59,7 +60,18 @@ impl FailureReport {
     /// The failure of an error.
     pub fn of(error: &(dyn Error + 'static)) -> Self {
         let (kind, details) = known(error);
-        Self::new(kind, error.to_string(), details)
+        let message = error.to_string();
+        for source in
+            successors(Some(error), |&error| error.source()).filter_map(|error| error.downcast_ref::<io::Error>())
+        {
+            if let Some(none) = source.get_ref().and_then(|inner| inner.downcast_ref::<NoTemporaryFolder>()) {
+                return Self::new(Kind::Io, none.to_string(), Details::of_file(std::env::temp_dir()));
+            }
+            if let Some(cure) = cure_of_temporaries(source, &message) {
+                return Self::new(Kind::Io, format!("{message}{CURE}{cure}"), details);
+            }
+        }
+        Self::new(kind, message, details)
     }
 }
 

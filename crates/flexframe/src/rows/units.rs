@@ -1,6 +1,8 @@
 //! The units that have names, in the labels of a scene: N, mJ and MPa where it is in mm, Mg and s; lbf and psi in inches with the mass
 //! that goes with them.
 
+use scene::{BaseUnit, POUND_FORCE, UnitSize};
+
 /// Labels of a scene's units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct UnitLabels<'a> {
@@ -74,7 +76,8 @@ impl UnitLabels<'_> {
 
     /// The unit of length, "in" or "ft", where force is in pounds.
     fn with_pounds(&self) -> Option<&'static str> {
-        let [length, mass] = [imperial_length(self.length)?, imperial_mass(self.mass)?];
+        let [length, mass] =
+            [BaseUnit::Length.size(self.length)?, BaseUnit::Mass.size(self.mass)?].map(UnitSize::factor);
         let is_pound = self.time == "s" && (mass * length / POUND_FORCE - 1.0).abs() < 1e-9;
         is_pound.then_some(if length < 0.1 { "in" } else { "ft" })
     }
@@ -96,18 +99,14 @@ impl UnitLabels<'_> {
 
     /// Seconds in the unit of time.
     pub(crate) fn seconds(&self) -> Option<f64> {
-        time(self.time).map(|ten| 10f64.powi(ten))
+        BaseUnit::Time.size(self.time).map(UnitSize::factor)
     }
 
     /// A unit in m, kg and s, from the powers of length, mass and time that it has; inches and pounds are known, too.
     pub(crate) fn in_si(&self, powers: [i32; 3]) -> Option<f64> {
-        let ten = |power: i32| 10_f64.powi(power);
-        let factors = [
-            length(self.length).map(ten).or_else(|| imperial_length(self.length))?,
-            mass(self.mass).map(ten).or_else(|| imperial_mass(self.mass))?,
-            time(self.time).map(ten)?,
-        ];
-        Some(factors.iter().zip(powers).map(|(factor, power)| factor.powi(power)).product())
+        let units =
+            [BaseUnit::Length.size(self.length)?, BaseUnit::Mass.size(self.mass)?, BaseUnit::Time.size(self.time)?];
+        Some(units.iter().zip(powers).map(|(unit, power)| unit.factor().powi(power)).product())
     }
 
     /// "mm/s²".
@@ -117,64 +116,17 @@ impl UnitLabels<'_> {
 
     /// The power of ten of a unit in m, kg and s, from the powers of length, mass and time that it has.
     pub(crate) fn tens(&self, powers: [i32; 3]) -> Option<i32> {
-        let tens = [length(self.length)?, mass(self.mass)?, time(self.time)?];
+        let tens =
+            [ten(BaseUnit::Length, self.length)?, ten(BaseUnit::Mass, self.mass)?, ten(BaseUnit::Time, self.time)?];
         Some(tens.iter().zip(powers).map(|(ten, power)| ten * power).sum())
     }
 }
 
-/// The power of ten in metres.
-fn length(label: &str) -> Option<i32> {
-    match label {
-        "km" => Some(3),
-        "m" => Some(0),
-        "cm" => Some(-2),
-        "mm" => Some(-3),
-        "um" | "µm" | "μm" => Some(-6),
-        _ => None,
-    }
-}
-
-/// In metres.
-fn imperial_length(label: &str) -> Option<f64> {
-    match label {
-        "in" | "inch" => Some(0.0254),
-        "ft" => Some(0.3048),
-        _ => None,
-    }
-}
-
-/// A pound in kilograms, and its weight in newtons.
-const POUND: f64 = 0.453_592_37;
-const POUND_FORCE: f64 = 9.806_65 * POUND;
-
-/// In kilograms: a pound, and the masses that a force of one pound accelerates by 1 ft/s² and by 1 in/s².
-fn imperial_mass(label: &str) -> Option<f64> {
-    match label {
-        "lb" | "lbm" => Some(POUND),
-        "slug" => Some(POUND_FORCE / 0.3048),
-        "slinch" | "blob" | "lbf s²/in" | "lbf s^2/in" | "lbf·s²/in" | "lbf*s^2/in" => Some(POUND_FORCE / 0.0254),
-        _ => None,
-    }
-}
-
-/// The power of ten in kilograms.
-fn mass(label: &str) -> Option<i32> {
-    match label {
-        "Mg" | "t" => Some(3),
-        "kg" => Some(0),
-        "g" => Some(-3),
-        "mg" => Some(-6),
-        _ => None,
-    }
-}
-
-/// The power of ten in seconds.
-fn time(label: &str) -> Option<i32> {
-    match label {
-        "s" => Some(0),
-        "ms" => Some(-3),
-        "us" | "µs" | "μs" => Some(-6),
-        _ => None,
+/// The power of ten of a unit that is one of that of SI.
+fn ten(unit: BaseUnit, label: &str) -> Option<i32> {
+    match unit.size(label)? {
+        UnitSize::Ten(power) => Some(power),
+        UnitSize::Factor(_) => None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! The body file of a scene: what other programs read by name, and the values that later runs read.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::path::Path;
 
 use dynamics::Manifold;
@@ -84,7 +85,14 @@ impl Builder {
         }
         let temporary = TemporaryFolder::new().map_err(SealedError::system(path, "make a temporary folder"))?;
         let cache = self.cache.elsewhere(temporary.path(), u64::MAX);
-        self.write_by_way_of(&cache, &scene, path, matrices, &mut progress)
+        let written = self.write_by_way_of(&cache, &scene, path, matrices, &mut progress);
+        if written.is_err() && cache.is_closed() {
+            let full = io::Error::from(io::ErrorKind::StorageFull);
+            return Err(
+                SealedError::system(temporary.path(), "keep what is computed in this temporary folder")(full).into()
+            );
+        }
+        written
     }
 
     fn write_by_way_of(

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use mesh_import::{ImportError, ImportSettings, Imported, MeshFile, Reader, reader_of};
 use scene::{MeshedBody, Scene, SceneError, shorten};
+use whole_file::is_of_temporaries;
 
 use crate::building::builder::Builder;
 use crate::error::{BuildError, refuse};
@@ -47,6 +48,10 @@ pub(crate) fn mesh_in(builder: &Builder, scene: &Scene, file: &MeshFile) -> Resu
 
 fn refused(scene: &Scene) -> impl Fn(ImportError) -> BuildError {
     |error| match error {
+        // What a temporary folder lacks is not the scene's to mend.
+        ImportError::Io { source_name, cause } if is_of_temporaries(&cause) => {
+            Box::new(ImportError::Io { source_name, cause }).into()
+        }
         ImportError::Mesh(MeshError { mesh, fault: MeshFault::Io(cause), .. })
         | ImportError::Io { source_name: mesh, cause } => scene
             .refuse(

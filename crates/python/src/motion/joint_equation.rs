@@ -15,7 +15,7 @@ use crate::motion::faults::Faults;
 use crate::motion::joint_force::joint_number;
 use crate::motion::load::Law;
 use crate::values::arrays::matrix;
-use crate::values::numbers::{described, vector};
+use crate::values::numbers::{described, number, vector};
 
 /// One more equation of a joint: a point on a wire, a cam, a rod of one length. The joint keeps it at zero, beside what it holds
 /// otherwise (`locked = []` holds nothing).
@@ -67,8 +67,8 @@ impl PythonEquation {
         let position = PyArray1::from_slice(py, place.position.as_slice());
         let value = self.function.bind(py).call1((position, matrix(py, &place.axes)))?;
         let of = |what: &str| format!("the {what} of the equation `{}`", self.name);
-        let (count @ (2 | 3), Ok(residual)) =
-            (value.len().unwrap_or(0), value.get_item(0).and_then(|first| first.extract::<f64>()))
+        let (count @ (2 | 3), Some(residual)) =
+            (value.len().unwrap_or(0), value.get_item(0).ok().and_then(|first| number(&first)))
         else {
             let expected = "a residual and its derivative by the position, or also that by a turn";
             let help = "return a number and three numbers, or a number and twice three";

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use crate::errors::wrong_input;
 use crate::motion::faults::Faults;
 use crate::motion::load::Law;
-use crate::values::numbers::described;
+use crate::values::numbers::{described, number};
 
 /// A moment about the turn of a joint, or a force along its slide, by a law: a function of the time, the coordinate (rad or a
 /// length) and its rate that returns a number. It is positive on the second body along the coordinate, as the motor of a scene.
@@ -114,7 +114,7 @@ impl JointLaw for PythonLaw {
             || format!("in the law `{}` at time {time}", self.name),
             |py| {
                 let value = self.function.bind(py).call1((time, coordinate, rate))?;
-                value.extract::<f64>().map_err(|_| {
+                number(&value).ok_or_else(|| {
                     let help = "return the force or the moment";
                     let what = format!("the force of the law `{}`", self.name);
                     wrong_input(py, &what, &described(&value), "a number", help)

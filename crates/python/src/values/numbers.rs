@@ -3,6 +3,7 @@
 use flexframe::nalgebra::Vector3;
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyComplex;
 
 use crate::errors::wrong_input;
 
@@ -15,7 +16,11 @@ pub(crate) fn numbers(value: &Bound<'_, PyAny>, count: usize, what: &str) -> PyR
     };
     let list = match value.extract::<PyReadonlyArray1<'_, f64>>() {
         Ok(array) => array.as_array().to_vec(),
-        Err(_) => value.extract::<Vec<f64>>().map_err(|_| refuse(&described(value)))?,
+        Err(_) => {
+            let items = value.extract::<Vec<Bound<'_, PyAny>>>().ok();
+            let list: Option<Vec<f64>> = items.and_then(|items| items.iter().map(number).collect());
+            list.ok_or_else(|| refuse(&described(value)))?
+        }
     };
     if list.len() != count {
         return Err(refuse(&format!("{} numbers", list.len())));
@@ -24,6 +29,13 @@ pub(crate) fn numbers(value: &Bound<'_, PyAny>, count: usize, what: &str) -> PyR
         Some(i) => Err(refuse(&format!("{} as number {}", list[i], i + 1))),
         None => Ok(list),
     }
+}
+
+/// A real number from Python. What has an imaginary part is none, although NumPy would leave that part out.
+pub(crate) fn number(value: &Bound<'_, PyAny>) -> Option<f64> {
+    let kind = value.getattr("dtype").and_then(|kind| kind.getattr("kind")?.extract::<String>());
+    let is_complex = value.is_instance_of::<PyComplex>() || kind.is_ok_and(|kind| kind == "c");
+    value.extract().ok().filter(|_| !is_complex)
 }
 
 /// Three of them.

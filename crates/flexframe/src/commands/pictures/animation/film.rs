@@ -45,7 +45,11 @@ pub enum FilmError {
     Failed { path: PathBuf, program: String, said: String },
     /// The pictures or the film could not be put on the disk.
     #[error("{}: the film cannot be written: {cause}\n = make room there and in the folder that TMPDIR names", path.display())]
-    Io { path: PathBuf, cause: io::Error },
+    Io {
+        path: PathBuf,
+        #[source]
+        cause: io::Error,
+    },
 }
 
 /// Kind of a moving picture.
