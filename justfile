@@ -135,6 +135,16 @@ fit-trials:
 calculix-disc:
     .tools/meshio/bin/python crates/verification/calculix/dished_disc.py out/calculix-disc
 
+# The decks of tests/decks with their masses and frequencies by CalculiX and SciPy, and the table of docs/evidence/decks.md (calculix-ccx, Python packages; seconds).
+decks:
+    python3 -m venv .tools/decks
+    .tools/decks/bin/pip install -q meshio==5.3.5 h5py==3.16.0 numpy==2.4.6 scipy==1.17.1
+    .tools/decks/bin/python crates/verification/decks/make.py tests/decks docs/evidence/decks.md
+
+# Decks written at random in the syntax of Nastran and Abaqus, 1000 each, all of one body: the counts in docs/evidence/decks.md (a minute).
+random-decks:
+    FLEXFRAME_DECKS=1000 cargo test --quiet --package mesh-import --test nastran_decks --test decks random -- --nocapture
+
 # Steps a second of every scheme on one core, steps of chains of bodies, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package dynamics --bench steps

@@ -1,8 +1,11 @@
 //! Masses, ties and elasticities of a deck, which a scene can have, too.
 
+use std::collections::BTreeMap;
+
+use fem_tet10::Mesh;
 use serde::{Deserialize, Serialize};
 
-use crate::notes;
+use crate::own::notes;
 
 /// Masses, ties and elasticities of a deck, in its own units.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -52,7 +55,39 @@ pub struct Elastic {
     pub poisson_ratio: f64,
 }
 
+impl DeckTie {
+    /// Its name in `tie` of a marker.
+    pub fn tie(&self) -> &'static str {
+        if self.is_rigid { "rigid" } else { "mean" }
+    }
+
+    /// True if the mesh has its group.
+    pub(crate) fn is_of(&self, mesh: &Mesh) -> bool {
+        mesh.surface_groups().any(|surface| surface == self.group)
+            || mesh.parts().node_groups.iter().any(|group| group.name == self.group)
+            || mesh.groups().contains(&self.group)
+    }
+}
+
 impl Beside {
+    /// A sentence on the ties that are not used.
+    pub fn unused_ties(&self, is_used: impl Fn(&DeckTie) -> bool) -> Option<String> {
+        let mut kinds: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
+        for tie in self.ties.iter().filter(|tie| !is_used(tie)) {
+            kinds.entry((&tie.kind, tie.tie())).or_default().push(&tie.group);
+        }
+        let each = kinds.into_iter().map(|((kind, tie), groups)| {
+            let more = if groups.len() > 1 { ", …" } else { "" };
+            format!(
+                "{} {kind} (in a scene: a marker with group = {:?}{more} and tie = \"{tie}\")",
+                groups.len(),
+                groups[0]
+            )
+        });
+        let each: Vec<String> = each.collect();
+        (!each.is_empty()).then(|| format!("not used: {}", each.join(", ")))
+    }
+
     /// A sentence on the masses that are not used, with their sum.
     pub fn unused_masses(&self, is_used: impl Fn(&DeckMass) -> bool) -> Option<String> {
         let mut kinds: Vec<&str> = self.masses.iter().map(|mass| &mass.kind[..]).collect();

@@ -2,27 +2,18 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-mod abaqus;
 mod beside;
 mod contents;
-mod deck;
 mod deck_material;
 mod error;
+mod foreign;
 mod format;
-mod geometry;
-mod gmsh_errors;
 mod imported;
 mod included;
 mod mesh_file;
-mod nastran;
-mod notes;
+mod own;
 mod reader;
-mod run;
 mod settings;
-mod systems;
-mod tetrahedra;
-mod texts;
-mod universal;
 
 use std::path::Path;
 

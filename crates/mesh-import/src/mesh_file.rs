@@ -7,19 +7,19 @@ use fem_tet10::{Mesh, MeshError, MeshFault, msh_bytes, parse_msh};
 use keys::{Hash, Key};
 use whole_file::TemporaryFolder;
 
-use crate::abaqus;
 use crate::beside::Beside;
 use crate::contents::{Copies, ReadFile, contents, opened};
-use crate::deck::deck;
 use crate::error::ImportError;
+use crate::foreign::geometry::geometry;
+use crate::foreign::run::{self, GmshTask, Job};
 use crate::format::ending;
-use crate::geometry::geometry;
 use crate::imported::Imported;
-use crate::nastran;
+use crate::own::abaqus;
+use crate::own::deck::deck;
+use crate::own::nastran;
+use crate::own::universal;
 use crate::reader::{Reader, is_program, is_surface, names_others, reader_of};
-use crate::run::{self, GmshTask, Job};
 use crate::settings::ImportSettings;
-use crate::universal;
 
 /// A mesh file with all that it includes, as they were when they were read. Its hash and its mesh follow from the same bytes,
 /// whatever becomes of the files.

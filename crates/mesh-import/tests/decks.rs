@@ -97,7 +97,8 @@ fn what_is_not_used_is_counted_and_named() {
     let bar = Bar::new();
     let more = "*ELEMENT, TYPE=MASS, ELSET=m\n9001, 1\n*MASS, ELSET=m\n7.85e-4\n*ELEMENT, TYPE=SPRINGA, ELSET=k\n9002, 1, 2\n\
                 *SPRING, ELSET=k\n\n10.\n*EQUATION\n2\n1, 1, 1., 2, 1, -1.\n*RIGID BODY, REF NODE=1, NSET=root\n*COUPLING, \
-                CONSTRAINT NAME=hub, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 3\n*MODEL CHANGE, TYPE=CONTACT PAIR, ADD\na, b\n*ELEMENT, TYPE=B31, ELSET=edges\n9003, 1, 2,\n9004, 1, 2,\n*SECRET\n1\n";
+                CONSTRAINT NAME=hub, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 3\n*COUPLING, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 2\n*MODEL CHANGE, TYPE=CONTACT PAIR, ADD\na, b\n\
+                *ELEMENT, TYPE=S3, ELSET=skin\n9005, 1, 2, 3\n*MATERIAL, NAME=lead\n*DENSITY\n70.\n*SHELL SECTION, ELSET=skin, MATERIAL=lead\n.1, 5\n*ELEMENT, TYPE=B31, ELSET=edges\n9003, 1, 2,\n9004, 1, 2,\n*SECRET\n1\n";
     let text = format!(
         "*NODE\n{}*ELEMENT, TYPE=C3D10, ELSET=all\n{}*NSET, NSET=root\n{}{more}",
         bar.node_lines(plain),
@@ -110,18 +111,25 @@ fn what_is_not_used_is_counted_and_named() {
     let [rigid] = &beside.ties[..] else { panic!("{:?}", beside.ties) };
     assert_eq!((&*rigid.group, rigid.is_rigid, rigid.at), ("root", true, Some(first)));
     assert_eq!(beside.unused_masses(|mass| mass.at == first), None);
-    notes[0] += &beside.unused_masses(|_| false).unwrap();
+    notes[0] += &(beside.unused_masses(|_| false).unwrap() + &beside.unused_ties(|_| false).unwrap());
+    // Closed form: the area between the corners.
+    let at = |node: u64| bar.nodes.iter().find(|(label, _)| *label == node).unwrap().1;
+    let side = |node: u64| -> [f64; 3] { std::array::from_fn(|i| at(node)[i] - first[i]) };
+    let (a, b) = (side(2), side(3));
+    let across = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let shell = format!("1 S3 ({:.4e})", across.iter().map(|c| c * c).sum::<f64>().sqrt() / 2.0 * 0.1 * 70.0);
     for words in [
         "read: ",
         "1 MASS (7.8500e-4",
         "point_masses = [{ at = [",
         "1 SPRINGA",
-        "2 B31",
+        "2 B31 (mass not known)",
+        shell.as_str(),
+        "1 *COUPLING in some directions only",
         "1 *MODEL CHANGE",
         "1 *SPRING",
         "1 *EQUATION",
-        "1 *RIGID BODY of root",
-        "tie = \"rigid\"",
+        "1 *RIGID BODY (in a scene: a marker with group = \"root\" and tie = \"rigid\")",
         "1 *COUPLING of face",
         "1 keyword(s) that are not known",
     ] {
@@ -159,14 +167,21 @@ fn written(bar: &Bar, dice: &mut Dice) -> String {
         _ if c == 0.0 => String::new(),
         _ => format!(" {c:?} "),
     };
-    let mut nodes = dice.spelled("*NODE");
+    // A system with its origin elsewhere.
+    let origin = [[0.0; 3], [0.5, -2.0, 4.0]][dice.up_to(2)];
+    let mut nodes = if origin == [0.0; 3] { String::new() } else { dice.spelled("*SYSTEM\n.5, -2., 4.D0\n") };
+    nodes += &dice.spelled("*NODE");
     let in_cylinders = dice.up_to(3) == 0;
+    if dice.up_to(3) == 0 {
+        nodes += &dice.spelled(" , NSET = all nodes");
+    }
     if in_cylinders {
         nodes += &dice.spelled(", SYSTEM=C");
     }
     nodes.push('\n');
     for (label, x) in &bar.nodes {
-        let x = if in_cylinders { [x[0].hypot(x[1]), x[1].atan2(x[0]).to_degrees(), x[2]] } else { *x };
+        let x: [f64; 3] = std::array::from_fn(|i| x[i] - origin[i]);
+        let x = if in_cylinders { [x[0].hypot(x[1]), x[1].atan2(x[0]).to_degrees(), x[2]] } else { x };
         let fields = x.map(|c| number(dice, c)).join(",");
         let _ = writeln!(nodes, "{label},{fields}");
         if dice.up_to(20) == 0 {
@@ -203,8 +218,10 @@ fn written(bar: &Bar, dice: &mut Dice) -> String {
     }
     let body = blocks.concat();
     let text = if in_parts {
+        // Moved across, and turned about its length.
+        let placement = ["", "0., 7.\n", "0, 0, -1D0\n0, 0, 0, 2., 0, 0, 90.\n"][dice.up_to(3)];
         format!(
-            "*PART, NAME=P\n{body}*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=P-1, PART=p\n*END INSTANCE\n*END ASSEMBLY\n{material}"
+            "*PART, NAME=P\n{body}*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=P-1, PART=p\n{placement}*END INSTANCE\n*END ASSEMBLY\n{material}"
         )
     } else {
         format!("*HEADING\n a bar\n{material}{body}")

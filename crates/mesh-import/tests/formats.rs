@@ -287,6 +287,25 @@ fn what_cannot_be_read_is_said_with_its_help() {
     let mut nodes: Vec<&str> = line.split(',').collect();
     nodes.swap(5, 7);
     fs::write(formats.path("swapped.inp"), inp.replace(line, &nodes.join(","))).unwrap();
+    // XDMF without its data, and data that are cut off.
+    fs::write(
+        formats.path("alone.xdmf"),
+        fs::read_to_string(formats.path("bar.xdmf")).unwrap().replace("bar.h5", "gone.h5"),
+    )
+    .unwrap();
+    fs::write(
+        formats.path("cut.xdmf"),
+        fs::read_to_string(formats.path("bar.xdmf")).unwrap().replace("bar.h5", "cut.h5"),
+    )
+    .unwrap();
+    fs::write(formats.path("cut.h5"), &fs::read(formats.path("bar.h5")).unwrap()[..5000]).unwrap();
+    fs::write(formats.path("cut.med"), &fs::read(formats.path("bar.med")).unwrap()[..9000]).unwrap();
+    fs::write(
+        formats.path("short.vtk"),
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 1\n",
+    )
+    .unwrap();
+    fs::write(formats.path("empty.xdmf"), "<Xdmf><Domain/></Xdmf>").unwrap();
     fs::write(formats.path("part.stl"), "solid x\nendsolid x\n").unwrap();
     fs::write(formats.path("part.abc"), "a diary\n").unwrap();
     for (name, words) in [
@@ -299,6 +318,11 @@ fn what_cannot_be_read_is_said_with_its_help() {
         ("strange.inp", &["line 3 of /", "strange.inp: in *ELEMENT"]),
         ("text.vtu", &["begin as .vtu files do", "expected XML"]),
         ("marked.vtu", &["marked.vtu", "meshio cannot read it"]),
+        ("alone.xdmf", &["its data are in gone.h5, which is not there", "beside it"]),
+        ("cut.xdmf", &["a file is cut off, or is not of its format", "check the file"]),
+        ("cut.med", &["a file is cut off, or is not of its format"]),
+        ("short.vtk", &["its numbers are not as many", "check the file"]),
+        ("empty.xdmf", &["a part of the format is not in it"]),
         ("swapped.inp", &["1 of its 768 tetra10 elements", "in another order", "mesh again"]),
         ("broken.step", &["broken.step", "gmsh", "StepFile"]),
         ("diary.step", &["diary.step", "expected ISO-10303-21"]),
@@ -309,6 +333,7 @@ fn what_cannot_be_read_is_said_with_its_help() {
         let error = formats.read(name, AS_IT_IS).unwrap_err();
         let said = error.to_string();
         assert!(words.iter().all(|word| said.contains(word)), "{name}: {said}");
+        assert!(!said.contains("Traceback") && !said.contains("Error:") && said.lines().count() <= 2, "{name}: {said}");
         assert!(error.source_name().ends_with(name), "{name}: {error:?}");
     }
 }
@@ -392,6 +417,41 @@ fn an_optimization_that_fails_is_tried_with_higher_thresholds() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
     // Two meshes of each of the three sizes that need it.
     assert_eq!(fs::read_to_string(&log).unwrap().lines().count(), 6);
+}
+
+/// As gmsh 4.15 does: an error in words, and 0 for success.
+#[cfg(unix)]
+#[test]
+fn an_error_of_gmsh_counts_whatever_its_status() {
+    use std::os::unix::fs::PermissionsExt;
+    const SILLY: &str = "FLEXFRAME_SILLY";
+    if let Some(geometry) = std::env::var_os(SILLY) {
+        let said = read_mesh(Path::new(&geometry), &AS_IT_IS).unwrap_err().to_string();
+        let words = ["exit status: 0", "Boundary mesh is broken", "smaller mesh_size"];
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+        return;
+    }
+    if with_meshlane() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let [silly, geometry] = ["silly-gmsh", "point.geo"].map(|name| folder.path().join(name));
+    // It writes a whole mesh, too.
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model/tests/data/bar.msh");
+    let script = format!(
+        "#!/bin/sh\nfor a; do last=$a; done\ncp '{}' \"$last\"\necho 'Error : Boundary mesh is broken'\nexit 0\n",
+        mesh.display()
+    );
+    fs::write(&silly, script).unwrap();
+    fs::set_permissions(&silly, fs::Permissions::from_mode(0o755)).unwrap();
+    fs::write(&geometry, "Point(1) = {0, 0, 0};\n").unwrap();
+    // The variable is of the process.
+    let output = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "an_error_of_gmsh_counts_whatever_its_status"])
+        .envs([("FLEXFRAME_GMSH", &silly), (SILLY, &geometry)])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
 }
 
 #[test]

@@ -92,7 +92,10 @@ fn coordinates_are_read_in_their_systems() {
             ["line 3", "in itself"],
         ),
         ("CORD2R,1,,0.,0.,0.,0.,0.,1.\n,0.,0.,3.\nGRID,9001,1", ["line 1", "on a line"]),
-        ("$\n=,*(1),=", ["line 2", "expected a card"]),
+        ("$\n=,*(1),=", ["line 2", "repeats no card"]),
+        ("GRID,1\n=,*(1.5)", ["line 2", "field 2"]),
+        ("GRID,1\n=3", ["line 2", "repeats no card"]),
+        ("GRID,1,,0.,0.,0.,,,,+A\nGRID,2\n+A,1\n+A,2", ["line 4", "second line of this name"]),
         ("GRID,1,,0.,0.,0.,,,,+A\n+B,1", ["line 2", "continues no card"]),
         ("GRID,1\nCTETRA,1,1,1,1,1", ["line 2", "3 nodes"]),
         ("GRID,1\nCTETRA,1,1,1,1,,1", ["line 2", "field 6"]),
@@ -123,9 +126,10 @@ fn a_bar_in_a_cylindrical_system_is_a_quarter_of_a_ring() {
 fn what_is_not_used_is_counted_and_named() {
     let bar = Bar::new();
     let more = "PARAM,WTMASS,.001\nCORD2R,7,,0.,0.,0.,1.,0.,0.\n,0.,1.,0.\nCONM2,9001,1,7,7.85-1,0.,0.,.5\nRBE2,9002,1,123456,2\n\
-                RBE3,9003,,1,123,1.,123,2,3\nCBAR,9004,1,1,2,0.,0.,1.\nCELAS2,9005,1.+3,1,1\nPSHELL,9,1,.1\nCTRIA3,9006,9,1,2,3\n\
+                RBE3,9003,,1,123,1.,123,2,3\nCBAR,9004,1,1,2,0.,0.,1.\nCELAS2,9005,1.+3,1,1\nPSHELL,9,1,.1,,,,,3.\nMAT1,1,2.+5,,.3,70.\nCTRIA3,9006,9,1,2,3\n\
                 SPC1,1,123,1\nDEQATN  2       f(b,c) = b*c\n        + b,\n+       + c\nBSURF,1,1,2,3,4,5,6,7,\n8,9,10\n\
-                CTRIA6,9007,9,1,2,3,,2\nSECRET,1\nENDDATA\nMORE\n";
+                CTRIA6,9007,9,1,2,3,,2\nCMASS2,9008,5.,1,2\nPMASS,9009,6.\nCMASS1,9009,,2,1\nCMASS1,9010,9009,2,2\nCMASS1,9011,9009,2,3\n\
+                CONM1,9012,3,,7.,,7.,,,+\n+,7.\nCONROD,9013,1,2,1,.1\nRBE2,9014,1,1,2\nSECRET,1\nENDDATA\nMORE\n";
     let [x, y, z] = bar.nodes.iter().find(|(label, _)| *label == 1).unwrap().1;
     let text = format!("{}{}{more}", grids(&bar, "", |x| x), elements(&bar));
     let Imported { mut notes, beside, mesh, .. } =
@@ -133,20 +137,37 @@ fn what_is_not_used_is_counted_and_named() {
     assert_eq!(notes.len(), 1, "{notes:?}");
     let ties: Vec<_> = beside.ties.iter().map(|tie| (&*tie.group, tie.is_rigid, tie.at)).collect();
     assert_eq!(ties, [("RBE2_9002", true, Some([x, y, z])), ("RBE3_9003", false, Some([x, y, z]))]);
-    assert_eq!(mesh.group_nodes("RBE2_9002").unwrap().len(), 1);
+    // The node that the others move with is one of the body.
+    assert_eq!(mesh.group_nodes("RBE2_9002").unwrap().len(), 2);
     assert_eq!(mesh.group_nodes("RBE3_9003").unwrap().len(), 2);
-    notes[0] += &beside.unused_masses(|_| false).unwrap();
+    notes[0] += &(beside.unused_masses(|_| false).unwrap() + &beside.unused_ties(|_| false).unwrap());
+    assert_eq!(beside.unused_ties(|_| true), None);
+    // Closed form: areas and lengths between the nodes, with the factor of PARAM,WTMASS.
+    let at = |node: u64| bar.nodes.iter().find(|(label, _)| *label == node).unwrap().1;
+    let side = |node: u64| -> [f64; 3] { std::array::from_fn(|i| at(node)[i] - at(1)[i]) };
+    let norm = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let (a, b) = (side(2), side(3));
+    let area = norm([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]) / 2.0;
+    let shells = format!("1 CTRIA3 ({:.4e})", area * (70.0 * 0.1 + 3.0) * 1e-3);
+    let rod = format!("1 CONROD ({:.4e})", norm(a) * 70.0 * 0.1 * 1e-3);
     let place = format!("point_masses = [{{ at = [{:?}, {y:?}, {z:?}]", x + 0.5);
     for words in [
         "read: ",
         "1 CONM2 (7.8500e-4",
         place.as_str(),
-        "1 RBE2 (in a scene: a marker with tie = \"rigid\")",
-        "1 RBE3 (in a scene: a marker with tie = \"mean\")",
-        "1 CBAR",
+        "1 RBE2 (in a scene: a marker with group = \"RBE2_9002\" and tie = \"rigid\")",
+        "1 RBE3 (in a scene: a marker with group = \"RBE3_9003\" and tie = \"mean\")",
+        "1 RBE2 in some directions only",
+        "1 CMASS1 (6.0000e-3",
+        "1 CMASS2 in single directions (5.0000e-3)",
+        "1 CONM1 (7.0000e-3",
+        "1 CBAR (mass not known)",
+        shells.as_str(),
+        rod.as_str(),
+        "where it is known",
         "1 CELAS2",
         "1 PSHELL",
-        "2 triangles with PSHELL",
+        "1 CTRIA6 (",
         "1 DEQATN",
         "1 BSURF",
         "1 SPC1",
@@ -261,17 +282,62 @@ fn short(dice: &mut Dice, number: f64) -> String {
     }
 }
 
+/// Cards of one line that repeat the one before them: their numbers and coordinates are those of the nodes.
+fn repeated(dice: &mut Dice, before: &(u64, [f64; 3]), node: &(u64, [f64; 3])) -> String {
+    let mut fields = vec![format!("*({})", node.0 - before.0)];
+    fields.push("=".to_owned());
+    let (from, to) = (before.1, node.1);
+    for i in 0..3 {
+        fields.push(match dice.up_to(3) {
+            0 if from[i] == to[i] => "=".to_owned(),
+            1 => format!("*({:?})", to[i] - from[i]),
+            _ => format!("{:?}", to[i]),
+        });
+    }
+    format!("=,{}\n", fields.join(","))
+}
+
+/// Lines that continue a card by its label, for another place in the deck.
+fn apart(number: usize, card: &str) -> Option<[String; 2]> {
+    let lines: Vec<&str> = card.lines().collect();
+    let [first, second] = lines[..] else { return None };
+    let is_plain = !card.contains(['\t', '*', '$', ',']) && !first[..8.min(first.len())].contains('*');
+    let (head, rest) = (first.get(..72)?, second.get(8..)?);
+    (is_plain && second.starts_with('+'))
+        .then(|| [format!("{head}+K{number}\n"), format!("{:<8}{rest}\n", format!("+k{number}"))])
+}
+
 fn written(bar: &Bar, dice: &mut Dice) -> String {
     let end = ["\n", "\r\n"][dice.up_to(2)];
-    let mut cards = Vec::new();
+    let mut cards: Vec<String> = Vec::new();
     let system = [0, 7, 8][dice.up_to(3)];
     let is_default = dice.up_to(2) == 0;
-    for (label, x) in &bar.nodes {
+    let placed = |node: &(u64, [f64; 3])| {
+        let x = node.1;
         let x = match system {
-            0 => *x,
-            7 => cylindrical(*x),
+            0 => x,
+            7 => cylindrical(x),
             _ => [x[1], x[2] - 1.0, x[0] + 1.0],
         };
+        (node.0, x)
+    };
+    for (at, node) in bar.nodes.iter().enumerate() {
+        let (label, x) = placed(node);
+        // A card and those that repeat it stay together.
+        if at > 0 && dice.up_to(8) == 0 {
+            let more = repeated(dice, &placed(&bar.nodes[at - 1]), &(label, x));
+            let last: &mut String = cards.last_mut().unwrap();
+            if !last.contains('*') || last.contains('=') {
+                if !last.contains('=') {
+                    // Exact, since what repeats it adds to it.
+                    let (before, x) = placed(&bar.nodes[at - 1]);
+                    let of = if is_default { String::new() } else { system.to_string() };
+                    *last = format!("GRID,{before},{of},{:?},{:?},{:?}\n", x[0], x[1], x[2]);
+                }
+                *last += &more;
+                continue;
+            }
+        }
         let of = if is_default { String::new() } else { system.to_string() };
         let mut fields = vec![label.to_string(), of];
         fields.extend(x.map(|c| short(dice, c)));
@@ -290,6 +356,15 @@ fn written(bar: &Bar, dice: &mut Dice) -> String {
         ("PSOLID", words(&["1", "5"])),
     ] {
         cards.push(card(dice, name, &fields));
+    }
+    // A quarter of the decks has continuations apart from their cards.
+    if dice.up_to(4) == 0 {
+        for at in 0..cards.len() {
+            if let Some([first, second]) = apart(at, &cards[at]) {
+                cards[at] = first;
+                cards.push(second);
+            }
+        }
     }
     if is_default {
         cards.push(card(dice, "GRDSET", &words(&["", &system.to_string()])));
@@ -312,6 +387,42 @@ fn written(bar: &Bar, dice: &mut Dice) -> String {
     let before = ["", "$ a deck\n", "SOL 103\nCEND\nTITLE = GRID, 1\nbegin bulk\n"][dice.up_to(3)];
     let after = ["", "ENDDATA\n", "enddata"][dice.up_to(3)];
     format!("{before}{}{after}", cards.concat()).replace('\n', end)
+}
+
+/// Closed form: the same box, its nodes on a lattice by replication, its elements with continuations at the end of the deck; and names that
+/// Femap and HyperMesh write into comments.
+#[test]
+fn replication_continuations_apart_and_names_in_comments_are_read() {
+    let bar = Bar::new();
+    let text = "GRID,11,,0.,1.,,17\n=,*(1),=,*(0.5),==\n=(2)\n=,20,,9.,=,7.,=\nGRID    31              1.\n=       *1      =       *.5     ==\n=1\n";
+    let plain = format!("{}{}", grids(&bar, "", |x| x), elements(&bar));
+    let Imported { mesh, .. } = bar.read("plain.bdf", &plain).unwrap();
+    // Nodes that no element has are left out: one element holds them.
+    let tetrahedron = "CTETRA,1,1,11,12,20,32,,,+E\n$ Femap Property 1 : lattice\n$HMNAME PROP   1\"hub\" 4\n";
+    let said = bar.read("lattice.bdf", &format!("{text}{tetrahedron}")).unwrap_err().to_string();
+    assert!(said.contains("first order"), "{said}");
+    let settings = ImportSettings { raise_order: true, ..ImportSettings::default() };
+    let lattice = mesh_import::read_mesh(&bar.folder.path().join("lattice.bdf"), &settings).unwrap().mesh;
+    let mut found: Vec<(u64, [f64; 3])> =
+        lattice.parts().node_tags.iter().copied().zip(lattice.parts().positions.iter().copied()).take(4).collect();
+    found.sort_by_key(|(tag, _)| *tag);
+    let wanted = [(11, [0.0, 1.0, 0.0]), (12, [0.5, 1.0, 0.0]), (20, [9.0, 1.0, 7.0]), (32, [1.5, 0.0, 0.0])];
+    assert_eq!(found, wanted);
+    let mut names = lattice.groups().to_vec();
+    names.sort();
+    assert_eq!(names, ["hub", "lattice", "ref_1"]);
+    // Each continuation after all cards, in the other order, in any letters.
+    let (mut cards, mut ends) = (grids(&bar, "", |x| x), Vec::new());
+    for (number, e) in bar.elements.iter().enumerate() {
+        let words: Vec<String> = e.iter().map(u64::to_string).collect();
+        let _ = writeln!(cards, "CTETRA,{},1,{},+E{number}", words[0], words[1..7].join(","));
+        ends.push(format!("+e{number},{}\n", words[7..].join(",")));
+    }
+    ends.reverse();
+    let Imported { mesh: other, .. } = bar.read("apart.bdf", &(cards.clone() + &ends.concat())).unwrap();
+    assert_eq!(other.elements(), mesh.elements());
+    let said = bar.read("lost.bdf", &(cards + &ends.concat().replace("+e0,", "+nowhere,"))).unwrap_err().to_string();
+    assert!(said.contains("continues no card"), "{said}");
 }
 
 /// Straight elements with four nodes get nodes on their edges, if asked for.

@@ -3,6 +3,10 @@
 use std::path::Path;
 use std::process::Command;
 
+use flexframe::model::Model;
+use flexframe::new_scene::{ImportSettings, scene_text};
+use flexframe::scene::Scene;
+
 use crate::program::{done, json, numbers};
 
 /// The bar of 200 x 10 x 10 as a deck of this ending, with more lines before its end.
@@ -49,8 +53,12 @@ fn a_scene_of_a_deck_has_its_units_its_material_and_its_masses() {
     let (found, warnings) = report(&scene);
     let mass = found["body"]["mass"].as_f64().unwrap();
     assert!((mass / (20_000.0 * 2.54e-4 + 0.6) - 1.0).abs() < 1e-4, "{mass}");
-    let [cards, masses] = &warnings[..] else { panic!("{warnings:?}") };
-    assert!(cards.contains("read: 768 tetrahedra; not used: 1 CBAR, 1 RBE3"), "{cards}");
+    let [cards, masses, ties] = &warnings[..] else { panic!("{warnings:?}") };
+    assert!(cards.contains("read: 768 tetrahedra; not used: 1 CBAR (mass not known)"), "{cards}");
+    assert!(
+        ties.contains("not used: 1 RBE3 (in a scene: a marker with group = \"RBE3_90004\" and tie = \"mean\")"),
+        "{ties}"
+    );
     assert!(masses.contains("not used: 1 CONM2 (7.0000e-1"), "{masses}");
     // Without them the masses are told.
     let (before, rest) = text.split_once("point_masses = [").unwrap();
@@ -79,4 +87,39 @@ fn a_deck_without_a_density_keeps_its_elasticity() {
     }
     let found = json(&["modes", folder.path().join("bar.toml").to_str().unwrap()]);
     assert!(found["warnings"].to_string().contains("the material alu of bar has no *DENSITY"), "{}", found["warnings"]);
+}
+
+/// Independent reference: mass and frequencies of each deck in `tests/decks` by the finite elements of
+/// `crates/verification/decks/elements.py` and, within its integration, by CalculiX (`./dev decks`; docs/evidence/decks.md).
+#[test]
+fn decks_of_all_kinds_have_the_masses_and_frequencies_of_other_programs() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/decks"));
+    let numbers = std::fs::read_to_string(folder.join("numbers.csv")).unwrap();
+    let settings = ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false };
+    for row in numbers.lines().skip(1) {
+        let (name, wanted) = row.split_once(',').unwrap();
+        let wanted: Vec<f64> = wanted.split(',').map(|number| number.parse().unwrap()).collect();
+        let path = folder.join(name);
+        let (text, notes) = scene_text(&path, &settings).unwrap_or_else(|error| panic!("{name}: {error}"));
+        // Static shapes of a marker and few modes are not enough for these digits.
+        let count = if text.contains("\n[body.markers") { "flexible = 10" } else { "flexible = 3" };
+        let scene = Scene::parse(&text.replace("flexible = 10", count), folder.join("scene.toml")).unwrap();
+        let model = Model::build(&scene, |_| ()).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let found = [vec![model.body.mass], model.natural_frequencies()].concat();
+        // Short fields have five digits. The mass on an RBE3 is carried by affine motions of its nodes in place of rigid ones.
+        let tolerance = if name == "nastran_rbe3.bdf" { 2e-3 } else { 3e-5 };
+        for (found, wanted) in found.iter().zip(&wanted) {
+            assert!((found / wanted - 1.0).abs() < tolerance, "{name}: {found} for {wanted}");
+        }
+        let known: &[&str] = match name {
+            "salome.med" => &["are turned"],
+            "abaqus_cae.inp" => &["node set RP has no nodes", "not used: 1 *STEP"],
+            "calculix.inp" => &["not used: 1 *STEP"],
+            "nastran_rbe2.bdf" => &["1 CBAR (1.2560e-7), 1 CMASS2 in single directions (1.0000e-6), 1 CTRIA3 ("],
+            "nastran_rbe3.bdf" => &["1 RBE3 (in a scene: a marker with group = \"RBE3_9003\" and tie = \"mean\")"],
+            _ => &[],
+        };
+        assert_eq!(notes.len(), known.len(), "{name}: {notes:?}");
+        assert!(known.iter().zip(&notes).all(|(words, note)| note.contains(words)), "{name}: {notes:?}");
+    }
 }

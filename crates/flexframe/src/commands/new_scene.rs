@@ -1,6 +1,6 @@
 //! `flexframe new`: a first scene of a mesh, with comments, to be changed by its user.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -314,7 +314,7 @@ tolerance = 1e-4
 [output.points]
 end = {end:?}
 "#,
-        markers = markers(&read.beside.ties),
+        markers = markers(mesh, &read.beside, &mut read.notes),
         amplitude = short(0.5 * mass * gravity),
         spin = across.map(|axis| 6.3 * axis),
     );
@@ -423,20 +423,54 @@ fn spread_of(mesh: &Mesh, ties: &[DeckTie], at: [f64; 3]) -> Option<f64> {
     [1.001, 1.25, 1.5, 2.0, 3.0].map(|factor| rounded(farthest * factor, 4)).into_iter().find(carries)
 }
 
-/// The ties of a mesh file as markers, to be uncommented: they give the body static shapes, and make rigid what is tied so.
-fn markers(ties: &[DeckTie]) -> String {
+/// The ties of a mesh file as markers. Rigid ones are active, since the body is stiffer with them; means change nothing until a joint or a
+/// spring holds them, and are comments. A note tells of rigid ones that a marker cannot be.
+fn markers(mesh: &Mesh, beside: &Beside, notes: &mut Vec<String>) -> String {
     let mut text = String::new();
-    for DeckTie { kind, group, is_rigid, .. } in ties {
-        let tie = if *is_rigid { "rigid" } else { "mean" };
+    let (mut taken, mut active) = (HashSet::new(), HashSet::new());
+    for DeckTie { kind, group, is_rigid, .. } in &beside.ties {
+        let nodes = mesh.group_nodes(group).unwrap_or_default();
+        let is_active = *is_rigid
+            && active.len() < MAX_RIGID
+            && nodes.len() <= MAX_RIGID_NODES
+            && are_wide(mesh, &nodes)
+            && nodes.iter().all(|node| !taken.contains(node))
+            && active.insert(group);
+        let (mark, tie) = (if is_active { "" } else { "# " }, if *is_rigid { "rigid" } else { "mean" });
+        if is_active {
+            taken.extend(nodes);
+        }
+        // Names of markers have neither points nor slashes.
+        let name = quoted(&group.replace(['.', '/'], "_"));
         let group = quoted(group);
         // Writing to a string does not fail.
         let _ = write!(
             text,
-            "\n# {kind} of the mesh file: a marker for joints, springs and bushings (docs/reference/systems.md).\n# [body.markers.{group}]\n\
-             # group = {group}\n# tie = \"{tie}\"\n"
+            "\n# {kind} of the mesh file: a marker, which joints, springs and bushings may hold, too (docs/reference/systems.md).\n\
+             {mark}[body.markers.{name}]\n{mark}group = {group}\n{mark}tie = \"{tie}\"\n"
         );
     }
+    notes.extend(beside.unused_ties(|tie| active.contains(&tie.group)));
     text
+}
+
+/// Markers with rigid nodes that a scene gets by itself, and nodes of one at most.
+const MAX_RIGID: usize = 10;
+const MAX_RIGID_NODES: usize = 100;
+
+/// True if the nodes are not all on a line.
+fn are_wide(mesh: &Mesh, nodes: &[u32]) -> bool {
+    let at = |node: u32| mesh.positions()[node as usize];
+    let [first, rest @ ..] = nodes else { return false };
+    let from_first = |node: &u32| -> [f64; 3] { std::array::from_fn(|i| at(*node)[i] - at(*first)[i]) };
+    let square = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>();
+    let Some(longest) = rest.iter().map(from_first).max_by(|a, b| square(*a).total_cmp(&square(*b))) else {
+        return false;
+    };
+    rest.iter().map(from_first).any(|v| {
+        let along: f64 = v.iter().zip(longest).map(|(a, b)| a * b).sum();
+        square(v) * square(longest) - along * along > 1e-6 * square(longest).powi(2)
+    })
 }
 
 /// A material as a table on one line.

@@ -19,7 +19,7 @@ use crate::error::BuildError;
 use crate::mesh::doubt::doubts;
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{Given, MatrixChecks};
-use crate::mesh::others::{other_masses, other_materials};
+use crate::mesh::others::{other_masses, other_materials, other_ties};
 use crate::mesh::read::{matrices, mesh_file, mesh_in};
 use crate::reduction::reference::Reference;
 use crate::reduction::reference::found::Asked;
@@ -95,6 +95,7 @@ impl Builder {
         let (store, Imported { mesh, notes: mut mesh_notes, materials, beside }) = timed(&mut times.mesh, read)?;
         mesh_notes.extend(other_materials(&mesh, &materials, &body.materials));
         mesh_notes.extend(other_masses(&mesh, &beside, &body.point_masses));
+        mesh_notes.extend(other_ties(&beside, &scene.markers));
         let mesh = Arc::new(mesh);
         doubts(scene, &body, &mesh).into_iter().for_each(|doubt| progress(BuildProgress::Doubt(doubt)));
         let (support, drive) = support(scene, Some((&mesh, 3)))?;

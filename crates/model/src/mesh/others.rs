@@ -1,7 +1,8 @@
-//! Materials and masses of a mesh file that are others than those of the scene.
+//! Materials, masses and ties of a mesh file that are others than those of the scene.
 
 use fem_tet10::{Material, Materials, Mesh, PointMass};
-use mesh_import::{Beside, DeckMass, DeckMaterial};
+use mesh_import::{Beside, DeckMass, DeckMaterial, DeckTie};
+use scene::{Marker, MarkerPlace, Region, Tie};
 
 /// Numbers that are apart by less, relative to the larger, are the same, written with fewer digits.
 const APART: f64 = 0.01;
@@ -40,6 +41,17 @@ pub(crate) fn other_masses(mesh: &Mesh, of_file: &Beside, of_scene: &[PointMass]
         (of_scene - of_deck).abs() <= APART * of_deck.abs().max(of_scene.abs())
     };
     of_file.unused_masses(is_used)
+}
+
+/// Says which ties of a mesh file no marker of the scene is.
+pub(crate) fn other_ties(of_file: &Beside, markers: &[Marker]) -> Option<String> {
+    let is_used = |deck: &DeckTie| {
+        markers.iter().any(|marker| {
+            let is_there = matches!(&marker.place, MarkerPlace::Region(Region::Group(group)) if *group == deck.group);
+            is_there && (marker.tie == Tie::Rigid) == deck.is_rigid
+        })
+    };
+    of_file.unused_ties(is_used)
 }
 
 fn are_apart(a: &Material, b: &Material) -> bool {

@@ -1,0 +1,12 @@
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 60, 20, 8};
+Cylinder(2) = {50, 10, -1, 0, 0, 10, 5};
+BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
+Physical Volume("lug") = {3};
+root() = Surface In BoundingBox{-0.1, -0.1, -0.1, 0.1, 20.1, 8.1};
+Physical Surface("root") = {root()};
+hole() = Surface In BoundingBox{44.9, 4.9, -0.1, 55.1, 15.1, 8.1};
+Physical Surface("hole") = {hole()};
+Mesh.MeshSizeMin = 14;
+Mesh.MeshSizeMax = 16;
+Mesh.MeshSizeFromCurvature = 0;
