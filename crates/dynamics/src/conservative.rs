@@ -58,6 +58,7 @@ mod coordinates;
 mod energy;
 mod equations;
 mod errors;
+pub(crate) mod frame;
 mod load_scale;
 pub(crate) mod manifold;
 mod methods;

@@ -82,9 +82,9 @@ pub enum SetupError {
         "the joints cannot be closed at the beginning: \"{joint}\" stays open by {left:.3e} and its rate by {rate:.3e}; put its bodies so that its markers meet, give velocities that the joints allow, or remove a joint that contradicts the others"
     )]
     NotAssembled { joint: Box<str>, left: f64, rate: f64 },
-    /// Joints that cannot be closed so far from the origin: numbers of places are too coarse there.
+    /// Joints that cannot be closed between places of the ground so far from the origin that their numbers are too coarse.
     #[error(
-        "the joints cannot be closed at the beginning: \"{joint}\" stays open by {left:.3e}; the bodies are {distance:.3e} from the origin, where places round to {rounding:.1e}: put the origin of the scene near its bodies"
+        "the joints cannot be closed at the beginning: \"{joint}\" stays open by {left:.3e}; places of the ground are {distance:.3e} from the origin, where gaps of {rounding:.1e} are rounding: give them with all digits of 64-bit numbers, or put the origin of the scene near its bodies"
     )]
     TooFar { joint: Box<str>, left: f64, distance: f64, rounding: f64 },
     /// Joints that no motion fits, though they are closed and their rates are.
@@ -180,11 +180,6 @@ pub enum StepError {
         "at time {time}: even a step of {step:.3e} does not keep the error below the tolerance {tolerance:e}; allow a larger tolerance"
     )]
     Tolerance { time: f64, step: f64, tolerance: f64 },
-    /// No step is short enough for the tolerance so far from the origin: numbers of places are too coarse there.
-    #[error(
-        "at time {time}: no step keeps the error below the tolerance {tolerance:e}: the bodies are {distance:.3e} from the origin, where places round to {rounding:.1e}; put the origin of the scene near its bodies, or allow a larger tolerance"
-    )]
-    TooFar { time: f64, distance: f64, rounding: f64, tolerance: f64 },
     /// Newton's method does not converge in a fixed step.
     #[error(
         "at time {time}: the equations of a step of {step:.3e} could not be solved; take a smaller step, or `tolerance` instead of `step`; where a mechanism passes a singular position, no step may do"

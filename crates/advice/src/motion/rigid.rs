@@ -41,13 +41,15 @@ pub(crate) fn gravity(case: &Case, sources: &[Source], response: &Response) -> E
     };
     let initial = case.initial;
     let body = case.body;
-    let start = (body.translation_basis.transpose() * initial.velocity * body.mass).norm();
     let spin = (body.rotation_basis.transpose() * body.inertia * initial.omega).norm();
     let share = |part: f64, rest: f64| relative(part, part + rest);
     let largest = |of: &dyn Fn(&Source) -> f64| {
         sources.iter().filter(|s| !s.gravity).map(|s| of(s) * s.impulse()).fold(0.0, f64::max)
     };
-    let moved = share(sum(true, &|s| s.translation), start.max(largest(&|s| s.translation)));
+    // A velocity at the start makes gravity no smaller, and what else pushes the body does not if gravity takes it from where it would be.
+    let impulse = sum(true, &|s| s.translation);
+    let path = impulse / body.mass.sqrt() * case.end;
+    let moved = share(impulse, largest(&|s| s.translation)).max((path / case.length).min(1.0));
     let turned = share(sum(true, &|s| s.rotation), spin.max(largest(&|s| s.rotation)));
     // Gravity that begins with the run swings the modes to twice its static response, and what it adds goes on from there.
     let bent = relative(4.0 * norm(&response.of_gravity), response.scale);

@@ -6,6 +6,7 @@ use rigid_kin::Attitude;
 use crate::body::center_of_mass::CenterOfMass;
 use crate::body::initial::Initial;
 use crate::body::physics::Drive;
+use crate::conservative::frame::Frame;
 use crate::conservative::manifold::Manifold;
 use crate::conservative::reference::Reference;
 use crate::conservative::state::BodyList;
@@ -39,6 +40,8 @@ pub struct ConservativeBody {
     pub(super) mass: f64,
     /// Position of the origin at the beginning, global.
     pub(super) origin: Vector3<f64>,
+    /// The frame that positions, momenta and work in a state are in.
+    pub(crate) frame: Frame,
     pub(super) center: CenterOfMass,
     pub(super) translation: Translation,
     /// Unit vectors that the body turns about: three, one or none.
@@ -111,16 +114,19 @@ impl ConservativeBody {
         self.manifold.as_ref().map_or(self.flexible(), |manifold| manifold.body().flexible())
     }
 
-    /// Begins in the attitude and at the position of a motion.
+    /// Begins in the attitude and at the position of a motion. A body that moves freely has numbers in a frame that goes along with it.
     #[must_use]
-    pub fn beginning_at(self, initial: &Initial) -> Self {
+    pub fn beginning_at(mut self, initial: &Initial) -> Self {
         let origin = initial.origin.unwrap_or(self.origin);
-        Self { initial_attitude: initial.attitude, origin, ..self }
+        let velocity = if self.translation == Translation::Free { initial.velocity } else { Vector3::zeros() };
+        let anchor = Frame::anchor_near(&origin, self.radius_of_gyration());
+        self.begin_at(initial.attitude, origin, Frame::new(anchor, velocity, 0.0, origin));
+        self
     }
 
-    /// Counts displacements of points from another attitude and position of the origin.
-    pub(crate) fn begin_at(&mut self, attitude: Attitude, origin_global: Vector3<f64>) {
-        (self.initial_attitude, self.origin) = (attitude, origin_global);
+    /// Counts displacements of points from another attitude and position of the origin, and has its numbers in a frame.
+    pub(crate) fn begin_at(&mut self, attitude: Attitude, origin_global: Vector3<f64>, frame: Frame) {
+        (self.initial_attitude, self.origin, self.frame) = (attitude, origin_global, frame);
     }
 
     /// The numbers of a state.

@@ -11,6 +11,7 @@ use crate::body::physics::{Drive, DrivenMotion, Physics, check_stiffness};
 use crate::body::spin_stiffness::SpinStiffness;
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::coordinates::InCoordinates;
+use crate::conservative::frame::Frame;
 use crate::conservative::manifold::Manifold;
 use crate::conservative::reference::Reference;
 use crate::conservative::state;
@@ -97,6 +98,7 @@ impl ConservativeBody {
             initial_attitude: Attitude::identity(),
             mass: body.mass,
             origin: body.origin,
+            frame: Frame::GLOBAL,
             center: CenterOfMass::new(body),
             inverse_inertia: inertia.try_inverse().unwrap_or_else(Matrix3::zeros),
             inertia,

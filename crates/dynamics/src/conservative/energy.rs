@@ -25,8 +25,21 @@ impl ConservativeBody {
 
     /// Energy of rotation, vibration and strain of a state whose rates are in `e`: all but that of the origin's motion.
     pub(crate) fn internal_energy(&self, state: &State, e: &Evaluation) -> f64 {
-        let (kinetic, strain) = self.energies(state, e);
-        kinetic + strain - 0.5 * get(self.list(state).slow(), part::MOMENTUM).norm_squared() / self.mass
+        let [_, kinetic, strain] = self.energies(state, e);
+        kinetic + strain
+    }
+
+    /// Kinetic energy that the motion of its frame adds to a momentum in it: U·P + ½ m U².
+    pub(crate) fn energy_of_frame(&self, momentum: &Vector3<f64>) -> f64 {
+        let velocity = self.frame.velocity();
+        velocity.dot(momentum) + 0.5 * self.mass * velocity.norm_squared()
+    }
+
+    /// Work of the loads and energy that damping has taken, since the beginning, of a state.
+    pub(crate) fn work_and_dissipation_of(&self, state: &State) -> [f64; 2] {
+        let list = self.list(state);
+        let slow = list.slow();
+        [slow[part::WORK] + self.frame.velocity().dot(&get(slow, part::IMPULSE)), slow[part::DISSIPATION]]
     }
 
     /// ½ P²/m + ½ π·J0⁻¹π
@@ -40,22 +53,25 @@ impl ConservativeBody {
         0.5 * (omega_q * omega_q + p * p)
     }
 
-    /// Energies of a state whose rates are in `e`: (kinetic, strain).
-    pub(super) fn energies(&self, state: &State, e: &Evaluation) -> (f64, f64) {
+    /// Energies of a state whose rates are in `e`, in the frame: of the motion of the origin as the momentum takes it, kinetic beside
+    /// that, and strain.
+    pub(super) fn energies(&self, state: &State, e: &Evaluation) -> [f64; 3] {
         let state = self.list(state);
         let moving = match (&self.drive, self.translation) {
             (Some(_), Translation::Driven(direction)) => {
                 e.driven_momentum * state.attitude().to_global(&direction).dot(&get(e.rates.slow(), part::POSITION))
             }
             (Some(_), _) => e.driven_momentum * e.spin[0],
-            (None, _) => {
-                get(state.slow(), part::MOMENTUM).norm_squared() / self.mass + get(state.slow(), part::PI).dot(&e.spin)
-            }
+            (None, _) => get(state.slow(), part::PI).dot(&e.spin),
+        };
+        let translation = match &self.drive {
+            Some(_) => 0.0,
+            None => 0.5 * get(state.slow(), part::MOMENTUM).norm_squared() / self.mass,
         };
         // What of the driven momentum is not in p.
         let stressed = e.driven_speed * dot(&e.drive_stress, &e.modal_velocity);
         let kinetic = 0.5 * (moving + dot(state.p(), &e.modal_velocity) - stressed);
-        (kinetic, self.strain_energy(state.q()))
+        [translation, kinetic, self.strain_energy(state.q())]
     }
 
     /// ½ qᵀΛq + V_n, and g·q + ½ qᵀBq about a reference.

@@ -9,7 +9,7 @@ use crate::body::shapes::PointShapes;
 use crate::conservative::body::ConservativeBody;
 use crate::conservative::errors::ErrorSize;
 use crate::conservative::rates::evaluation::Evaluation;
-use crate::conservative::state::{first_modes, part};
+use crate::conservative::state::first_modes;
 use crate::equations::sizes::Sizes;
 use crate::equations::{self, Equations, ErrorNorm, Glance, Oscillators};
 use crate::error::{RateError, SetupError};
@@ -80,7 +80,7 @@ impl Equations for ConservativeBody {
     }
 
     fn work_and_dissipation(&self, state: &State) -> [f64; 2] {
-        [part::WORK, part::DISSIPATION].map(|part| self.list(state).slow()[part])
+        self.work_and_dissipation_of(state)
     }
 
     fn motion_state(&self, state: &State) -> Result<MotionState, RateError> {

@@ -67,7 +67,7 @@ impl ConservativeBody {
         e: &mut Evaluation,
         out: &mut Observation,
     ) -> Result<(), RateError> {
-        let (kinetic, strain) = self.energies(state, e);
+        let [translation, kinetic, strain] = self.energies(state, e);
         let driven_acceleration =
             self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(state.time, state.time));
         let spin_rate = self.find_accelerations(driven_acceleration, e)?;
@@ -78,7 +78,7 @@ impl ConservativeBody {
         let list = self.list(state);
         let (time, attitude) = (state.time, list.attitude());
         let global = |v_body: Vector3<f64>| attitude.to_global(&v_body);
-        let velocity_of_origin = get(e.rates.slow(), part::POSITION);
+        let velocity_of_origin = get(e.rates.slow(), part::POSITION) + self.frame.velocity();
         let acceleration_of_origin = match self.translation {
             Translation::None => Vector3::zeros(),
             Translation::Free | Translation::Along(_) => get(e.rates.slow(), part::MOMENTUM) / self.mass,
@@ -98,18 +98,18 @@ impl ConservativeBody {
         let center = self.center.position_body(shapes[0]);
         out.time = time;
         out.attitude = attitude;
-        out.origin_global = position;
+        out.origin_global = self.frame.to_global(&position, time);
         out.origin_acceleration_global = acceleration_of_origin;
-        out.position_global = position + global(center);
+        out.position_global = self.frame.to_global(&(position + global(center)), time);
         out.velocity_global = velocity_of_origin + global(omega.cross(&center) + self.center.deformation(shapes[1]));
         out.omega_body = omega;
         out.alpha_body = alpha;
         out.modal_displacement.copy_from_slice(e.at.q());
         out.modal_velocity.copy_from_slice(&e.modal_velocity);
-        out.kinetic_energy = kinetic;
+        out.kinetic_energy = translation + kinetic + self.energy_of_frame(&get(list.slow(), part::MOMENTUM));
         out.strain_energy = strain;
         self.observe_momenta(state, e, out);
-        let moved = position - self.origin;
+        let moved = self.moved(&position, time);
         let acceleration_body = attitude.to_body(&acceleration_of_origin);
         self.observe_reaction(state, shapes, [&alpha, &acceleration_body], e, out);
         let to_global = attitude.global_to_body().transpose();
@@ -132,6 +132,11 @@ impl ConservativeBody {
             }
         }));
         Ok(())
+    }
+
+    /// The way of the origin since the beginning, global, from a place in the frame.
+    fn moved(&self, position: &Vector3<f64>, time: f64) -> Vector3<f64> {
+        self.frame.way(time) + (position - (self.origin - self.frame.anchor()))
     }
 
     /// Reaction of the constraints, at ξ, ν and ν' of the shapes. `e` has all rates; the accelerations, of the turning and
@@ -186,7 +191,7 @@ impl ConservativeBody {
         }
         if let Translation::Along(direction) | Translation::Driven(direction) = self.translation {
             let direction = state.attitude().to_global(&direction);
-            reaction.slider_position = direction.dot(&(get(state.slow(), part::POSITION) - self.origin));
+            reaction.slider_position = direction.dot(&self.moved(&get(state.slow(), part::POSITION), out.time));
             reaction.slider_velocity = direction.dot(&get(e.rates.slow(), part::POSITION));
         }
     }
@@ -199,9 +204,10 @@ impl ConservativeBody {
         };
         let list = self.list(state);
         let slow = list.slow();
+        let [work, dissipation] = self.work_and_dissipation_of(state);
         out.work = Work {
-            work: slow[part::WORK],
-            dissipation: slow[part::DISSIPATION],
+            work,
+            dissipation,
             impulse_global: get(slow, part::IMPULSE),
             angular_impulse_global: get(slow, part::ANGULAR_IMPULSE),
         };
@@ -212,7 +218,9 @@ impl ConservativeBody {
             out.angular_momentum_global = list.attitude().to_global(&along_axes(get(slow, part::PI)));
         }
         match self.translation {
-            Translation::Free => out.linear_momentum_global = get(slow, part::MOMENTUM),
+            Translation::Free => {
+                out.linear_momentum_global = get(slow, part::MOMENTUM) + self.frame.velocity() * self.mass;
+            }
             _ => {
                 out.linear_momentum_global = out.velocity_global * self.mass;
                 out.work.impulse_global = out.linear_momentum_global;

@@ -122,13 +122,14 @@ impl ConservativeBody {
                 coordinates = Coordinates { first, displacement: q, velocity: modal_velocity, on_manifold: None };
                 applied = Applied::new(coordinates, Vector3::zeros(), momentum);
             }
+            let origin_global = self.frame.to_global(&get(slow, part::POSITION), t);
             let motion = Kinematics {
                 time: t,
                 branch_time,
                 body_from_global: &body_from_global,
-                origin_global: get(slow, part::POSITION),
-                frame_origin_global: get(slow, part::POSITION),
-                origin_velocity_global: velocity,
+                origin_global,
+                frame_origin_global: origin_global,
+                origin_velocity_global: velocity + self.frame.velocity(),
                 omega_body,
                 coordinates,
                 unit: false,

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::body::initial::Initial;
 use crate::body::motion_state::MotionState;
 use crate::conservative::body::{ConservativeBody, Translation, along};
+use crate::conservative::frame::Frame;
 use crate::conservative::rates::evaluation::Evaluation;
 use crate::conservative::state::{BodyList, Slow, get, part, set};
 use crate::error::{RateError, SetupError};
@@ -24,6 +25,11 @@ impl ConservativeBody {
 
     /// The same at another time, when the drive is as fast as it then is.
     pub(crate) fn start_at(&self, initial: &Initial, time: f64) -> Result<State, SetupError> {
+        self.start_in(&self.frame, initial, time)
+    }
+
+    /// The same of a motion whose positions and velocities are such that its numbers come to be in the body's frame from this one.
+    fn start_in(&self, frame: &Frame, initial: &Initial, time: f64) -> Result<State, SetupError> {
         initial.check(self.flexible())?;
         let mut e = self.room();
         let [q, _] = e.at.modes_mut();
@@ -62,9 +68,9 @@ impl ConservativeBody {
         };
         let pi = Vector3::from_fn(|k, _| if k < self.axes.len() { pi[k] } else { 0.0 });
         let mut slow: Slow = [0.0; 20];
-        set(&mut slow, part::POSITION, &initial.origin.unwrap_or(self.origin));
+        set(&mut slow, part::POSITION, &frame.place_from(&initial.origin.unwrap_or(self.origin), time));
         let velocity = match self.translation {
-            Translation::Free => initial.velocity,
+            Translation::Free => initial.velocity - frame.velocity(),
             Translation::Along(direction) => along(&initial.attitude.to_global(&direction), &initial.velocity),
             Translation::None | Translation::Driven(_) => Vector3::zeros(),
         };
@@ -79,6 +85,16 @@ impl ConservativeBody {
 
     /// A state in quantities that every formulation has.
     pub(super) fn motion_of(&self, state: &State) -> Result<MotionState, RateError> {
+        let in_frame = self.motion_in_frame(state)?;
+        Ok(MotionState {
+            origin_global: self.frame.to_global(&in_frame.origin_global, state.time),
+            velocity_global: in_frame.velocity_global + self.frame.velocity(),
+            ..in_frame
+        })
+    }
+
+    /// The same with the position and the velocity of the origin in the frame of the body: what a system changes a little keeps its digits.
+    pub(crate) fn motion_in_frame(&self, state: &State) -> Result<MotionState, RateError> {
         let mut e = self.room();
         self.evaluate_at(state, state.time, &mut e)?;
         let list = self.list(state);
@@ -95,6 +111,15 @@ impl ConservativeBody {
 
     /// The momenta of a motion. Work and impulses are counted from it anew.
     pub(super) fn state_from(&self, motion: &MotionState) -> Result<State, SetupError> {
+        self.state_by(&self.frame, motion)
+    }
+
+    /// The same of a motion as [`Self::motion_in_frame`] gives it.
+    pub(crate) fn state_in_frame(&self, motion: &MotionState) -> Result<State, SetupError> {
+        self.state_by(&Frame::GLOBAL, motion)
+    }
+
+    fn state_by(&self, frame: &Frame, motion: &MotionState) -> Result<State, SetupError> {
         motion.check(self.flexible())?;
         let initial = Initial {
             attitude: motion.attitude,
@@ -104,7 +129,7 @@ impl ConservativeBody {
             modal_displacement: motion.modal_displacement.clone(),
             modal_velocity: motion.modal_velocity.clone(),
         };
-        self.start_at(&initial, motion.time)
+        self.start_in(frame, &initial, motion.time)
     }
 
     /// q̇ and ż.

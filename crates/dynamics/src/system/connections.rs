@@ -17,13 +17,38 @@ pub(crate) struct Connections {
     pub joints: Vec<Joint>,
     pub couplings: Vec<Coupling>,
     pub elements: Vec<Arc<dyn ForceElement>>,
+    /// The markers of each element, those on the ground as the islands of bodies count them.
+    pub element_markers: Vec<Vec<Marker>>,
 }
 
 impl Connections {
+    /// Takes other elements.
+    pub fn set_elements(&mut self, elements: Vec<Arc<dyn ForceElement>>) {
+        self.element_markers = elements.iter().map(|element| element.markers().to_vec()).collect();
+        self.elements = elements;
+    }
+
     /// The markers of all of them.
     pub fn markers(&self) -> impl Iterator<Item = &Marker> {
         let of_joints = self.joints.iter().flat_map(|joint| joint.groups().flat_map(|(markers, _)| markers));
-        of_joints.chain(self.elements.iter().flat_map(|element| element.markers()))
+        of_joints.chain(self.element_markers.iter().flatten())
+    }
+
+    /// The markers of each joint and of each element.
+    pub fn ties(&self) -> impl Iterator<Item = Vec<&Marker>> {
+        let of_joints = self.joints.iter().map(Joint::all_markers);
+        of_joints.chain(self.element_markers.iter().map(|markers| markers.iter().collect()))
+    }
+
+    /// The same, to be changed.
+    pub fn each_tie(&mut self, mut change: impl FnMut(&mut [&mut Marker])) {
+        for joint in &mut self.joints {
+            let of_parts = joint.parts.iter_mut().flat_map(|part| &mut part.markers);
+            change(&mut joint.markers.iter_mut().chain(of_parts).collect::<Vec<_>>());
+        }
+        for markers in &mut self.element_markers {
+            change(&mut markers.iter_mut().collect::<Vec<_>>());
+        }
     }
 
     /// Numbers of rows of the joints, then of the couplings.
@@ -99,7 +124,8 @@ impl Connections {
         let of_elements = self
             .elements
             .iter()
-            .flat_map(|element| (0..element.directions()).map(|_| element.markers().iter().collect()));
+            .zip(&self.element_markers)
+            .flat_map(|(element, markers)| (0..element.directions()).map(|_| markers.iter().collect()));
         of_joints.chain(of_couplings).chain(of_forces).chain(of_elements)
     }
 }

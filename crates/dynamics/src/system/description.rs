@@ -4,11 +4,14 @@ mod groups;
 
 use std::sync::Arc;
 
+use nalgebra::Vector3;
+
 use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
 use crate::system::connections::Connections;
 use crate::system::description::groups::free_groups;
 use crate::system::element::ForceElement;
+use crate::system::frame::{Island, islands};
 use crate::system::joint::Joint;
 use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::coupling::Coupling;
@@ -16,6 +19,7 @@ use crate::system::joint::equation::JointEquation;
 use crate::system::joint::law::JointLaw;
 use crate::system::joint::row::Row;
 use crate::system::marker::Marker;
+use crate::system::marker::motion::MarkerMotion;
 
 /// Bodies and what connects them.
 #[derive(Debug, Clone)]
@@ -26,6 +30,12 @@ pub struct System {
     pub(crate) first: Vec<usize>,
     /// Groups of bodies that joints connect with each other and not with the ground.
     pub(crate) free_groups: Vec<Vec<usize>>,
+    /// Groups of bodies that joints or elements connect.
+    pub(crate) islands: Vec<Island>,
+    /// The size of each body: its radius of gyration, or the distance of a marker from its origin.
+    pub(crate) sizes: Vec<f64>,
+    /// What places of the ground that hold bodies between them may be off by: numbers far from the origin round.
+    pub(crate) rounding: f64,
 }
 
 impl System {
@@ -47,7 +57,8 @@ impl System {
         let free_groups = free_groups(bodies.len(), &joints);
         let connections = Connections { joints, ..Connections::default() };
         connections.markers().try_for_each(|marker| check(marker, &bodies))?;
-        Ok(Self { bodies, connections, first, free_groups })
+        let (islands, sizes) = (Vec::new(), Vec::new());
+        Ok(Self { bodies, connections, first, free_groups, islands, sizes, rounding: 0.0 }.with_islands())
     }
 
     /// The same with couplings of its joints.
@@ -69,9 +80,21 @@ impl System {
     /// # Errors
     /// [`SetupError`] for a marker on a body that is not there or has other modes.
     pub fn with_elements(mut self, elements: Vec<Arc<dyn ForceElement>>) -> Result<Self, SetupError> {
-        self.connections.elements = elements;
+        self.connections.set_elements(elements);
         self.connections.markers().try_for_each(|marker| check(marker, &self.bodies))?;
-        Ok(self)
+        Ok(self.with_islands())
+    }
+
+    /// Finds the islands and the sizes of the bodies.
+    fn with_islands(mut self) -> Self {
+        self.islands = islands(self.bodies.len(), self.connections.ties());
+        self.sizes = self.bodies.iter().map(ConservativeBody::radius_of_gyration).collect();
+        for marker in self.connections.markers() {
+            if let Some(size) = marker.body().and_then(|body| self.sizes.get_mut(body)) {
+                *size = size.max(marker.distance());
+            }
+        }
+        self
     }
 
     /// The same with other bodies in the place of these, such as the same ones under more loads.
@@ -83,7 +106,7 @@ impl System {
         if found != expected {
             return Err(SetupError::Length { what: "the list of bodies", expected, found });
         }
-        let Connections { joints, couplings, elements } = self.connections;
+        let Connections { joints, couplings, elements, .. } = self.connections;
         Self::new(bodies, joints)?.with_couplings(couplings)?.with_elements(elements)
     }
 
@@ -134,6 +157,19 @@ impl System {
     /// The forces between markers.
     pub fn elements(&self) -> &[Arc<dyn ForceElement>] {
         &self.connections.elements
+    }
+
+    /// The motion of a marker at a time as an element sees it, from the one in the frame of its body.
+    pub(crate) fn motion_for(&self, element: usize, marker: &Marker, motion: MarkerMotion, time: f64) -> MarkerMotion {
+        if self.connections.elements[element].is_relative() {
+            return motion;
+        }
+        let frame = marker.body().map(|body| self.bodies[body].frame);
+        let (position_global, velocity) = match frame {
+            Some(frame) => (frame.to_global(&motion.position_global, time), frame.velocity()),
+            None => (marker.ground_position(), Vector3::zeros()),
+        };
+        MarkerMotion { position_global, velocity_global: motion.velocity_global + velocity, ..motion }
     }
 
     /// The radius of gyration of the body of a marker; of the ground, zero.

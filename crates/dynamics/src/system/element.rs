@@ -34,6 +34,12 @@ pub trait ForceElement: fmt::Debug + Send + Sync + Any {
     /// `wrenches` are zero before.
     fn apply(&self, times: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]);
 
+    /// True if what it does depends only on how its markers are and move against each other. Then positions and velocities in `motions` are
+    /// counted from a place near the bodies that moves with them, and so have all digits far from the global origin; else they are global.
+    fn is_relative(&self) -> bool {
+        false
+    }
+
     /// The element in rows of results, where it is between two markers. A law from outside is in none: it may take long.
     fn observe(&self, _motions: &[MarkerMotion; 2]) -> Option<JointObservation> {
         None

@@ -52,10 +52,10 @@ impl Stage {
     /// Moves each free group to where its momenta take its centre of mass in a step of length h, of which `impulse` is what the forces along a
     /// coordinate have given it on average. Where the frame moves, places that are off have a part in the angular momentum about a place at rest.
     pub fn correct_centers(&mut self, (system, start): (&System, &Start), h: f64, impulse: impl Fn(usize) -> f64) {
-        if start.frame.velocity() == Vector3::zeros() {
-            return;
-        }
         for group in &system.free_groups {
+            if group.iter().all(|b| system.bodies[*b].frame.velocity() == Vector3::zeros()) {
+                continue;
+            }
             let (mut mass, mut missing) = (0.0, Vector3::zeros());
             for b in group {
                 let first = system.first[*b];

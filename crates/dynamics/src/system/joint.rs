@@ -188,6 +188,11 @@ impl Joint {
         self.groups().map(|(_, rows)| rows.len()).sum()
     }
 
+    /// Its markers, then those of its parts.
+    pub(crate) fn all_markers(&self) -> Vec<&Marker> {
+        self.groups().flat_map(|(markers, _)| markers).collect()
+    }
+
     /// Its markers with their rows, then those of its parts.
     pub(crate) fn groups(&self) -> impl Iterator<Item = (&[Marker; 2], &[Row])> {
         let of_parts = self.parts.iter().map(|part| (&part.markers, &part.rows[..]));

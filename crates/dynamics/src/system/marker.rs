@@ -24,6 +24,9 @@ pub struct Marker {
     body: Option<usize>,
     /// X, from the origin of the body in its axes; of the ground, global.
     position: Vector3<f64>,
+    /// What places of the ground are counted from in a system.
+    #[serde(skip)]
+    anchor: Vector3<f64>,
     /// Columns of Ψ (nf); on a manifold of large modes those of its coordinates z.
     displacement: Vec<Vector3<f64>>,
     /// Columns of Θ, as many; zeros where there is a patch.
@@ -44,6 +47,7 @@ impl Marker {
         Self {
             body: None,
             position: position_global,
+            anchor: Vector3::zeros(),
             displacement: Vec::new(),
             rotation: Vec::new(),
             patch: None,
@@ -92,6 +96,16 @@ impl Marker {
         self.body
     }
 
+    /// Its place on the ground, global.
+    pub(crate) fn ground_position(&self) -> Vector3<f64> {
+        self.position
+    }
+
+    /// Counts its place on the ground from another one.
+    pub(crate) fn count_from(&mut self, anchor: Vector3<f64>) {
+        self.anchor = anchor;
+    }
+
     /// Its distance from the origin of its body, where that is not deformed, or from the global one.
     pub(crate) fn distance(&self) -> f64 {
         self.position.norm()
@@ -120,11 +134,11 @@ impl Marker {
         self.second_order.iter().flatten().map(SecondOrder::modes).min()
     }
 
-    /// The marker where its body is.
+    /// The marker where its body is, in the frame of that; of the ground, from its anchor.
     pub(crate) fn place(&self, body: Option<&BodyPlace<'_>>) -> MarkerPlace {
         let Some(body) = body else {
             return MarkerPlace {
-                position: self.position,
+                position: self.position - self.anchor,
                 axes: self.axes,
                 arm: Vector3::zeros(),
                 body_from_global: Matrix3::identity(),

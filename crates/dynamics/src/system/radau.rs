@@ -34,7 +34,6 @@ use crate::system::description::System;
 use crate::system::elimination::matrices::Matrices;
 use crate::system::elimination::newton::Solution;
 use crate::system::elimination::patterns::Patterns;
-use crate::system::frame::Frame;
 use crate::system::geometry::rank::Judgement;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::coupling::CoupledCoordinate;
@@ -96,7 +95,7 @@ impl From<RateError> for Failed {
 #[derive(Debug, Clone)]
 pub struct SystemMotion {
     pub(super) system: System,
-    scheme: Collocation,
+    pub(super) scheme: Collocation,
     pub(super) patterns: Patterns,
     pub(super) time: f64,
     /// The list of each body, as in a [`State`] of it.
@@ -173,9 +172,7 @@ impl SystemMotion {
         if found != expected {
             return Err(SetupError::Length { what: "the list of states", expected, found });
         }
-        for (body, state) in system.bodies.iter_mut().zip(states) {
-            body.begin_at(state.attitude, state.origin_global);
-        }
+        system.begin_at(states);
         let bodies: Vec<State> =
             system.bodies.iter().zip(states).map(|(body, state)| body.state_of(state)).collect::<Result<_, _>>()?;
         let time = states.first().map_or(0.0, |state| state.time);
@@ -194,7 +191,6 @@ impl SystemMotion {
             time,
             start: Start {
                 time,
-                frame: Frame::of(&system, &bodies, time),
                 bodies: Vec::with_capacity(flexible.len()),
                 q: zeros(),
                 p: zeros(),
@@ -294,14 +290,24 @@ impl SystemMotion {
         self.system.bodies[body].motion_state(&self.bodies[body])
     }
 
+    /// The same with the position and the velocity of its origin in its frame.
+    pub(in crate::system) fn state_in_frame(&self, body: usize) -> Result<MotionState, RateError> {
+        self.system.bodies[body].motion_in_frame(&self.bodies[body])
+    }
+
     /// Kinetic and strain energy of all bodies.
     ///
     /// # Errors
     /// [`RateError`] where a body's velocities cannot be found.
     pub fn energy(&self) -> Result<f64, RateError> {
-        (0..self.bodies.len()).map(|body| self.energy_of(body)).sum()
+        let of_frame = |b: usize| {
+            let body = &self.system.bodies[b];
+            body.energy_of_frame(&get(body.list(&self.bodies[b]).slow(), part::MOMENTUM))
+        };
+        (0..self.bodies.len()).map(|body| Ok(self.energy_of(body)? + of_frame(body))).sum()
     }
 
+    /// The same of one body in its frame.
     fn energy_of(&self, body: usize) -> Result<f64, RateError> {
         let (body, state) = (&self.system.bodies[body], &self.bodies[body]);
         let mut e = body.evaluation();
@@ -354,6 +360,8 @@ impl SystemMotion {
             let list = body.list(state);
             let [position, momentum, pi] =
                 [part::POSITION, part::MOMENTUM, part::PI].map(|part| get(list.slow(), part));
+            let position = body.frame.to_global(&position, self.time);
+            let momentum = momentum + body.frame.velocity() * body.mass();
             sums[0] += momentum;
             sums[1] += position.cross(&momentum) + list.attitude().to_global(&pi);
         }
@@ -415,7 +423,8 @@ impl SystemMotion {
         let [.., last] = &self.stages;
         let size = self.system.bodies.iter().map(ConservativeBody::radius_of_gyration).fold(0.0, f64::max);
         let speed = last.velocities.iter().fold(0.0_f64, |most, velocity| most.max(velocity.abs()));
-        residual <= CLOSED * size && rate <= CLOSED * speed
+        let rounding = self.system.rounding;
+        residual <= CLOSED * size + rounding && rate <= (CLOSED + rounding / size) * speed
     }
 
     /// The same with the branches of drives that hold at a time.
@@ -509,7 +518,7 @@ impl SystemMotion {
         self.start.bodies.clear();
         for (b, (body, state)) in self.system.bodies.iter().zip(&self.bodies).enumerate() {
             let list = body.list(state);
-            self.start.bodies.push(BodyStart::new(body, state, &self.start.frame, self.time));
+            self.start.bodies.push(BodyStart::new(body, state));
             let modes = self.system.first[b] + 6..self.system.first[b + 1];
             self.start.q[modes.clone()].copy_from_slice(list.q());
             self.start.p[modes].copy_from_slice(list.p());

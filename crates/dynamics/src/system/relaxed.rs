@@ -11,7 +11,6 @@
 
 use crate::body::motion_state::MotionState;
 use crate::conservative::{get, part};
-use crate::equations::Equations;
 use crate::system::elimination::inverse::{Inertia, Inverse};
 use crate::system::elimination::joint_matrix::JointMatrix;
 use crate::system::geometry::rank::Judgement;
@@ -52,8 +51,10 @@ impl SystemMotion {
     /// [`RelaxError`].
     pub fn relax(&mut self) -> Result<[f64; 2], RelaxError> {
         let mut left = self.assemble()?;
-        let given: Vec<_> =
-            (0..self.bodies.len()).map(|body| self.state(body)).collect::<Result<_, _>>().map_err(Failed::Rates)?;
+        let given: Vec<_> = (0..self.bodies.len())
+            .map(|body| self.state_in_frame(body))
+            .collect::<Result<_, _>>()
+            .map_err(Failed::Rates)?;
         let is_bent = self.system.bodies.iter().any(|body| body.manifold.is_some());
         for _ in 0..PASSES {
             if is_bent {
@@ -72,9 +73,9 @@ impl SystemMotion {
     /// its momenta, not these.
     fn give_velocities(&mut self, given: &[MotionState]) -> Result<(), Failed> {
         for (b, given) in given.iter().enumerate() {
-            let mut state = self.state(b)?;
+            let mut state = self.state_in_frame(b)?;
             (state.velocity_global, state.omega_body) = (given.velocity_global, given.omega_body);
-            self.bodies[b] = self.system.bodies[b].state_of(&state).map_err(|_| Failed::Newton)?;
+            self.bodies[b] = self.system.bodies[b].state_in_frame(&state).map_err(|_| Failed::Newton)?;
         }
         Ok(())
     }
@@ -84,7 +85,7 @@ impl SystemMotion {
     fn bend(&mut self) -> Result<(), SteadyError> {
         let state = self.moving_state()?;
         // They are of the right length; numbers alone can be wrong.
-        self.set_states(&state.states()).map_err(|_| SteadyError::Numbers)
+        self.set_states_in_frame(&state.states_in_frame()).map_err(|_| SteadyError::Numbers)
     }
 
     /// V' and ω' of rigid bodies where the system is, in body axes, over the coordinates of all bodies.

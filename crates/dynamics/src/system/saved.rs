@@ -2,14 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::conservative::part;
+use crate::conservative::frame::Frame;
 use crate::equations::Equations;
 use crate::error::RateError;
 use crate::observation::moment::Moment;
 use crate::simulation::checkpoint::{CheckpointError, counts, expect, finite, fixed_room};
 use crate::state::State;
 use crate::system::collocation::STAGES;
-use crate::system::frame::Frame;
 use crate::system::joint::coordinate::JointCoordinates;
 use crate::system::joint::work::JointWork;
 use crate::system::radau::SystemMotion;
@@ -20,7 +19,7 @@ use crate::system::stage::vector;
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct SavedMotion {
     time: f64,
-    frame: Frame,
+    frames: Vec<Frame>,
     bodies: Vec<State>,
     last: Vec<Vec<f64>>,
     last_length: f64,
@@ -49,15 +48,14 @@ impl SystemMotion {
 
     /// Work and dissipation of a body since the beginning.
     pub(super) fn work_and_dissipation(&self, body: usize) -> [f64; 2] {
-        let list = self.system.bodies[body].list(&self.bodies[body]);
-        [part::WORK, part::DISSIPATION].map(|part| list.slow()[part])
+        self.system.bodies[body].work_and_dissipation_of(&self.bodies[body])
     }
 
     /// All that a later step depends on.
     pub(super) fn saved(&self) -> SavedMotion {
         SavedMotion {
             time: self.time,
-            frame: self.start.frame,
+            frames: self.system.bodies.iter().map(|body| body.frame).collect(),
             bodies: self.bodies.clone(),
             last: self.last.concat(),
             last_length: self.last_length,
@@ -78,7 +76,7 @@ impl SystemMotion {
     pub(super) fn take_up(&mut self, saved: SavedMotion) -> Result<(), CheckpointError> {
         let SavedMotion {
             time,
-            frame,
+            frames,
             bodies,
             last,
             last_length,
@@ -90,8 +88,9 @@ impl SystemMotion {
             sums,
             evaluations,
         } = saved;
-        let lists = [bodies.len(), last.len(), multipliers.len()];
-        expect("the number of bodies", lists == [self.bodies.len(), 2 * STAGES, STAGES])?;
+        let lists = [bodies.len(), frames.len(), last.len(), multipliers.len()];
+        let own = self.bodies.len();
+        expect("the number of bodies", lists == [own, own, 2 * STAGES, STAGES])?;
         for ((body, state), own) in self.system.bodies.iter().zip(&bodies).zip(&self.bodies) {
             expect("the state of a body", state.values.len() == own.values.len())?;
             body.layout().check(state)?;
@@ -106,12 +105,12 @@ impl SystemMotion {
         finite("the time for which friction has held", held.iter().flatten())?;
         expect("the number of springs and bushings", elements.len() == self.element_works.len())?;
         finite("a spring or a bushing", elements.iter().flat_map(JointWork::list))?;
-        finite("the frame", frame.numbers())?;
+        finite("the frames", frames.iter().flat_map(Frame::numbers))?;
         finite("the motion", last.iter().chain(&multipliers).flatten().chain(&sums).chain([&time, &last_length]))?;
         counts(&[evaluations])?;
         past.check(&self.past)?;
         self.past = past;
-        self.start.frame = frame;
+        self.system.bodies.iter_mut().zip(frames).for_each(|(body, frame)| body.frame = frame);
         (self.time, self.bodies, self.last_length, self.evaluations) = (time, bodies, last_length, evaluations);
         for (own, saved) in
             self.last.iter_mut().flatten().chain(&mut self.multipliers).zip(last.iter().chain(&multipliers))

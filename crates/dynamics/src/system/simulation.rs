@@ -498,6 +498,7 @@ impl SystemSimulation {
         }
         for _ in 0..max_steps {
             let Some(segment) = self.segment() else { return Ok(Reached::End) };
+            self.motion.follow_islands();
             if let Some(step) = &mut self.last_step {
                 step.begin(&self.motion);
             }

@@ -13,7 +13,6 @@ use crate::system::constraints::{Compliant, Constraints, near};
 use crate::system::description::System;
 use crate::system::element::Stored;
 use crate::system::elimination::inverse::Inertia;
-use crate::system::frame::Frame;
 use crate::system::geometry::posture::Posture;
 use crate::system::joint::coordinate::{Coordinate, JointCoordinates, turn_along};
 use crate::system::joint::far::far_wrench;
@@ -26,8 +25,6 @@ use crate::system::marker::{BodyPlace, Marker, MarkerPlace, tangent_of};
 #[derive(Debug, Clone)]
 pub(crate) struct Start {
     pub time: f64,
-    /// The frame of the momenta.
-    pub frame: Frame,
     pub bodies: Vec<BodyStart>,
     /// q and p of all bodies, at the places of their coordinates.
     pub q: Vec<f64>,
@@ -50,7 +47,7 @@ impl Start {
 /// The start of one body.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BodyStart {
-    /// Position of the origin, and its distance from the centre of the frame, global.
+    /// Position of the origin in the frame, and its distance from the centre of that.
     pub position: Vector3<f64>,
     pub arm: Vector3<f64>,
     pub body_from_global: Matrix3<f64>,
@@ -60,12 +57,12 @@ pub(crate) struct BodyStart {
 }
 
 impl BodyStart {
-    /// A body with its momenta in a frame, at a time.
-    pub fn new(body: &ConservativeBody, state: &State, frame: &Frame, time: f64) -> Self {
+    /// A body with its momenta about the centre of its frame.
+    pub fn new(body: &ConservativeBody, state: &State) -> Self {
         let list = body.list(state);
         let [position, momentum, pi] = [part::POSITION, part::MOMENTUM, part::PI].map(|part| get(list.slow(), part));
         let body_from_global = list.attitude().global_to_body();
-        let (arm, momentum) = (position - frame.center_at(time), momentum - frame.velocity() * body.mass());
+        let arm = position - body.frame.center();
         let angular_momentum = arm.cross(&momentum) + body_from_global.tr_mul(&pi);
         Self { position, arm, body_from_global, momentum, angular_momentum }
     }
@@ -82,20 +79,17 @@ pub(crate) struct Stage {
     pub constraints: Constraints,
     /// G v + g_t (m).
     pub constraint_rates: Vec<f64>,
-    /// V and ω in body axes, and q̇, of each body.
+    /// V in the frame and ω in body axes, and q̇, of each body.
     pub velocities: Vec<f64>,
     /// x' and y' by the forces beside those of the joints.
     pub x_rates: Vec<f64>,
     pub y_rates: Vec<f64>,
     pub inertia: Vec<Inertia>,
-    /// Transformation matrices of the bodies and positions of their origins, without the way of the frame since the start.
+    /// Transformation matrices of the bodies and positions of their origins in the frame.
     pub attitudes: Vec<Matrix3<f64>>,
     pub positions: Vec<Vector3<f64>>,
     /// Positions from the centre of the frame.
     pub arms: Vec<Vector3<f64>>,
-    /// The velocity of the frame, and its way since the start.
-    pub frame_velocity: Vector3<f64>,
-    pub way: Vector3<f64>,
     /// q of all bodies.
     q: Vec<f64>,
     forces: Vec<f64>,
@@ -131,8 +125,6 @@ impl Stage {
             attitudes: vec![Matrix3::identity(); system.bodies.len()],
             positions: vec![Vector3::zeros(); system.bodies.len()],
             arms: vec![Vector3::zeros(); system.bodies.len()],
-            frame_velocity: Vector3::zeros(),
-            way: Vector3::zeros(),
             q: zeros(),
             forces: zeros(),
             scratch: zeros(),
@@ -181,7 +173,7 @@ impl Stage {
     pub fn posture(&self, system: &System) -> Posture<'_> {
         let Self { positions, attitudes, constraints, .. } = self;
         let points = system.connections.joints.iter().map(|joint| self.places(system, &joint.markers)[1].position);
-        Posture { positions, attitudes, ends: &constraints.ends, points: points.collect() }
+        Posture::new(system, positions.iter().copied(), points, attitudes, &constraints.ends)
     }
 
     /// Where the two markers of a joint, or of a part of it, are.
@@ -198,7 +190,6 @@ impl Stage {
     /// Finds velocities, rates, g and G at a time; laws with branches are taken as they are at the branch time.
     pub fn evaluate(&mut self, system: &System, start: &Start, times: [f64; 2]) -> Result<(), RateError> {
         self.place(system, start);
-        self.go_with_frame(start, times[0]);
         for (b, (body, from)) in system.bodies.iter().zip(&start.bodies).enumerate() {
             let (first, end) = (system.first[b], system.first[b + 1]);
             let e = &mut self.evaluations[b];
@@ -208,8 +199,8 @@ impl Stage {
             let pi = attitude * (angular_momentum - arm.cross(&momentum));
             let mut slow = *e.at.slow();
             set(&mut slow, part::THETA, &vector(&self.x, first + 3));
-            set(&mut slow, part::POSITION, &(self.positions[b] + self.way));
-            set(&mut slow, part::MOMENTUM, &(momentum + self.frame_velocity * body.mass()));
+            set(&mut slow, part::POSITION, &self.positions[b]);
+            set(&mut slow, part::MOMENTUM, &momentum);
             set(&mut slow, part::PI, &pi);
             e.at.set_slow(&slow);
             let [q, p] = e.at.modes_mut();
@@ -246,24 +237,15 @@ impl Stage {
         Ok(())
     }
 
-    /// Takes the frame to a time.
-    fn go_with_frame(&mut self, start: &Start, time: f64) {
-        self.frame_velocity = start.frame.velocity();
-        self.way = self.frame_velocity * (time - start.time);
-    }
-
     /// Kinetic and strain energy in the frame, and that which the forces give bodies at rest within a time if no joint holds them.
     pub fn energies(&mut self, system: &System, time: f64) -> [f64; 2] {
         let (mut moving, mut pushed) = (0.0, 0.0);
         for (b, body) in system.bodies.iter().enumerate() {
             let own = system.first[b]..system.first[b + 1];
-            let in_frame = vector(&self.velocities, own.start) - self.attitudes[b] * self.frame_velocity;
-            let [own_velocities, momenta] = [&mut self.scratch, &mut self.forces];
-            own_velocities[own.clone()].copy_from_slice(&self.velocities[own.clone()]);
-            put(own_velocities, own.start, &in_frame);
-            momenta[own.clone()].copy_from_slice(&own_velocities[own.clone()]);
+            let momenta = &mut self.forces;
+            momenta[own.clone()].copy_from_slice(&self.velocities[own.clone()]);
             self.inertia[b].multiply(&mut momenta[own.clone()]);
-            let pairs = own_velocities[own.clone()].iter().zip(&momenta[own.clone()]);
+            let pairs = self.velocities[own.clone()].iter().zip(&momenta[own.clone()]);
             moving += 0.5 * pairs.map(|(v, p)| v * p).sum::<f64>();
             let strained = self.q[own.start + 6..own.end].iter().zip(&body.circular_frequencies);
             moving += 0.5 * strained.map(|(q, omega)| (omega * q).powi(2)).sum::<f64>();
@@ -347,21 +329,14 @@ impl Stage {
     }
 
     /// Takes the motion to where increments at three stages lead by these factors, and gives it the rates that they have there by those.
-    pub fn follow(
-        &mut self,
-        (system, start): (&System, &Start),
-        time: f64,
-        increments: [&[f64]; 3],
-        [to, rates]: [[f64; 3]; 2],
-    ) {
+    pub fn follow(&mut self, (system, start): (&System, &Start), increments: [&[f64]; 3], [to, rates]: [[f64; 3]; 2]) {
         let [a, b, c] = increments;
         let of = |factors: [f64; 3], k: usize| factors[0] * a[k] + factors[1] * b[k] + factors[2] * c[k];
         (0..self.x.len()).for_each(|k| self.x[k] = of(to, k));
         self.place(system, start);
-        self.go_with_frame(start, time);
         (0..self.velocities.len()).for_each(|k| self.velocities[k] = of(rates, k));
         for (attitude, first) in self.attitudes.iter().zip(&system.first) {
-            let velocity = attitude * (vector(&self.velocities, *first) + self.frame_velocity);
+            let velocity = attitude * vector(&self.velocities, *first);
             // ω = T(θ)ᵀ θ', the inverse of `f_inverse`.
             let omega = tangent_of(&vector(&self.x, first + 3)).tr_mul(&vector(&self.velocities, first + 3));
             put(&mut self.velocities, *first, &velocity);
@@ -380,7 +355,7 @@ impl Stage {
             }
         }
         for number in 0..system.connections.elements.len() {
-            self.find_marker_motions(system, system.connections.elements[number].markers());
+            self.find_marker_motions(system, number, times[0]);
             self.apply_element(system, number, times);
         }
     }
@@ -393,8 +368,8 @@ impl Stage {
                 out.extend(force.switches(self.joint_coordinates(system, start, joint).along(coordinate), times));
             }
         }
-        for element in &system.connections.elements {
-            self.find_marker_motions(system, element.markers());
+        for (number, element) in system.connections.elements.iter().enumerate() {
+            self.find_marker_motions(system, number, times[0]);
             out.extend(element.switch(times, &self.marker_motions));
         }
     }
@@ -423,13 +398,12 @@ impl Stage {
         }
         self.element_forces.fill(0.0);
         self.add_joint_forces(system, times);
-        for (number, element) in system.connections.elements.iter().enumerate() {
-            self.find_marker_motions(system, element.markers());
+        for (number, markers) in system.connections.element_markers.iter().enumerate() {
+            self.find_marker_motions(system, number, times[0]);
             self.apply_element(system, number, times);
             let Self { marker_places, wrenches, element_forces: forces, positions, attitudes, q, evaluations, .. } =
                 self;
             let places = Places { system, positions, attitudes, q, evaluations };
-            let markers = element.markers();
             for (k, MarkerWrench { force_global, moment_global }) in wrenches.iter().enumerate() {
                 if let Some(b) = markers[k].body() {
                     markers[k].add_wrench(
@@ -450,25 +424,25 @@ impl Stage {
         self.y_rates.iter_mut().zip(&*total).for_each(|(rate, force)| *rate += force);
     }
 
-    /// Energy of the springs of an element, where the bodies have been placed; zero where it is not known.
-    pub fn element_energy(&mut self, system: &System, number: usize) -> f64 {
+    /// Energy of the springs of an element at a time, where the bodies have been placed; zero where it is not known.
+    pub fn element_energy(&mut self, system: &System, number: usize, time: f64) -> f64 {
         let element = &system.connections.elements[number];
-        self.find_marker_motions(system, element.markers());
+        self.find_marker_motions(system, number, time);
         element.stored(&self.marker_motions).map_or(0.0, |stored| stored.energy)
     }
 
-    /// Finds the places and motions of markers.
-    fn find_marker_motions(&mut self, system: &System, markers: &[Marker]) {
-        let Self { marker_places, marker_motions, positions, attitudes, q, evaluations, velocities, way, .. } = self;
+    /// Finds the places of the markers of an element, and their motions as it sees them.
+    fn find_marker_motions(&mut self, system: &System, number: usize, time: f64) {
+        let Self { marker_places, marker_motions, positions, attitudes, q, evaluations, velocities, .. } = self;
         let places = Places { system, positions, attitudes, q, evaluations };
         marker_places.clear();
         marker_motions.clear();
-        for marker in markers {
+        for marker in &system.connections.element_markers[number] {
             let body = marker.body().map(|b| places.of(b));
             let place = marker.place(body.as_ref());
             let own = marker.body().map_or(&[][..], |b| &velocities[system.first[b]..system.first[b + 1]]);
             let motion = marker.motion(&place, body.as_ref(), own);
-            marker_motions.push(MarkerMotion { position_global: motion.position_global + *way, ..motion });
+            marker_motions.push(system.motion_for(number, marker, motion, time));
             marker_places.push(place);
         }
     }
@@ -484,9 +458,9 @@ impl Stage {
             constraints.compliant[number] = Compliant { stiffness, damping };
             number += 1;
         }
-        for element in system.connections.elements.iter().filter(|element| element.directions() > 0) {
-            let markers = element.markers();
-            self.find_marker_motions(system, markers);
+        let elements = system.connections.elements.iter().zip(&system.connections.element_markers).enumerate();
+        for (of_element, (element, markers)) in elements.filter(|(_, (element, _))| element.directions() > 0) {
+            self.find_marker_motions(system, of_element, times[0]);
             let Self { marker_places, marker_motions, constraints, positions, attitudes, q, evaluations, .. } = self;
             let places = Places { system, positions, attitudes, q, evaluations };
             element.linearize(times, marker_motions, &mut |direction, [stiffness, damping], wrenches| {
@@ -512,7 +486,7 @@ impl Stage {
             for k in first..end {
                 self.x_rates[k] = self.velocities[k] + self.forces[k];
             }
-            let velocity = self.attitudes[b].tr_mul(&vector(&self.x_rates, first)) - self.frame_velocity;
+            let velocity = self.attitudes[b].tr_mul(&vector(&self.x_rates, first));
             put(&mut self.x_rates, first, &velocity);
             let [theta, omega] = [&self.x, &self.x_rates].map(|list| vector(list, first + 3));
             let rate = f_inverse(&theta, &omega).map_err(RateError::Turn)?;

@@ -112,6 +112,10 @@ impl ForceElement for MarkerForce {
         &self.markers
     }
 
+    fn is_relative(&self) -> bool {
+        true
+    }
+
     fn apply(&self, times: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]) {
         let ([i, j], [on_i, on_j]) = (motions, wrenches) else { return };
         let both = self.law.force_and_moment(times, &RelativeMotion::between([i, j]));

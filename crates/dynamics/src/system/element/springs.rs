@@ -41,6 +41,10 @@ impl ForceElement for PointSpring {
         &self.markers
     }
 
+    fn is_relative(&self) -> bool {
+        true
+    }
+
     fn apply(&self, _: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]) {
         let ([i, j], [on_i, on_j]) = (motions, wrenches) else { return };
         let Some((along, LineObservation { pull, .. })) = self.line([i, j]) else { return };
@@ -123,6 +127,10 @@ impl Bushing {
 impl ForceElement for Bushing {
     fn markers(&self) -> &[Marker] {
         &self.markers
+    }
+
+    fn is_relative(&self) -> bool {
+        true
     }
 
     fn apply(&self, _: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]) {

@@ -9,6 +9,9 @@ use crate::system::geometry::tree::Tree;
 
 /// Part of a row over its size, beside others, below which they imply it where the joints are closed.
 pub(crate) const IMPLIED: f64 = 1e-7;
+/// The same over the rounding of places on the ground, as a part of the shortest loop; and at most.
+const OF_ROUNDING: f64 = 10.0;
+const LARGEST_IMPLIED: f64 = 1e-3;
 /// Rows that were held before stay so, unless others are this many times better.
 const HELD: f64 = 4.0;
 
@@ -41,7 +44,7 @@ impl Judgement {
     pub fn first(system: &System, at: &Posture<'_>, with_modes: bool) -> Self {
         let tree = Tree::new(system, at);
         let loops = Loops::new(system, at, &tree, with_modes);
-        let rank = Rank::new(&loops, &vec![false; loops.sizes.len()]);
+        let rank = Rank::new(&loops, &vec![false; loops.sizes.len()], system.rounding);
         Self { tree, loops, rank }
     }
 
@@ -50,7 +53,7 @@ impl Judgement {
         let held: Vec<bool> = self.rank.is_implied.iter().map(|is_implied| !is_implied).collect();
         self.tree.middle = Tree::middle_of(at);
         self.loops = Loops::new(system, at, &self.tree, true);
-        self.rank = Rank::new(&self.loops, &held);
+        self.rank = Rank::new(&self.loops, &held, system.rounding);
     }
 
     /// True if the rows are judged wherever the system is.
@@ -65,8 +68,10 @@ impl Judgement {
 }
 
 impl Rank {
-    /// Judges the rows; `held` are left out last.
-    pub fn new(loops: &Loops, held: &[bool]) -> Self {
+    /// Judges the rows; `held` are left out last. Places of the ground are off by `rounding`, which turns rows that others imply a little.
+    pub fn new(loops: &Loops, held: &[bool], rounding: f64) -> Self {
+        let shortest = loops.rows.iter().map(|row| loops.lengths[*row]).fold(f64::INFINITY, f64::min);
+        let implied = IMPLIED.max((OF_ROUNDING * rounding / shortest).min(LARGEST_IMPLIED));
         let mut is_implied = vec![false; loops.sizes.len()];
         let (columns, count) = loops.matrix.shape();
         let factor = |a: usize| if held[loops.rows[a]] { HELD } else { 1.0 };
@@ -81,7 +86,7 @@ impl Rank {
         let (q, r) = (qr.q(), qr.r());
         let mut order = RowDVector::from_iterator(count, 0..count);
         qr.p().permute_columns(&mut order);
-        let rank = (0..r.nrows().min(count)).take_while(|i| r[(*i, *i)].abs() > IMPLIED).count();
+        let rank = (0..r.nrows().min(count)).take_while(|i| r[(*i, *i)].abs() > implied).count();
         let kept = r.view((0, 0), (rank, rank)).into_owned();
         let mut idle = Vec::new();
         for k in rank..count {

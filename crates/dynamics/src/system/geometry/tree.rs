@@ -163,7 +163,7 @@ impl Tree {
 /// Largest distance of a joint or the origin of a body from their middle; the largest radius of gyration where all are at one place.
 pub(crate) fn size_of_system(system: &System, at: &Posture<'_>) -> f64 {
     let middle = Tree::middle_of(at);
-    let places = at.points.iter().chain(at.positions).map(|place| (place - middle).norm());
+    let places = at.points.iter().chain(&at.positions).map(|place| (place - middle).norm());
     let size = places.fold(0.0, f64::max);
     // One body whose joints are at its origin.
     let radii = system.bodies.iter().map(|body| body.radius_of_gyration());

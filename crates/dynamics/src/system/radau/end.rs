@@ -129,14 +129,12 @@ impl SystemMotion {
             let momentum = start.bodies[b].momentum + vector(&last.y, first) + vector(&real.y, first);
             let angular_momentum =
                 start.bodies[b].angular_momentum + vector(&last.y, first + 3) + vector(&real.y, first + 3);
-            let position = last.positions[b] + last.way;
             let pi = turned.to_body(&(angular_momentum - last.arms[b].cross(&momentum)));
-            let momentum = momentum + last.frame_velocity * body.mass();
             let mut list = body.list_mut(state);
             list.set_attitude(turned);
             let mut slow = *list.slow();
             put(&mut slow, part::THETA, &Vector3::zeros());
-            put(&mut slow, part::POSITION, &position);
+            put(&mut slow, part::POSITION, &last.positions[b]);
             put(&mut slow, part::MOMENTUM, &momentum);
             put(&mut slow, part::PI, &pi);
             let impulse = impulse + get(&slow, part::IMPULSE);

@@ -78,7 +78,7 @@ impl SystemMotion {
         x.copy_from_slice(&last.velocities);
         for (b, attitude) in last.attitudes.iter().enumerate() {
             let first = system.first[b];
-            let velocity = attitude.tr_mul(&vector(x, first)) - last.frame_velocity;
+            let velocity = attitude.tr_mul(&vector(x, first));
             put(x, first, &velocity);
         }
         y.copy_from_slice(&rates.y);

@@ -59,7 +59,7 @@ impl Path<'_> {
         let Self { system, start, scheme, increments, h } = self;
         let rates = scheme.rates_at(part).map(|factor| factor / h);
         let time = start.time + part * h;
-        stage.follow((system, start), time, *increments, [scheme.at(part), rates]);
+        stage.follow((system, start), *increments, [scheme.at(part), rates]);
         [time, start.time + 0.5 * h]
     }
 }

@@ -98,11 +98,11 @@ impl SystemMotion {
             stage_rates.iter().zip(weights).for_each(|(rates, weight)| staged.add(weight, &rates.laws[number]));
             settle(&mut joint_works[number], fine, &staged, &joint.markers);
         }
-        for (number, (element, fine)) in connections.elements.iter().zip(&law_work.elements).enumerate() {
+        for (number, (markers, fine)) in connections.element_markers.iter().zip(&law_work.elements).enumerate() {
             let mut staged = JointWork::default();
             stage_rates.iter().zip(weights).for_each(|(rates, weight)| staged.add(weight, &rates.elements[number]));
             staged.spring = 0.0;
-            settle(&mut element_works[number], fine, &staged, element.markers());
+            settle(&mut element_works[number], fine, &staged, markers);
         }
     }
 }

@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use crate::conservative::part;
-use crate::equations::Equations;
 use crate::error::RateError;
 use crate::system::geometry::loops::Loops;
 use crate::system::geometry::rank::{Judgement, Rank};
@@ -62,7 +61,8 @@ impl SystemMotion {
         let Judgement { tree, loops, rank } = &*known;
         let open = |residuals: &[f64]| -> f64 {
             let rows = residuals.iter().zip(&loops.sizes).zip(&loops.lengths);
-            rows.map(|((g, size), length)| (g / (size * length)).abs()).fold(0.0, f64::max)
+            let gap = |g: f64| if g.is_nan() { g } else { (g.abs() - system.rounding).max(0.0) };
+            rows.map(|((g, size), length)| gap(g / size) / length).fold(0.0, f64::max)
         };
         let gap = open(&last.constraints.residuals);
         if gap <= CLOSED {
@@ -84,7 +84,7 @@ impl SystemMotion {
         if left <= CLOSED {
             let held: Vec<bool> = rank.is_implied.iter().map(|is_implied| !is_implied).collect();
             let loops = Loops::new(system, &last.posture(system), tree, true);
-            let now = Rank::new(&loops, &held);
+            let now = Rank::new(&loops, &held, system.rounding);
             let has_risen = now.is_implied.iter().zip(&rank.is_implied).any(|(now, then)| *then && !*now);
             if has_risen && gap > LATE && *is_controlled {
                 return Err(Failed::Newton);
@@ -141,12 +141,12 @@ impl SystemMotion {
         let [.., last] = &self.stages;
         for (b, body) in self.system.bodies.iter().enumerate() {
             let first = self.system.first[b];
-            let mut state = body.motion_state(&self.bodies[b])?;
+            let mut state = body.motion_in_frame(&self.bodies[b])?;
             // Nothing has moved on.
             state.origin_global = last.positions[b];
             state.attitude = state.attitude.advanced_by(&vector(&last.x, first + 3));
             let before = *body.list(&self.bodies[b]).slow();
-            let mut moved = body.state_of(&state).map_err(|_| Failed::Newton)?;
+            let mut moved = body.state_in_frame(&state).map_err(|_| Failed::Newton)?;
             let mut list = body.list_mut(&mut moved);
             let mut slow = *list.slow();
             let works = part::WORK..slow.len();

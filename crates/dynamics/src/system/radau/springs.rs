@@ -23,7 +23,9 @@ impl SystemMotion {
         if of_elements.len() > 0 {
             first.x.fill(0.0);
             first.place(system, start);
-            of_elements.enumerate().for_each(|(number, energy)| *energy = first.element_energy(system, number));
+            of_elements
+                .enumerate()
+                .for_each(|(number, energy)| *energy = first.element_energy(system, number, start.time));
         }
         for (energy, (joint, coordinates)) in room.spring_energies.iter_mut().zip(joints) {
             *energy = energy_of(joint, coordinates);
@@ -33,8 +35,8 @@ impl SystemMotion {
     /// Replaces the work of springs that the stages have summed up since [`Self::keep_spring_energies`] by the change of their energy. The
     /// difference, which the step has made or lost, is counted as work on the bodies that they hold, in equal parts, so that balances tell.
     pub(super) fn settle_springs(&mut self, weights: [f64; STAGES]) {
-        let Self { system, start, room, stage_rates, joint_works, element_works, bodies, stages: [.., last], .. } =
-            self;
+        let Self { system, start, room, stage_rates, joint_works, element_works, bodies, time, .. } = self;
+        let [.., last] = &mut self.stages;
         let joints = joint_works.len();
         for (number, before) in room.spring_energies.iter().enumerate() {
             let works = stage_rates.iter().zip(weights).map(|(rates, weight)| weight * rates.spring(number));
@@ -45,8 +47,8 @@ impl SystemMotion {
                     (energy_of(joint, &start.joints[number]), &joint.markers[..], &mut joint_works[number])
                 }
                 Some(element) => {
-                    let after = last.element_energy(system, element);
-                    (after, system.connections.elements[element].markers(), &mut element_works[element])
+                    let after = last.element_energy(system, element, *time);
+                    (after, &system.connections.element_markers[element][..], &mut element_works[element])
                 }
             };
             let missing = before - after - summed;

@@ -28,6 +28,7 @@ impl SystemMotion {
         let mut measure = Self::measure(tolerance, end - self.time);
         let mut steps = 0;
         while self.time < end {
+            self.follow_islands();
             let taken = self.try_towards(end, &mut measure, h);
             steps += u64::from(taken.map_err(|error| self.reason_or(error))?.is_some());
         }

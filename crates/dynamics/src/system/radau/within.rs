@@ -4,6 +4,7 @@ use crate::body::motion_state::MotionState;
 use crate::conservative::{get, part, set};
 use crate::equations::Equations;
 use crate::error::SetupError;
+use crate::state::State;
 use crate::system::joint::work::JointWork;
 use crate::system::radau::law_work::Path;
 use crate::system::radau::{Failed, SystemMotion};
@@ -12,7 +13,8 @@ use crate::system::stage::vector;
 impl SystemMotion {
     /// Takes over the motion of another with the same system, but for the count of its evaluations, without allocating.
     pub(in crate::system) fn copy_from(&mut self, other: &Self) {
-        (self.time, self.start.frame) = (other.time, other.start.frame);
+        self.time = other.time;
+        self.system.bodies.iter_mut().zip(&other.system.bodies).for_each(|(own, other)| own.frame = other.frame);
         self.bodies.iter_mut().zip(&other.bodies).for_each(|(own, other)| own.copy_from(other));
         let lists = |of: &Self| -> [f64; 4] { [of.last_length, of.largest_energy, of.largest_moving, of.jump_work] };
         [self.last_length, self.largest_energy, self.largest_moving, self.jump_work] = lists(other);
@@ -48,10 +50,22 @@ impl SystemMotion {
             return Err(SetupError::Length { what: "the list of states", expected, found });
         }
         let bodies = self.system.bodies.iter().zip(states);
-        self.bodies = bodies.map(|(body, state)| body.state_of(state)).collect::<Result<_, _>>()?;
-        if let Some(first) = states.first() {
-            self.time = first.time;
-        }
+        let bodies = bodies.map(|(body, state)| body.state_of(state)).collect::<Result<_, _>>()?;
+        self.take_states(bodies, states.first().map(|first| first.time));
+        Ok(())
+    }
+
+    /// The same of states as [`ConservativeBody::motion_in_frame`] gives them, at the same time.
+    pub(in crate::system) fn set_states_in_frame(&mut self, states: &[MotionState]) -> Result<(), SetupError> {
+        let bodies = self.system.bodies.iter().zip(states);
+        let bodies = bodies.map(|(body, state)| body.state_in_frame(state)).collect::<Result<_, _>>()?;
+        self.take_states(bodies, None);
+        Ok(())
+    }
+
+    fn take_states(&mut self, bodies: Vec<State>, time: Option<f64>) {
+        self.bodies = bodies;
+        self.time = time.unwrap_or(self.time);
         self.bodies.iter_mut().for_each(|body| body.time = self.time);
         self.joint_works.fill(JointWork::default());
         self.element_works.fill(JointWork::default());
@@ -59,7 +73,6 @@ impl SystemMotion {
         self.jump_work = 0.0;
         self.forget_last_step();
         self.forget_judgement();
-        Ok(())
     }
 
     /// Goes to a time within a step, from the motion `before` it, by the polynomials of the step, at whose end `after` has been at
@@ -99,7 +112,7 @@ impl SystemMotion {
             let [impulse, about_center] = [0, 3].map(|part| bend * vector(&after.bend[1], first + part));
             let mut list = body.list_mut(state);
             let mut slow = *list.slow();
-            let arm = get(&slow, part::POSITION) - self.start.frame.center_at(time);
+            let arm = get(&slow, part::POSITION) - body.frame.center();
             let moment = about_center - arm.cross(&impulse);
             for (which, more) in [(part::IMPULSE, impulse), (part::ANGULAR_IMPULSE, moment)] {
                 let sum = get(&slow, which) + more;

@@ -49,10 +49,10 @@ impl SystemMotion {
     pub fn observe_element(&self, number: usize) -> JointObservation {
         let Self { system, first, .. } = self;
         let element = &system.connections.elements[number];
-        let [i, j] = element.markers() else { return JointObservation::default() };
+        let [i, j] = &system.connections.element_markers[number][..] else { return JointObservation::default() };
         let motions = [i, j].map(|marker| {
             let place = marker.place(marker.body().map(|b| first.body_place(system, b)).as_ref());
-            first.motion_of(system, marker, &place)
+            system.motion_for(number, marker, first.motion_of(system, marker, &place), self.time)
         });
         let work = self.work_of_element(number);
         element.observe(&motions).map(|seen| JointObservation { work, ..seen }).unwrap_or_default()

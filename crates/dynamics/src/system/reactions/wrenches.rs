@@ -51,9 +51,11 @@ impl SystemMotion {
             let effort = force.at([wrench.residual, wrench.rate(motions.each_ref())], [self.time; 2]).sum();
             put(markers, wrench.on_both(), effort, &mut take);
         }
-        for element in &connections.elements {
-            let markers = element.markers();
-            let motion = |marker: &Marker| self.first.motion_of(&self.system, marker, &self.place_of(marker));
+        for (number, (element, markers)) in connections.elements.iter().zip(&connections.element_markers).enumerate() {
+            let motion = |marker: &Marker| {
+                let motion = self.first.motion_of(&self.system, marker, &self.place_of(marker));
+                self.system.motion_for(number, marker, motion, self.time)
+            };
             let motions: Vec<_> = markers.iter().map(motion).collect();
             let mut wrenches = vec![MarkerWrench::default(); markers.len()];
             element.apply([self.time; 2], &motions, &mut wrenches);

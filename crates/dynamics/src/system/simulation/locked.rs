@@ -22,9 +22,6 @@ const LOCKED: f64 = 1e3;
 const NEAR: f64 = 10.0;
 const WITHIN: f64 = 0.3;
 
-/// Rounding of places over the size of the bodies that leaves steps too little of what they may err by.
-const COARSE: f64 = 1e-12;
-
 impl SystemMotion {
     /// The reason of a step that could not be done where it is found: joints that lock where the motion is, or stops that a fixed step goes
     /// into; otherwise the error as it is.
@@ -40,11 +37,6 @@ impl SystemMotion {
         if let Some(joints) = self.locked_joints(step) {
             return StepError::Locked { time, joints: joints.into() };
         }
-        if let (StepError::Tolerance { tolerance, .. }, Some([distance, rounding])) =
-            (&error, self.rounding_of_places())
-        {
-            return StepError::TooFar { time, distance, rounding, tolerance: *tolerance };
-        }
         let StepError::Newton { step, .. } = error else { return error };
         match self.stops_within(step) {
             Some((joints, contact)) => {
@@ -53,14 +45,6 @@ impl SystemMotion {
             }
             None => error,
         }
-    }
-
-    /// Largest distance of a body from the origin, and how places round there, where that is more of the size of the bodies than steps may err by.
-    pub(in crate::system) fn rounding_of_places(&self) -> Option<[f64; 2]> {
-        let distances = (0..self.bodies.len()).filter_map(|body| Some(self.state(body).ok()?.origin_global.norm()));
-        let distance = distances.fold(0.0, f64::max);
-        let rounding = f64::EPSILON * distance;
-        (rounding > COARSE * self.size()).then_some([distance, rounding])
     }
 
     /// Names of the joints and couplings that lock where the system is, or within a step from there; `None` where none do.

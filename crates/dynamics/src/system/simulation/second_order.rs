@@ -141,7 +141,7 @@ impl SystemMotion {
     fn take_velocities(&mut self, velocities: &[f64]) -> Result<(), Failed> {
         let mut states = Vec::new();
         for (b, first) in self.system.first[..self.system.bodies.len()].iter().enumerate() {
-            let mut state = self.state(b)?;
+            let mut state = self.state_in_frame(b)?;
             state.velocity_global = self.first.attitudes[b].tr_mul(&vector(velocities, *first));
             state.omega_body = vector(velocities, first + 3);
             let modes = first + 6..self.system.first[b + 1];
@@ -149,7 +149,7 @@ impl SystemMotion {
             states.push(state);
         }
         let turns: Vec<_> = self.start.joints.clone();
-        self.set_states(&states).map_err(|_| Failed::Newton)?;
+        self.set_states_in_frame(&states).map_err(|_| Failed::Newton)?;
         self.start.joints = turns;
         self.assemble_here()?;
         Ok(())

@@ -11,6 +11,7 @@ use crate::scheme::mode_limit::stable_step_of_modes;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
+use crate::system::frame::GAP;
 use crate::system::joint::equation::{Misfit, misfit};
 use crate::system::radau::SystemMotion;
 use crate::system::relaxed::RelaxError;
@@ -109,17 +110,18 @@ pub(super) fn size(system: &System, states: &[MotionState]) -> f64 {
     spread.chain(radii).fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// Gap of a joint over the rounding of places that may be rounding.
-const OPEN_BY_ROUNDING: f64 = 1e5;
+/// Part of the velocities that does not fit joints, over the rounding of places on the ground as a part of the size.
+const OF_ROUNDING: f64 = 100.0;
+/// Gap of a joint, over what places of the ground may be off by in binary numbers, that decimal numbers with a few digits less may make.
+const OPEN_BY_ROUNDING: f64 = 1e4;
 
-/// The error of joints that stay open; where that may be rounding, far from the origin, it says so.
+/// The error of joints that stay open; where that may be rounding of places of the ground far from the origin, it says so.
 fn not_assembled(motion: &SystemMotion, joint: Box<str>, [left, rate]: [f64; 2]) -> SetupError {
-    match motion.rounding_of_places() {
-        Some([distance, rounding]) if left < OPEN_BY_ROUNDING * rounding => {
-            SetupError::TooFar { joint, left, distance, rounding }
-        }
-        _ => SetupError::NotAssembled { joint, left, rate },
+    let rounding = motion.system().rounding;
+    if left < OPEN_BY_ROUNDING * rounding {
+        return SetupError::TooFar { joint, left, distance: rounding / (GAP * f64::EPSILON), rounding };
     }
+    SetupError::NotAssembled { joint, left, rate }
 }
 
 /// Moves the bodies so that the joints close, and finds by how much; and the branches of the motion, if there are two.
@@ -142,8 +144,13 @@ pub(super) fn assemble(
         (Err(_), None) => return Err(SetupError::SINGULAR),
     };
     let fastest = states.iter().map(|state| state.velocity_global.norm() + size * state.omega_body.norm());
-    let is_open = |left: f64, scale: f64| left.is_nan() || left > CLOSED * scale;
-    if is_open(left, size) || is_open(rates, size / end + fastest.fold(0.0, f64::max)) {
+    let is_open = |left: f64, closed: f64| left.is_nan() || left > closed;
+    // Places of the ground far away are known to rounding only; so is what velocities fit between them.
+    let rounding = motion.system().rounding;
+    let is_rounding =
+        rounding > 0.0 && motion.largest_residual().is_ok_and(|part| part * size <= CLOSED * size + rounding);
+    let of_rates = CLOSED.max(OF_ROUNDING * rounding / size) * (size / end + fastest.fold(0.0, f64::max));
+    if is_open(left, CLOSED * size) && !is_rounding || is_open(rates, of_rates) {
         let open = motion.largest_gap().ok().flatten();
         let joint = open.map_or_else(Box::default, |(joint, _)| joint.into());
         return Err(not_assembled(motion, joint, [left, rates]));

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
+use crate::conservative::frame::Frame;
 use crate::conservative::manifold::BentShape;
 use crate::conservative::{get, part};
 use crate::system::description::System;
@@ -22,13 +23,17 @@ pub(crate) struct Configuration {
 /// One body.
 #[derive(Debug, Clone)]
 pub(crate) struct BodyConfiguration {
+    /// In the frame of the body.
     pub origin: Vector3<f64>,
+    frame: Frame,
+    /// Velocity that those of the body are counted from, global.
+    pub carried: Vector3<f64>,
     pub attitude: Attitude,
     pub body_from_global: Matrix3<f64>,
     pub q: Vec<f64>,
     /// Its shape with large modes.
     pub bent: Option<BentShape>,
-    /// V and ω in body axes.
+    /// V and ω in body axes, V beside `carried`.
     pub velocity: Vector3<f64>,
     pub omega: Vector3<f64>,
     /// Angular momentum of a rotor about its axis, in axes that do not turn with it; zero of any other body.
@@ -52,9 +57,10 @@ impl CommonSpin {
     pub const REST: Self =
         Self { omega_global: Vector3::new(0.0, 0.0, 0.0), point_global: Vector3::new(0.0, 0.0, 0.0) };
 
-    /// Velocity of a place that turns with it.
-    pub fn velocity_at(&self, position_global: &Vector3<f64>) -> Vector3<f64> {
-        self.omega_global.cross(&(position_global - self.point_global))
+    /// Velocity of the origin of a body that turns with it, global.
+    pub(crate) fn velocity_at(&self, body: &BodyConfiguration, time: f64) -> Vector3<f64> {
+        let arm = body.origin - body.frame.place_from(&self.point_global, time);
+        self.omega_global.cross(&arm)
     }
 }
 
@@ -72,6 +78,7 @@ impl Configuration {
         for (body, first) in configuration.bodies.iter_mut().zip(&motion.system().first) {
             [body.velocity, body.omega] = [0, 3].map(|part| vector(velocities, first + part));
             [body.velocity_rate, body.omega_rate] = [0, 3].map(|part| vector(rates, first + part));
+            body.carried = body.frame.velocity();
         }
         configuration
     }
@@ -96,6 +103,8 @@ impl Configuration {
             BodyConfiguration {
                 bent: BentShape::of(body, list.q()),
                 origin: get(list.slow(), part::POSITION),
+                frame: body.frame,
+                carried: Vector3::zeros(),
                 attitude: list.attitude(),
                 body_from_global: list.attitude().global_to_body(),
                 q: list.q().to_vec(),
@@ -116,7 +125,7 @@ impl Configuration {
     /// Gives the bodies the velocities of a common spin.
     fn spin(&mut self, spin: &CommonSpin) {
         for body in &mut self.bodies {
-            body.velocity = body.body_from_global * spin.velocity_at(&body.origin);
+            body.velocity = body.body_from_global * spin.velocity_at(body, self.time);
             body.omega = body.body_from_global * spin.omega_global;
         }
     }
@@ -136,6 +145,18 @@ impl Configuration {
         if let Some(spin) = spin {
             self.spin(spin);
         }
+    }
+
+    /// The place of the origin of a body, and the velocity, global.
+    pub fn origin_global(&self, body: &BodyConfiguration) -> [Vector3<f64>; 2] {
+        let velocity = body.body_from_global.tr_mul(&body.velocity) + body.carried;
+        [body.frame.to_global(&body.origin, self.time), velocity]
+    }
+
+    /// A place next to the first of some markers, global.
+    pub fn global_by(&self, markers: &[Marker; 2], place: &Vector3<f64>) -> Vector3<f64> {
+        let frame = markers.iter().find_map(|marker| Some(self.bodies[marker.body()?].frame));
+        frame.map_or(*place, |frame| frame.to_global(place, self.time))
     }
 
     /// The place of a body.

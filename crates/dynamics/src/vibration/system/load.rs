@@ -39,12 +39,13 @@ struct Seen {
 
 /// The loads at a time.
 pub(crate) fn load_forces(body: &ConservativeBody, at: &BodyConfiguration, time: f64) -> LoadForces {
+    let origin = body.frame.to_global(&at.origin, time);
     let nf = at.q.len();
     let n = 6 + nf;
     let here = Seen {
         body_from_global: at.body_from_global,
-        origin: at.origin,
-        velocity_global: at.body_from_global.tr_mul(&at.velocity),
+        origin,
+        velocity_global: at.body_from_global.tr_mul(&at.velocity) + at.carried,
         omega_body: at.omega,
         q: at.q.clone(),
         rate: vec![0.0; nf],
@@ -70,7 +71,7 @@ pub(crate) fn load_forces(body: &ConservativeBody, at: &BodyConfiguration, time:
         (3..6, false) => difference(1.0, &|seen, step| {
             let turn = cross_matrix(&(Vector3::ith(k - 3, 1.0) * step));
             seen.body_from_global -= turn * at.body_from_global;
-            seen.velocity_global = seen.body_from_global.tr_mul(&at.velocity);
+            seen.velocity_global = seen.body_from_global.tr_mul(&at.velocity) + at.carried;
         }),
         (_, false) => difference(amplitude, &|seen, step| seen.q[k - 6] += step),
         (0..3, true) => difference(length, &|seen, step| seen.velocity_global += axes[k] * step),

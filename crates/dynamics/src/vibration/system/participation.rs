@@ -33,7 +33,7 @@ impl SteadyState {
     ) -> Result<Option<SystemParticipation>, SteadyError> {
         let mut markers = motion.system().connections.markers();
         let Some(ground) = markers.find(|marker| marker.body().is_none()) else { return Ok(None) };
-        let about = about_global.unwrap_or_else(|| ground.place(None).position);
+        let about = about_global.unwrap_or_else(|| ground.ground_position());
         let linear = &self.linear;
         let (rest, loose) = linear.without_rigid()?;
         let size = rest.ncols();
@@ -74,8 +74,11 @@ impl SteadyState {
             let axis = Vector3::ith(i % 3, 1.0);
             let turn = CommonSpin { omega_global: axis, point_global: *about };
             let of_body = |body: &BodyConfiguration| {
-                let [velocity, omega] =
-                    if i < 3 { [axis, Vector3::zeros()] } else { [turn.velocity_at(&body.origin), axis] };
+                let [velocity, omega] = if i < 3 {
+                    [axis, Vector3::zeros()]
+                } else {
+                    [turn.velocity_at(body, self.configuration.time), axis]
+                };
                 let [velocity, omega] = [velocity, omega].map(|vector| body.body_from_global * vector);
                 velocity.iter().chain(&omega).copied().chain(body.q.iter().map(|_| 0.0)).collect::<Vec<f64>>()
             };

@@ -172,7 +172,7 @@ impl SystemMotion {
         let (point, axis) = self.joint_axis(joint);
         let axis_body = here.body_from_global * axis;
         let radius = of.radius_of_gyration();
-        let distance = (here.body_from_global * (point - here.origin)).cross(&axis_body).norm() / radius;
+        let distance = (here.body_from_global * (point - at.origin_global(here)[0])).cross(&axis_body).norm() / radius;
         if distance.is_nan() || distance > SYMMETRIC {
             return Err(RotorError::Unbalanced { distance });
         }

@@ -14,15 +14,17 @@ impl SystemMotion {
     /// A point and the z axis of the first marker of a joint, global.
     pub fn joint_axis(&self, joint: usize) -> (Vector3<f64>, Vector3<f64>) {
         let at = Configuration::of(self, &CommonSpin::REST);
-        let [first, _] = at.places(&self.system().joints()[joint].markers);
-        (first.position, first.axes.column(2).into())
+        let markers = &self.system().joints()[joint].markers;
+        let [first, _] = at.places(markers);
+        (at.global_by(markers, &first.position), first.axes.column(2).into())
     }
 
     /// The center of mass of all bodies, undeformed, global.
     pub fn center_of_mass(&self) -> Vector3<f64> {
         let at = Configuration::of(self, &CommonSpin::REST);
         let bodies = || self.system().bodies().iter();
-        let moment: Vector3<f64> = bodies().zip(&at.bodies).map(|(body, at)| at.origin * body.mass()).sum();
+        let moment: Vector3<f64> =
+            bodies().zip(&at.bodies).map(|(body, of)| at.origin_global(of)[0] * body.mass()).sum();
         moment / bodies().map(crate::ConservativeBody::mass).sum::<f64>()
     }
 

@@ -213,11 +213,20 @@ impl Unbalance {
 impl SteadyState {
     /// The state of each body.
     pub fn states(&self) -> Vec<MotionState> {
+        self.states_by(|body| self.configuration.origin_global(body))
+    }
+
+    /// The same with positions and velocities in the frames of the bodies.
+    pub(crate) fn states_in_frame(&self) -> Vec<MotionState> {
+        self.states_by(|body| [body.origin, body.body_from_global.tr_mul(&body.velocity)])
+    }
+
+    fn states_by(&self, origin_and_velocity: impl Fn(&BodyConfiguration) -> [Vector3<f64>; 2]) -> Vec<MotionState> {
         let of_body = |body: &BodyConfiguration| MotionState {
             time: self.configuration.time,
             attitude: body.attitude,
-            origin_global: body.origin,
-            velocity_global: body.body_from_global.tr_mul(&body.velocity),
+            origin_global: origin_and_velocity(body)[0],
+            velocity_global: origin_and_velocity(body)[1],
             omega_body: body.omega,
             modal_displacement: body.q.clone(),
             modal_velocity: vec![0.0; body.q.len()],

@@ -160,8 +160,8 @@ impl Terms {
         self.of_mass.assemble(&self.pattern, constraints, &self.mass_inverses);
         let places: Vec<_> = at.bodies.iter().map(|body| (body.origin, body.body_from_global)).collect();
         let (positions, attitudes): (Vec<_>, Vec<_>) = places.into_iter().unzip();
-        let points = system.connections.joints.iter().map(|joint| at.places(&joint.markers)[1].position).collect();
-        let posture = Posture { positions: &positions, attitudes: &attitudes, ends: &constraints.ends, points };
+        let points = system.connections.joints.iter().map(|joint| at.places(&joint.markers)[1].position);
+        let posture = Posture::new(system, positions.into_iter(), points, &attitudes, &constraints.ends);
         self.is_implied = Judgement::first(system, &posture, true).rank.is_implied;
         self.of_mass.factor(&self.pattern, &self.is_implied);
         let of_rigid = Judgement::first(system, &posture, false).rank.is_implied;
@@ -218,11 +218,7 @@ fn force_ties<'a>(system: &'a System, at: &'a Configuration) -> impl Iterator<It
         tie.add_joint_force((coordinate, force), &at.places(&joint.markers), at.turns[number], at.time);
         tie
     });
-    let of_elements = system.connections.elements.iter().map(move |element| {
-        let mut tie = Tie::new(system, at, element.markers().iter());
-        tie.add_element(&**element, at);
-        tie
-    });
+    let of_elements = (0..system.connections.elements.len()).map(move |number| Tie::of_element(system, at, number));
     of_joints.chain(of_elements)
 }
 
@@ -282,11 +278,8 @@ pub(crate) fn springs(system: &System, at: &Configuration) -> Vec<(Spring, Tie)>
         tie.add_coordinate(coordinate, &at.places(&joint.markers), at.turns[number], law);
         (Spring::Joint(number), tie)
     });
-    let of_elements = system.connections.elements.iter().enumerate().map(|(number, element)| {
-        let mut tie = Tie::new(system, at, element.markers().iter());
-        tie.add_element(&**element, at);
-        (Spring::Element(number), tie)
-    });
+    let of_elements = (0..system.connections.elements.len())
+        .map(|number| (Spring::Element(number), Tie::of_element(system, at, number)));
     of_joints.chain(of_elements).collect()
 }
 

@@ -5,7 +5,6 @@ use nalgebra::Vector3;
 
 use crate::conservative::ConservativeBody;
 use crate::system::description::System;
-use crate::system::element::ForceElement;
 use crate::system::joint::change::{FrameChange, WrenchChange};
 use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::force::JointForce;
@@ -179,9 +178,17 @@ impl Tie {
         });
     }
 
-    /// A force element.
-    pub fn add_element(&mut self, element: &dyn ForceElement, at: &Configuration) {
-        let markers = element.markers();
+    /// A force element, by its number.
+    pub fn of_element(system: &System, at: &Configuration, number: usize) -> Self {
+        let markers = &system.connections.element_markers[number];
+        let mut tie = Self::new(system, at, markers.iter());
+        tie.add_element(system, number, at);
+        tie
+    }
+
+    fn add_element(&mut self, system: &System, number: usize, at: &Configuration) {
+        let element = &*system.connections.elements[number];
+        let markers = &system.connections.element_markers[number];
         let times = [at.time; 2];
         let motions: Vec<MarkerMotion> = markers
             .iter()
@@ -189,12 +196,16 @@ impl Tie {
             .map(|(k, marker)| {
                 let place = marker.place(marker.body().map(|b| at.place(b)).as_ref());
                 let velocity = |first: usize| Vector3::from_fn(|i, _| self.velocities[6 * k + first + i]);
-                MarkerMotion {
+                let motion = MarkerMotion {
                     position_global: place.position,
                     axes_global: place.axes,
                     velocity_global: velocity(0),
                     omega_global: velocity(3),
-                }
+                };
+                let motion = system.motion_for(number, marker, motion, at.time);
+                let carried = marker.body().map_or_else(Vector3::zeros, |body| at.bodies[body].carried);
+                let velocity = if element.is_relative() { velocity(0) } else { velocity(0) + carried };
+                MarkerMotion { velocity_global: velocity, ..motion }
             })
             .collect();
         let mut wrenches = vec![MarkerWrench::default(); markers.len()];
