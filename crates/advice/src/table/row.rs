@@ -34,7 +34,7 @@ impl Subject {
             Self::Effect(effect) => match effect {
                 Effect::Flexibility => "|q̈|/|a_rigid|",
                 Effect::Damping => "ζ_k ω_k T",
-                Effect::Gravity => "m g T / (all impulses)",
+                Effect::Gravity => "m g T / (all impulses), or g T²/L",
                 Effect::DeformedInertia => "2c·q/J",
                 Effect::Coriolis => "2 Ω G_kl/ω_k",
                 Effect::GeometricStiffening => "Ω² K_σ,kk/ω_k²",

@@ -169,6 +169,21 @@ fn gravity_is_told_by_its_mark_wherever_it_stands_among_the_loads() {
     assert!(!row([&push, &weight], &[]).on);
 }
 
+/// Closed form: a velocity at the start changes nothing of what gravity does to a body, nor does a push that takes it further.
+#[test]
+fn what_gravity_moves_by_a_part_of_the_length_is_kept_however_fast_the_body_flies() {
+    let zeta = [0.0; 10];
+    let initial = Initial { velocity: Vector3::x() * 7.5e6, ..Initial::at_rest(10) };
+    let weight = plate().force([0.0, 0.0, 5.0], [0.0, 0.0, -9810.0 * plate().body.mass], History::Constant);
+    let push = plate().force(CORNER, [0.0, 0.0, 1e7 * plate().body.mass], History::Constant);
+    let on = |end: f64| {
+        let loads = [weight.clone(), push.clone()];
+        let case = Case { is_gravity: &[true, false], ..plate().case(&zeta, &loads, &initial, end) };
+        advise(&case, 1e-3).unwrap().effects[Effect::Gravity].on
+    };
+    assert!(on(0.1) && !on(1e-4));
+}
+
 #[test]
 fn lists_of_another_length_and_numbers_out_of_range_are_refused() {
     let initial = Initial::at_rest(10);

@@ -72,7 +72,7 @@ impl Frame {
     }
 
     /// A place in the frame, global.
-    pub fn to_global(&self, position: &Vector3<f64>, time: f64) -> Vector3<f64> {
+    pub fn global_place(&self, position: &Vector3<f64>, time: f64) -> Vector3<f64> {
         self.anchor() + (self.way(time) + position)
     }
 

@@ -98,9 +98,9 @@ impl ConservativeBody {
         let center = self.center.position_body(shapes[0]);
         out.time = time;
         out.attitude = attitude;
-        out.origin_global = self.frame.to_global(&position, time);
+        out.origin_global = self.frame.global_place(&position, time);
         out.origin_acceleration_global = acceleration_of_origin;
-        out.position_global = self.frame.to_global(&(position + global(center)), time);
+        out.position_global = self.frame.global_place(&(position + global(center)), time);
         out.velocity_global = velocity_of_origin + global(omega.cross(&center) + self.center.deformation(shapes[1]));
         out.omega_body = omega;
         out.alpha_body = alpha;

@@ -122,7 +122,7 @@ impl ConservativeBody {
                 coordinates = Coordinates { first, displacement: q, velocity: modal_velocity, on_manifold: None };
                 applied = Applied::new(coordinates, Vector3::zeros(), momentum);
             }
-            let origin_global = self.frame.to_global(&get(slow, part::POSITION), t);
+            let origin_global = self.frame.global_place(&get(slow, part::POSITION), t);
             let motion = Kinematics {
                 time: t,
                 branch_time,

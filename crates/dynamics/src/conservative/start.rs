@@ -87,7 +87,7 @@ impl ConservativeBody {
     pub(super) fn motion_of(&self, state: &State) -> Result<MotionState, RateError> {
         let in_frame = self.motion_in_frame(state)?;
         Ok(MotionState {
-            origin_global: self.frame.to_global(&in_frame.origin_global, state.time),
+            origin_global: self.frame.global_place(&in_frame.origin_global, state.time),
             velocity_global: in_frame.velocity_global + self.frame.velocity(),
             ..in_frame
         })

@@ -166,7 +166,7 @@ impl System {
         }
         let frame = marker.body().map(|body| self.bodies[body].frame);
         let (position_global, velocity) = match frame {
-            Some(frame) => (frame.to_global(&motion.position_global, time), frame.velocity()),
+            Some(frame) => (frame.global_place(&motion.position_global, time), frame.velocity()),
             None => (marker.ground_position(), Vector3::zeros()),
         };
         MarkerMotion { position_global, velocity_global: motion.velocity_global + velocity, ..motion }

@@ -360,7 +360,7 @@ impl SystemMotion {
             let list = body.list(state);
             let [position, momentum, pi] =
                 [part::POSITION, part::MOMENTUM, part::PI].map(|part| get(list.slow(), part));
-            let position = body.frame.to_global(&position, self.time);
+            let position = body.frame.global_place(&position, self.time);
             let momentum = momentum + body.frame.velocity() * body.mass();
             sums[0] += momentum;
             sums[1] += position.cross(&momentum) + list.attitude().to_global(&pi);

@@ -72,6 +72,8 @@ pub struct SystemSimulation {
     branching: Option<Branching>,
     /// The largest residual at the ends of steps, as a length over the size of the system.
     largest_residual: f64,
+    /// The first time at which the rounding of places of the ground decides how a linkage goes on.
+    undecided_at: Option<f64>,
     stats: Stats,
     account: EnergyAccount,
     /// Energy exchanged of each body, see [`Self::exchanged`].
@@ -166,6 +168,7 @@ impl SystemSimulation {
             redundant,
             branching,
             largest_residual: 0.0,
+            undecided_at: None,
             stats: Stats::NONE,
             account: EnergyAccount::default(),
             events: Events::default(),
@@ -223,6 +226,12 @@ impl SystemSimulation {
     /// The largest residual of all rows of joints and couplings at the ends of the steps so far, as a length over the size of the system.
     pub fn largest_residual(&self) -> f64 {
         self.largest_residual
+    }
+
+    /// The first time at which a linkage has passed so near a singular position that the rounding of places of the ground decides how it goes
+    /// on.
+    pub fn undecided_at(&self) -> Option<f64> {
+        self.undecided_at
     }
 
     /// Degrees of freedom that the joints leave rigid bodies at the beginning.
@@ -621,6 +630,9 @@ impl SystemSimulation {
     fn count(&mut self, length: f64) {
         self.stats.take(1, length);
         self.largest_residual = larger(self.largest_residual, self.motion.residual_of_last_step());
+        if self.motion.is_undecided() {
+            self.undecided_at.get_or_insert(self.motion.time());
+        }
         self.steps_since_row += 1;
         let mut total = [0.0; 2];
         for (body, exchanged) in self.exchanged.iter_mut().enumerate() {

@@ -9,9 +9,11 @@ use crate::system::geometry::tree::Tree;
 
 /// Part of a row over its size, beside others, below which they imply it where the joints are closed.
 pub(crate) const IMPLIED: f64 = 1e-7;
-/// The same over the rounding of places on the ground, as a part of the shortest loop; and at most.
+/// The same over the rounding of places of the ground as a part of the shortest loop; and at most.
 const OF_ROUNDING: f64 = 10.0;
 const LARGEST_IMPLIED: f64 = 1e-3;
+/// Part of a row, over the root of that rounding, below which the rounding decides how a linkage goes on.
+const UNDECIDED: f64 = 4.0;
 /// Rows that were held before stay so, unless others are this many times better.
 const HELD: f64 = 4.0;
 
@@ -29,6 +31,8 @@ pub(crate) struct Rank {
     pub free: Option<Vec<f64>>,
     /// The smallest part of a row that is kept.
     pub smallest: f64,
+    /// True if the position is singular but for what places of the ground are rounded by.
+    pub is_undecided: bool,
 }
 
 /// The loops of a system where its bodies are, and which rows the others imply there.
@@ -71,7 +75,8 @@ impl Rank {
     /// Judges the rows; `held` are left out last. Places of the ground are off by `rounding`, which turns rows that others imply a little.
     pub fn new(loops: &Loops, held: &[bool], rounding: f64) -> Self {
         let shortest = loops.rows.iter().map(|row| loops.lengths[*row]).fold(f64::INFINITY, f64::min);
-        let implied = IMPLIED.max((OF_ROUNDING * rounding / shortest).min(LARGEST_IMPLIED));
+        let rounding = rounding / shortest;
+        let implied = IMPLIED.max((OF_ROUNDING * rounding).min(LARGEST_IMPLIED));
         let mut is_implied = vec![false; loops.sizes.len()];
         let (columns, count) = loops.matrix.shape();
         let factor = |a: usize| if held[loops.rows[a]] { HELD } else { 1.0 };
@@ -80,7 +85,7 @@ impl Rank {
             loops.rows.iter().for_each(|row| is_implied[*row] = true);
             let idle = (0..count).map(|a| loops.idle_row(&[(a, 1.0)])).collect();
             let free = (columns == 1).then(|| vec![1.0]);
-            return Self { is_implied, idle, free, smallest: f64::INFINITY };
+            return Self { is_implied, idle, free, smallest: f64::INFINITY, is_undecided: false };
         }
         let qr = weighted.col_piv_qr();
         let (q, r) = (qr.q(), qr.r());
@@ -105,7 +110,9 @@ impl Rank {
             (&column / column.norm()).as_slice().to_vec()
         });
         let smallest = (0..rank).map(|i| r[(i, i)].abs() / factor(order[i])).fold(f64::INFINITY, f64::min);
-        Self { is_implied, idle, free, smallest }
+        // A gap g bends the ways through a singular position within √g of it.
+        let is_undecided = rounding > 0.0 && smallest < UNDECIDED * rounding.sqrt();
+        Self { is_implied, idle, free, smallest, is_undecided }
     }
 }
 

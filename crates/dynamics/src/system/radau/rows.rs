@@ -41,6 +41,11 @@ impl SystemMotion {
         }
     }
 
+    /// True if the last step began so near a singular position that the rounding of places of the ground decides how the linkage goes on.
+    pub(in crate::system) fn is_undecided(&self) -> bool {
+        self.judgement.as_ref().is_some_and(|known| known.rank.is_undecided)
+    }
+
     /// The largest residual of all rows at the end of the last step, as a length over the size of the system.
     pub(in crate::system) fn residual_of_last_step(&self) -> f64 {
         let (Some(known), [.., last]) = (&self.judgement, &self.stages) else { return 0.0 };

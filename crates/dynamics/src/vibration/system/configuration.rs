@@ -150,13 +150,13 @@ impl Configuration {
     /// The place of the origin of a body, and the velocity, global.
     pub fn origin_global(&self, body: &BodyConfiguration) -> [Vector3<f64>; 2] {
         let velocity = body.body_from_global.tr_mul(&body.velocity) + body.carried;
-        [body.frame.to_global(&body.origin, self.time), velocity]
+        [body.frame.global_place(&body.origin, self.time), velocity]
     }
 
     /// A place next to the first of some markers, global.
     pub fn global_by(&self, markers: &[Marker; 2], place: &Vector3<f64>) -> Vector3<f64> {
         let frame = markers.iter().find_map(|marker| Some(self.bodies[marker.body()?].frame));
-        frame.map_or(*place, |frame| frame.to_global(place, self.time))
+        frame.map_or(*place, |frame| frame.global_place(place, self.time))
     }
 
     /// The place of a body.

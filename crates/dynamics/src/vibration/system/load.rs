@@ -39,7 +39,7 @@ struct Seen {
 
 /// The loads at a time.
 pub(crate) fn load_forces(body: &ConservativeBody, at: &BodyConfiguration, time: f64) -> LoadForces {
-    let origin = body.frame.to_global(&at.origin, time);
+    let origin = body.frame.global_place(&at.origin, time);
     let nf = at.q.len();
     let n = 6 + nf;
     let here = Seen {

@@ -32,6 +32,8 @@ pub struct TiedReport {
     /// The largest residual of all rows of joints and couplings at the ends of the steps, as a length over the size of the system.
     #[serde(serialize_with = "json::number")]
     pub largest_residual: f64,
+    /// The first time at which the rounding of places of the ground far away decides how a linkage goes on.
+    pub undecided_at: Option<f64>,
     /// Where the motion branches at the beginning: joints, with their rates on the branch that was taken and on the other.
     pub branches: Vec<(String, [f64; 2])>,
     /// Changes by which the joints closed at the beginning, of the bodies that were not where they had to be.
@@ -129,6 +131,7 @@ impl TiedReport {
             rigid_dofs: simulation.rigid_dofs(),
             redundant: simulation.redundant().to_vec(),
             largest_residual: simulation.largest_residual(),
+            undecided_at: simulation.undecided_at(),
             branches: simulation.branching().map(|of| of.joints.clone()).unwrap_or_default(),
             assembled: assembled.filter(is_told).collect(),
             size,
@@ -144,7 +147,7 @@ impl TiedReport {
 }
 
 impl TiedReport {
-    /// Warnings of bodies that were moved far.
+    /// Warnings of bodies that were moved far, and of ways that rounding has chosen.
     pub(super) fn doubts(&self) -> impl Iterator<Item = String> {
         let is_far = |of: &&AssembledReport| of.moved > FAR * self.size || of.turned > FAR;
         self.assembled.iter().filter(is_far).map(|AssembledReport { body, moved, turned, .. }| {
@@ -153,7 +156,13 @@ impl TiedReport {
                 "{body} does not begin where its scene has it, but moved by {moved} and turned by {turned} rad, since its joints do not \
                  close there: if this was not meant, a position, an attitude, a marker or the start of a drive is wrong"
             )
-        })
+        }).chain(self.undecided_at.map(|time| {
+            format!(
+                "at time {} the linkage passes a singular position, nearer than its places on the ground are known so far from the origin: \
+                 their rounding decides which way it goes on; put the origin of the scene near its bodies",
+                quantity(rounded(time, 4))
+            )
+        }))
     }
 }
 
