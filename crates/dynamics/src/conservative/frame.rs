@@ -19,7 +19,7 @@ pub(crate) struct Frame {
     moved: [f64; 3],
     velocity: [f64; 3],
     time: f64,
-    /// What angular momenta of a system are counted about, in the frame.
+    /// The place that angular momenta of a system are about, in the frame.
     center: [f64; 3],
 }
 
@@ -61,7 +61,7 @@ impl Frame {
         Vector3::from(self.moved) + self.velocity() * (time - self.time)
     }
 
-    /// What angular momenta are about, in the frame.
+    /// The place that angular momenta are about, in the frame.
     pub fn center(&self) -> Vector3<f64> {
         self.center.into()
     }

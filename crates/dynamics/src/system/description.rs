@@ -1,6 +1,7 @@
 //! Bodies and what connects them.
 
 mod groups;
+pub(crate) mod islands;
 
 use std::sync::Arc;
 
@@ -10,8 +11,8 @@ use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
 use crate::system::connections::Connections;
 use crate::system::description::groups::free_groups;
+use crate::system::description::islands::{Island, islands};
 use crate::system::element::ForceElement;
-use crate::system::frame::{Island, islands};
 use crate::system::joint::Joint;
 use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::coupling::Coupling;
@@ -34,7 +35,7 @@ pub struct System {
     pub(crate) islands: Vec<Island>,
     /// The size of each body: its radius of gyration, or the distance of a marker from its origin.
     pub(crate) sizes: Vec<f64>,
-    /// What places of the ground that hold bodies between them may be off by: numbers far from the origin round.
+    /// The error of places of the ground that hold bodies between them: numbers far from the origin round.
     pub(crate) rounding: f64,
 }
 

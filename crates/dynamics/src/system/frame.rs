@@ -17,7 +17,7 @@ use crate::conservative::{ConservativeBody, get, part, set};
 use crate::state::State;
 use crate::system::collocation::STAGES;
 use crate::system::description::System;
-use crate::system::marker::Marker;
+use crate::system::description::islands::Island;
 use crate::system::radau::SystemMotion;
 use crate::system::radau::past::Past;
 use crate::system::stage::{put, vector};
@@ -26,36 +26,6 @@ use crate::system::stage::{put, vector};
 pub(crate) const GAP: f64 = 8.0;
 /// Way of the centre of mass in its frame, over the size of the island, from which it gets a new frame.
 const STRAYED: f64 = 100.0;
-
-/// Bodies that joints or elements connect with each other.
-#[derive(Debug, Clone)]
-pub(crate) struct Island {
-    pub bodies: Vec<usize>,
-    /// True if one of them is tied to the ground.
-    is_on_ground: bool,
-}
-
-/// The islands of bodies with these connections.
-pub(crate) fn islands<'m>(bodies: usize, groups: impl Iterator<Item = Vec<&'m Marker>>) -> Vec<Island> {
-    let mut island: Vec<usize> = (0..bodies).collect();
-    let mut is_on_ground = vec![false; bodies];
-    for markers in groups {
-        let held: Vec<usize> =
-            markers.iter().filter_map(|marker| marker.body()).filter(|body| *body < bodies).collect();
-        let Some(first) = held.first() else { continue };
-        is_on_ground[*first] |= held.len() < markers.len();
-        for body in &held {
-            let (from, to) = (island[*body], island[*first]);
-            island.iter_mut().filter(|island| **island == from).for_each(|island| *island = to);
-        }
-    }
-    let of = |number: usize| {
-        let bodies: Vec<usize> = (0..bodies).filter(|body| island[*body] == number).collect();
-        let is_on_ground = bodies.iter().any(|body| is_on_ground[*body]);
-        (!bodies.is_empty()).then_some(Island { bodies, is_on_ground })
-    };
-    (0..bodies).filter_map(of).collect()
-}
 
 impl System {
     /// Gives the bodies frames in which they begin in these states, and the markers on the ground the anchors of these.

@@ -24,7 +24,7 @@ pub struct Marker {
     body: Option<usize>,
     /// X, from the origin of the body in its axes; of the ground, global.
     position: Vector3<f64>,
-    /// What places of the ground are counted from in a system.
+    /// The place that those of the ground are counted from in a system.
     #[serde(skip)]
     anchor: Vector3<f64>,
     /// Columns of Ψ (nf); on a manifold of large modes those of its coordinates z.
