@@ -272,7 +272,9 @@ damping_ratio = 0.01
 "
     );
     let is_tie = |name: &str| read.beside.ties.iter().any(|tie| tie.group == name);
-    let node_set = parts.node_groups.iter().find(|group| group.nodes.len() >= 3 && !is_tie(&group.name));
+    // Decks often have a set of all nodes.
+    let some = 3..mesh.positions().len();
+    let node_set = parts.node_groups.iter().find(|group| some.contains(&group.nodes.len()) && !is_tie(&group.name));
     let region = match faces.first().cloned().or(node_set.map(|group| quoted(&group.name))) {
         Some(group) => format!("group = {group}"),
         None => format!("at = {end:?}\n# radius = {}", short(0.05 * size[longest])),
