@@ -201,6 +201,13 @@ random-systems-python:
     python3 -m venv .tools/random-systems
     .tools/random-systems/bin/pip install -q h5py==3.16.0 numpy==2.4.6 scipy==1.17.1
 
+# Random scenes, signals, forged files, decks, FMI calls and full disks against the program: the counts in docs/evidence/attacks.md
+# (Python packages, gmsh; half an hour; `--only systems,fmi --part 0.1` for a part; full disks need the right to mount).
+attacks *options: random-systems-python
+    cargo build --quiet --package fmi
+    nice .tools/random-systems/bin/python crates/verification/attacks/attacks.py target/debug/flexframe target/debug/libflexframe_fmi.so \
+        out/attacks --page docs/evidence/attacks.md {{options}}
+
 # Systems of bodies in joints by radau and rkmk4: processor time at equal error.
 schemes:
     cargo build --quiet --package verification --bin systems
@@ -345,13 +352,16 @@ report-page-test:
 # Fuzz every reader for so many seconds each (libFuzzer; wants a nightly compiler).
 fuzz seconds="600":
     test -x .tools/bin/cargo-fuzz || cargo install --quiet --locked --root .tools cargo-fuzz@0.13.2
-    mkdir -p crates/fuzz/corpus/{mesh,scene,table,expression,results}
+    mkdir -p crates/fuzz/corpus/{mesh,deck,scene,table,expression,results,fmi}
     cd crates/fuzz && export RUSTUP_TOOLCHAIN=nightly && \
     cargo run --quiet --release --bin results-seeds corpus/results && \
-    fuzz() { ../../.tools/bin/cargo-fuzz run --fuzz-dir . "$1" "corpus/$1" "${@:2}" -- -max_total_time={{seconds}} \
+    features="" && \
+    fuzz() { ../../.tools/bin/cargo-fuzz run --fuzz-dir . --features "$features" "$1" "corpus/$1" "${@:2}" -- -max_total_time={{seconds}} \
         -max_len=65536 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=512 -print_final_stats=1; } && \
     fuzz mesh ../fem-tet10/tests/data && \
-    fuzz scene ../../examples ../scene/src && \
+    fuzz deck seeds/deck && \
+    features=fmi && fuzz fmi && features="" && \
+    fuzz scene ../../examples ../../examples/mechanisms ../../tests ../scene/src && \
     fuzz table seeds/table && \
     fuzz expression seeds/expression && \
     fuzz results

@@ -318,3 +318,19 @@ fn a_gear_whose_motor_begins_within_an_instant_turns_as_it_must() {
         assert!((driven + 2.5 * geared).abs() < 1e-9 * expected, "{driven} {geared}");
     });
 }
+
+/// Closed form: a joint that holds nothing lets its body fall by ½ g t².
+#[test]
+fn a_joint_that_holds_nothing_holds_nothing() {
+    let text = "title = \"falls\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n[bodies.ball]\n\
+                rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }\n\
+                markers = { m = { at = [0, 0, 0] } }\nloads = [{ kind = \"gravity\", direction = [0, 0, -1], amplitude = 8.0 }]\n\
+                [[joints]]\nname = \"none\"\nlocked = []\naxis = [0, 0, 1]\nbetween = [\"ground\", \"ball.m\"]\n[time]\nend = 0.5\ntolerance = 1e-6\n";
+    let folder = tempfile::tempdir().unwrap();
+    let system = System::parse(text, folder.path().join("ball.toml")).unwrap();
+    let settings = RunSettings { check: false, ..RunSettings::default() };
+    let (_, report) = run(&system, folder.path(), &settings, |_| ()).unwrap();
+    let results = Results::open(&report.results, &COLUMNS).unwrap();
+    let [_, _, height] = *results.vectors::<3>("bodies/ball/position").unwrap().last().unwrap();
+    assert!((height + 1.0).abs() < 1e-9, "{height}");
+}

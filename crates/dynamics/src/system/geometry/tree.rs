@@ -145,7 +145,9 @@ impl Tree {
         let columns = DMatrix::from_fn(6, all.len(), |i, k| wrenches[k][i] / sizes[k]);
         let kept = independent(&columns, IMPLIED);
         let w = DMatrix::from_fn(kept.len(), 6, |i, k| columns[(k, kept[i])]);
-        let closing = w.clone().pseudo_inverse(1e-12).unwrap_or_else(|_| DMatrix::zeros(6, kept.len()));
+        // A joint may hold nothing.
+        let inverse = (!kept.is_empty()).then(|| w.clone().pseudo_inverse(1e-12).ok()).flatten();
+        let closing = inverse.unwrap_or_else(|| DMatrix::zeros(6, kept.len()));
         let projector = Matrix6::identity() - Matrix6::from_fn(|i, k| (closing.row(i) * w.column(k))[0]);
         let basis = projector.col_piv_qr().q();
         let free = (0..6 - kept.len()).map(|k| basis.column(k).into()).collect();
