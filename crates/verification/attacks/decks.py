@@ -52,8 +52,7 @@ def change(rng, lines):
 
 
 def attack(program, trials, first=0):
-    count = Count("decks", "decks of Abaqus, Nastran and UNV and meshes in MSH with one to thirty lines or fields deleted, doubled, cut, swapped or replaced; read by `new` "
-                  "and `modes`")
+    count = Count("decks", "decks of Abaqus, Nastran and UNV and meshes in MSH with one to thirty lines or fields deleted, doubled, cut, swapped or replaced; read by `new`")
     folder = os.path.join(program.folder, "decks")
     sound = seeds(folder)
     for seed in count.seeds(first, trials):

@@ -190,8 +190,8 @@ COMMANDS = [["modes"], ["advise"], ["linearize", "-o", "l.json"], ["campbell", "
 
 
 def attack(program, trials, first=0):
-    count = Count("systems", "random scenes of one to five bodies with all keys of joints, springs, couplings and histories, a tenth of them impossible; run, "
-                  "and each third by another command")
+    count = Count("systems", "random scenes of one to five bodies with all keys of joints, springs, couplings and histories, a quarter of them with wrong ones; run, "
+                  "and some of those that ran by another command")
     folder = os.path.join(program.folder, "systems")
     os.makedirs(folder, exist_ok=True)
     for seed in count.seeds(first, trials):
