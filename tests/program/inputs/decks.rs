@@ -60,6 +60,14 @@ fn a_scene_of_a_deck_has_its_units_its_material_and_its_masses() {
         "{ties}"
     );
     assert!(masses.contains("not used: 1 CONM2 (7.0000e-1"), "{masses}");
+    // The nodes of the tie alone do not tell the motion of a point beside them.
+    let settings = ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false };
+    let (_, notes) = scene_text(Path::new(&mesh), &settings).unwrap();
+    let told = "1 of the masses are carried by other nodes than those of their ties";
+    assert!(
+        notes.iter().any(|note| note.contains(told) && note.contains("0.5 at [210.0, 0.0, 0.0], of RBE3_90004")),
+        "{notes:?}"
+    );
     // Without them the masses are told.
     let (before, rest) = text.split_once("point_masses = [").unwrap();
     let without = folder.path().join("without.toml");

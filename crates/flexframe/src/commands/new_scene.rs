@@ -385,18 +385,32 @@ const LIGHTER: f64 = 2700.0 / 7850.0;
 /// The masses of a mesh file as lines of `[body]`. A note tells of those that nothing of the body carries.
 fn point_masses(mesh: &Mesh, beside: &Beside, notes: &mut Vec<String>) -> String {
     let (mut lines, mut count) = (String::new(), 0);
-    let mut is_left = Vec::new();
+    let (mut is_left, mut others) = (Vec::new(), Vec::new());
     for DeckMass { at, mass, .. } in &beside.masses {
         let is_on_body = mesh.locate(*at).is_ok();
-        let spread = if is_on_body { None } else { spread_of(mesh, &beside.ties, *at) };
+        let tie = beside.ties.iter().find(|tie| tie.at == Some(*at));
+        let spread = tie.filter(|_| !is_on_body).and_then(|tie| spread_of(mesh, tie, *at));
         if *mass <= 0.0 || !(is_on_body || spread.is_some()) || count == MAX_MASSES {
             is_left.push((*at, *mass));
             continue;
         }
         count += 1;
+        if let (Some(radius), Some(tie)) = (spread, tie)
+            && carriers(mesh, *at, radius) != HashSet::from_iter(mesh.group_nodes(&tie.group).unwrap_or_default())
+        {
+            others.push(format!("{mass:?} at {at:?}, of {}", tie.group));
+        }
         let spread = spread.map_or_else(String::new, |radius| format!(", spread = {radius:?}"));
         // Writing to a string does not fail.
         let _ = writeln!(lines, "    {{ at = {at:?}, mass = {mass:?}{spread} }},");
+    }
+    if let Some(first) = others.first() {
+        notes.push(format!(
+            "{} of the masses are carried by other nodes than those of their ties, and the frequencies are not those of the file: {first}{} (exact: a \
+             rigid body in a fixed joint at the marker, docs/reference/systems.md)",
+            others.len(),
+            if others.len() > 1 { ", …" } else { "" },
+        ));
     }
     notes.extend(beside.unused_masses(|mass| !is_left.contains(&(mass.at, mass.mass))));
     if lines.is_empty() {
@@ -410,13 +424,19 @@ fn point_masses(mesh: &Mesh, beside: &Beside, notes: &mut Vec<String>) -> String
 /// Point masses of a scene.
 const MAX_MASSES: usize = 1000;
 
+/// Nodes within a radius.
+fn carriers(mesh: &Mesh, at: [f64; 3], radius: f64) -> HashSet<u32> {
+    let nodes = (0..).zip(mesh.positions());
+    nodes.filter(|(_, x)| distance(x, at) <= radius).map(|(node, _)| node).collect()
+}
+
+fn distance(x: &[f64; 3], at: [f64; 3]) -> f64 {
+    (0..3).map(|i| (x[i] - at[i]).powi(2)).sum::<f64>().sqrt()
+}
+
 /// A radius whose nodes can carry the mass at the point of a tie: up to the farthest node of the tie, or farther into the body.
-fn spread_of(mesh: &Mesh, ties: &[DeckTie], at: [f64; 3]) -> Option<f64> {
-    let tie = ties.iter().find(|tie| tie.at == Some(at))?;
-    let distance = |node: &u32| {
-        let x = mesh.positions()[*node as usize];
-        (0..3).map(|i| (x[i] - at[i]).powi(2)).sum::<f64>().sqrt()
-    };
+fn spread_of(mesh: &Mesh, tie: &DeckTie, at: [f64; 3]) -> Option<f64> {
+    let distance = |node: &u32| distance(&mesh.positions()[*node as usize], at);
     let farthest = mesh.group_nodes(&tie.group).ok()?.iter().map(distance).fold(0.0, f64::max);
     let carries = |radius: &f64| {
         let mass = PointMass { at, mass: 1.0, spread: Some(*radius) };

@@ -93,7 +93,7 @@ pub(crate) struct Section {
     pub(crate) is_solid: bool,
     pub(crate) set: String,
     pub(crate) material: String,
-    /// Section of a shell, where it is of one layer.
+    /// Thickness of a shell of one layer.
     pub(crate) thickness: Option<f64>,
 }
 
