@@ -43,7 +43,7 @@ pub use building::variants::Variants;
 pub use cache::{Cache, CacheNotes};
 pub use error::{BuildError, StartError};
 pub use full::acting::MarkerForce;
-pub use full::check::{Checker, FrequencyCheck, PointCheck, StateCheck};
+pub use full::check::{Checker, Course, FrequencyCheck, PointCheck, StateCheck};
 pub use full::mends::{ErrorDirection, ErrorPart, Mend};
 pub use full::stress::{BodyStressCheck, PointStress, StressCheck};
 pub use full::{FullError, FullModel};

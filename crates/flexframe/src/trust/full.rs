@@ -5,6 +5,9 @@ use model::{ErrorDirection, ErrorPart};
 use super::card::{Line, Place, SMALL, percent};
 use crate::commands::check::report::{BodyCheck, DEAR, RowCheck};
 
+/// Cure for vibrations that go out of step.
+const DRIFT: &str = "another number of large modes (`[modes] large`, `following`), or modes about the bent rest (`[modes] about`), and compare";
+
 /// The lines of a body: of its modes and of its model.
 pub(super) fn lines(is_rigid: bool, check: Result<Option<&BodyCheck>, &str>, file: &str) -> [Line; 2] {
     if is_rigid {
@@ -50,8 +53,14 @@ fn known(rows: &[RowCheck]) -> [Line; 2] {
 
     let (of_modes, next) = worst(true);
     let modes = Place::Modes.known(of_modes, off(of_modes), measured.clone(), next);
-    let (of_model, next) = worst(false);
+    let (mut of_model, mut next) = worst(false);
     let mut meaning = off(of_model);
+    let drift = rows.iter().map(|row| row.state.drift).fold(0.0, f64::max);
+    if drift >= SMALL && drift > of_model {
+        meaning = format!("{meaning}, its vibrations by up to {} at the end", percent(drift));
+        of_model = drift;
+        next = DRIFT.to_owned();
+    }
     let frequencies = rows.iter().flat_map(|row| &row.state.frequencies).map(|frequency| frequency.error.abs());
     let frequency = frequencies.fold(0.0, f64::max);
     if frequency >= SMALL {

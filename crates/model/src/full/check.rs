@@ -39,6 +39,9 @@ pub struct StateCheck {
     pub beside_modes: f64,
     /// The error by its directions with what would mend each, as `error_of_largest`.
     pub parts: [ErrorPart; 3],
+    /// The error to which the vibrations of the run may come by its end, over the largest displacements as `error_of_largest`: if the forces along
+    /// the modes are wrong all the time as much as here, in step with them, Eq. (K8) of `docs/method/check.md`.
+    pub drift: f64,
     /// Largest error of the displacement of a node, length.
     pub largest_error: f64,
     /// Largest true displacement by deformation of a node, length.
@@ -94,7 +97,16 @@ pub struct Checker<'a> {
     body: &'a FullBody<'a>,
     at_rest: Tangent<'a>,
     points: Vec<(String, Location)>,
-    largest: f64,
+    course: Course,
+}
+
+/// The modal displacements of a run, as far as they are known.
+#[derive(Debug, Clone, Default)]
+pub struct Course {
+    /// The largest of the model's displacements, in the norm of the mass.
+    pub largest: f64,
+    /// Half of the way between the least and the largest displacement of each mode.
+    pub swings: Vec<f64>,
 }
 
 impl<'a> Checker<'a> {
@@ -112,13 +124,13 @@ impl<'a> Checker<'a> {
             let located = full.assembled.mesh.locate(at);
             located.map_err(|error| refuse(scene, &key, error).into())
         })?;
-        Ok(Self { full, scene, model, body, at_rest: body.at_rest()?, points, largest: 0.0 })
+        Ok(Self { full, scene, model, body, at_rest: body.at_rest()?, points, course: Course::default() })
     }
 
-    /// States errors against displacements of this size, too: the largest of the run, in the norm of the mass.
+    /// States errors against the displacements of a run, too.
     #[must_use]
-    pub fn against(self, largest: f64) -> Self {
-        Self { largest, ..self }
+    pub fn against(self, course: Course) -> Self {
+        Self { course, ..self }
     }
 
     /// Checks the state of a motion under the forces of joints. `frequencies` is true where these are to be compared, too.
@@ -147,10 +159,13 @@ impl<'a> Checker<'a> {
         let [error, within, beside] = [&found.error, &within, &beside].map(|v| relative(v));
         let linear = if sizes > 0.0 { (product / sizes).abs().min(1.0) } else { 0.0 };
         // Of a state that is smaller than the largest.
-        let share = if size < self.largest { size / self.largest } else { 1.0 };
+        let largest = self.course.largest.max(size);
+        let share = ratio(size, largest);
         let (has_static_shapes, has_large_modes) =
             (self.model.static_shapes() > 0, !self.model.large_modes().is_empty());
-        let [along, left_out] = self.along_modes(&found).map(|size| share * ratio(size, self.body.mass_norm(&truth)));
+        let [along, left_out] = self.along_modes(&found);
+        let drift = ratio(self.drift(&along, &motion.modal_displacement), largest);
+        let [along, left_out] = [along, left_out].map(|list| share * ratio(norm(&list), size));
         let parts = parts([along, left_out, beside * share, linear], has_static_shapes, has_large_modes);
         let follows = state.forces.follow();
         let (frequencies, growth) = match frequencies && self.spin_is_held(&state) {
@@ -165,6 +180,7 @@ impl<'a> Checker<'a> {
             within_modes: within,
             beside_modes: beside,
             parts,
+            drift,
             largest_error: peak(&found.error),
             largest_displacement: peak(&truth),
             points: self.points.iter().map(|point| checked(point, &truth, &found.error)).collect(),
@@ -178,10 +194,26 @@ impl<'a> Checker<'a> {
         })
     }
 
-    /// Sizes of two parts of the error along the modes: that of the model, and that which a linear body has there, too. A static shape is the
+    /// The error of each modal displacement that the run may come to, Eq. (K8), as one size: a force that is wrong by ω² e in step with a vibration
+    /// makes it lead or lag by ½ (e/q) ω t. A mode that the run holds at a place counts as far as it vibrates about it.
+    fn drift(&self, along: &[f64], at: &[f64]) -> f64 {
+        let Model { body, damping_ratios, .. } = self.model;
+        let end = self.scene.time.end;
+        let of_mode = |k: usize| -> Option<f64> {
+            let (error, q, swing) = (along.get(k)?.abs(), at.get(k)?.abs(), *self.course.swings.get(k)?);
+            let (omega, zeta) = (*body.circular_frequencies.get(k)?, damping_ratios.get(k).copied().unwrap_or(0.0));
+            let phase = 0.5 * (omega * end).min(zeta.recip());
+            let part = if swing < q { swing / q } else { 1.0 };
+            // A vibration that is out of step by half a turn is out by twice its size.
+            Some((error * part * phase).min(2.0 * swing))
+        };
+        norm(&(0..body.natural_modes).filter_map(of_mode).collect::<Vec<_>>())
+    }
+
+    /// Two parts of the error along each mode: of the model, and of a linear body, too. A static shape is the
     /// answer to a force that stays; of one that does not, more modes have the difference, Eq. (K7) of `docs/method/check.md`.
-    fn along_modes(&self, found: &StateError<'_>) -> [f64; 2] {
-        let Some(meshed) = &self.model.meshed else { return [0.0; 2] };
+    fn along_modes(&self, found: &StateError<'_>) -> [Vec<f64>; 2] {
+        let Some(meshed) = &self.model.meshed else { return [Vec::new(), Vec::new()] };
         let shapes = &meshed.modes.shapes;
         let along = |v: &[f64]| shapes.transpose() * ColRef::from_slice(v);
         let error = along(&self.body.momentum(&found.error));
@@ -192,8 +224,8 @@ impl<'a> Checker<'a> {
             true => answer[k] - acting[k] / meshed.modes.eigenvalues[k],
             false => 0.0,
         };
-        let size = |of: &dyn Fn(usize) -> f64| (0..shapes.ncols()).map(|k| of(k).powi(2)).sum::<f64>().sqrt();
-        [size(&|k| error[k] - left_out(k)), size(&left_out)]
+        let modes = 0..shapes.ncols();
+        [modes.clone().map(|k| error[k] - left_out(k)).collect(), modes.map(left_out).collect()]
     }
 
     /// The state of a motion on all nodes.
@@ -274,6 +306,10 @@ impl<'a> Checker<'a> {
         let scale = full.iter().map(|mode| mode.circular_frequency).fold(0.0, f64::max);
         Ok((compared.collect(), if growth > 1e-6 * scale { growth } else { 0.0 }))
     }
+}
+
+fn norm(list: &[f64]) -> f64 {
+    list.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 fn ratio(error: f64, size: f64) -> f64 {

@@ -74,7 +74,7 @@ pub fn check_run(
         let body = full.body().map_err(in_scene)?;
         progress(CheckProgress::Rows { done, total });
         let checker = Checker::new(&full, scene, model, &body).map_err(in_scene)?;
-        let checker = checker.against(rows::largest_deformation(results, number));
+        let checker = checker.against(rows::course(results, number));
         let mut of_rows = Vec::with_capacity(rows_of_body.len());
         for (row, why) in rows_of_body {
             let motion = rows::motion(results, number, row).ok_or(CheckError::NoRows { file: file.to_owned() })?;

@@ -139,6 +139,13 @@ impl RowCheck {
             let mend = part.mend.map(|mend| format!(": mended by {}", mend.words())).unwrap_or_default();
             write!(f, "\n      {} {}{mend}", part.direction.words(), percent(scale * part.size))?;
         }
+        if state.drift >= 1e-3 && state.drift > state.error_of_largest {
+            write!(
+                f,
+                "\n      vibrations out by up to {} of the largest at the end, if it is so all the time",
+                percent(state.drift)
+            )?;
+        }
         for point in &state.points {
             let [x, y, z] = point.displacement;
             let error = Vector3::from(point.error).norm();

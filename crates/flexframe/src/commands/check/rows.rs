@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use dynamics::MotionState;
-use model::Model;
+use model::{Course, Model};
 use results::{BodyResults, Results};
 use rigid_kin::Attitude;
 
@@ -84,12 +84,19 @@ fn spin(of: BodyResults<'_>, row: usize) -> f64 {
     spins.map_or(0.0, |spins| spins[row].iter().map(|omega| omega * omega).sum::<f64>().sqrt())
 }
 
-/// Size of the largest displacements by deformation in a run, in the norm of the mass: modes are orthonormal in it.
-pub(super) fn largest_deformation(results: &Results, body: usize) -> f64 {
+/// The modal displacements of a body in a run.
+pub(super) fn course(results: &Results, body: usize) -> Course {
     let of = results.bodies().nth(body).and_then(|of| of.table("modal/displacement"));
-    let Some(of) = of else { return 0.0 };
-    let size = |row: usize| of.row(row).map_or(0.0, |q| q.iter().map(|q| q * q).sum::<f64>().sqrt());
-    (0..results.rows()).map(size).filter(|size| size.is_finite()).fold(0.0, f64::max)
+    let Some(of) = of else { return Course::default() };
+    let mut largest = 0.0_f64;
+    let mut reach: Vec<[f64; 2]> = Vec::new();
+    for q in (0..results.rows()).filter_map(|row| of.row(row)).filter(|q| q.iter().all(|q| q.is_finite())) {
+        // Modes are orthonormal in the mass.
+        largest = largest.max(q.iter().map(|q| q * q).sum::<f64>().sqrt());
+        reach.resize(q.len(), [f64::INFINITY, f64::NEG_INFINITY]);
+        reach.iter_mut().zip(q).for_each(|(reach, q)| *reach = [reach[0].min(*q), reach[1].max(*q)]);
+    }
+    Course { largest, swings: reach.iter().map(|[least, most]| 0.5 * (most - least)).collect() }
 }
 
 /// The state of a body in a row.
