@@ -178,7 +178,7 @@ impl Simulation {
         let looked_at = Observation::new(motion.flexible(), setup.points.len());
         Ok(Self {
             fingerprint: Fingerprint::of(setup),
-            account: EnergyAccount::new(motion.energies(), energy_of_loads),
+            account: EnergyAccount::new(motion.energies(), energy_of_loads).of_scale(setup.energy_of_reference()),
             may_miss_work: setup.may_miss_work(motion.fastest_rate()),
             motion,
             events: Events::default(),
@@ -220,7 +220,8 @@ impl Simulation {
         if self.phase == Phase::Row && !stays {
             self.phase = Phase::Steps;
         }
-        self.account = EnergyAccount::new(self.motion.energies(), self.account.of_loads());
+        let Self { motion, account, .. } = self;
+        *account = EnergyAccount::new(motion.energies(), account.of_loads()).of_scale(account.least_scale());
         self.events.forget();
         self.go_on_from_here();
         Ok(())

@@ -20,6 +20,15 @@ impl ConservativeBody {
         let period = lowest.map_or(end, |omega| (std::f64::consts::TAU / omega).min(end));
         let energy = self.energy_of_drive(end) + self.least_energy(end);
         let mut sizes = Sizes { energy, ..Sizes::default() };
+        // The forces of a bent reference act all the time, like a load.
+        let forces = self.reference.iter().flat_map(|reference| reference.force());
+        for (k, (g, omega)) in forces.zip(&self.circular_frequencies).enumerate() {
+            sizes.energy += 0.5 * (g / omega).powi(2);
+            sizes.displacement += (g * (omega * omega).recip().min(2.0 * end / omega)).powi(2);
+            if k < self.natural_modes {
+                sizes.acceleration += g * g;
+            }
+        }
         for (load, history) in self.with_history() {
             let largest = history.largest(end);
             let whole_impulse = history.magnitude_integral(end);

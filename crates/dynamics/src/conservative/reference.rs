@@ -22,6 +22,11 @@ impl Reference {
         Some(Self { force, stiffness: BlockedMatrix::new(stiffness.as_ref()) })
     }
 
+    /// g.
+    pub fn force(&self) -> &[f64] {
+        &self.force
+    }
+
     /// Subtracts g + B q from the modal forces.
     pub fn subtract_force(&self, q: &[f64], out: &mut [f64]) {
         self.stiffness.each_block(q, |first, rows| {

@@ -18,6 +18,8 @@ pub(crate) struct EnergyAccount {
     start: Option<Energies>,
     /// Largest of the energies at the start, put in and taken out so far.
     scale: f64,
+    /// The least that it is.
+    least_scale: f64,
     /// Largest sum of the work and the dissipation of one step: where a load sets in, they are no better known than that.
     largest_exchange: f64,
     #[serde(with = "equal_room")]
@@ -84,6 +86,16 @@ impl EnergyAccount {
         Self { start, of_loads, ..Self::default() }
     }
 
+    /// With an energy that flows from the beginning on, whatever the account begins with: that of a bent reference that nothing holds.
+    pub(crate) fn of_scale(self, least: f64) -> Self {
+        Self { scale: self.scale.max(least), least_scale: least, ..self }
+    }
+
+    /// The energy of [`Self::of_scale`].
+    pub(crate) fn least_scale(&self) -> f64 {
+        self.least_scale
+    }
+
     /// Time since the beginning; none before it has been seen.
     pub(crate) fn elapsed(&self, time: f64) -> f64 {
         self.start.map_or(0.0, |start| time - start.time)
@@ -101,10 +113,10 @@ impl EnergyAccount {
 
     /// Refuses numbers that are not finite.
     pub(crate) fn check_saved(&self) -> Result<(), CheckpointError> {
-        let Self { start, scale, largest_exchange, last, exchanged, of_loads } = self;
+        let Self { start, scale, least_scale, largest_exchange, last, exchanged, of_loads } = self;
         start.iter().chain(last).try_for_each(Energies::check)?;
         exchanged.check()?;
-        finite("the account of the energy", [scale, largest_exchange, of_loads])
+        finite("the account of the energy", [scale, least_scale, largest_exchange, of_loads])
     }
 
     /// The motion has had this energy at a time.

@@ -180,6 +180,12 @@ impl Setup<'_> {
         Ok(if is_needed { body.sizes_of_loads(self.end).energy } else { 0.0 })
     }
 
+    /// The energy that the forces of a bent reference set free where nothing balances them: Σ g²/λ.
+    pub(crate) fn energy_of_reference(&self) -> f64 {
+        let forces = self.physics.reference.iter().flat_map(|reference| &reference.force);
+        forces.zip(&self.body.circular_frequencies).map(|(g, omega)| (g / omega).powi(2)).sum()
+    }
+
     /// True if steps may be blind to work of the loads: they do not resolve a mode of this rate, the largest of ω_k and
     /// 2 ζ_k ω_k, or a formula rises from nothing within one.
     pub(crate) fn may_miss_work(&self, fastest_rate: f64) -> bool {

@@ -50,7 +50,10 @@ impl Survey {
         let may_lack = flexible > 0 && model.scene.modes.static_correction != Choice::Off;
         let asked = Asked {
             loads: (has_shapes || may_stress || has_stress) && !model.loads.is_empty(),
-            spin: stiffens || may_stretch(model, &modal)?,
+            // The spin of a rest that the body may leave is a load that it has had, too.
+            spin: stiffens
+                || may_stretch(model, &modal)?
+                || (model.scene.modes.static_correction == Choice::On && rests_in_a_spin(model)),
             drive: model.drive.is_some() && (may_stress || may_lack),
         };
         let has_markers = flexible > 0 && !model.markers.is_empty();
@@ -104,6 +107,11 @@ fn may_stiffen(model: &MeshModel<'_, '_>, modal: &ModalModel) -> Result<bool, Bu
                 && (!model.markers.is_empty() || screen(&modal.case(model), scene.effects.tolerance)?.on)
         }
     })
+}
+
+/// True if the modes are about the rest of the body in a spin.
+fn rests_in_a_spin(model: &MeshModel<'_, '_>) -> bool {
+    model.reference.is_some_and(|reference| reference.steady.omega_body.norm() > 0.0)
 }
 
 /// True if the modes may leave out something of the static response to the spin that matters, which is to be computed:
