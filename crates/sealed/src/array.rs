@@ -20,6 +20,8 @@ pub struct Array<T> {
 pub enum Kind {
     /// Floating-point numbers of 64 bits.
     F64,
+    /// Floating-point numbers of 32 bits.
+    F32,
     /// Unsigned integers of 64 bits.
     U64,
     /// Unsigned integers of 32 bits.
@@ -28,10 +30,10 @@ pub enum Kind {
 
 impl Kind {
     /// Bytes of a number.
-    pub(crate) fn bytes(self) -> usize {
+    pub fn bytes(self) -> usize {
         match self {
             Self::F64 | Self::U64 => 8,
-            Self::U32 => 4,
+            Self::F32 | Self::U32 => 4,
         }
     }
 }
@@ -47,6 +49,14 @@ pub trait Number: Pod {
 
 impl Number for f64 {
     const KIND: Kind = Kind::F64;
+
+    fn swapped(self) -> Self {
+        Self::from_bits(self.to_bits().swap_bytes())
+    }
+}
+
+impl Number for f32 {
+    const KIND: Kind = Kind::F32;
 
     fn swapped(self) -> Self {
         Self::from_bits(self.to_bits().swap_bytes())

@@ -154,6 +154,7 @@ fn make_dataset(file: &hdf5::File, declared: &Declared) -> hdf5::Result<Option<h
     }
     let dataset = match declared.kind {
         Kind::F64 => room::<f64>(file, declared),
+        Kind::F32 => room::<f32>(file, declared),
         Kind::U64 => room::<u64>(file, declared),
         Kind::U32 => room::<u32>(file, declared),
     }?;

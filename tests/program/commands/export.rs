@@ -155,11 +155,12 @@ fn a_results_file_becomes_a_table_and_fields() {
         });
         let first = 3 * (step * n + node);
         let found = Vector3::from_column_slice(&elastic[first..first + 3]);
-        assert!((found - u).norm() < 1e-14, "{found} {u}");
+        // The shapes of the file are in single precision.
+        assert!((found - u).norm() < 1e-14 + 1e-6 * u.norm(), "{found} {u}");
         let attitude = Attitude::from_wxyz(results.vectors("attitude").unwrap()[4 * step]).unwrap();
         let moved = attitude.to_global(&(place + u)) - place; // about the hinge, which is at the origin
         let found = Vector3::from_column_slice(&displacement[first..first + 3]);
-        assert!((found - moved).norm() < 1e-13, "{found} {moved}");
+        assert!((found - moved).norm() < 1e-13 + 1e-6 * u.norm(), "{found} {moved}");
         let field = Mat::from_fn(mesh.modes.shapes.nrows(), 1, |i, _| {
             shapes().zip(&coordinates).map(|(shape, xi)| xi * shape[i]).sum::<f64>()
         });
@@ -192,7 +193,7 @@ fn a_results_file_becomes_a_table_and_fields() {
         for (i, found) in von_mises[step * n..(step + 1) * n].iter().enumerate() {
             let (on_mesh, _) = mesh.mesh.nearest_node([0, 1, 2].map(|axis| points[3 * i + axis]));
             let expected = fem_tet10::von_mises(&[0, 1, 2, 3, 4, 5].map(|c| stress[(6 * on_mesh as usize + c, 0)]));
-            assert!((found - expected).abs() <= 1e-11 * scale, "step {step}, point {i}: {found} {expected}");
+            assert!((found - expected).abs() <= 1e-5 * scale, "step {step}, point {i}: {found} {expected}");
         }
     }
     assert!(largest > 1e5 && !model.large_modes().is_empty(), "{largest}");

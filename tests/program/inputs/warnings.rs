@@ -278,7 +278,8 @@ fn the_surface_moves_as_the_points_do() {
     let now = simulation.observation().unwrap();
     let drawn = surface.displacements(&model.coordinates(&now.modal_displacement))[tip];
     assert!(
-        (drawn - now.points[0].displacement).norm() < 1e-9 * drawn.norm(),
+        // Shapes that are drawn are in single precision.
+        (drawn - now.points[0].displacement).norm() < 1e-7 * drawn.norm(),
         "{drawn} {}",
         now.points[0].displacement
     );

@@ -42,7 +42,7 @@ pub use watch::{Watch, Watched};
 
 use crate::commands::check::checked_rows::check_run;
 use crate::commands::check::rows::CheckRows;
-use crate::drawn::stored_shapes;
+use crate::drawn::{stored_bytes, stored_shapes};
 use crate::files::identity::{contents, identity_of_files};
 use crate::files::outputs::outputs_of_system;
 pub use crate::files::results_path::results_path;
@@ -170,7 +170,8 @@ pub fn run_models(
     let identity = identity(system, settings);
     let checkpoint = checkpoint(identity, movers.iter().map(|mover| &mover.motion), &path)?.len();
     let metadata = metadata_of_file(system, &bodies, &settings.builder).ok_or(RunError::NoBody)?;
-    let estimate = Estimate::of_rows(scene, &metadata);
+    let of_shapes = if settings.rows_alone { 0 } else { stored_bytes(&bodies) };
+    let estimate = Estimate::of_rows(scene, &metadata, of_shapes);
     if estimate.bytes > LARGE && !settings.large {
         return Err(RunError::Large { scene: scene.path.clone(), estimate });
     }
@@ -207,7 +208,9 @@ pub fn resume(
     let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
     progress(RunProgress::Built);
     let bodies = bodies(&system.bodies, &models);
-    let estimate = Estimate::of_rows(bodies.first().ok_or(RunError::NoBody)?.scene, &results.metadata);
+    let first = bodies.first().ok_or(RunError::NoBody)?.scene;
+    let of_shapes = if settings.rows_alone { 0 } else { stored_bytes(&bodies) };
+    let estimate = Estimate::of_rows(first, &results.metadata, of_shapes);
     let started = Instant::now();
     let now = metadata_of_file(&system, &bodies, &settings.builder).ok_or(RunError::NoBody)?;
     if now.program_version != results.metadata.program_version {

@@ -3,7 +3,7 @@
 use results::{Shapes, StressShapes};
 use sealed::{SealedError, SealedFile};
 
-use super::of_model::add_reference;
+use super::of_model::{add_reference, to_single};
 
 /// Displacement of the bent body that the modes are about.
 const REFERENCE: &str = "reference/displacement";
@@ -52,6 +52,9 @@ pub(super) fn read(file: &SealedFile, volume: bool) -> Result<(Shapes, Vec<[u32;
         }
     }
     shapes.nodes = nodes;
+    if !volume {
+        to_single(&mut shapes);
+    }
     let tetrahedra =
         if volume { file.read::<u32>("mesh/tetrahedra")?.values.as_chunks().0.to_vec() } else { Vec::new() };
     let is_whole = tetrahedra.as_flattened().iter().all(|node| (*node as usize) < all.len());

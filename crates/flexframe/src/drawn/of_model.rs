@@ -10,6 +10,8 @@ use super::solid::solid;
 
 /// Largest number of nodes that a body without elements is drawn by.
 const MAX_NODES: usize = 20_000;
+/// The least of the largest numbers of a shape that single precision has to its digits.
+const SINGLE: f64 = 1e-30;
 
 /// The shapes on the surface, with their stress; of a body without elements, on its nodes; of a rigid body without a mesh, the
 /// solid that stands for it.
@@ -25,6 +27,7 @@ pub(crate) fn surface_shapes_of(model: &Model) -> Result<Shapes, AssemblyError> 
         let recovery = StressRecovery::new(&meshed.mesh, &body.materials)?.at_nodes(&shapes.nodes);
         shapes.stress = Some(stress(&recovery, meshed, manifold, &shapes.nodes)?);
     }
+    to_single(&mut shapes);
     Ok(shapes)
 }
 
@@ -56,7 +59,21 @@ pub(crate) fn shapes_of(model: &Model) -> Shapes {
         let at_nodes = shapes.nodes.iter().map(at).collect();
         add_reference(&mut shapes, at_nodes, meshed.modes.shapes.ncols());
     }
+    to_single(&mut shapes);
     shapes
+}
+
+/// Rounds shapes that are drawn to single precision, as the results file has them; those beyond its range stay as they are.
+pub(super) fn to_single(shapes: &mut Shapes) {
+    let rounded = |list: &mut [f64]| {
+        let largest = list.iter().fold(0.0_f64, |largest, x| x.abs().max(largest));
+        if (SINGLE..1.0 / SINGLE).contains(&largest) {
+            list.iter_mut().for_each(|x| *x = f64::from(*x as f32));
+        }
+    };
+    shapes.displacements.iter_mut().for_each(|list| rounded(list.as_flattened_mut()));
+    let stresses = shapes.stress.iter_mut().flat_map(|stress| &mut stress.shapes);
+    stresses.for_each(|list| rounded(list.as_flattened_mut()));
 }
 
 /// A bent reference is a shape of its own, whose coordinate is the product without factors.

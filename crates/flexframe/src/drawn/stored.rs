@@ -27,6 +27,12 @@ pub(crate) fn stored_shapes(bodies: &[RunBody<'_>]) -> Result<Vec<Option<Shapes>
         .collect()
 }
 
+/// Bytes of the shapes that the results file of a run carries.
+pub(crate) fn stored_bytes(bodies: &[RunBody<'_>]) -> u64 {
+    let each = bodies.iter().map(|body| bytes(body.model));
+    each.filter(|bytes| *bytes <= share(bodies.len())).sum()
+}
+
 /// Bytes that a body may have of a file of several.
 fn share(bodies: usize) -> u64 {
     MAX_BYTES / (bodies.max(1) as u64)
@@ -70,11 +76,12 @@ fn body_file(scene: &Scene) -> String {
     }
 }
 
-/// Bytes of the shapes on the surface, but for some thousandths.
+/// Bytes of the shapes on the surface, in single precision, with its nodes and faces.
 fn bytes(model: &Model) -> u64 {
     let Some(meshed) = model.meshed.as_ref().filter(|meshed| meshed.mesh.has_elements()) else { return 0 };
-    let nodes = surface(&meshed.mesh).0.len() as u64;
+    let (nodes, faces) = surface(&meshed.mesh);
+    let [nodes, faces] = [nodes.len(), faces.len()].map(|count| count as u64);
     let shapes = (meshed.modes.shapes.ncols() + meshed.following.ncols()) as u64;
     let products = model.physics.large_deflection.as_ref().map_or(0, |manifold| manifold.products().len()) as u64;
-    8 * nodes * (9 * shapes + 6 * products)
+    4 * nodes * (9 * shapes + 6 * products) + nodes * (4 + 4 + 24) + faces * 24
 }

@@ -223,6 +223,7 @@ fn write(
     for (file, dataset, kind) in copied {
         match kind {
             Kind::F64 => writer.write(dataset, &file.read::<f64>(dataset)?.values),
+            Kind::F32 => writer.write(dataset, &file.read::<f32>(dataset)?.values),
             Kind::U64 => writer.write(dataset, &file.read::<u64>(dataset)?.values),
             Kind::U32 => writer.write(dataset, &file.read::<u32>(dataset)?.values),
         }?;

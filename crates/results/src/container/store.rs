@@ -5,7 +5,7 @@ use crate::container::lock::Locked;
 use crate::container::structure;
 use crate::history::{History, histories};
 use crate::shapes::Shapes;
-use crate::shapes::stored::{DATASETS, Datasets};
+use crate::shapes::stored::{DATASETS, Datasets, Lists};
 use crate::{BodyMetadata, Column, FileError, Metadata};
 use keys::Hash;
 use sealed::{Declared, Format, Kind, Made, SealedError, SealedFile, little_endian};
@@ -238,13 +238,19 @@ impl Store {
         match shapes {
             ShapeSource::Given(bodies) => {
                 let lists = bodies.iter().flatten().flat_map(Shapes::stored);
-                for ((_, _, lists), Declared { path, .. }) in lists.zip(datasets) {
+                for ((_, _, lists), Declared { path, kind, .. }) in lists.zip(datasets) {
                     let mut hashed = Vec::new();
                     let mut first = 0;
                     for list in lists.numbers() {
-                        self.file.write_at(path, first, list)?;
+                        if *kind == Kind::F32 {
+                            let list: Vec<f32> = list.iter().map(|x| *x as f32).collect();
+                            self.file.write_at(path, first, &list)?;
+                            hashed.push(little_endian(&list).into_owned().into());
+                        } else {
+                            self.file.write_at(path, first, list)?;
+                            hashed.push(little_endian(list));
+                        }
                         first += list.len();
-                        hashed.push(little_endian(list));
                     }
                     if let Some(list) = lists.whole() {
                         self.file.write_at(path, 0, list)?;
@@ -255,8 +261,7 @@ impl Store {
             }
             ShapeSource::File(other) => {
                 for Declared { path, kind, shape, .. } in datasets {
-                    let each = if *kind == Kind::U32 { size_of::<u32>() } else { size_of::<f64>() };
-                    let bytes = (shape.iter().product::<usize>() * each) as u64;
+                    let bytes = (shape.iter().product::<usize>() * kind.bytes()) as u64;
                     let hash = self.file.copy_from(&other.file, path, bytes)?;
                     self.file.seal(path, &hash);
                 }
@@ -296,9 +301,9 @@ impl ShapeSource<'_> {
             Self::Given(bodies) => {
                 let of_body = |(body, shapes): (&BodyMetadata, &Option<Shapes>)| {
                     let stored = shapes.as_ref().map_or_else(Vec::new, Shapes::stored);
-                    let declared = |(path, shape, _): (&'static str, Vec<usize>, _)| {
+                    let declared = |(path, shape, lists): (&'static str, Vec<usize>, Lists<'_>)| {
                         let dataset = DATASETS.iter().find(|dataset| dataset.path == path)?;
-                        Some(dataset.declared(body, &shape, &metadata.units))
+                        Some(dataset.declared(body, (lists.kind(), &shape), &metadata.units))
                     };
                     stored.into_iter().filter_map(declared).collect::<Vec<_>>()
                 };
@@ -307,8 +312,8 @@ impl ShapeSource<'_> {
             Self::File(store) => {
                 let of_body = |body| {
                     DATASETS.iter().filter_map(move |dataset| {
-                        let (_, shape, _) = store.file.described(&BodyMetadata::path(body, dataset.path))?;
-                        Some(dataset.declared(body, shape, &metadata.units))
+                        let (kind, shape, _) = store.file.described(&BodyMetadata::path(body, dataset.path))?;
+                        Some(dataset.declared(body, (kind, shape), &metadata.units))
                     })
                 };
                 metadata.bodies.iter().flat_map(of_body).collect()
@@ -333,9 +338,19 @@ impl Datasets for OfBody<'_> {
     }
 
     fn numbers(&self, path: &str) -> Result<Vec<Vec<f64>>, SealedError> {
-        let array = self.file.read::<f64>(&self.body.path(path))?;
-        let each = array.shape.iter().skip(1).product::<usize>().max(1);
-        Ok(array.values.chunks_exact(each).map(<[f64]>::to_vec).collect())
+        let path = self.body.path(path);
+        let (shape, values) = match self.file.described(&path) {
+            Some((Kind::F32, ..)) => {
+                let array = self.file.read::<f32>(&path)?;
+                (array.shape, array.values.into_iter().map(f64::from).collect())
+            }
+            _ => {
+                let array = self.file.read::<f64>(&path)?;
+                (array.shape, array.values)
+            }
+        };
+        let each = shape.iter().skip(1).product::<usize>().max(1);
+        Ok(values.chunks_exact(each).map(<[f64]>::to_vec).collect())
     }
 }
 

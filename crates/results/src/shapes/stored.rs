@@ -9,8 +9,6 @@ use sealed::{Declared, Kind, SealedError};
 pub(crate) struct ShapeDataset {
     /// Path of the dataset in the group of its body.
     pub path: &'static str,
-    /// True of integers of 32 bits, false of floating-point numbers of 64.
-    pub is_whole: bool,
     /// Unit, as that of a column.
     pub unit: &'static str,
     /// Frame of the components.
@@ -66,7 +64,7 @@ pub(crate) const DATASETS: [ShapeDataset; 9] = [
 ];
 
 const fn whole(path: &'static str, description: &'static str) -> ShapeDataset {
-    ShapeDataset { path, is_whole: true, unit: "1", frame: "none", description }
+    ShapeDataset { path, unit: "1", frame: "none", description }
 }
 
 const fn numbers(
@@ -75,13 +73,12 @@ const fn numbers(
     frame: &'static str,
     description: &'static str,
 ) -> ShapeDataset {
-    ShapeDataset { path, is_whole: false, unit, frame, description }
+    ShapeDataset { path, unit, frame, description }
 }
 
 impl ShapeDataset {
     /// It, of a body, with a shape.
-    pub(crate) fn declared(&self, body: &BodyMetadata, shape: &[usize], units: &Units) -> Declared {
-        let kind = if self.is_whole { Kind::U32 } else { Kind::F64 };
+    pub(crate) fn declared(&self, body: &BodyMetadata, (kind, shape): (Kind, &[usize]), units: &Units) -> Declared {
         Declared::new(body.path(self.path), kind, shape, [&units.in_labels(self.unit), self.frame, self.description])
     }
 }
@@ -94,6 +91,16 @@ pub(crate) enum Lists<'a> {
 }
 
 impl Lists<'_> {
+    /// The kind of numbers that a file has of them: where all are in single precision, they are written so.
+    pub(crate) fn kind(&self) -> Kind {
+        let is_single = |x: &f64| f64::from(*x as f32) == *x;
+        match self {
+            Self::Whole(_) => Kind::U32,
+            Self::Numbers(lists) if lists.iter().copied().flatten().all(is_single) => Kind::F32,
+            Self::Numbers(_) => Kind::F64,
+        }
+    }
+
     /// The list of integers, if it is one.
     pub(crate) fn whole(&self) -> Option<&[u32]> {
         match self {

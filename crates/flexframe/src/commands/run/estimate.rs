@@ -28,17 +28,18 @@ const STEPS_PER_LOOK: u64 = 16;
 pub struct Estimate {
     /// Rows, but for those at corners of loads.
     pub rows: u64,
-    /// Bytes of their numbers; the shapes of the body come on top.
+    /// Bytes of their numbers, and of the shapes that are drawn.
     pub bytes: u64,
     /// Seconds of computing, about, by how long some first steps take; `None` where it was not tried, or these came to nothing.
     pub seconds: Option<f64>,
 }
 
 impl Estimate {
-    /// Estimate of the rows of a scene, without a look at its steps.
-    pub(super) fn of_rows(scene: &Scene, metadata: &Metadata) -> Self {
+    /// Estimate of the rows of a scene, without a look at its steps; `shapes` are the bytes of what is drawn.
+    pub(super) fn of_rows(scene: &Scene, metadata: &Metadata, shapes: u64) -> Self {
         let rows = RowTimes::new(scene).count();
-        Self { rows, bytes: rows.saturating_mul(bytes_per_row(&COLUMNS, metadata)), seconds: None }
+        let bytes = rows.saturating_mul(bytes_per_row(&COLUMNS, metadata)).saturating_add(shapes);
+        Self { rows, bytes, seconds: None }
     }
 
     /// With the time of all motions together, by trials that leave them as they are.

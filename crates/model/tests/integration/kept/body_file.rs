@@ -264,6 +264,7 @@ fn rewritten(path: &Path, keep: impl Fn(&str) -> bool, change: impl Fn(&str) -> 
     for Declared { path, kind, .. } in &declared {
         match kind {
             Kind::F64 => writer.write(path, &file.read::<f64>(path).unwrap().values),
+            Kind::F32 => writer.write(path, &file.read::<f32>(path).unwrap().values),
             Kind::U64 => writer.write(path, &file.read::<u64>(path).unwrap().values),
             Kind::U32 => writer.write(path, &file.read::<u32>(path).unwrap().values),
         }
