@@ -280,3 +280,23 @@ def test_what_does_not_fit_is_refused():
             return 0.0
 
         flexframe.Simulation(system, joint_forces=[flexframe.JointForce("elbow", broken)]).run()
+
+
+# Closed form: Ft²/2m.
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("force", [0.2, 1e-9])
+def test_a_law_pushes_a_free_body_of_a_system_from_rest(tolerance, force):
+    ball = {
+        "rigid": {"mass": 0.2, "center_of_mass": [0, 0, 0], "inertia": [[1e-4, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]]},
+        "points": {"center": [0, 0, 0]},
+    }
+    scene = {
+        "title": "ball",
+        "units": {"length": "m", "mass": "kg", "time": "s"},
+        "bodies": {"ball": ball},
+        "time": {"end": 3.0, "tolerance": tolerance},
+        "output": {"interval": 3.0},
+    }
+    push = flexframe.Force("center", lambda motion: np.array([0.0, 0.0, force]))
+    results = flexframe.Simulation(flexframe.System(flexframe.Scene(scene)), {"ball": [push]}).run()
+    assert results["bodies/ball/position"][-1, 2] == pytest.approx(0.5 * force * 9.0 / 0.2, rel=1e-9)

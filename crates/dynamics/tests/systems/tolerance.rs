@@ -4,10 +4,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 use dynamics::{
-    ConservativeBody, Initial, Marker, MotionState, Observation, Physics, PointSpring, Rows, Simulation, StatedError,
-    StepControl, System, SystemMotion, SystemScheme, SystemSetup, SystemSimulation,
+    ConservativeBody, Initial, LoadFn, Marker, MotionState, Observation, Physics, PointShapes, PointSpring, Rows,
+    SharedLoad, Simulation, StatedError, StepControl, System, SystemMotion, SystemScheme, SystemSetup,
+    SystemSimulation,
 };
-use modal::{ReducedBody, RigidMotion};
+use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
@@ -116,5 +117,54 @@ fn a_rod_at_a_joint_keeps_ringing() {
         println!("{tolerance:e}: {lost:e} lost, {evaluations} evaluations, {error:?}");
         assert!(lost.abs() < 10.0 * (error.sum + error.forgotten), "{lost:e} {error:?}");
         assert!(error.sum <= tolerance && error.forgotten <= f64::min(1e-2, 10.0 * tolerance), "{error:?}");
+    }
+}
+
+/// Closed form: v₀ exp(−ct/m), Ft²/2m, v₀/ω sin ωt, and a load of 1e-9 N. Laws of their own move a ball that nothing ties, as they do in a
+/// run of a body alone.
+#[test]
+fn laws_move_a_free_ball_of_a_system() {
+    const MASS: f64 = 0.2;
+    const END: f64 = 3.0;
+    let reduced = ReducedBody::rigid(MASS, Vector3::zeros(), Matrix3::identity() * 1e-4, RigidMotion::free()).unwrap();
+    let center = PointShapes::new(&reduced, &BodyPoint::rigid(Vector3::zeros()));
+    type Law = fn(Vector3<f64>, Vector3<f64>) -> Vector3<f64>;
+    let (push, tiny) = (Vector3::new(0.1, 0.0, 0.2), Vector3::new(0.0, 0.0, 1e-9));
+    let thrown = Vector3::new(20.0, 5.0, -3.0);
+    let decay = f64::exp(-0.1 * END / MASS);
+    let omega = f64::sqrt(5.0 / MASS);
+    let cases: [(&str, Law, Vector3<f64>, Vector3<f64>); 6] = [
+        ("drag", |_, v| v * -0.1, thrown, thrown * (MASS / 0.1 * (1.0 - decay))),
+        ("push", |_, _| Vector3::new(0.1, 0.0, 0.2), Vector3::zeros(), push * (0.5 * END * END / MASS)),
+        ("spring", |x, _| x * -5.0, Vector3::y() * 0.3, Vector3::y() * (0.3 * (END * omega).sin() / omega)),
+        (
+            "tiny, thrown",
+            |_, v| Vector3::new(0.0, 0.0, 1e-9 * (1.0 + v.x)),
+            thrown,
+            thrown * END + tiny * (21.0 * 0.5 * END * END / MASS),
+        ),
+        ("tiny, at rest", |_, _| Vector3::new(0.0, 0.0, 1e-9), Vector3::zeros(), tiny * (0.5 * END * END / MASS)),
+        (
+            "tiny spring",
+            |x, _| (Vector3::x() * 1e-9 - x) * 5.0,
+            Vector3::zeros(),
+            Vector3::x() * (1e-9 * (1.0 - (END * omega).cos())),
+        ),
+    ];
+    for (name, law, velocity, expected) in cases {
+        for tolerance in [1e-3, 1e-4, 1e-6, 1e-8, 1e-10] {
+            let point = center.clone();
+            let load: SharedLoad = Arc::new(LoadFn::new("law", move |motion, applied| {
+                let force = law(motion.position_global(&point), motion.velocity_global(&point));
+                applied.force(&point, &(motion.body_from_global * force));
+            }));
+            let body = ConservativeBody::new(&reduced, &[], vec![load], &Physics::default()).unwrap();
+            let system = System::new(vec![body], Vec::new()).unwrap();
+            let state = MotionState { velocity_global: velocity, ..at_rest(Vector3::zeros()) };
+            let (rows, error, evaluations) = end_of((system, vec![state]), false, tolerance, END);
+            let off = (rows[0].origin_global - expected).norm() / expected.norm();
+            println!("{name} {tolerance:e}: {off:.1e} off, stated {:.1e}, {evaluations} evaluations", error.sum);
+            assert!(off < 10.0 * tolerance && evaluations < 30_000, "{name} {tolerance:e}: {off:e}, {evaluations}");
+        }
     }
 }

@@ -110,23 +110,25 @@ impl Terms {
         sources.iter().for_each(|tie| tie.add_law(&mut terms.unloaded));
         let springs: Vec<Vec<f64>> = sources.iter_mut().flat_map(|tie| tie.take_springs(n)).collect();
         terms.springs = Mat::from_fn(springs.len(), n, |i, k| springs[i][k]);
-        sources.iter().for_each(|tie| terms.add(system, tie));
+        terms.add(system, &sources);
         terms.find_multipliers(system);
         let held: Vec<Tie> = row_ties(system, at, &terms.multipliers);
         let forces = terms.forces.clone();
-        held.iter().for_each(|tie| terms.add(system, tie));
+        terms.add(system, &held);
         // The forces of the multipliers stay apart.
         terms.forces = forces;
         terms.stiffness = &terms.unsprung + terms.springs.transpose() * &terms.springs;
         Ok(terms)
     }
 
-    /// Adds a tie to the forces, K and C.
-    fn add(&mut self, system: &System, tie: &Tie) {
+    /// Adds ties to the forces, K and C: all at once, since the matrices are as wide as the system.
+    fn add(&mut self, system: &System, ties: &[Tie]) {
         let n = system.coordinates();
         let (mut by_place, mut by_velocity) = (Mat::zeros(n, n), Mat::zeros(n, n));
-        tie.add_to(&mut Sums { forces: &mut self.forces, by_place: &mut by_place, by_velocity: &mut by_velocity });
-        tie.add_borne(&mut self.borne);
+        for tie in ties {
+            tie.add_to(&mut Sums { forces: &mut self.forces, by_place: &mut by_place, by_velocity: &mut by_velocity });
+            tie.add_borne(&mut self.borne);
+        }
         self.unsprung -= by_place;
         for (convection, first) in self.convections.iter().zip(&system.first) {
             let columns = convection.ncols();
