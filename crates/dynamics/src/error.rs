@@ -77,6 +77,16 @@ pub enum SetupError {
     /// Physics that the formulation does not have.
     #[error("the formulation {formulation} has no {what}; take the conservative one")]
     NotInFormulation { formulation: &'static str, what: &'static str },
+    /// A point mass that something would turn. `body`: counted from 1.
+    #[error(
+        "body {body} is a point mass, without moments of inertia, and {by} would turn it: give it an inertia, or let what acts on it act at its own point and hold none of its turns (a spherical joint, a spring, an equation between points)"
+    )]
+    PointTurned { body: usize, by: Box<str> },
+    /// A body alone without moments of inertia.
+    #[error(
+        "a point mass, without moments of inertia, moves in a system of bodies that joints or springs tie: give it an inertia"
+    )]
+    LonePoint,
     /// Joints that cannot be closed.
     #[error(
         "the joints cannot be closed at the beginning: \"{joint}\" stays open by {left:.3e} and its rate by {rate:.3e}; put its bodies so that its markers meet, give velocities that the joints allow, or remove a joint that contradicts the others"
@@ -164,6 +174,11 @@ pub enum StepError {
     /// The body turns by more than a full turn within a step.
     #[error("at time {time}: the body turns by {angle:.3} rad within a step of {step:.3e}; take a step of at most {:.1e}", step / angle)]
     TurnTooLarge { time: f64, step: f64, angle: f64 },
+    /// A point mass that a moment would turn. `body`: counted from 1.
+    #[error(
+        "at time {time}: a moment acts on body {body}, a point mass without moments of inertia: give it an inertia, or let forces act at its own point"
+    )]
+    PointTurned { time: f64, body: usize },
     /// An energy that nothing accounts for. `energy`: without that of the motion of the origin; `step`: the longest so
     /// far.
     #[error(
@@ -231,6 +246,11 @@ pub enum RateError {
     Turn(rigid_kin::BeyondFullTurn),
     /// The inertia of the deformed body has no inverse.
     Inertia,
+    /// A moment on a point mass. `body`: counted from 1.
+    PointTurned {
+        /// The number of the body, counted from 1.
+        body: usize,
+    },
     /// An error of equations, a scheme or an observer from outside.
     Custom(CustomError),
 }
@@ -244,6 +264,7 @@ impl RateError {
             }
             Self::Turn(_) => StepError::NotFinite { time, what: "the angular velocity" },
             Self::Inertia => StepError::NotFinite { time, what: "the inverse of the deformed inertia" },
+            Self::PointTurned { body } => StepError::PointTurned { time, body },
             Self::Custom(error) => StepError::Custom { time, error },
         }
     }

@@ -101,6 +101,10 @@ impl Scene {
         let time = check.time(&time, ties.is_some())?;
         check.fixed_effects(&effects, time.method)?;
         let output = check.output(output, &time, &body)?;
+        let tied = ties.is_some_and(|ties| ties.ties(body_text.as_ref().map_or(ONLY_BODY, |text| text.name)));
+        if !tied {
+            check.turns(&body)?;
+        }
 
         Ok(Self {
             name: body_text.as_ref().map(|text| text.name.to_owned()),
@@ -113,7 +117,7 @@ impl Scene {
             frame,
             initial,
             constraint,
-            tied: ties.is_some_and(|ties| ties.ties(body_text.as_ref().map_or(ONLY_BODY, |text| text.name))),
+            tied,
             markers,
             loads,
             time,

@@ -134,8 +134,15 @@ pub struct RigidBody {
     /// Centre of mass, length, body axes.
     pub center_of_mass: [f64; 3],
     /// Inertia tensor about the centre of mass, mass · length², body axes: symmetric, its principal moments positive
-    /// and none above the sum of the others. The file may give it about another point.
+    /// and none above the sum of the others, or zeros for a point mass. The file may give it about another point.
     pub inertia: [[f64; 3]; 3],
+}
+
+impl RigidBody {
+    /// True if it is a point mass, without moments of inertia.
+    pub fn is_point(&self) -> bool {
+        self.inertia == [[0.0; 3]; 3]
+    }
 }
 
 /// The paper's reference points: three points of the body that are not on one line.

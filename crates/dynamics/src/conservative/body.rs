@@ -155,6 +155,11 @@ impl ConservativeBody {
         (0.5 * self.inertia.trace() / self.mass).sqrt()
     }
 
+    /// True if it is a point mass: without moments of inertia it does not turn, and no moment may act on it.
+    pub(crate) fn is_point(&self) -> bool {
+        self.inertia == Matrix3::zeros()
+    }
+
     /// J₀ about the origin, body axes.
     pub(crate) fn undeformed_inertia(&self) -> &Matrix3<f64> {
         &self.inertia

@@ -121,6 +121,9 @@ impl Setup<'_> {
 
     /// Refuses physics that the formulation does not have.
     fn check_abilities(&self) -> Result<(), SetupError> {
+        if self.body.motion.is_free() && self.body.inertia == nalgebra::Matrix3::zeros() {
+            return Err(SetupError::LonePoint);
+        }
         let Method { formulation, abilities, .. } = self.method.method();
         let asked_for = [
             (self.physics.drive.is_some(), abilities.drives, "driven motion"),

@@ -178,6 +178,21 @@ impl System {
         marker.body().map_or(0.0, |body| self.bodies[body].radius_of_gyration())
     }
 
+    /// Largest distance of a marker from the origin of its body.
+    pub(crate) fn longest_arm(&self) -> f64 {
+        let on_bodies = self.connections.markers().filter(|marker| marker.body().is_some());
+        on_bodies.map(Marker::distance).fold(0.0, f64::max)
+    }
+
+    /// Largest distance of point masses at these places from the first of them, or of a marker on the ground from there; 1 where all
+    /// are at one place.
+    pub(crate) fn spread_of_points(&self, mut places: impl Iterator<Item = Vector3<f64>>) -> f64 {
+        let first = places.next().unwrap_or_default();
+        let on_ground = self.connections.markers().filter(|marker| marker.body().is_none()).map(Marker::position);
+        let spread = places.chain(on_ground).map(|place| (place - first).norm()).fold(0.0, f64::max);
+        if spread > 0.0 { spread } else { 1.0 }
+    }
+
     /// Number of coordinates of all bodies.
     pub(crate) fn coordinates(&self) -> usize {
         self.first[self.bodies.len()]

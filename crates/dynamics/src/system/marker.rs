@@ -111,6 +111,11 @@ impl Marker {
         self.position.norm()
     }
 
+    /// Its place on its undeformed body, from the origin, or on the ground.
+    pub(crate) fn position(&self) -> Vector3<f64> {
+        self.position
+    }
+
     /// True if the modes move and turn it as another on the same body.
     pub fn moves_as(&self, other: &Self) -> bool {
         self.position == other.position

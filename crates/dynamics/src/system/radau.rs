@@ -39,7 +39,6 @@ use crate::system::joint::coordinate::{Coordinate, JointCoordinates};
 use crate::system::joint::coupling::CoupledCoordinate;
 use crate::system::joint::force::FrictionSlope;
 use crate::system::joint::work::JointWork;
-use crate::system::marker::Marker;
 use crate::system::radau::bound::{Bound, Estimate};
 use crate::system::radau::law_work::LawWork;
 use crate::system::radau::past::Past;
@@ -316,7 +315,7 @@ impl SystemMotion {
     }
 
     /// Size of the largest body: errors of places are counted over it.
-    pub(in crate::system) fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         self.size
     }
 
@@ -421,7 +420,8 @@ impl SystemMotion {
     /// True if the residual and the rate that are left where the system has been put together are rounding.
     fn is_closed(&self, [residual, rate]: [f64; 2]) -> bool {
         let [.., last] = &self.stages;
-        let size = self.system.bodies.iter().map(ConservativeBody::radius_of_gyration).fold(0.0, f64::max);
+        let largest = self.system.bodies.iter().map(ConservativeBody::radius_of_gyration).fold(0.0, f64::max);
+        let size = if largest > 0.0 { largest } else { self.size };
         let speed = last.velocities.iter().fold(0.0_f64, |most, velocity| most.max(velocity.abs()));
         let rounding = self.system.rounding;
         residual <= CLOSED * size + rounding && rate <= (CLOSED + rounding / size) * speed
@@ -541,15 +541,13 @@ impl SystemMotion {
     }
 }
 
-/// The size of the largest body: its radius of gyration, or the distance of a marker from its origin. Of points alone, that between them.
+/// The size of the largest body: its radius of gyration, or the distance of a marker from its origin. Of points alone, that between them and
+/// from what holds them.
 fn size_of_bodies(system: &System, states: &[MotionState]) -> f64 {
     let radii = system.bodies.iter().map(ConservativeBody::radius_of_gyration);
-    let arms = || system.connections.markers().filter(|marker| marker.body().is_some()).map(Marker::distance);
-    let size = radii.chain(arms()).fold(0.0, f64::max);
+    let size = radii.fold(system.longest_arm(), f64::max);
     if size > 0.0 {
         return size;
     }
-    let first = states.first().map_or_else(Vector3::zeros, |state| state.origin_global);
-    let spread = states.iter().map(|state| (state.origin_global - first).norm()).fold(0.0, f64::max);
-    if spread > 0.0 { spread } else { 1.0 }
+    system.spread_of_points(states.iter().map(|state| state.origin_global))
 }

@@ -126,7 +126,7 @@ impl SystemSimulation {
         let shape_limit = setup.shape_limit();
         let SystemSetup { system, states, relaxed, scheme, control, end, rows, points } = setup;
         let mut motion = SystemMotion::new(system, &states)?.with_scheme(scheme);
-        let size = size(motion.system(), &states);
+        let size = size(&motion, &states);
         let (assembled, branching) = assemble(&mut motion, &states, relaxed, [size, end])?;
         let is_implied = motion.implied_rows();
         let implied = motion.system().connections.sums(is_implied.iter().map(|is_implied| usize::from(*is_implied)));
@@ -238,7 +238,8 @@ impl SystemSimulation {
     pub fn rigid_dofs(&self) -> usize {
         let system = self.motion.system();
         let implied: usize = self.redundant.iter().map(|(_, rows)| rows).sum();
-        (6 * system.bodies().len() + implied).saturating_sub(system.rows())
+        let points = system.bodies().iter().filter(|body| body.is_point()).count();
+        (6 * system.bodies().len() + implied).saturating_sub(system.rows() + 3 * points)
     }
 
     /// Largest |work of loads, joints and elements| + |dissipation| since the beginning, of a body, or the largest energy of the motion, if that

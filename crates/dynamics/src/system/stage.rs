@@ -103,6 +103,8 @@ pub(crate) struct Stage {
     marker_places: Vec<MarkerPlace>,
     marker_motions: Vec<MarkerMotion>,
     wrenches: Vec<MarkerWrench>,
+    /// Largest distance of a marker from the origin of its body.
+    longest_arm: f64,
 }
 
 impl Stage {
@@ -133,6 +135,7 @@ impl Stage {
             marker_places: Vec::with_capacity(max_markers),
             marker_motions: Vec::with_capacity(max_markers),
             wrenches: Vec::with_capacity(max_markers),
+            longest_arm: system.longest_arm(),
         }
     }
 
@@ -195,6 +198,10 @@ impl Stage {
             let e = &mut self.evaluations[b];
             let (arm, attitude) = (self.arms[b], self.attitudes[b]);
             let momentum = from.momentum + vector(&self.y, first);
+            if body.is_point() {
+                // It has no spin.
+                put(&mut self.y, first + 3, &(arm.cross(&momentum) - from.angular_momentum));
+            }
             let angular_momentum = from.angular_momentum + vector(&self.y, first + 3);
             let pi = attitude * (angular_momentum - arm.cross(&momentum));
             let mut slow = *e.at.slow();
@@ -224,7 +231,10 @@ impl Stage {
             let inertia = &mut self.inertia[b];
             inertia.mass = body.mass();
             inertia.locked = e.locked_inertia;
-            inertia.locked_inverse = e.locked_inertia.try_inverse().ok_or(RateError::Inertia)?;
+            inertia.locked_inverse = match body.is_point() {
+                true => Matrix3::zeros(),
+                false => e.locked_inertia.try_inverse().ok_or(RateError::Inertia)?,
+            };
             body.copy_coupling(e, &mut inertia.coupling);
             if let (Some(bent), Some(manifold)) = (&mut inertia.bent, &body.manifold) {
                 manifold.find_bent_terms(&e.place, &mut bent.terms);
@@ -233,8 +243,35 @@ impl Stage {
         }
         self.find_constraints(system, start, times);
         self.add_elements(system, times);
+        if let Some(body) = self.turned_point(system) {
+            return Err(RateError::PointTurned { body: body + 1 });
+        }
         self.constraints.rates(&self.velocities, &mut self.constraint_rates);
         Ok(())
+    }
+
+    /// Takes the spin from point masses where they have been placed. False where there are none.
+    pub fn hold_points(&mut self, system: &System, start: &Start) -> bool {
+        let mut found = false;
+        for (b, _) in system.bodies.iter().enumerate().filter(|(_, body)| body.is_point()) {
+            let first = system.first[b];
+            let momentum = start.bodies[b].momentum + vector(&self.y, first);
+            put(&mut self.y, first + 3, &(self.arms[b].cross(&momentum) - start.bodies[b].angular_momentum));
+            found = true;
+        }
+        found
+    }
+
+    /// A point mass on which loads or elements put a moment, beyond the rounding of a place.
+    fn turned_point(&self, system: &System) -> Option<usize> {
+        let is_turned = |b: usize| {
+            let first = system.first[b];
+            let [force, moment] = [0, 3].map(|part| vector(&self.y_rates, first + part));
+            let arm = self.arms[b];
+            let own = moment - arm.cross(&force);
+            own.norm() > OF_PLACES * force.norm() * arm.norm().max(self.longest_arm)
+        };
+        (0..system.bodies.len()).find(|b| system.bodies[*b].is_point() && is_turned(*b))
     }
 
     /// Kinetic and strain energy in the frame, and that which the forces give bodies at rest within a time if no joint holds them.
@@ -579,6 +616,9 @@ impl<'a> Places<'a> {
         }
     }
 }
+
+/// Arm of a force on a point mass over lengths of the system, which is rounding of places.
+const OF_PLACES: f64 = 1e-9;
 
 /// Passes of a projection before it is left as it is.
 const MAX_PROJECTIONS: usize = 20;

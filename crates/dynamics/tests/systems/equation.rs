@@ -82,6 +82,111 @@ fn a_ball_on_a_rod_circles_as_a_conical_pendulum() {
     }
 }
 
+/// A point mass with its weight.
+fn point(mass: f64, gravity: f64) -> ConservativeBody {
+    let reduced = ReducedBody::point(mass, Vector3::zeros()).unwrap();
+    let center = PointShapes::new(&reduced, &BodyPoint::rigid(Vector3::zeros()));
+    let weight = PointForce::dead(center, Vector3::new(0.0, 0.0, -mass * gravity), History::Constant);
+    ConservativeBody::new(&reduced, &[], vec![Arc::new(weight)], &Physics::default()).unwrap()
+}
+
+fn begin(system: System, states: Vec<MotionState>) -> Result<SystemSimulation, SetupError> {
+    let points = vec![Vec::new(); system.bodies().len()];
+    SystemSimulation::new(SystemSetup {
+        system,
+        states,
+        relaxed: false,
+        scheme: SystemScheme::default(),
+        control: StepControl::Tolerance(1e-8),
+        end: 2.0,
+        rows: Rows::EverySteps(1),
+        points,
+    })
+}
+
+/// Closed form: a point mass on a rod circles as a ball does, with ω² = g/(l cos θ), and has two ways to move.
+#[test]
+fn a_point_mass_on_a_rod_circles_as_a_conical_pendulum() {
+    let (length, slope) = (1.3, 0.5_f64);
+    let omega = (GRAVITY / (length * slope.cos())).sqrt();
+    let (radius, height) = (length * slope.sin(), -length * slope.cos());
+    for scheme in [SystemScheme::Radau, SystemScheme::Gauss, SystemScheme::Rkmk4] {
+        let rod = rod("rod", [ground(), on(0, [0.0; 3], skew())], length);
+        let system = System::new(vec![point(MASS, GRAVITY)], vec![rod]).unwrap();
+        let start = state([radius, 0.0, height], [0.0, radius * omega, 0.0], [0.0; 3]);
+        let simulation = begin(system.clone(), vec![start.clone()]).unwrap();
+        assert_eq!(simulation.rigid_dofs(), 2);
+        let mut motion = SystemMotion::new(system, &[start]).unwrap().with_scheme(scheme);
+        motion.advance(2.0, 1e-9, &mut 1e-3).unwrap();
+        let found = motion.state(0).unwrap();
+        let angle = 2.0 * omega;
+        let expected = Vector3::new(radius * angle.cos(), radius * angle.sin(), height);
+        println!("{scheme:?}: {:e}", (found.origin_global - expected).norm());
+        assert!((found.origin_global - expected).norm() < 1e-7, "{scheme:?}: {found:?} {expected}");
+        assert!(found.omega_body == Vector3::zeros());
+        let momentum = expected.cross(&(Vector3::z() * omega).cross(&expected)) * MASS;
+        assert!((motion.momenta()[1] - momentum).norm() < 1e-6, "{scheme:?}: {:?}", motion.momenta());
+    }
+}
+
+/// Conserved: a point mass on a rod at a tumbling body: momenta to rounding, energy to the tolerance.
+#[test]
+fn a_point_mass_that_whirls_with_a_body_keeps_momenta_and_energy() {
+    let markers = [on(0, [0.3, -0.2, 0.1], skew()), on(1, [0.0; 3], Matrix3::identity())];
+    let system = System::new(vec![body(0.0), point(0.7, 0.0)], vec![rod("rod", markers, 0.8)]).unwrap();
+    let states =
+        [state([0.0; 3], [0.1, 0.2, -0.3], [1.0, -2.0, 0.5]), state([1.1, -0.2, 0.1], [0.0, 0.5, 0.0], [0.0; 3])];
+    let mut motion = SystemMotion::new(system, &states).unwrap();
+    motion.assemble().unwrap();
+    let (momenta, energy) = (motion.momenta(), motion.energy().unwrap());
+    motion.advance(5.0, 1e-8, &mut 1e-3).unwrap();
+    let drift = motion.momenta().iter().zip(momenta).map(|(now, start)| (now - start).norm()).fold(0.0, f64::max);
+    let of_energy = (motion.energy().unwrap() / energy - 1.0).abs();
+    println!("momenta {drift:e}, energy {of_energy:e}");
+    assert!(drift < 1e-12 && of_energy < 1e-7, "{drift:e} {of_energy:e}");
+}
+
+/// Closed form: an arm on a hinge with a point mass at its end on a ball swings with ω² = g (m₁ l/2 + m₂ l)/(J + m₁ l²/4 + m₂ l²), and
+/// that is all that vibrates.
+#[test]
+fn a_point_mass_on_a_ball_swings_with_its_arm() {
+    let hinge = Joint::revolute("hinge", [ground(), on(0, [0.0, 0.0, 0.5], Matrix3::identity())]);
+    let ball = Joint::spherical("ball", [on(0, [0.0, 0.0, -0.5], Matrix3::identity()), on(1, [0.0; 3], skew())]);
+    // The hinge turns about y.
+    let about_y = Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0);
+    let hinge =
+        Joint { markers: [Marker::on_ground(Vector3::zeros(), about_y), on(0, [0.0, 0.0, 0.5], about_y)], ..hinge };
+    let system = System::new(vec![body(GRAVITY), point(0.7, GRAVITY)], vec![hinge, ball]).unwrap();
+    let states = vec![state([0.0, 0.0, -0.5], [0.0; 3], [0.0; 3]), state([0.0, 0.0, -1.0], [0.0; 3], [0.0; 3])];
+    let motion = SystemMotion::new(system, &states).unwrap();
+    let vibrations = motion.steady_state(&CommonSpin::REST).unwrap().linear.vibrations().unwrap();
+    let expected = (GRAVITY * (0.5 * MASS + 0.7) / (INERTIA[1] + 0.25 * MASS + 0.7)).sqrt();
+    let found: Vec<f64> = vibrations.modes.iter().map(|mode| mode.eigenvalue.im).collect();
+    assert!(found.len() == 1 && (found[0] - expected).abs() < 1e-9, "{found:?} {expected}");
+}
+
+/// A point mass that something would turn is refused with its name.
+#[test]
+fn what_would_turn_a_point_mass_is_told() {
+    let at = || on(0, [0.0; 3], Matrix3::identity());
+    let off = || on(0, [0.1, 0.0, 0.0], Matrix3::identity());
+    for joint in [
+        Joint::revolute("it", [ground(), at()]),
+        Joint::prismatic("it", [ground(), at()]),
+        Joint::spherical("it", [ground(), off()]),
+        Joint::locked("it", [at(), ground()], [true, false, false], [false; 3]),
+        rod("it", [ground(), off()], 1.0),
+    ] {
+        let system = System::new(vec![point(1.0, GRAVITY)], vec![joint]).unwrap();
+        let refused = begin(system, vec![state([0.0, 0.6, -0.8], [0.0; 3], [0.0; 3])]).err();
+        let Some(SetupError::PointTurned { body: 1, by }) = &refused else { panic!("{refused:?}") };
+        assert_eq!(&**by, "the joint \"it\"");
+    }
+    let bead = Joint::locked("bead", [ground(), at()], [true, true, false], [false; 3]);
+    let system = System::new(vec![point(1.0, GRAVITY)], vec![bead]).unwrap();
+    begin(system, vec![state([0.0; 3], [0.0; 3], [0.0; 3])]).unwrap();
+}
+
 /// Conserved: two bodies that tumble on a rod between places off their centres: momenta to rounding, energy to the tolerance.
 #[test]
 fn a_free_pair_on_a_rod_keeps_momenta_and_energy() {

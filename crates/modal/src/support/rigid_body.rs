@@ -32,7 +32,27 @@ impl ReducedBody {
                 return Err(ModalError::NotSymmetric { what: "inertia", row, column, value, mirrored });
             }
         }
-        let (translation_basis, rotation_basis) = motion.bases(mass, &inertia)?;
+        let bases = motion.bases(mass, &inertia)?;
+        Self::of_moments(mass, center_of_mass, inertia, motion, bases)
+    }
+
+    /// A point mass: a free rigid body that has no moments of inertia, so that it does not turn.
+    ///
+    /// # Errors
+    /// [`ModalError::NoInertia`] where the mass is not positive; [`ModalError::NotFinite`].
+    pub fn point(mass: f64, place: Vector3<f64>) -> Result<Self, ModalError> {
+        let motion = RigidMotion::free();
+        let (translation_basis, _) = motion.bases(mass, &Matrix3::identity())?;
+        Self::of_moments(mass, place, Matrix3::zeros(), motion, (translation_basis, Matrix3::zeros()))
+    }
+
+    fn of_moments(
+        mass: f64,
+        center_of_mass: Vector3<f64>,
+        inertia: Matrix3<f64>,
+        motion: RigidMotion,
+        (translation_basis, rotation_basis): (Matrix3<f64>, Matrix3<f64>),
+    ) -> Result<Self, ModalError> {
         let origin = motion.fixed_point().unwrap_or(center_of_mass);
 
         // The shape of mode k is T_k + B_k × X. Where there is any T, the origin is the centre of mass and ∫ρX is zero.

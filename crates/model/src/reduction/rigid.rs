@@ -25,7 +25,11 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
     let about_center = Matrix3::from_fn(|i, j| rigid.inertia[i][j]);
     let arm = center - motion.fixed_point().unwrap_or(center);
     let inertia = about_center + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * rigid.mass;
-    let body = ReducedBody::rigid(rigid.mass, center, inertia, motion).map_err(modal(scene))?;
+    let body = match rigid.is_point() {
+        true => ReducedBody::point(rigid.mass, center),
+        false => ReducedBody::rigid(rigid.mass, center, inertia, motion),
+    };
+    let body = body.map_err(modal(scene))?;
     let point = |_: String, at: [f64; 3]| -> Result<PointShapes, BuildError> {
         let position_body = Vector3::from(at) - body.origin;
         Ok(PointShapes::new(&body, &BodyPoint { position_body, shapes: Mat::zeros(3, 0) }))
@@ -36,9 +40,10 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         None => [Vector3::zeros(), Vector3::x(), Vector3::y()],
     };
     let loads = mesh_load::on_rigid(scene, &body)?;
-    // The radius of gyration stands for the size.
+    // The radius of gyration stands for the size. A point mass has none: nothing depends on the length that it is given.
     let inertia_trace: f64 = (0..3).map(|i| rigid.inertia[i][i]).sum();
-    let size = Size { length: (inertia_trace / rigid.mass).sqrt(), peaks: Vec::new() };
+    let length = if rigid.is_point() { 1.0 } else { (inertia_trace / rigid.mass).sqrt() };
+    let size = Size { length, peaks: Vec::new() };
     let initial = initial(scene, &body);
     let advice = advise(
         &Case {

@@ -146,6 +146,11 @@ impl Check<'_> {
         self.positive("body.rigid.mass", mass, help)?;
         let key = "body.rigid.inertia";
         let given = Matrix3::from_fn(|i, j| inertia[i][j]);
+        if given == Matrix3::zeros() {
+            let help = "remove it: a point mass is at `center_of_mass`";
+            self.require(about.is_none(), "body.rigid.about", "no other point for a zero inertia", help)?;
+            return Ok(RigidBody { mass, center_of_mass, inertia });
+        }
         let asymmetry = (given - given.transpose()).amax();
         if asymmetry > ASYMMETRY * given.amax() {
             return Err(self.document.place(key).refuse(
@@ -162,12 +167,24 @@ impl Check<'_> {
         if let Some(found) = not_an_inertia(&central) {
             return Err(self.document.place(key).refuse(
                 format!("{found} about the centre of mass"),
-                "positive principal moments of inertia, none above the sum of the other two",
+                "positive principal moments of inertia, none above the sum of the other two, or zeros for a point mass",
                 "correct the tensor, or set `about` to the point it is given for (default: the centre of mass)",
             ));
         }
         let inertia = [0, 1, 2].map(|i| [0, 1, 2].map(|j| central[(i, j)]));
         Ok(RigidBody { mass, center_of_mass, inertia })
+    }
+
+    /// Refuses a point mass that nothing ties.
+    pub fn turns(&self, body: &Body) -> Result<(), SceneError> {
+        match body {
+            Body::Rigid(rigid) if rigid.is_point() => Err(self.document.place("body.rigid.inertia").refuse(
+                "zeros for a body that neither a joint nor a spring ties to another or to the ground",
+                "an inertia",
+                "give it one: the place of a body that moves alone does not depend on it",
+            )),
+            _ => Ok(()),
+        }
     }
 
     fn mesh<'m>(&self, mesh: &'m str) -> Result<&'m str, SceneError> {

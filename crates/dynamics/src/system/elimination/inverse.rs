@@ -31,6 +31,11 @@ impl Inertia {
         Self { bent, ..Self::new(body.flexible()) }
     }
 
+    /// True of a point mass, which does not turn.
+    pub fn is_point(&self) -> bool {
+        self.locked == Matrix3::zeros()
+    }
+
     /// M⁻¹S.
     fn solved_coupling(&self) -> &[Vec<f64>; 3] {
         self.bent.as_ref().map_or(&self.coupling, |bent| &bent.solved)
@@ -123,7 +128,7 @@ impl<T: Number> Inverse<T> {
         if let (Some(bent), Some(of_mass)) = (&mut self.bent, &inertia.bent) {
             bent.copy_of_mass(of_mass);
         }
-        self.invert(&inertia.locked.map(T::from_real))
+        self.invert(&inertia.locked.map(T::from_real), inertia)
     }
 
     /// Finds it for κ; `oscillators` are Λ_k and D_k of each mode. False where Z is singular.
@@ -160,7 +165,7 @@ impl<T: Number> Inverse<T> {
                 }
             }
         }
-        self.invert(&spin)
+        self.invert(&spin, inertia)
     }
 
     fn begin(&mut self, kappa: T, inertia: &Inertia) {
@@ -170,8 +175,12 @@ impl<T: Number> Inverse<T> {
         }
     }
 
-    /// Takes the inverse of what the modes leave to the spin. False where that is singular.
-    fn invert(&mut self, spin: &Matrix3<T>) -> bool {
+    /// Takes the inverse of what the modes leave to the spin; a point mass has none. False where that is singular.
+    fn invert(&mut self, spin: &Matrix3<T>, inertia: &Inertia) -> bool {
+        if inertia.is_point() {
+            self.spin = Matrix3::zeros();
+            return true;
+        }
         match spin.try_inverse() {
             Some(inverse) => self.spin = inverse,
             None => return false,

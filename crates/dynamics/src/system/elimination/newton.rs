@@ -104,9 +104,12 @@ impl Frozen<'_> {
     }
 }
 
-/// Sizes of a change of positions: the largest root mean square of a body, with its mass, relative to its radius of gyration;
-/// and the energy of the change, if it comes about within a step, and of its strain.
-pub(in crate::system) fn sizes(system: &System, x: &[f64], h: f64) -> [f64; 2] {
+/// The least radius of gyration over the size of the largest body for which a change of place counts over it.
+const LEAST_RADIUS: f64 = 1e-2;
+
+/// Sizes of a change of positions: the largest root mean square of a body, with its mass, relative to its radius of gyration, or to a part of
+/// the size of the largest body, if that is more; and the energy of the change, if it comes about within a step, and of its strain.
+pub(in crate::system) fn sizes(system: &System, x: &[f64], [h, size]: [f64; 2]) -> [f64; 2] {
     let (mut largest, mut energy) = (0.0, 0.0);
     for (b, body) in system.bodies.iter().enumerate() {
         let own = &x[system.first[b]..system.first[b + 1]];
@@ -115,9 +118,10 @@ pub(in crate::system) fn sizes(system: &System, x: &[f64], h: f64) -> [f64; 2] {
         let square = body.mass() * moved.norm_squared()
             + turned.dot(&(inertia * turned))
             + own[6..].iter().map(|q| q * q).sum::<f64>();
-        let size = (square / (0.5 * inertia.trace())).sqrt();
+        let least = body.mass() * (LEAST_RADIUS * size).powi(2);
+        let moved = (square / (0.5 * inertia.trace()).max(least)).sqrt();
         // A NaN stays one.
-        largest = if size <= largest { largest } else { size };
+        largest = if moved <= largest { largest } else { moved };
         let strain = own[6..].iter().zip(&body.circular_frequencies).map(|(q, omega)| (omega * q).powi(2)).sum::<f64>();
         energy += 0.5 * (square / (h * h) + strain);
     }

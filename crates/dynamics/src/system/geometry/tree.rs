@@ -169,7 +169,8 @@ pub(crate) fn size_of_system(system: &System, at: &Posture<'_>) -> f64 {
     let size = places.fold(0.0, f64::max);
     // One body whose joints are at its origin.
     let radii = system.bodies.iter().map(|body| body.radius_of_gyration());
-    if size > 0.0 { size } else { radii.fold(0.0, f64::max) }
+    let size = if size > 0.0 { size } else { radii.fold(0.0, f64::max) };
+    if size > 0.0 { size } else { system.spread_of_points(at.positions.iter().copied()) }
 }
 
 /// Columns that are independent of each other, in their order: the rest is below `limit` beside them.

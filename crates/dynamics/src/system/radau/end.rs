@@ -30,21 +30,30 @@ impl SystemMotion {
     /// Takes the last stage, which has been brought to the end of a step, for the state, with what the step sums up by the weights of
     /// its stages; what flies freely gets the momenta that the loads have given it.
     pub(super) fn land(&mut self, times: [f64; 2], h: f64, weights: [f64; STAGES]) -> Result<(), Failed> {
-        let Self { stages: [.., last], system, stage_rates, .. } = self;
-        last.correct_momenta(system, |k| {
-            stage_rates.iter().zip(weights).map(|(rates, weight)| weight * rates.y[k]).sum::<f64>()
-        });
+        self.correct_momenta(weights);
         self.keep_spring_energies();
         self.keep_coordinates();
         let since = self.time;
         self.project_positions(times, h)?;
         self.watch(times)?;
+        if self.stages[STAGES - 1].hold_points(&self.system, &self.start) {
+            // They have no spin that takes up what the projection has moved them by.
+            self.correct_momenta(weights);
+        }
         self.project_velocities(times)?;
         self.count_held(self.time - since);
         self.add_exchange(weights);
         self.settle_springs(weights);
         self.settle_laws(weights);
         Ok(())
+    }
+
+    /// Gives what flies freely the momenta that the loads have given it, by the weights of the stages.
+    fn correct_momenta(&mut self, weights: [f64; STAGES]) {
+        let Self { stages: [.., last], system, stage_rates, .. } = self;
+        last.correct_momenta(system, |k| {
+            stage_rates.iter().zip(weights).map(|(rates, weight)| weight * rates.y[k]).sum::<f64>()
+        });
     }
 
     /// Projects the end of a step, and takes it for the state. Returns the largest residual and rate that are left.

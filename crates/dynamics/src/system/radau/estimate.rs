@@ -23,6 +23,9 @@ const FORGOTTEN: f64 = 3.0;
 /// Error of the order of the scheme, over that of the embedded formula to this power, of an oscillation whose amplitude is one.
 const OF_EMBEDDED: [f64; 2] = [1.5, 1.5];
 
+/// A motion in a run over the size of the largest body, below which the run is rest, and velocities are rounding.
+const STILL: f64 = 1e-10;
+
 /// The two estimates e4 and e6 of an oscillation of amplitude a have e6/e4 = ρ and e4 = 5 ρ² a, up to this ρ.
 const OF_AMPLITUDE: f64 = 5.0;
 const LARGEST_RATIO: f64 = 0.25;
@@ -31,7 +34,7 @@ impl SystemMotion {
     /// The estimated errors of a step whose stages are known, in a run of some span: of each kind the smaller of two estimates. Without a
     /// span, what nobody bounds is only looked at for NaN.
     pub(super) fn errors(&mut self, h: f64, span: f64) -> Estimate {
-        let energy = self.energy_so_far();
+        let energy = self.energy_so_far().max(self.still_energy(span));
         let Self { stages, system, matrices, patterns, scheme, .. } = self;
         let kappa = scheme.real / (HELD_WITHIN * span);
         let is_in_run = span.is_finite();
@@ -93,6 +96,12 @@ impl SystemMotion {
         let Self { largest_moving, stages: [.., last], system, .. } = self;
         let [moving, _] = last.energies(system, 0.0);
         largest_moving.max(moving)
+    }
+
+    /// Energy of bodies that move by a part of their size in a span which is rounding: less than that is rest.
+    fn still_energy(&self, span: f64) -> f64 {
+        let mass: f64 = self.system.bodies.iter().map(ConservativeBody::mass).sum();
+        0.5 * mass * (STILL * self.size / span).powi(2)
     }
 
     /// Finds the estimate of the embedded formula, in the axes of the bodies.

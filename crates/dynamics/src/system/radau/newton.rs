@@ -158,6 +158,7 @@ impl SystemMotion {
             largest_energy,
             past,
             largest_moving,
+            size,
             ..
         } = self;
         let Room { real, complex, y_rates, change: residuals, .. } = room;
@@ -207,7 +208,7 @@ impl SystemMotion {
             for k in 0..dx.len() {
                 (dx[k], dy[k]) = (change(real.x[k], complex.x[k]), change(real.y[k], complex.y[k]));
             }
-            let [position, mut energy] = sizes(system, dx, h);
+            let [position, mut energy] = sizes(system, dx, [h, *size]);
             energy += matrices.strain_energy(&stages[1], dx);
             moved = larger(moved, position);
             let of_energy = if energy == 0.0 {

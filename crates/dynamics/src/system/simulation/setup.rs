@@ -5,17 +5,20 @@ use nalgebra::Vector3;
 use crate::body::motion_state::MotionState;
 use crate::body::shapes::PointShapes;
 use crate::conservative::ConservativeBody;
-use crate::error::SetupError;
+use crate::error::{RateError, SetupError};
 use crate::history::positive;
 use crate::scheme::mode_limit::stable_step_of_modes;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
 use crate::system::frame::GAP;
+use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::equation::{Misfit, misfit};
+use crate::system::joint::row::Row;
 use crate::system::radau::SystemMotion;
 use crate::system::relaxed::RelaxError;
 use crate::system::simulation::second_order::Branching;
+use crate::system::stage::vector;
 use crate::vibration::system::CommonSpin;
 use crate::vibration::system::configuration::Configuration;
 
@@ -103,11 +106,14 @@ pub struct ShapeLimit {
 }
 
 /// Largest distance of bodies from the first, or the largest radius of gyration.
-pub(super) fn size(system: &System, states: &[MotionState]) -> f64 {
+pub(super) fn size(motion: &SystemMotion, states: &[MotionState]) -> f64 {
+    let system = motion.system();
     let first = states.first().map_or_else(Vector3::zeros, |state| state.origin_global);
     let spread = states.iter().map(|state| (state.origin_global - first).norm());
     let radii = system.bodies().iter().map(|body| body.radius_of_gyration());
-    spread.chain(radii).fold(f64::MIN_POSITIVE, f64::max)
+    let size = spread.chain(radii).fold(0.0, f64::max);
+    // One point mass.
+    if size > 0.0 { size } else { motion.size() }
 }
 
 /// Part of the velocities that does not fit joints, over the rounding of places on the ground as a part of the size.
@@ -132,6 +138,7 @@ pub(super) fn assemble(
     [size, end]: [f64; 2],
 ) -> Result<(Vec<Assembled>, Option<Branching>), SetupError> {
     refuse_wrong_derivatives(motion)?;
+    refuse_axes_of_points(motion.system())?;
     let open = motion.largest_gap().map_err(|_| SetupError::SINGULAR)?;
     let done = if relaxed { motion.relax() } else { motion.assemble().map_err(RelaxError::from) };
     let [left, rates] = match (done, open) {
@@ -155,6 +162,7 @@ pub(super) fn assemble(
         let joint = open.map_or_else(Box::default, |(joint, _)| joint.into());
         return Err(not_assembled(motion, joint, [left, rates]));
     }
+    refuse_turned_points(motion)?;
     let branching = motion.test_start()?;
     let changed = |(body, state): (usize, &MotionState)| {
         let now = motion.state(body).map_err(|_| SetupError::SINGULAR)?;
@@ -191,4 +199,55 @@ fn refuse_wrong_derivatives(motion: &SystemMotion) -> Result<(), SetupError> {
         }
     }
     Ok(())
+}
+
+/// Moment of a row about a point mass, over its force and the size of the system, which is rounding.
+const OF_PLACES: f64 = 1e-9;
+
+/// Refuses rows and forces along axes that a point mass would have to carry.
+fn refuse_axes_of_points(system: &System) -> Result<(), SetupError> {
+    for joint in system.joints() {
+        for (markers, rows) in joint.groups() {
+            for (k, body) in markers.iter().enumerate().filter_map(|(k, marker)| Some((k, marker.body()?))) {
+                // Three rows of a point need no axes.
+                let along = rows.iter().filter(|row| matches!(row, Row::Point { of, .. } if *of == k)).count();
+                let has_force = joint.forces().any(|(along, _)| along == Coordinate::Turn || k == 0);
+                if system.bodies()[body].is_point() && (along % 3 != 0 || has_force) {
+                    return Err(SetupError::PointTurned { body: body + 1, by: named(&joint.name) });
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses moments on point masses, of rows, loads and force elements, where the joints are closed.
+fn refuse_turned_points(motion: &mut SystemMotion) -> Result<(), SetupError> {
+    let is_point: Vec<bool> = motion.system().bodies().iter().map(ConservativeBody::is_point).collect();
+    if !is_point.contains(&true) {
+        return Ok(());
+    }
+    match motion.residuals() {
+        Ok(_) => {}
+        Err(RateError::PointTurned { body }) => {
+            return Err(SetupError::PointTurned { body, by: "a load or a force element".into() });
+        }
+        Err(_) => return Err(SetupError::SINGULAR),
+    }
+    let size = motion.size();
+    let names: Vec<&str> = motion.system().connections.names().collect();
+    for (row, ends) in motion.first.constraints.ends.iter().enumerate() {
+        for end in ends.iter().filter(|end| is_point[end.body]) {
+            let [force, moment] = [0, 3].map(|part| vector(&end.entries, part).norm());
+            if moment > OF_PLACES * size * force {
+                let by = names.get(row).map_or_else(|| "a force element".into(), |name| named(name));
+                return Err(SetupError::PointTurned { body: end.body + 1, by });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn named(joint: &str) -> Box<str> {
+    format!("the joint \"{joint}\"").into()
 }

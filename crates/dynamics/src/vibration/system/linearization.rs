@@ -159,23 +159,33 @@ fn unstrained_first(
 fn null_space(system: &System, terms: &Terms) -> Result<Mat<f64>, SteadyError> {
     let n = system.coordinates();
     let kept: Vec<usize> = (0..terms.rows.nrows()).filter(|row| !terms.is_implied[*row]).collect();
+    // Turns of point masses, which have none, are held.
+    let points = system.bodies.iter().zip(&system.first).filter(|(body, _)| body.is_point());
+    let held: Vec<usize> = points.flat_map(|(_, first)| first + 3..first + 6).collect();
+    let rows = kept.len() + held.len();
     // M = Lᵐ Lᵐᵀ of each body; of z = Lᵐᵀ ξ all that is orthogonal to the columns of Lᵐ⁻¹ Gᵀ.
-    let factors = terms.masses.iter().map(|mass| mass.llt(Side::Lower).map(|llt| llt.L().to_owned()));
+    let masses = terms.masses.iter().zip(&system.bodies).map(|(mass, body)| {
+        let turns = if body.is_point() { body.mass() } else { 0.0 };
+        Mat::from_fn(mass.nrows(), mass.ncols(), |i, j| mass[(i, j)] + if i == j && i >= 3 { turns } else { 0.0 })
+    });
+    let factors = masses.map(|mass| mass.llt(Side::Lower).map(|llt| llt.L().to_owned()));
     let factors: Vec<Mat<f64>> = factors.collect::<Result<_, _>>().map_err(|_| SteadyError::Numbers)?;
-    let mut columns = Mat::from_fn(n, kept.len(), |k, j| terms.rows[(kept[j], k)]);
+    let mut columns = Mat::from_fn(n, rows, |k, j| match kept.get(j) {
+        Some(row) => terms.rows[(*row, k)],
+        None => f64::from(u8::from(held[j - kept.len()] == k)),
+    });
     for (factor, first) in factors.iter().zip(&system.first) {
-        let block = columns.submatrix_mut(*first, 0, factor.nrows(), kept.len());
+        let block = columns.submatrix_mut(*first, 0, factor.nrows(), rows);
         faer::linalg::triangular_solve::solve_lower_triangular_in_place(factor.as_ref(), block, faer::Par::Seq);
     }
-    for j in 0..kept.len() {
+    for j in 0..rows {
         let norm = columns.col(j).norm_l2();
         if norm > 0.0 {
             columns.col_mut(j).iter_mut().for_each(|x| *x /= norm);
         }
     }
-    let left = n - kept.len();
-    let mut basis =
-        if kept.is_empty() { Mat::identity(n, n) } else { columns.qr().compute_Q().get(.., kept.len()..).to_owned() };
+    let left = n - rows;
+    let mut basis = if rows == 0 { Mat::identity(n, n) } else { columns.qr().compute_Q().get(.., rows..).to_owned() };
     for (factor, first) in factors.iter().zip(&system.first) {
         let block = basis.submatrix_mut(*first, 0, factor.nrows(), left);
         faer::linalg::triangular_solve::solve_upper_triangular_in_place(factor.transpose(), block, faer::Par::Seq);

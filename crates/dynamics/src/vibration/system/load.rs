@@ -50,7 +50,9 @@ pub(crate) fn load_forces(body: &ConservativeBody, at: &BodyConfiguration, time:
         q: at.q.clone(),
         rate: vec![0.0; nf],
     };
-    let length = body.radius_of_gyration();
+    let lengths = [body.radius_of_gyration(), at.origin.norm(), 1.0];
+    // Of a point mass the distance from the origin.
+    let length = lengths.into_iter().find(|length| *length > 0.0).unwrap_or(1.0);
     let amplitude = body.mass().sqrt() * length;
     let axes: [Vector3<f64>; 3] = std::array::from_fn(|k| here.body_from_global.row(k).transpose());
     let difference = |scale: f64, change: &dyn Fn(&mut Seen, f64)| {

@@ -111,7 +111,9 @@ impl SteadyState {
         spin: Option<&CommonSpin>,
     ) -> Result<Self, SteadyError> {
         let system = motion.system();
-        let sizes: Vec<f64> = system.bodies.iter().map(crate::ConservativeBody::radius_of_gyration).collect();
+        let sizes = system.bodies.iter().map(crate::ConservativeBody::radius_of_gyration);
+        // Of a point mass the size of the largest body.
+        let sizes: Vec<f64> = sizes.map(|radius| if radius > 0.0 { radius } else { motion.size() }).collect();
         for pass in 0.. {
             let terms = Terms::new(system, &at)?;
             if spin.is_some() {

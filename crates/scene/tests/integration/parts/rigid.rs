@@ -106,6 +106,11 @@ fn what_is_no_rigid_body() {
         let message = Scene::parse(&text(&keys), "a.toml").unwrap_err().to_string();
         assert!(message.contains(&format!("`body.rigid.{key}`: ")) && message.contains(words), "{words}: {message}");
     }
+    // A point mass has to be tied.
+    let alone = TOP.replace("[[21, 0, 0], [0, 21, 0], [0, 0, 2]]", "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]");
+    let alone = alone.replace("about = [0, 0, 0]", "");
+    let message = Scene::parse(&text(&alone), "a.toml").unwrap_err().to_string();
+    assert!(message.contains("zeros for a body that neither a joint nor a spring ties"), "{message}");
     // A flat body, its moments written with four digits.
     rigid("mass = 1, center_of_mass = [0, 0, 0], inertia = [[1.333, 0, 0], [0, 1.333, 0], [0, 0, 2.667]]");
 }
