@@ -104,11 +104,11 @@ impl Frozen<'_> {
     }
 }
 
-/// The least radius of gyration over the size of the largest body for which a change of place counts over it.
-const LEAST_RADIUS: f64 = 1e-2;
+/// Length over the size of the largest body over which a change of place of a point mass counts.
+const OF_POINT: f64 = 1e-2;
 
-/// Sizes of a change of positions: the largest root mean square of a body, with its mass, relative to its radius of gyration, or to a part of
-/// the size of the largest body, if that is more; and the energy of the change, if it comes about within a step, and of its strain.
+/// Sizes of a change of positions: the largest root mean square of a body, with its mass, relative to its radius of gyration, of a point
+/// mass to a part of the size of the largest body; and the energy of the change, if it comes about within a step, and of its strain.
 pub(in crate::system) fn sizes(system: &System, x: &[f64], [h, size]: [f64; 2]) -> [f64; 2] {
     let (mut largest, mut energy) = (0.0, 0.0);
     for (b, body) in system.bodies.iter().enumerate() {
@@ -118,8 +118,11 @@ pub(in crate::system) fn sizes(system: &System, x: &[f64], [h, size]: [f64; 2]) 
         let square = body.mass() * moved.norm_squared()
             + turned.dot(&(inertia * turned))
             + own[6..].iter().map(|q| q * q).sum::<f64>();
-        let least = body.mass() * (LEAST_RADIUS * size).powi(2);
-        let moved = (square / (0.5 * inertia.trace()).max(least)).sqrt();
+        let of_size = match body.is_point() {
+            true => body.mass() * (OF_POINT * size).powi(2),
+            false => 0.5 * inertia.trace(),
+        };
+        let moved = (square / of_size).sqrt();
         // A NaN stays one.
         largest = if moved <= largest { largest } else { moved };
         let strain = own[6..].iter().zip(&body.circular_frequencies).map(|(q, omega)| (omega * q).powi(2)).sum::<f64>();
