@@ -55,7 +55,7 @@ impl SystemMotion {
         Ok(())
     }
 
-    /// The same of states as [`ConservativeBody::motion_in_frame`] gives them, at the same time.
+    /// The same of states as `ConservativeBody::motion_in_frame` gives them, at the same time.
     pub(in crate::system) fn set_states_in_frame(&mut self, states: &[MotionState]) -> Result<(), SetupError> {
         let bodies = self.system.bodies.iter().zip(states);
         let bodies = bodies.map(|(body, state)| body.state_in_frame(state)).collect::<Result<_, _>>()?;
