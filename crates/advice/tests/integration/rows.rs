@@ -175,13 +175,16 @@ fn what_gravity_moves_by_a_part_of_the_length_is_kept_however_fast_the_body_flie
     let zeta = [0.0; 10];
     let initial = Initial { velocity: Vector3::x() * 7.5e6, ..Initial::at_rest(10) };
     let weight = plate().force([0.0, 0.0, 5.0], [0.0, 0.0, -9810.0 * plate().body.mass], History::Constant);
-    let push = plate().force(CORNER, [0.0, 0.0, 1e7 * plate().body.mass], History::Constant);
-    let on = |end: f64| {
+    let push = plate().force(CORNER, [0.0, 0.0, 1e9 * plate().body.mass], History::Constant);
+    let row = |end: f64| {
         let loads = [weight.clone(), push.clone()];
         let case = Case { is_gravity: &[true, false], ..plate().case(&zeta, &loads, &initial, end) };
-        advise(&case, 1e-3).unwrap().effects[Effect::Gravity].on
+        advise(&case, 1e-3).unwrap().effects[Effect::Gravity].clone()
     };
-    assert!(on(0.1) && !on(1e-4));
+    let [short, long] = [1e-4, 0.1].map(row);
+    // g T²/L of the long one; of the short one the share of its impulse is larger.
+    assert!((long.value / (9810.0 * 0.1 * 0.1 / plate().length) - 1.0).abs() < 1e-6 && long.on, "{long:?}");
+    assert!(short.value < 1e-4, "{short:?}");
 }
 
 #[test]
