@@ -115,7 +115,7 @@ fn a_table_that_is_missing_or_wrong_is_named_with_its_line() {
         ("0,1\n0.5,2\n0.5,3\n", "pulse.csv:3:", "0.5 after 0.5"),
         ("0,1\n1,nan\n", "pulse.csv:2:", "found 2 field(s), 1 of them"),
         ("0;1\n1;2\n", "pulse.csv:2:", "found 1 field(s)"),
-        ("0,1\n", "pulse.csv:1:", "1 of the pairs"),
+        ("0,1\n", "pulse.csv:1:", "1 pairs of time and value"),
     ] {
         let message = of(text);
         assert!(message.contains(line) && message.contains(words), "{text:?}: {message}");
