@@ -52,7 +52,7 @@ pub fn places(description: &Value, length: usize) -> Vec<Place> {
     let mut places: Vec<_> = datasets
         .map(|dataset| {
             let shape = dataset["shape"].as_array().cloned().unwrap_or_default();
-            let each = if dataset["kind"] == "u32" { 4 } else { 8 };
+            let each = if dataset["kind"] == "u32" || dataset["kind"] == "f32" { 4 } else { 8 };
             let size = shape.iter().map(number).fold(each, usize::saturating_mul);
             let start = number(&dataset["start"]);
             Place { bytes: start..start.saturating_add(size), hash: dataset["hash"].as_str().map(str::to_owned) }

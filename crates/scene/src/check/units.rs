@@ -141,8 +141,10 @@ impl BaseUnit {
             let singular = found.strip_suffix('s').unwrap_or(&found);
             *word == found || *word == singular || (word.len() > 4 && is_near(word, 1 + letters / 5))
         });
+        // A sign, as of the mass of the sun, is no slip of a letter.
+        let may_slip = letters > 1 && found.chars().all(|c| c.is_ascii() || c.is_alphabetic());
         let near =
-            || known.iter().find(|known| letters > 1 && known.chars().count() > 1 && is_near(&known.to_lowercase(), 1));
+            || known.iter().find(|known| may_slip && known.chars().count() > 1 && is_near(&known.to_lowercase(), 1));
         of_a_word.map(|(_, label)| (*label).to_owned()).or_else(|| near().cloned())
     }
 }

@@ -211,9 +211,9 @@ fn tables() {
     for (what, of, says) in [
         ("points", rising.clone(), ""),
         ("the last does not rise", rising + "0,0", "found the time 0.0 after"),
-        ("commas", ",".repeat(n), "found 0 of the pairs"),
-        ("lines", "\n".repeat(n), "found 0 of the pairs"),
-        ("comments", "#\n".repeat(n), "found 0 of the pairs"),
+        ("commas", ",".repeat(n), "found 0 pairs"),
+        ("lines", "\n".repeat(n), "found 0 pairs"),
+        ("comments", "#\n".repeat(n), "found 0 pairs"),
         ("digits", "1".repeat(n), "expected two finite numbers"),
         ("digits in columns", format!("{0},{0}", "1".repeat(n)), "expected two finite numbers"),
         ("1e12 points", "1000000000000\n0,1\n".into(), "expected two finite numbers"),

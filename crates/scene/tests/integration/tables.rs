@@ -53,8 +53,8 @@ fn a_bad_line_is_named_in_the_table() {
         ("t,f\n0,0\n0,1\n", 3, "found the time 0.0 after 0.0, expected times that rise"),
         ("# one\n# two\n\n1,0\n# three\n\n0.5,1\n", 7, "found the time 0.5 after 1.0"),
         ("0,0\n1,0\n1.0000000000004,1\n", 3, "expected times whose distance is not lost in rounding"),
-        ("", 1, "found 0 of the pairs of time and factor, expected at least two"),
-        ("t,f\n0,1\n", 1, "found 1 of the pairs"),
+        ("", 1, "found 0 pairs of time and value, expected two or more"),
+        ("t,f\n0,1\n", 1, "found 1 pairs of time and value"),
     ] {
         let message = read(folder.path(), text.as_bytes()).unwrap_err().to_string();
         let head = format!("{}:{line}:1: `loads[0].history.file`: ", folder.path().join("pulse.csv").display());

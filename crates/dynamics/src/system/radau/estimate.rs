@@ -23,8 +23,8 @@ const FORGOTTEN: f64 = 3.0;
 /// Error of the order of the scheme, over that of the embedded formula to this power, of an oscillation whose amplitude is one.
 const OF_EMBEDDED: [f64; 2] = [1.5, 1.5];
 
-/// A motion in a run over the size of the largest body, below which the run is rest, and velocities are rounding.
-const STILL: f64 = 1e-10;
+/// A motion in a run over the size of the largest body, below which the run is rest: its velocities are the rounding of forces that balance.
+const STILL: f64 = 1e-15;
 
 /// The two estimates e4 and e6 of an oscillation of amplitude a have e6/e4 = ρ and e4 = 5 ρ² a, up to this ρ.
 const OF_AMPLITUDE: f64 = 5.0;
@@ -34,7 +34,8 @@ impl SystemMotion {
     /// The estimated errors of a step whose stages are known, in a run of some span: of each kind the smaller of two estimates. Without a
     /// span, what nobody bounds is only looked at for NaN.
     pub(super) fn errors(&mut self, h: f64, span: f64) -> Estimate {
-        let energy = self.energy_so_far().max(self.still_energy(span));
+        let energy = self.energy_so_far();
+        let energy = if energy < self.still_energy(span) { 0.0 } else { energy };
         let Self { stages, system, matrices, patterns, scheme, .. } = self;
         let kappa = scheme.real / (HELD_WITHIN * span);
         let is_in_run = span.is_finite();
