@@ -86,7 +86,7 @@ impl EnergyAccount {
         Self { start, of_loads, ..Self::default() }
     }
 
-    /// With an energy that flows from the beginning on, whatever the account begins with: that of a bent reference that nothing holds.
+    /// With an energy that flows from the beginning on, such as the strain energy of a bent reference that nothing holds.
     pub(crate) fn of_scale(self, least: f64) -> Self {
         Self { scale: self.scale.max(least), least_scale: least, ..self }
     }

@@ -1,6 +1,5 @@
 //! Bodies and what connects them.
 
-mod groups;
 pub(crate) mod islands;
 
 use std::sync::Arc;
@@ -10,7 +9,6 @@ use nalgebra::Vector3;
 use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
 use crate::system::connections::Connections;
-use crate::system::description::groups::free_groups;
 use crate::system::description::islands::{Island, islands};
 use crate::system::element::ForceElement;
 use crate::system::joint::Joint;
@@ -55,7 +53,9 @@ impl System {
             }
             first.push(first[first.len() - 1] + 6 + body.flexible());
         }
-        let free_groups = free_groups(bodies.len(), &joints);
+        let of_joints = islands(bodies.len(), joints.iter().map(|joint| joint.markers.iter().collect()));
+        let free_groups =
+            of_joints.into_iter().filter(|island| !island.is_on_ground).map(|island| island.bodies).collect();
         let connections = Connections { joints, ..Connections::default() };
         connections.markers().try_for_each(|marker| check(marker, &bodies))?;
         let (islands, sizes) = (Vec::new(), Vec::new());
@@ -168,7 +168,7 @@ impl System {
         let frame = marker.body().map(|body| self.bodies[body].frame);
         let (position_global, velocity) = match frame {
             Some(frame) => (frame.global_place(&motion.position_global, time), frame.velocity()),
-            None => (marker.ground_position(), Vector3::zeros()),
+            None => (marker.position(), Vector3::zeros()),
         };
         MarkerMotion { position_global, velocity_global: motion.velocity_global + velocity, ..motion }
     }
@@ -176,6 +176,11 @@ impl System {
     /// The radius of gyration of the body of a marker; of the ground, zero.
     pub(crate) fn length_at(&self, marker: &Marker) -> f64 {
         marker.body().map_or(0.0, |body| self.bodies[body].radius_of_gyration())
+    }
+
+    /// Number of coordinates of all bodies as rigid ones: point masses do not turn.
+    pub(crate) fn rigid_coordinates(&self) -> usize {
+        self.bodies.iter().map(|body| if body.is_point() { 3 } else { 6 }).sum()
     }
 
     /// Largest distance of a marker from the origin of its body.

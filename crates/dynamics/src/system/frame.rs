@@ -86,7 +86,7 @@ impl System {
         for markers in self.connections.ties() {
             if markers.iter().any(|marker| marker.body().is_some_and(|body| island.bodies.contains(&body))) {
                 let on_ground = markers.iter().filter(|marker| marker.body().is_none());
-                places.extend(on_ground.map(|marker| marker.ground_position()));
+                places.extend(on_ground.map(|marker| marker.position()));
             }
         }
         places

@@ -188,7 +188,7 @@ impl Joint {
         self.groups().map(|(_, rows)| rows.len()).sum()
     }
 
-    /// Its markers, then those of its parts.
+    /// The markers of the joint, then the markers of its parts.
     pub(crate) fn all_markers(&self) -> Vec<&Marker> {
         self.groups().flat_map(|(markers, _)| markers).collect()
     }

@@ -24,7 +24,7 @@ pub struct Marker {
     body: Option<usize>,
     /// X, from the origin of the body in its axes; of the ground, global.
     position: Vector3<f64>,
-    /// The place that those of the ground are counted from in a system.
+    /// The place that a marker of the ground is counted from in a system.
     #[serde(skip)]
     anchor: Vector3<f64>,
     /// Columns of Ψ (nf); on a manifold of large modes those of its coordinates z.
@@ -96,11 +96,6 @@ impl Marker {
         self.body
     }
 
-    /// Its place on the ground, global.
-    pub(crate) fn ground_position(&self) -> Vector3<f64> {
-        self.position
-    }
-
     /// Counts its place on the ground from another one.
     pub(crate) fn count_from(&mut self, anchor: Vector3<f64>) {
         self.anchor = anchor;
@@ -111,7 +106,7 @@ impl Marker {
         self.position.norm()
     }
 
-    /// Its place on its undeformed body, from the origin, or on the ground.
+    /// Its place on its undeformed body, from the origin; on the ground, global.
     pub(crate) fn position(&self) -> Vector3<f64> {
         self.position
     }

@@ -544,8 +544,7 @@ impl SystemMotion {
 /// The size of the largest body: its radius of gyration, or the distance of a marker from its origin. Of points alone, that between them and
 /// from what holds them.
 fn size_of_bodies(system: &System, states: &[MotionState]) -> f64 {
-    let radii = system.bodies.iter().map(ConservativeBody::radius_of_gyration);
-    let size = radii.fold(system.longest_arm(), f64::max);
+    let size = system.sizes.iter().copied().fold(0.0, f64::max);
     if size > 0.0 {
         return size;
     }

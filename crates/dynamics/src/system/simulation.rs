@@ -238,8 +238,7 @@ impl SystemSimulation {
     pub fn rigid_dofs(&self) -> usize {
         let system = self.motion.system();
         let implied: usize = self.redundant.iter().map(|(_, rows)| rows).sum();
-        let points = system.bodies().iter().filter(|body| body.is_point()).count();
-        (6 * system.bodies().len() + implied).saturating_sub(system.rows() + 3 * points)
+        (system.rigid_coordinates() + implied).saturating_sub(system.rows())
     }
 
     /// Largest |work of loads, joints and elements| + |dissipation| since the beginning, of a body, or the largest energy of the motion, if that

@@ -193,15 +193,12 @@ impl Stage {
     /// Finds velocities, rates, g and G at a time; laws with branches are taken as they are at the branch time.
     pub fn evaluate(&mut self, system: &System, start: &Start, times: [f64; 2]) -> Result<(), RateError> {
         self.place(system, start);
+        self.hold_points(system, start);
         for (b, (body, from)) in system.bodies.iter().zip(&start.bodies).enumerate() {
             let (first, end) = (system.first[b], system.first[b + 1]);
             let e = &mut self.evaluations[b];
             let (arm, attitude) = (self.arms[b], self.attitudes[b]);
             let momentum = from.momentum + vector(&self.y, first);
-            if body.is_point() {
-                // It has no spin.
-                put(&mut self.y, first + 3, &(arm.cross(&momentum) - from.angular_momentum));
-            }
             let angular_momentum = from.angular_momentum + vector(&self.y, first + 3);
             let pi = attitude * (angular_momentum - arm.cross(&momentum));
             let mut slow = *e.at.slow();
@@ -618,7 +615,7 @@ impl<'a> Places<'a> {
 }
 
 /// Arm of a force on a point mass over lengths of the system, which is rounding of places.
-const OF_PLACES: f64 = 1e-9;
+pub(crate) const OF_PLACES: f64 = 1e-9;
 
 /// Passes of a projection before it is left as it is.
 const MAX_PROJECTIONS: usize = 20;

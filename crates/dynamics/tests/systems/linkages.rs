@@ -56,7 +56,12 @@ fn drive(formula: &str) -> JointDrive {
     JointDrive { amplitude: 1.0, history: History::Expression(Expression::new(formula, Vec::new()).unwrap()) }
 }
 
-fn run(system: System, states: Vec<MotionState>, tolerance: f64, end: f64) -> Result<SystemSimulation, SetupError> {
+pub(crate) fn run(
+    system: System,
+    states: Vec<MotionState>,
+    tolerance: f64,
+    end: f64,
+) -> Result<SystemSimulation, SetupError> {
     let points = vec![Vec::new(); system.bodies().len()];
     SystemSimulation::new(SystemSetup {
         system,

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use fem_tet10::{AssemblyError, Material, Materials, Mesh, PointMass, centroid_lumped_inertia};
 pub use mesh_import::ImportSettings;
 use mesh_import::{Beside, DeckMass, DeckTie, ImportError, Imported, MeshFile};
+use nalgebra::Vector3;
 use whole_file::write_whole;
 
 use crate::files::outputs::{OutputError, Written, outputs_of_mesh};
@@ -431,7 +432,7 @@ fn carriers(mesh: &Mesh, at: [f64; 3], radius: f64) -> HashSet<u32> {
 }
 
 fn distance(x: &[f64; 3], at: [f64; 3]) -> f64 {
-    (0..3).map(|i| (x[i] - at[i]).powi(2)).sum::<f64>().sqrt()
+    (Vector3::from(*x) - Vector3::from(at)).norm()
 }
 
 /// A radius whose nodes can carry the mass at the point of a tie: up to the farthest node of the tie, or farther into the body.
@@ -482,17 +483,12 @@ const MAX_RIGID_NODES: usize = 100;
 
 /// True if the nodes are not all on a line.
 fn are_wide(mesh: &Mesh, nodes: &[u32]) -> bool {
-    let at = |node: u32| mesh.positions()[node as usize];
+    let at = |node: &u32| Vector3::from(mesh.positions()[*node as usize]);
     let [first, rest @ ..] = nodes else { return false };
-    let from_first = |node: &u32| -> [f64; 3] { std::array::from_fn(|i| at(*node)[i] - at(*first)[i]) };
-    let square = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>();
-    let Some(longest) = rest.iter().map(from_first).max_by(|a, b| square(*a).total_cmp(&square(*b))) else {
-        return false;
-    };
-    rest.iter().map(from_first).any(|v| {
-        let along: f64 = v.iter().zip(longest).map(|(a, b)| a * b).sum();
-        square(v) * square(longest) - along * along > 1e-6 * square(longest).powi(2)
-    })
+    let arms = || rest.iter().map(|node| at(node) - at(first));
+    let longest = arms().max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared())).unwrap_or_default();
+    let square = longest.norm_squared();
+    arms().any(|arm| arm.norm_squared() * square - arm.dot(&longest).powi(2) > 1e-6 * square * square)
 }
 
 /// A material as a table on one line.

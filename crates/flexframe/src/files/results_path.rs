@@ -19,7 +19,7 @@ pub(crate) fn body_file_name(scene: &Scene) -> OsString {
     name_of(scene, true, ".body.h5")
 }
 
-/// The name of a file of a scene, with that of its body where the file is of this body alone and there are others.
+/// The name of a file of a scene; with the name of its body where the file is of this body alone and there are others.
 fn name_of(scene: &Scene, is_alone: bool, ending: &str) -> OsString {
     let mut name = scene.path.file_stem().unwrap_or("results".as_ref()).to_owned();
     if let Some(body) = scene.name.as_ref().filter(|_| is_alone && scene.has_others) {

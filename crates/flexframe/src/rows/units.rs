@@ -122,7 +122,7 @@ impl UnitLabels<'_> {
     }
 }
 
-/// The power of ten of a unit that is one of that of SI.
+/// The power of ten of a unit, where it is a power of ten of the unit of SI.
 fn ten(unit: BaseUnit, label: &str) -> Option<i32> {
     match unit.size(label)? {
         UnitSize::Ten(power) => Some(power),

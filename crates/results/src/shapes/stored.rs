@@ -64,7 +64,7 @@ pub(crate) const DATASETS: [ShapeDataset; 9] = [
 ];
 
 const fn whole(path: &'static str, description: &'static str) -> ShapeDataset {
-    ShapeDataset { path, unit: "1", frame: "none", description }
+    numbers(path, "1", "none", description)
 }
 
 const fn numbers(

@@ -5,7 +5,7 @@ use crate::error::SceneError;
 use crate::scene::Units;
 use crate::text::suggest::list;
 
-/// A pound in kilograms, and its weight in newtons.
+/// A pound in kilograms.
 const POUND: f64 = 0.453_592_37;
 /// The force that a pound has under standard gravity, N.
 pub const POUND_FORCE: f64 = 9.806_65 * POUND;

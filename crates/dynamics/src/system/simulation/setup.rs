@@ -18,7 +18,7 @@ use crate::system::joint::row::Row;
 use crate::system::radau::SystemMotion;
 use crate::system::relaxed::RelaxError;
 use crate::system::simulation::second_order::Branching;
-use crate::system::stage::vector;
+use crate::system::stage::{OF_PLACES, vector};
 use crate::vibration::system::CommonSpin;
 use crate::vibration::system::configuration::Configuration;
 
@@ -200,9 +200,6 @@ fn refuse_wrong_derivatives(motion: &SystemMotion) -> Result<(), SetupError> {
     }
     Ok(())
 }
-
-/// Moment of a row about a point mass, over its force and the size of the system, which is rounding.
-const OF_PLACES: f64 = 1e-9;
 
 /// Refuses rows and forces along axes that a point mass would have to carry.
 fn refuse_axes_of_points(system: &System) -> Result<(), SetupError> {

@@ -26,7 +26,7 @@ pub(crate) struct BodyConfiguration {
     /// In the frame of the body.
     pub origin: Vector3<f64>,
     frame: Frame,
-    /// Velocity that those of the body are counted from, global.
+    /// Velocity from which the velocities of the body are counted, global.
     pub carried: Vector3<f64>,
     pub attitude: Attitude,
     pub body_from_global: Matrix3<f64>,

@@ -33,7 +33,7 @@ impl SteadyState {
     ) -> Result<Option<SystemParticipation>, SteadyError> {
         let mut markers = motion.system().connections.markers();
         let Some(ground) = markers.find(|marker| marker.body().is_none()) else { return Ok(None) };
-        let about = about_global.unwrap_or_else(|| ground.ground_position());
+        let about = about_global.unwrap_or_else(|| ground.position());
         let linear = &self.linear;
         let (rest, loose) = linear.without_rigid()?;
         let size = rest.ncols();

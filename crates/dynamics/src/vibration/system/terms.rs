@@ -168,8 +168,7 @@ impl Terms {
         self.of_mass.factor(&self.pattern, &self.is_implied);
         let of_rigid = Judgement::first(system, &posture, false).rank.is_implied;
         let rank = of_rigid.iter().filter(|is_implied| !**is_implied).count();
-        let points = system.bodies.iter().filter(|body| body.is_point()).count();
-        self.rigid_motions = (6 * system.bodies.len()).saturating_sub(rank + 3 * points);
+        self.rigid_motions = system.rigid_coordinates().saturating_sub(rank);
         Ok(())
     }
 

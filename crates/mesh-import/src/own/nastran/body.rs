@@ -55,6 +55,14 @@ struct Element {
     nodes: Vec<u64>,
 }
 
+impl Element {
+    /// An element of a card, which is its own property where it names none.
+    fn new(texts: &Texts<'_>, card: &Card<'_>, label: u64, nodes: Vec<u64>) -> Result<Self, ImportError> {
+        let property = card.whole(texts, 2)?.unwrap_or(label);
+        Ok(Self { place: card.place, name: card.name.clone(), label, property, nodes })
+    }
+}
+
 /// An RBE2 or RBE3: nodes that move with another.
 struct Tie {
     place: Place,
@@ -406,24 +414,12 @@ fn tetrahedron(texts: &Texts<'_>, card: &Card<'_>) -> Result<Element, ImportErro
             nodes.push(card.whole(texts, field)?.unwrap_or(0));
         }
     }
-    Ok(Element {
-        place: card.place,
-        name: card.name.clone(),
-        label,
-        property: card.whole(texts, 2)?.unwrap_or(label),
-        nodes,
-    })
+    Element::new(texts, card, label, nodes)
 }
 
 /// The corners of a triangle. Nodes on its edges may be missing, and what is after them is its thickness and angle.
 fn triangle(texts: &Texts<'_>, card: &Card<'_>) -> Result<Element, ImportError> {
     let label = card.label(texts, 1)?;
     let nodes = (3..=5).map(|field| card.label(texts, field)).collect::<Result<_, _>>()?;
-    Ok(Element {
-        place: card.place,
-        name: card.name.clone(),
-        label,
-        property: card.whole(texts, 2)?.unwrap_or(label),
-        nodes,
-    })
+    Element::new(texts, card, label, nodes)
 }
