@@ -9,8 +9,8 @@ use std::error::Error;
 use flexframe::dynamics::{
     Crossing, Event, History, Observation, PointForce, PointShapes, Reached, Rows, Simulation, StepControl,
 };
-use flexframe::modal::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::nalgebra::{Matrix3, Vector3};
+use flexframe::reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 
 /// Result of the example.
 pub struct Answer {

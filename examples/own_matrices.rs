@@ -7,8 +7,9 @@ use std::error::Error;
 
 use flexframe::dynamics::{Initial, Method, Observation, Physics, Rows, Setup, Simulation, StepControl};
 use flexframe::faer::sparse::{SparseColMat, Triplet};
-use flexframe::modal::{ReducedBody, Solver, Support};
+use flexframe::modal::{Solver, Support};
 use flexframe::nalgebra::Vector3;
+use flexframe::reduced_body::ReducedBody;
 
 /// A steel beam of 2 m with a section of 40 × 30 mm, SI units.
 const LENGTH: f64 = 2.0;
@@ -49,7 +50,7 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
     let expected = [theory(first, ABOUT_Z), theory(first, ABOUT_Y), theory(second, ABOUT_Z), theory(second, ABOUT_Y)];
     let found = modes.natural_frequencies();
 
-    let body = ReducedBody::new(&modes, mass.as_ref(), &positions)?;
+    let body = modes.reduced(mass.as_ref(), &positions)?;
     let flexible = tumble(&body)?;
     let rigid = tumble(&body.truncated(0))?;
     let [start, .., end] = &flexible[..] else { return Err("the run has no rows".into()) };

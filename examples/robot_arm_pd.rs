@@ -19,8 +19,8 @@ use flexframe::dynamics::{
     ConservativeBody, Coordinate, History, Joint, JointLawFn, Marker, MotionState, Physics, PointForce, PointShapes,
     Reached, Rows, StepControl, System, SystemScheme, SystemSetup, SystemSimulation,
 };
-use flexframe::modal::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::nalgebra::{Matrix3, Vector3};
+use flexframe::reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::rigid_kin::Attitude;
 
 /// Length of a link, m.

@@ -6,8 +6,8 @@
 use std::error::Error;
 
 use flexframe::dynamics::{Initial, Load, LoadFn, Observation, PointShapes, Rows, Simulation, StepControl};
-use flexframe::modal::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::nalgebra::{Matrix3, Vector3};
+use flexframe::reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 
 const MASS: f64 = 2.0;
 

@@ -8,7 +8,7 @@
 //!
 //! 1. [`limits()`] refuses models that are known to have no rest or no meaning (again when the stiffness is known), and [`unsteady`]
 //!    those that have no stable rest under their steady loads. Of the body itself only its elements can tell ([`RestOfBody`]).
-//! 2. [`screen`] tells, from the modes alone, whether [`modal::Constants::stress_stiffness`] may matter. If its row is
+//! 2. [`screen`] tells, from the modes alone, whether [`reduced_body::Constants::stress_stiffness`] may matter. If its row is
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Subject`], and what each mode is worth. Nothing stiffens where
 //!    `deformed_inertia` is off: the stiffness is counted as part of it too. What only the reduced body can tell, such as
@@ -21,7 +21,8 @@
 //! use advice::{Case, Review, advise, limits, screen};
 //! use fem_tet10::{Material, Materials, assemble, read_msh};
 //! use dynamics::{Effect, EffectMap, Initial};
-//! use modal::{ReducedBody, Solver, Support};
+//! use modal::{Solver, Support};
+//! use reduced_body::ReducedBody;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let mesh = read_msh(concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/ring.msh"))?;
@@ -29,7 +30,7 @@
 //! let matrices = assemble(&mesh, &Materials::Uniform(steel), &[])?;
 //! let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &Support::free())?;
 //! let modes = solver.modes(4, |_| ())?;
-//! let body = ReducedBody::new(&modes, matrices.mass(), mesh.positions())?;
+//! let body = modes.reduced(matrices.mass(), mesh.positions())?;
 //! let initial = Initial { omega: [0.0, 0.0, 1.0].into(), ..Initial::at_rest(4) };
 //! let case = Case {
 //!     body: &body,
@@ -84,4 +85,4 @@ pub use table::completed::Findings;
 pub use table::row::{Row, Subject, Worth};
 pub use table::rows::{Advice, advise, screen};
 /// Crates whose types are in the interface.
-pub use {dynamics, modal};
+pub use {dynamics, reduced_body};

@@ -10,8 +10,8 @@ mod common;
 use std::time::{Duration, Instant};
 
 use dynamics::{Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl};
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 const MODES: [usize; 3] = [0, 10, 40];
 const STEP: f64 = 1e-4;

@@ -68,12 +68,12 @@ pub enum SetupError {
     #[error(
         "a drive moves a body whose modes are those of a clamped one; what holds this one leaves it {motion}: hold it altogether, or remove the drive"
     )]
-    DriveOfFreeBody { motion: Box<modal::RigidMotion> },
+    DriveOfFreeBody { motion: Box<reduced_body::RigidMotion> },
     /// Rigid motions that there are no equations for.
     #[error(
         "what holds the body leaves it {motion}; a run needs a body that is free, turns about a point (3 rotations) or an axis (1 rotation), slides along a line (1 translation), or is held altogether: let [[constraints]] hold more directions, or fewer (`flexframe modes` finds its modes as it is)"
     )]
-    MotionLeft { motion: Box<modal::RigidMotion> },
+    MotionLeft { motion: Box<reduced_body::RigidMotion> },
     /// Physics that the formulation does not have.
     #[error("the formulation {formulation} has no {what}; take the conservative one")]
     NotInFormulation { formulation: &'static str, what: &'static str },

@@ -102,4 +102,4 @@ pub use vibration::system::{
 
 /// Crates whose types are in the interface.
 pub use keys::{Key, Keyed};
-pub use {faer, modal, nalgebra, rigid_kin};
+pub use {faer, nalgebra, reduced_body, rigid_kin};

@@ -19,7 +19,9 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-pub use {advice, dynamics, fem_tet10, figures, frames_rk4, linear, modal, model, results, rigid_kin, scene};
+pub use {
+    advice, dynamics, fem_tet10, figures, frames_rk4, linear, modal, model, reduced_body, results, rigid_kin, scene,
+};
 pub use {faer, nalgebra};
 
 mod commands;

@@ -311,9 +311,9 @@ mod tests {
     /// A marker whose faces warp so.
     fn warped(left_out: &[f64], along: Option<nalgebra::Vector3<f64>>) -> BodyMarker {
         let (zero, inertia) = (nalgebra::Vector3::zeros(), nalgebra::Matrix3::identity());
-        let body = modal::ReducedBody::rigid(1.0, zero, inertia, modal::RigidMotion::free()).unwrap();
+        let body = reduced_body::ReducedBody::rigid(1.0, zero, inertia, reduced_body::RigidMotion::free()).unwrap();
         let none = faer::Mat::zeros(3, 0);
-        let point = modal::BodyPoint { position_body: zero, shapes: none.clone() };
+        let point = reduced_body::BodyPoint { position_body: zero, shapes: none.clone() };
         BodyMarker {
             name: "face".to_owned(),
             point: dynamics::PointShapes::new(&body, &point),

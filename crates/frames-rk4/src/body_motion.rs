@@ -1,8 +1,8 @@
 //! The motion of the body at a state, as a whole and of its points.
 
 use dynamics::faer::Mat;
-use dynamics::modal::{ReducedBody, RigidMotion};
 use dynamics::nalgebra::{Matrix3, Vector3};
+use dynamics::reduced_body::{ReducedBody, RigidMotion};
 use dynamics::rigid_kin::{Attitude, Inertia, InertiaError, euler_angular_acceleration};
 use dynamics::{
     CenterOfMass, Energies, Initial, MotionState, Observation, PointMotion, PointShapes, SetupError, StepError, Work,

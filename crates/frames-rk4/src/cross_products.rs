@@ -2,7 +2,7 @@
 
 use dynamics::faer::linalg::matmul::matmul;
 use dynamics::faer::{Accum, ColMut, ColRef, Mat, Par};
-use dynamics::modal::ReducedBody;
+use dynamics::reduced_body::ReducedBody;
 
 /// G_1, G_2, G_3 of all modes (6+nf square): [e_1×] = e_3 e_2ᵀ − e_2 e_3ᵀ and cyclic.
 pub(crate) fn cross_products(body: &ReducedBody) -> [Mat<f64>; 3] {

@@ -44,4 +44,4 @@ pub use synthesis::{PAPER, Paper, PaperScheme};
 pub use travelling_frame::TravellingFrame;
 
 /// Crates whose types are in the interface.
-pub use dynamics::{self, modal, nalgebra, rigid_kin};
+pub use dynamics::{self, nalgebra, reduced_body, rigid_kin};

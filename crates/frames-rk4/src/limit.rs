@@ -11,8 +11,8 @@
 //! It has the limit of the paper's scheme for Δt → 0, and costs the same for a step.
 
 use dynamics::faer::Mat;
-use dynamics::modal::ReducedBody;
 use dynamics::nalgebra::Vector3;
+use dynamics::reduced_body::ReducedBody;
 use dynamics::rigid_kin::{BeyondFullTurn, f_inverse, transformation_matrix};
 use dynamics::{Abilities, Beginning, Initial, Method, SetupError, StepError, StepLimit, Work};
 

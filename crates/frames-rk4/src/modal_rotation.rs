@@ -1,7 +1,7 @@
 //! The turn T followed by the inverse modal expansion, Eqs. (30), (31), in modal space, Eq. (P1) of `docs/method/paper.md`.
 
-use dynamics::modal::ReducedBody;
 use dynamics::nalgebra::Matrix3;
+use dynamics::reduced_body::ReducedBody;
 
 /// `E(R) = Ψᵀ M (I ⊗ R) Ψ = Σ R_ab E_ab`, for rotations R of the components of every node's vector.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! The linear modal model, Eqs. (32) to (35).
 
-use dynamics::modal::ReducedBody;
 use dynamics::nalgebra::{Matrix3, Vector3};
+use dynamics::reduced_body::ReducedBody;
 use dynamics::{InertialMotion, SetupError, SharedLoad, Work, check_model};
 
 use crate::body_motion::BodyMotion;

@@ -1,8 +1,8 @@
 //! The state in the travelling frame.
 
 use dynamics::checkpoint::{CheckpointError, expect, finite};
-use dynamics::modal::ReducedBody;
 use dynamics::nalgebra::Vector3;
+use dynamics::reduced_body::ReducedBody;
 use dynamics::rigid_kin::Attitude;
 use dynamics::{Initial, SetupError};
 use serde::{Deserialize, Serialize};

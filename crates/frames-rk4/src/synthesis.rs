@@ -5,8 +5,8 @@
 //! each step's rotation vector starts at zero, since (22) is singular after one turn, and a stage takes the loads'
 //! components in the stage's own frame.
 
-use dynamics::modal::ReducedBody;
 use dynamics::nalgebra::{Matrix3, Vector3};
+use dynamics::reduced_body::ReducedBody;
 use dynamics::rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
 use dynamics::{Abilities, Begin, Beginning, Initial, Key, Method, Setup, SetupError, StepError, StepLimit, Work};
 

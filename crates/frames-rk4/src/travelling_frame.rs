@@ -4,7 +4,7 @@ use std::any::Any;
 use std::fmt;
 
 use dynamics::checkpoint::{CheckpointError, counts, decode, encode, finite};
-use dynamics::modal::ReducedBody;
+use dynamics::reduced_body::ReducedBody;
 use dynamics::rigid_kin::BeyondFullTurn;
 use dynamics::{Energies, Initial, Moment, Motion, MotionState, Observation, PointShapes, SetupError, StepError, Work};
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,8 @@
 //! The motions of a run, led from time to time and changed on the way.
 
 use dynamics::faer::Mat;
-use dynamics::modal::{BodyPoint, ReducedBody};
 use dynamics::nalgebra::Vector3;
+use dynamics::reduced_body::{BodyPoint, ReducedBody};
 use dynamics::{DescribedBody, Manifold, MotionState, Observation, PointShapes, RunDescription, Work};
 use std::sync::Arc;
 

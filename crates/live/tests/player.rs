@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use dynamics::faer::Mat;
-use dynamics::modal::BodyPoint;
-use dynamics::modal::{Constants, ReducedBody, RigidMotion};
 use dynamics::nalgebra::{Matrix3, Vector3};
+use dynamics::reduced_body::BodyPoint;
+use dynamics::reduced_body::{Constants, ReducedBody, RigidMotion};
 use dynamics::{
     Coordinate, DescribedBody, History, Initial, Joint, JointForce, Marker, Method, MotionState, Physics, PointForce,
     PointShapes, ReferenceForces, Rows, RunDescription, RunOfBody, RunOfSystem, StepControl, SystemScheme,

@@ -51,14 +51,6 @@ pub enum ModalError {
         "degree of freedom {dof} of node {node} (both counted from 0) has neither stiffness nor mass; hold it, or give it some"
     )]
     Loose { node: usize, dof: usize },
-    /// The body has no mass, or none to resist a rotation. `inertia`: its diagonal about the origin.
-    #[error(
-        "the body has mass {mass:.3e} and moments of inertia {inertia:?} about its origin, which no rigid body can have: the mass and all three moments must be positive (of a hinge, that about its axis), and large enough to divide by: are they in the units of the mesh?"
-    )]
-    NoInertia { mass: f64, inertia: [f64; 3] },
-    /// A direction that is not a unit vector.
-    #[error("the direction {direction:?} of the support is not a unit vector; divide it by its length")]
-    NotUnit { direction: [f64; 3] },
     /// Lists or matrices whose sizes do not fit together.
     #[error("the size of {what} is {found}; expected {expected}")]
     Length { what: &'static str, found: usize, expected: usize },
@@ -136,6 +128,9 @@ pub enum ModalError {
         "the unknowns cannot be ordered for the factorization (METIS status {status}); use a coarser mesh, and please report this"
     )]
     Ordering { status: i32 },
+    /// Constants, or a rigid motion, that no body can have.
+    #[error(transparent)]
+    Body(#[from] reduced_body::BodyError),
     /// Not enough memory.
     #[error("{0}")]
     Memory(#[from] memory::OutOfMemory),

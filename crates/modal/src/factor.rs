@@ -3,13 +3,10 @@
 #[cfg(all(test, feature = "threads-in-faer"))]
 mod against_faer;
 pub(crate) mod cholesky;
-#[cfg(not(target_family = "wasm"))]
 pub(crate) mod dissection;
 pub(crate) mod indefinite;
 pub(crate) mod interleave;
 pub(crate) mod layout;
-#[cfg(any(test, target_family = "wasm"))]
-mod minimum_degree;
 pub(crate) mod ordering;
 pub(crate) mod shifted;
 pub(crate) mod shifted_matrix;
@@ -18,6 +15,3 @@ pub(crate) mod subtrees;
 pub(crate) mod supernode;
 pub(crate) mod supernodes;
 pub(crate) mod symbolic;
-
-#[cfg(target_family = "wasm")]
-use minimum_degree as dissection;

@@ -12,9 +12,9 @@
 //! Modes come out mass-normalised, the component of largest magnitude positive.
 //!
 //! A mass that is a scalar for each pair of nodes ([`NodalMass`]: solid elements, point masses) is kept as that. What the
-//! large rotation of a body uses of any other mass, [`ReducedBody::new`] says.
+//! large rotation of a body uses of any other mass, [`Modes::reduced`] says.
 //!
-//! [`ReducedBody`] holds the constants that the motion of the body needs, with nothing of the mesh's size.
+//! [`ReducedBody`](reduced_body::ReducedBody) holds the constants that the motion of the body needs, with nothing of the mesh's size.
 
 #![deny(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
@@ -36,7 +36,6 @@ mod support;
 pub use eigen::engine::{Eigenpairs, Engine, EngineStats, StaticAnswers};
 pub use error::{EngineError, ModalError};
 pub use factor::indefinite::{IndefiniteFactor, IndefiniteOrder};
-pub use matrix::as_data;
 pub use matrix::mass::NodalMass;
 pub use matrix::mass_matrix::{GeneralMass, MassMatrix};
 pub use matrix::stiffness::{NodalStiffness, StiffnessMatrix};
@@ -45,18 +44,17 @@ pub use memory_estimate::{Forecast, reserve_of_dense_products};
 pub use multigrid::NoCycles;
 pub use progress::{EnginePhase, Progress};
 pub use rates::{ModeRates, repeated};
-pub use reduction::body::{BodyPoint, Constants, ReducedBody};
 pub use reduction::fields::{acceleration_fields, centrifugal_accelerations, centrifugal_fields, turning_field};
-pub use reduction::participation::{OfBase, Participation};
 pub use solve::{Modes, SolveStats, Solver};
 pub use statics::answered::Answer;
-pub use statics::large_shapes::{LargeShapes, Products};
+pub use statics::large_shapes::LargeShapes;
 pub use statics::mass_left_out::mass_left_out;
 pub use statics::response::StaticAccuracy;
 
 pub use support::constraints::Constraints;
+pub use support::held::Support;
 pub use support::held_problem::{HeldMatrix, HeldProblem};
-pub use support::motion::{RigidMotion, Support, Twist};
+
 pub use support::rigid::RigidModes;
 /// Crates whose types are in the interface.
 pub use {faer, nalgebra};

@@ -1,13 +1,11 @@
 //! Sparse matrices over nodes and dense ones over modes, and their products.
 
-pub mod as_data;
 pub(crate) mod columns;
 pub(crate) mod dense;
 pub(crate) mod mass;
 pub(crate) mod mass_matrix;
 pub(crate) mod node_pairs;
 pub(crate) mod packed_rows;
-pub(crate) mod pairs;
 pub(crate) mod pattern;
 pub(crate) mod products;
 pub(crate) mod renumbering;

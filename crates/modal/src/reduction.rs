@@ -5,6 +5,5 @@ pub(crate) mod fields;
 pub(crate) mod general;
 pub(crate) mod inertia_products;
 pub(crate) mod nodal;
-pub(crate) mod participation;
 pub(crate) mod parts;
 pub(crate) mod turned;

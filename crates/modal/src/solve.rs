@@ -24,8 +24,8 @@ use crate::multigrid::{CycledBody, Cycles, NoCycles, are_faster};
 use crate::progress::Progress;
 use crate::statics::answered::Answer;
 use crate::support::constraints::Constraints;
+use crate::support::held::Support;
 use crate::support::held_problem::HeldProblem;
-use crate::support::motion::Support;
 use crate::support::rigid::RigidModes;
 
 /// An eigenvalue below this fraction of the shift has no stiffness behind it.

@@ -1,9 +1,8 @@
 //! The support of a body, and its rigid motions.
 
 pub(crate) mod constraints;
+pub(crate) mod held;
 pub(crate) mod held_dofs;
 pub(crate) mod held_problem;
-pub(crate) mod motion;
 pub(crate) mod rigid;
-pub(crate) mod rigid_body;
 pub(crate) mod rigid_fields;

@@ -213,6 +213,6 @@ pub(crate) fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
 }
 
 /// Adds the scene file to errors of the modal analysis, which know no file.
-pub(crate) fn modal(scene: &Scene) -> impl Fn(ModalError) -> BuildError {
-    |source| BuildError::Modal { scene: scene.path.clone(), source }
+pub(crate) fn modal<E: Into<ModalError>>(scene: &Scene) -> impl Fn(E) -> BuildError {
+    |source| BuildError::Modal { scene: scene.path.clone(), source: source.into() }
 }

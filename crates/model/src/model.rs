@@ -15,8 +15,9 @@ use dynamics::{
 use faer::Mat;
 use fem_tet10::Mesh;
 use frames_rk4::Paper;
-use modal::{Modes, NoCycles, ReducedBody};
+use modal::{Modes, NoCycles};
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 use scene::{MeshedBody, Scene};
 
 use crate::building::progress::BuildTimes;

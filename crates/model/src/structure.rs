@@ -18,10 +18,11 @@ use faer::{ColRef, Mat, MatRef, Scale};
 use fem_tet10::StressRecovery;
 use keys::{Key, Keyed};
 use modal::{
-    ModalError, Modes, NoCycles, ReducedBody, Solver, StaticAccuracy, acceleration_fields, centrifugal_fields,
-    mass_left_out, turning_field,
+    ModalError, Modes, NoCycles, Solver, StaticAccuracy, acceleration_fields, centrifugal_fields, mass_left_out,
+    turning_field,
 };
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 use slepc::write_folder;
 
 use crate::body::origin::Origin;
@@ -203,7 +204,7 @@ impl<'a> Structure<'a> {
     /// The body in the coordinates of its modes.
     fn reduced(&self, modes: &Modes) -> Result<ReducedBody, BuildError> {
         let positions = self.positions()?;
-        ReducedBody::of_mass(modes, self.solver()?.mass(), positions).map_err(|error| self.modal(error))
+        modes.reduced_by(self.solver()?.mass(), positions).map_err(|error| self.modal(error))
     }
 
     /// The body in the coordinates of modes with a static answer among them.

@@ -6,8 +6,9 @@ use std::collections::HashSet;
 
 use dynamics::{Drive, DrivenMotion, DrivenSpeed};
 use fem_tet10::Mesh;
-use modal::{RigidMotion, Support};
+use modal::Support;
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 use scene::{Constraint, HeldDirections, HingeLine, Region, Scene, key_path};
 
 use crate::error::{BuildError, modal, refuse_mesh};

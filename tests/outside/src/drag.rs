@@ -17,7 +17,7 @@ impl Load for Drag {
 mod tests {
     use dynamics::nalgebra::Vector3;
     use dynamics::{Initial, Simulation, StepControl};
-    use modal::BodyPoint;
+    use reduced_body::BodyPoint;
 
     use super::*;
     use crate::body::ball;

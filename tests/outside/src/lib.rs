@@ -10,7 +10,7 @@ pub mod wire;
 #[cfg(test)]
 mod body {
     use dynamics::nalgebra::{Matrix3, Vector3};
-    use modal::{ReducedBody, RigidMotion};
+    use reduced_body::{ReducedBody, RigidMotion};
 
     /// A free ball of 2 kg.
     pub fn ball() -> ReducedBody {

@@ -34,7 +34,7 @@ pub const MIDPOINT: Method = Method {
 mod tests {
     use dynamics::nalgebra::{Matrix3, Vector3};
     use dynamics::{Initial, Simulation, StepControl};
-    use modal::{ReducedBody, RigidMotion};
+    use reduced_body::{ReducedBody, RigidMotion};
 
     use super::*;
 

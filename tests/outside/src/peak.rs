@@ -19,7 +19,7 @@ mod tests {
 
     use dynamics::nalgebra::Vector3;
     use dynamics::{History, PointForce, PointShapes, Simulation, StepControl};
-    use modal::BodyPoint;
+    use reduced_body::BodyPoint;
 
     use super::*;
     use crate::body::ball;

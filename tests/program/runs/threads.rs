@@ -1,6 +1,6 @@
 //! The main types can be sent to other threads and shared between them: this file compiles.
 
-use flexframe::{advice, dynamics, fem_tet10, modal, results, scene};
+use flexframe::{advice, dynamics, fem_tet10, modal, reduced_body, results, scene};
 
 const fn is_send_and_sync<T: Send + Sync>() {}
 
@@ -8,7 +8,7 @@ const _: () = {
     is_send_and_sync::<fem_tet10::Mesh>();
     is_send_and_sync::<fem_tet10::Matrices>();
     is_send_and_sync::<modal::Modes>();
-    is_send_and_sync::<modal::ReducedBody>();
+    is_send_and_sync::<reduced_body::ReducedBody>();
     is_send_and_sync::<dynamics::Simulation>();
     is_send_and_sync::<dynamics::Setup<'static>>();
     is_send_and_sync::<dynamics::SimulationBuilder<'static>>();

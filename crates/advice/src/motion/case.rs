@@ -2,15 +2,15 @@
 
 use dynamics::{Drive, History, Initial, Manifold, SharedLoad};
 use faer::Mat;
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 use crate::strain::backbone::Backbone;
 
 /// A run before it is made. Units are any consistent set, angles rad.
 #[derive(Debug, Clone, Copy)]
 pub struct Case<'a> {
-    /// The body, with all modes that there are to choose from; [`stress_stiffness`](modal::Constants::stress_stiffness) where it is known.
+    /// The body, with all modes that there are to choose from; [`stress_stiffness`](reduced_body::Constants::stress_stiffness) where it is known.
     pub body: &'a ReducedBody,
     /// One damping ratio for each mode (nf).
     pub damping_ratios: &'a [f64],

@@ -1,8 +1,8 @@
 //! How far each mode is moved, bounded above, and how a small force from one mode on another moves it.
 
 use dynamics::{Drive, DrivenMotion, History};
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 use crate::motion::case::Case;
 use crate::motion::course::{Course, Swing};

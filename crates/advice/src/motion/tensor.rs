@@ -1,8 +1,8 @@
 //! Bounds of quadratic forms in the spin: ω·Cω ≤ ‖C‖ |ω|², whatever its direction.
 
 use faer::Mat;
-use modal::ReducedBody;
 use nalgebra::Matrix3;
+use reduced_body::ReducedBody;
 
 /// The symmetric 3×3 matrix of six entries in the order of [`ReducedBody::PAIRS`].
 pub(crate) fn symmetric(entries: [f64; 6]) -> Matrix3<f64> {

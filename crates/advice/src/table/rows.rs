@@ -2,8 +2,8 @@
 
 use dynamics::{Effect, EffectMap};
 use faer::Mat;
-use modal::ReducedBody;
 use nalgebra::Matrix3;
+use reduced_body::ReducedBody;
 
 use crate::limits::{LINEAR, Refusal, deflected};
 use crate::motion::case::{AdviceError, Case};
@@ -82,7 +82,7 @@ const SHORTENING: f64 = 6.2;
 
 /// Before anything dear: whether K_ij may matter, by the spin that there is and that the loads may cause. `value` bounds
 /// `Ω² K_kk/ω_k²` by `10 m a_k² (Ω/ω_k)² (ω_k/ω_1)`, a_k the largest displacement in mode k: a tension of the order
-/// `m Ω² L` along a bar that is bent into waves. Needs no [`modal::Constants::stress_stiffness`].
+/// `m Ω² L` along a bar that is bent into waves. Needs no [`reduced_body::Constants::stress_stiffness`].
 ///
 /// # Errors
 /// [`AdviceError`]: lists of the wrong length and numbers out of range.

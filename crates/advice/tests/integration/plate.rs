@@ -9,8 +9,9 @@ use dynamics::{
 };
 use faer::Mat;
 use fem_tet10::{Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness};
-use modal::{BodyPoint, LargeShapes, Modes, Products, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
+use modal::{Modes, Solver, Support, centrifugal_fields};
 use nalgebra::Vector3;
+use reduced_body::{LargeCoordinates, LargeProducts, ReducedBody, RigidMotion};
 
 pub struct Plate {
     mesh: Mesh,
@@ -53,7 +54,7 @@ impl Plate {
         let (k, m) = (matrices.stiffness(), matrices.mass());
         let solver = Solver::new(k, m, mesh.positions(), &support(mesh.positions())).unwrap();
         let modes = solver.modes(10, |_| ()).unwrap();
-        let body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
+        let body = modes.reduced(m, mesh.positions()).unwrap();
         let fields = centrifugal_fields(solver.mass(), mesh.positions(), &body.origin).unwrap();
         let answers = solver.static_response(fields.as_ref()).unwrap();
         let reduced = reduced_geometric_stiffness(&mesh, &material, answers.as_ref(), modes.shapes.as_ref()).unwrap();
@@ -75,20 +76,19 @@ impl Plate {
 
     /// A manifold of large modes without any term beyond the linear ones.
     pub fn manifold(&self, large: &[usize]) -> Manifold {
-        let products = Products { large: large.len(), following: 0 };
-        let shapes = LargeShapes {
-            modes: self.modes.clone(),
+        let products = LargeProducts { large: large.len(), following: 0 };
+        let coordinates = LargeCoordinates {
             dynamic: 10,
             large: large.to_vec(),
             following: Vec::new(),
             coefficients: Mat::zeros(10, products.of_displacement().len()),
         };
-        Manifold::new(self.body.clone(), &shapes, &vec![0.0; products.of_energy().len()]).unwrap()
+        Manifold::new(self.body.clone(), coordinates, &vec![0.0; products.of_energy().len()]).unwrap()
     }
 
     pub fn force(&self, at: [f64; 3], force: [f64; 3], history: History) -> SharedLoad {
         let place = self.mesh.locate(at).unwrap();
-        let point = BodyPoint::new(&self.modes, self.mesh.positions(), &place.nodes, &place.weights).unwrap();
+        let point = self.modes.point(self.mesh.positions(), &place.nodes, &place.weights).unwrap();
         Arc::new(PointForce::dead(PointShapes::new(&self.body, &point), force.into(), history))
     }
 

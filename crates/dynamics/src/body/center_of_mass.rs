@@ -1,7 +1,7 @@
 //! The centre of mass of a body that deforms.
 
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 /// Where the centre of mass of a body is, seen from its origin.
 #[derive(Debug, Clone)]

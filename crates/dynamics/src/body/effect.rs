@@ -40,7 +40,7 @@ effects! {
     Gravity "gravity" "Gravity acts.",
     DeformedInertia "deformed_inertia" "The inertia follows the deformation: c_ij and N_ij.",
     Coriolis "coriolis" "Coriolis forces couple the modes of a turning body: G_i.",
-    GeometricStiffening "geometric_stiffening" "The stress of the spin stiffens the body: K_ij of [`modal::Constants::stress_stiffness`], where it has any.",
+    GeometricStiffening "geometric_stiffening" "The stress of the spin stiffens the body: K_ij of [`reduced_body::Constants::stress_stiffness`], where it has any.",
     LargeDeflection "large_deflection" "Modes that bend the body far move on a curved manifold: [`Manifold`](crate::Manifold).",
     Translation "translation" "The body as a whole moves; a slide that is driven does so in any case.",
     Rotation "rotation" "The body as a whole turns; a turn that is driven does so in any case.",

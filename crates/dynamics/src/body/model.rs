@@ -1,6 +1,6 @@
 //! Requirements of every formulation on a body and its loads.
 
-use modal::ReducedBody;
+use reduced_body::ReducedBody;
 
 use crate::error::SetupError;
 use crate::load::SharedLoad;

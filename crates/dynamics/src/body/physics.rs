@@ -12,7 +12,7 @@ use crate::history::{Expression, History, Table, finite};
 use crate::load::signal::Signal;
 
 /// A motion that something forces on the held part of a body. The body's own modes are those of the part held still
-/// ([`modal::RigidMotion::clamp`]).
+/// ([`reduced_body::RigidMotion::clamp`]).
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Drive {
     /// How it moves.
@@ -109,7 +109,7 @@ pub struct Physics {
     pub drive: Option<Drive>,
     /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static response to the forces `M (1⊗e)` of a unit
     /// acceleration of a driven slide along e, or `M (I⊗[a×]) X` of a driven turn about a.
-    #[serde(with = "modal::as_data")]
+    #[serde(with = "reduced_body::as_data")]
     pub drive_stiffness: Option<Mat<f64>>,
     /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that
     /// of the modes counts.
@@ -117,7 +117,7 @@ pub struct Physics {
     /// Forces that hold the bent body that the modes are about, where that is not the undeformed one.
     pub reference: Option<ReferenceForces>,
     /// Stiffness between coordinates that are coupled, as [`modal::Modes::with_answer`] has them, beside that of each (nf×nf, symmetric).
-    #[serde(with = "modal::as_data")]
+    #[serde(with = "reduced_body::as_data")]
     pub coupling: Option<Mat<f64>>,
 }
 
@@ -129,7 +129,7 @@ pub struct ReferenceForces {
     /// g (nf).
     pub force: Vec<f64>,
     /// B (nf×nf), symmetric.
-    #[serde(with = "modal::as_data")]
+    #[serde(with = "reduced_body::as_data")]
     pub stiffness: Mat<f64>,
 }
 

@@ -166,7 +166,7 @@ impl Term {
 
 /// A direction and K_d, as serde has them.
 #[derive(Serialize, Deserialize)]
-struct Direction(Vector3<f64>, #[serde(with = "modal::as_data")] Mat<f64>);
+struct Direction(Vector3<f64>, #[serde(with = "reduced_body::as_data")] Mat<f64>);
 
 impl From<SecondOrder> for Vec<Direction> {
     fn from(second_order: SecondOrder) -> Self {

@@ -2,8 +2,8 @@
 
 use faer::MatRef;
 use keys::{Key, Keyed};
-use modal::{BodyPoint, ReducedBody};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody};
 use rigid_kin::transformation_matrix;
 
 use crate::body::components::{Components, ComponentsFrom};

@@ -4,7 +4,7 @@ use faer::Mat;
 
 use crate::conservative::manifold::Manifold;
 
-/// The K_ij of [`ReducedBody::PAIRS`](modal::ReducedBody::PAIRS) on the modal coordinates (nf × nf), of a manifold, too: what
+/// The K_ij of [`ReducedBody::PAIRS`](reduced_body::ReducedBody::PAIRS) on the modal coordinates (nf × nf), of a manifold, too: what
 /// only follows is without it.
 pub(crate) struct SpinStiffness([Mat<f64>; 6]);
 

@@ -1,8 +1,8 @@
 //! The constants of a body, its effects and its drive.
 
 use faer::Mat;
-use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::ReducedBody;
 use rigid_kin::Attitude;
 
 use crate::body::center_of_mass::CenterOfMass;

@@ -1,8 +1,8 @@
 //! The constants of a body in its coordinates z: those of its shapes, ξ = z, but on a manifold of large deflection, ξ = E z.
 
 use faer::Mat;
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 use crate::body::spin_stiffness::SpinStiffness;
 use crate::conservative::body::ConservativeBody;

@@ -8,7 +8,7 @@
 //! The extended shapes Ψ_ext are the modes q of the motion and, after them, shapes that only follow: what a large mode
 //! draws in, twists or stretches. α are products of the large modes to the third order, of a large and a following one, and of
 //! two following ones; in the energy V to the fifth order, with two following ones at most. a and V are constants of the mesh
-//! ([`modal::LargeShapes`], `fem_tet10::Expansion`).
+//! (`modal::LargeShapes`, `fem_tet10::Expansion`).
 //!
 //! The equations of motion are in coordinates z that hold ξ without a sum in the time loop: the modes, and the products m.
 //!
@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 use faer::{Mat, MatRef};
 use keys::{Hash, Key, Keyed};
-use modal::{LargeShapes, Products, ReducedBody};
+use reduced_body::{LargeCoordinates, LargeProducts, ReducedBody};
 
 use crate::conservative::manifold::monomials::{Energy, Monomials, Polynomials};
 use crate::error::SetupError;
@@ -100,7 +100,7 @@ struct Parts {
     dynamic: usize,
     large: Vec<usize>,
     following: Vec<usize>,
-    #[serde(with = "modal::as_data")]
+    #[serde(with = "reduced_body::as_data")]
     coefficients: Mat<f64>,
     energies: Vec<f64>,
 }
@@ -143,19 +143,18 @@ pub(crate) struct ManifoldPoint {
 }
 
 impl Manifold {
-    /// By the shapes, the body in the extended shapes, and the strain `energies` of [`Products::of_energy`].
+    /// By the coordinates, the body in the extended shapes, and the strain `energies` of [`LargeProducts::of_energy`].
     ///
     /// # Errors
     /// [`SetupError`] for more modes than [`MAX_LARGE`] and [`MAX_FOLLOWING`], sizes that do not fit together, and numbers that
     /// are not finite.
-    pub fn new(body: ReducedBody, shapes: &LargeShapes, energies: &[f64]) -> Result<Self, SetupError> {
-        let (expected, found) = (shapes.modes.shapes.ncols(), body.flexible());
+    pub fn new(body: ReducedBody, coordinates: LargeCoordinates, energies: &[f64]) -> Result<Self, SetupError> {
+        let (expected, found) = (coordinates.coefficients.nrows(), body.flexible());
         if found != expected {
             return Err(SetupError::Length { what: "the body in the extended shapes", expected, found });
         }
-        let LargeShapes { dynamic, large, following, coefficients, .. } = shapes;
-        let (large, following, coefficients) = (large.clone(), following.clone(), coefficients.clone());
-        Self::of_parts(Parts { body, dynamic: *dynamic, large, following, coefficients, energies: energies.to_vec() })
+        let LargeCoordinates { dynamic, large, following, coefficients } = coordinates;
+        Self::of_parts(Parts { body, dynamic, large, following, coefficients, energies: energies.to_vec() })
     }
 
     fn of_parts(parts: Parts) -> Result<Self, SetupError> {
@@ -163,7 +162,7 @@ impl Manifold {
         let (dynamic, extended) = (*dynamic, body.flexible());
         let key = Key::new().of("manifold", 2).with("body", body).with("modes", &dynamic).with("large", large);
         let key = key.with("following", following).with("coefficients", coefficients).with("energies", energies);
-        let products = Products { large: large.len(), following: following.len() };
+        let products = LargeProducts { large: large.len(), following: following.len() };
         let of_energy = products.of_energy();
         for (what, found, least, most, expected) in [
             ("the number of large modes", large.len(), 1, MAX_LARGE, "1 to 4"),
@@ -264,7 +263,7 @@ impl Manifold {
     /// The products of the modes that are in the displacement, each by the numbers of its two or three modes.
     pub fn products(&self) -> Vec<Vec<usize>> {
         let Constants { large, following, bent, .. } = &*self.0;
-        let products = Products { large: large.len(), following: following.len() };
+        let products = LargeProducts { large: large.len(), following: following.len() };
         let of_modes = |product: Vec<usize>| product.into_iter().map(|k| bent[k]).collect();
         products.of_displacement().into_iter().map(of_modes).collect()
     }

@@ -1,7 +1,7 @@
 //! Symmetric 3×3 matrices, entry by entry.
 
-use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::ReducedBody;
 
 /// Adds to the entries ij and ji, which are one on the diagonal.
 pub(crate) fn add(matrix: &mut Matrix3<f64>, (i, j): (usize, usize), entry: f64) {

@@ -11,8 +11,8 @@
 //! left free F and M vanish, and what a drive does is along its axis.
 
 use faer::Mat;
-use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::ReducedBody;
 
 use crate::body::effect::{Effect, EffectMap};
 use crate::body::spin_stiffness::SpinStiffness;

@@ -11,8 +11,8 @@
 
 use std::sync::Arc;
 
-use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::ReducedBody;
 
 use crate::body::effect::{Effect, EffectMap};
 use crate::conservative::manifold::Manifold;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use modal::ReducedBody;
+use reduced_body::ReducedBody;
 
 use crate::body::initial::Initial;
 use crate::body::physics::Physics;
@@ -18,7 +18,7 @@ use crate::simulation::setup::{Begin, Method, Setup};
 /// ```
 /// use dynamics::nalgebra::{Matrix3, Vector3};
 /// use dynamics::{Initial, Simulation, StepControl};
-/// use modal::{ReducedBody, RigidMotion};
+/// use reduced_body::{ReducedBody, RigidMotion};
 ///
 /// let body = ReducedBody::rigid(2.0, Vector3::zeros(), Matrix3::identity(), RigidMotion::free())?;
 /// let spinning = Initial { omega: Vector3::new(0.0, 0.0, 3.0), ..Initial::at_rest(0) };

@@ -10,7 +10,7 @@ mod method;
 
 use std::sync::Arc;
 
-use modal::ReducedBody;
+use reduced_body::ReducedBody;
 use serde::{Deserialize, Serialize};
 
 use crate::body::initial::Initial;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use keys::Key;
-use modal::ReducedBody;
+use reduced_body::ReducedBody;
 
 use crate::body::initial::Initial;
 use crate::body::model::check_model;

@@ -4,12 +4,12 @@
 //! q̈ + 2Ω G_a q̇ + (Λ − Ω² (N_aa − K_aa)) q = Ω² c_aa
 //! ```
 //!
-//! G_a, N_aa and K_aa are those of the spin axis a (see [`modal::ReducedBody`]). It is the conservative form with ω = Ω a
+//! G_a, N_aa and K_aa are those of the spin axis a (see [`reduced_body::ReducedBody`]). It is the conservative form with ω = Ω a
 //! given, without damping, about the undeformed body.
 
 use faer::{Mat, Side, c64};
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 use crate::body::effect::{Effect, EffectMap};
 use crate::body::spin_stiffness::SpinStiffness;

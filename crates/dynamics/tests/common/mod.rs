@@ -4,8 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use dynamics::{History, Initial, Method, PointForce, PointShapes, SharedLoad};
 use fem_tet10::{Material, Materials, Matrices, Mesh, PointMass, assemble, read_msh};
-use modal::{BodyPoint, Modes, ReducedBody, Solver, Support};
+use modal::{Modes, Solver, Support};
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 /// All schemes.
 pub const METHODS: [Method; 4] = [frames_rk4::PAPER, frames_rk4::LIMIT, Method::RKMK4, Method::EXPONENTIAL];
@@ -56,14 +57,14 @@ impl Specimen {
         let matrices = assemble(&mesh, &Materials::Uniform(material), masses).unwrap();
         let (k, m) = (matrices.stiffness(), matrices.mass());
         let modes = Solver::new(k, m, mesh.positions(), &Support::free()).unwrap().modes(flexible, |_| ()).unwrap();
-        let body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
+        let body = modes.reduced(m, mesh.positions()).unwrap();
         Self { mesh, matrices, modes, body, reference_points }
     }
 
     /// The same body with its first `flexible` modes only.
     pub fn truncated(&self, flexible: usize) -> Self {
         let modes = self.modes.truncated(flexible);
-        let body = ReducedBody::new(&modes, self.matrices.mass(), self.mesh.positions()).unwrap();
+        let body = modes.reduced(self.matrices.mass(), self.mesh.positions()).unwrap();
         Self { mesh: self.mesh.clone(), matrices: self.matrices.clone(), modes, body, ..*self }
     }
 
@@ -75,7 +76,7 @@ impl Specimen {
 
     pub fn point(&self, at: [f64; 3]) -> PointShapes {
         let location = self.mesh.locate(at).unwrap();
-        let point = BodyPoint::new(&self.modes, self.mesh.positions(), &location.nodes, &location.weights).unwrap();
+        let point = self.modes.point(self.mesh.positions(), &location.nodes, &location.weights).unwrap();
         PointShapes::new(&self.body, &point)
     }
 

@@ -1,8 +1,8 @@
 //! Balances: conserved quantities, and the account of loads and damping.
 
 use dynamics::{Initial, Method, Rows, StepControl};
-use modal::ReducedBody;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use reduced_body::ReducedBody;
 
 use crate::common::{plate, ring};
 use crate::run::{EXPONENTIAL, RKMK4, Run, energy, fitted_order, relative, relative_3};

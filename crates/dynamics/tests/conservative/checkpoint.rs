@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use dynamics::{CheckpointError, LoadFn, Observation, Reached, Rows, SharedLoad, Simulation, StepControl};
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 use crate::common::plate;
 use crate::run::{EXPONENTIAL, RKMK4, Run};

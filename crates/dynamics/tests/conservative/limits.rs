@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use dynamics::{History, Initial, Method, PointShapes, Rows, SetupError, StepControl, StepError};
 use faer::Mat;
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 
 use crate::common::dead_force;
 use crate::common::{METHODS, Specimen, plate};

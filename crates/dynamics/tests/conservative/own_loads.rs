@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use dynamics::{Initial, LoadFn, PointShapes, Rows, SharedLoad, StepControl};
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 
 use crate::run::{EXPONENTIAL, RKMK4, Run};
 

@@ -5,8 +5,9 @@ use dynamics::{
     Drive, DrivenMotion, DrivenSpeed, Effect, History, Initial, Observation, Physics, PointShapes, Rows, Setup,
     Simulation, StepControl,
 };
-use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support};
+use modal::{Modes, Solver, Support};
 use nalgebra::Vector3;
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 
 use crate::common::{dead_force, ring};
 use crate::dalembert::{sum, times};
@@ -33,7 +34,7 @@ fn held(motion: RigidMotion) -> Held {
     let (k, m) = (ring.matrices.stiffness(), ring.matrices.mass());
     let support = Support::new(motion, nodes);
     let modes = Solver::new(k, m, ring.mesh.positions(), &support).unwrap().modes(FLEXIBLE, |_| ()).unwrap();
-    let body = ReducedBody::new(&modes, m, ring.mesh.positions()).unwrap();
+    let body = modes.reduced(m, ring.mesh.positions()).unwrap();
     Held { modes, body }
 }
 
@@ -41,10 +42,7 @@ impl Held {
     fn point(&self, at: [f64; 3]) -> PointShapes {
         let location = ring().mesh.locate(at).unwrap();
         let positions = ring().mesh.positions();
-        PointShapes::new(
-            &self.body,
-            &BodyPoint::new(&self.modes, positions, &location.nodes, &location.weights).unwrap(),
-        )
+        PointShapes::new(&self.body, &self.modes.point(positions, &location.nodes, &location.weights).unwrap())
     }
 
     /// Φ c at the nodes.

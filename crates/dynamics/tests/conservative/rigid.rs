@@ -1,8 +1,8 @@
 //! A body without flexible modes against rigid-body motion in closed form.
 
 use dynamics::{Initial, Rows, StepControl};
-use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{ReducedBody, RigidMotion};
 use rigid_kin::{Attitude, Inertia, TorqueFreeMotion};
 
 use crate::run::{EXPONENTIAL, RKMK4, Run};

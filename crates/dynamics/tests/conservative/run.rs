@@ -4,8 +4,8 @@ use dynamics::{
     Initial, Method, Observation, Physics, PointShapes, Rows, Setup, SetupError, SharedLoad, Simulation, StepControl,
 };
 use frames_rk4::Paper;
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 use crate::common::Specimen;
 

@@ -8,8 +8,8 @@ use dynamics::{
     StepControl, Table,
 };
 use faer::Mat;
-use modal::RigidMotion;
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::loads::every_kind;
 use crate::sample::{body, dead_force, point, start};

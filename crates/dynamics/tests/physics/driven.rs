@@ -1,12 +1,12 @@
 //! Bodies whose held part is driven.
 
 use dynamics::{Drive, DrivenMotion, DrivenSpeed, Effect, History, Rows, StepControl};
-use modal::RigidMotion;
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::sample::{EXPONENTIAL, RKMK4, Run, body};
 
-fn clamped() -> modal::ReducedBody {
+fn clamped() -> reduced_body::ReducedBody {
     body(RigidMotion::clamp(Vector3::zeros()), &[5.0, 8.0, 13.0])
 }
 
@@ -79,7 +79,7 @@ fn a_driven_slide_is_a_base_acceleration() {
     run.physics.drive = None;
     let center = dynamics::PointShapes::new(
         &body,
-        &modal::BodyPoint {
+        &reduced_body::BodyPoint {
             position_body: body.center_of_mass,
             shapes: faer::Mat::from_fn(3, 3, |i, k| body.translation_first[i][k] / body.mass),
         },

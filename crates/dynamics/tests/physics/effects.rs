@@ -1,8 +1,8 @@
 //! Effects that are off.
 
 use dynamics::{ConservativeBody, Effect, EffectMap, Physics};
-use modal::RigidMotion;
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::sample::{EXPONENTIAL, Run, body};
 

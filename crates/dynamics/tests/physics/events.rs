@@ -7,8 +7,8 @@ use dynamics::{
     Crossing, Drive, DrivenMotion, DrivenSpeed, Event, History, Observation, Observer, Reached, Rows, SetupError,
     Simulation, StepControl, StepEnd, StepError,
 };
-use modal::{ReducedBody, RigidMotion};
 use nalgebra::Vector3;
+use reduced_body::{ReducedBody, RigidMotion};
 
 use crate::sample::{EXPONENTIAL, RKMK4, Run, body};
 

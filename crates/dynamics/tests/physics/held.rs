@@ -1,8 +1,8 @@
 //! Bodies that are held.
 
 use dynamics::{History, Rows, StepControl};
-use modal::RigidMotion;
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::sample::{EXPONENTIAL, MASS, RKMK4, Run, body, dead_force, point};
 

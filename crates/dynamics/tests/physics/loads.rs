@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use dynamics::{BodyField, FieldLoad, History, LoadFrame, PointForce, PointMoment, RotationShapes, SharedLoad};
 use faer::Mat;
-use modal::RigidMotion;
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::sample::{EXPONENTIAL, RKMK4, Run, body, dead_force, point};
 
@@ -141,7 +141,7 @@ fn a_jump_costs_no_accuracy() {
 }
 
 /// Φᵀ F of a load at the point of [`point`], as the modal accelerations at rest.
-fn modal_force(body: &modal::ReducedBody, force: Vector3<f64>) -> Vec<f64> {
+fn modal_force(body: &reduced_body::ReducedBody, force: Vector3<f64>) -> Vec<f64> {
     let mut run = Run::new(body, 1e-6);
     run.initial.modal_displacement.fill(0.0);
     run.initial.modal_velocity.fill(0.0);

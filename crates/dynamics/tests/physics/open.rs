@@ -8,8 +8,8 @@ use dynamics::{
     StepError,
 };
 use faer::Mat;
-use modal::{BodyPoint, RigidMotion};
 use nalgebra::Vector3;
+use reduced_body::{BodyPoint, RigidMotion};
 use rigid_kin::Attitude;
 
 use crate::sample::{EXPONENTIAL, RKMK4, Run, body, point};

@@ -7,8 +7,8 @@ use dynamics::{
     StepControl,
 };
 use faer::Mat;
-use modal::{BodyPoint, Constants, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, Constants, ReducedBody, RigidMotion};
 
 pub const EXPONENTIAL: Method = Method::EXPONENTIAL;
 pub const RKMK4: Method = Method::RKMK4;

@@ -6,8 +6,8 @@ use dynamics::{
     Drive, DrivenMotion, DrivenSpeed, History, Observation, Reached, Rows, ScaledLoad, SharedLoad, Signal, Simulation,
     StepControl, Table,
 };
-use modal::RigidMotion;
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::sample::{EXPONENTIAL, RKMK4, Run, body, dead_force, point};
 

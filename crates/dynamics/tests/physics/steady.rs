@@ -2,8 +2,8 @@
 
 use dynamics::{Effect, EffectMap, SteadySpin};
 use faer::Mat;
-use modal::{ReducedBody, RigidMotion};
 use nalgebra::Vector3;
+use reduced_body::{ReducedBody, RigidMotion};
 
 use crate::sample::body;
 

@@ -2,8 +2,8 @@
 
 use dynamics::{Drive, DrivenMotion, DrivenSpeed, History, PointShapes, SecondOrder};
 use faer::Mat;
-use modal::{ReducedBody, RigidMotion};
 use nalgebra::Vector3;
+use reduced_body::{ReducedBody, RigidMotion};
 
 use crate::sample::{EXPONENTIAL, RKMK4, Run, body, dead_force, point};
 
@@ -105,7 +105,7 @@ fn a_driven_slide_stiffens_as_a_base_acceleration_does() {
     // v' = a π/4 cos(π t/4) = a π/4 sin(π (t + 2)/4). The momentum p = q̇ + v b holds none at the start: v is zero.
     run.physics = dynamics::Physics::default();
     let shapes = Mat::from_fn(3, 3, |i, k| body.translation_first[i][k] / body.mass);
-    let center = PointShapes::new(&body, &modal::BodyPoint { position_body: body.center_of_mass, shapes });
+    let center = PointShapes::new(&body, &reduced_body::BodyPoint { position_body: body.center_of_mass, shapes });
     let per_mass = Mat::from_fn(3, 3, |i, j| k[(i, j)] / body.mass);
     let center = center.with_second_order(SecondOrder::new(vec![(direction, per_mass)]).unwrap());
     let acceleration = 1.2 * std::f64::consts::PI / 4.0;
@@ -131,7 +131,7 @@ fn a_steady_load_moves_the_frequencies_as_its_stiffness_says() {
     run.initial.modal_velocity.fill(0.0);
     let k = Mat::from_fn(1, 1, |_, _| 2.0);
     let shapes = Mat::zeros(3, 1);
-    let point = PointShapes::new(&body, &modal::BodyPoint { position_body: Vector3::zeros(), shapes });
+    let point = PointShapes::new(&body, &reduced_body::BodyPoint { position_body: Vector3::zeros(), shapes });
     let point = point.with_second_order(SecondOrder::new(vec![(Vector3::x(), k)]).unwrap());
     for force in [4.0, -4.0] {
         run.loads = vec![dead_force(point.clone(), Vector3::x() * force, History::Constant)];

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use dynamics::{LoadFn, PointShapes, SharedLoad, SystemScheme};
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 
 use crate::mechanism::{Link, Mechanism, angle};
 

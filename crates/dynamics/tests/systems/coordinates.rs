@@ -8,8 +8,8 @@ use dynamics::{
     Marker, MotionState, Observation, Physics, PointSpring, Reached, Rows, StepControl, StepError, Stops, System,
     SystemMotion, SystemScheme, SystemSetup, SystemSimulation,
 };
-use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 /// Mass and moment of inertia about z of each body.

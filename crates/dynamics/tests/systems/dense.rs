@@ -9,8 +9,8 @@ use dynamics::{
     StepError, System, SystemObservation, SystemScheme, SystemSetup, SystemSimulation,
 };
 use fem_tet10::Material;
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 use crate::flexible::Jointed;

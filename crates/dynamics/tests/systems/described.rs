@@ -7,8 +7,8 @@ use dynamics::{
     JointLawFn, Marker, MotionState, Physics, PointForce, PointShapes, PointSpring, Rows, RunDescription, RunOfSystem,
     StepControl, Stops, SystemObservation, SystemScheme, Table,
 };
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 use crate::flexible::rod;

@@ -6,8 +6,8 @@ use dynamics::{
     Bushing, ConservativeBody, ForceElement, Joint, LineObservation, Marker, MarkerForce, MarkerLaw, MotionState,
     Physics, PointSpring, RelativeMotion, System, SystemMotion, SystemScheme,
 };
-use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{ReducedBody, RigidMotion};
 use rigid_kin::{Attitude, cross_matrix, rotation_vector, transformation_matrix};
 
 fn bodies(count: usize) -> Vec<ConservativeBody> {

@@ -8,8 +8,8 @@ use dynamics::{
     MotionState, Physics, PointForce, PointShapes, RelativePlace, Rows, RunDescription, SetupError, StepControl,
     System, SystemMotion, SystemScheme, SystemSetup, SystemSimulation,
 };
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use rigid_kin::{Attitude, transformation_matrix};
 
 use crate::described;

@@ -7,8 +7,8 @@ use dynamics::{
     Observation, Physics, PointForce, PointShapes, Reached, Rows, SharedLoad, Simulation, StepControl, System,
     SystemMotion, SystemScheme, SystemSetup, SystemSimulation,
 };
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3, Vector6};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 use crate::mechanism::{Link, Mechanism, at_rest};

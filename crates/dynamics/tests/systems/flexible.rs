@@ -8,8 +8,9 @@ use dynamics::{
     PointShapes, RotationShapes, Rows, SecondOrder, SharedLoad, Simulation, StepControl, System, SystemMotion, Table,
 };
 use fem_tet10::{Material, Materials, Mesh, Patch, assemble, read_msh, reduced_geometric_stiffness};
-use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, StaticAccuracy, Support};
+use modal::{Modes, Solver, StaticAccuracy, Support};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 /// A free body of a mesh with some natural modes and six static shapes for each patch, and the shapes of the patches.
@@ -36,7 +37,7 @@ impl Jointed {
             responses.push(solver.static_response_from(&modes, forces.as_ref(), StaticAccuracy::Full).unwrap());
             modes = solver.with_static_shapes(modes, responses[responses.len() - 1].as_ref()).unwrap();
         }
-        let body = ReducedBody::new(&modes, m, x).unwrap();
+        let body = modes.reduced(m, x).unwrap();
         let second_orders = responses.iter().map(|responses| {
             let shapes = modes.shapes.as_ref();
             let materials = Materials::Uniform(material);
@@ -49,7 +50,7 @@ impl Jointed {
         let patches = patches
             .iter()
             .map(|patch| {
-                let point = BodyPoint::new(&modes, x, &patch.nodes, &patch.weights).unwrap();
+                let point = modes.point(x, &patch.nodes, &patch.weights).unwrap();
                 let turning = RotationShapes::new(&body, patch.rotations(modes.shapes.as_ref()).as_ref());
                 (PointShapes::new(&body, &point), turning)
             })
@@ -60,7 +61,7 @@ impl Jointed {
     /// A point of the body, at a place of its mesh.
     fn point(&self, at: [f64; 3]) -> PointShapes {
         let location = self.mesh.locate(at).unwrap();
-        let point = BodyPoint::new(&self.modes, self.mesh.positions(), &location.nodes, &location.weights).unwrap();
+        let point = self.modes.point(self.mesh.positions(), &location.nodes, &location.weights).unwrap();
         PointShapes::new(&self.body, &point)
     }
 

@@ -8,8 +8,8 @@ use dynamics::{
     PointShapes, Rows, StepControl, StepError, Stops, System, SystemMotion, SystemScheme, SystemSetup,
     SystemSimulation,
 };
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 const GRAVITY: f64 = 9.81;

@@ -7,8 +7,8 @@ use dynamics::{
     MotionState, Observation, Physics, PointForce, PointShapes, Reached, RelativeMotion, Rows, SharedLoad, StepControl,
     Stops, System, SystemMotion, SystemScheme, SystemSetup, SystemSimulation,
 };
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 
 use crate::mechanism::at_rest;
 use crate::rigid::weight;

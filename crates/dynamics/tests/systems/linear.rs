@@ -9,8 +9,8 @@ use dynamics::{
 };
 use faer::c64;
 use fem_tet10::Material;
-use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 use crate::flexible::Jointed;

@@ -3,8 +3,8 @@
 use dynamics::{
     ConservativeBody, Coordinate, Joint, JointForce, Marker, MotionState, Physics, SharedLoad, System, SystemMotion,
 };
-use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 /// A rigid body at rest, its axes along the global ones.

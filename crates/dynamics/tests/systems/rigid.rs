@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use dynamics::{LoadFn, Observation, PointShapes, SharedLoad, SystemMotion, SystemScheme};
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 
 use crate::mechanism::{Link, Mechanism, angle};
 

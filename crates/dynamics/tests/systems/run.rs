@@ -8,8 +8,8 @@ use dynamics::{
     Observation, Observer, Physics, PointForce, PointShapes, Reached, RelativeMotion, Rows, SetupError, SharedLoad,
     StepControl, StepEnd, StepError, System, SystemObservation, SystemScheme, SystemSetup, SystemSimulation, Table,
 };
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 
 /// Two rods of 1 m and 1 kg that hang from each other and from the ground in a field of gravity, with a spring between them.
 fn pendulum(control: StepControl, drive: Option<JointDrive>) -> SystemSetup {

@@ -7,8 +7,8 @@ use dynamics::{
     MotionState, Physics, PointForce, PointShapes, PointSpring, System, SystemMotion,
 };
 use fem_tet10::Material;
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use rigid_kin::{Attitude, transformation_matrix};
 
 use crate::elements::Like;

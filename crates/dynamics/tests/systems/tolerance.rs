@@ -8,8 +8,8 @@ use dynamics::{
     SharedLoad, Simulation, StatedError, StepControl, System, SystemMotion, SystemScheme, SystemSetup,
     SystemSimulation,
 };
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 use crate::flexible::{Jointed, rod};

@@ -7,8 +7,8 @@ use dynamics::{
     PointShapes, SharedLoad, System, SystemMode, SystemMotion,
 };
 use fem_tet10::Material;
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 use crate::flexible::Jointed;

@@ -14,6 +14,7 @@ use mesh_import::ImportError;
 use modal::ModalError;
 use model::{BuildError, StartError};
 use nonlinear::NonlinearError;
+use reduced_body::BodyError;
 use report::ReportError;
 use results::FileError;
 use scene::SceneError;
@@ -203,9 +204,10 @@ impl Fault for AssemblyError {
 impl Fault for ModalError {
     fn known(&self) -> Known {
         match self {
-            Self::TooManyModes { .. } | Self::HeldNode { .. } | Self::HeldFreedom { .. } | Self::NotUnit { .. } => {
-                Kind::Input
-            }
+            Self::TooManyModes { .. }
+            | Self::HeldNode { .. }
+            | Self::HeldFreedom { .. }
+            | Self::Body(BodyError::NotUnit { .. }) => Kind::Input,
             Self::Engine(_)
             | Self::WrongAnswers { .. }
             | Self::Ordering { .. }

@@ -1,7 +1,6 @@
 //! The state at the beginning is (30) and (31) of the velocity field `V + ω×(X + u) + Ψ_f q̇`.
 
 use dynamics::{Initial, Observation, Physics, Rows, Setup, Simulation, StepControl};
-use modal::BodyPoint;
 use nalgebra::{DMatrix, DVector, Vector3};
 use rigid_kin::Attitude;
 
@@ -29,7 +28,7 @@ fn the_initial_state_is_the_projected_velocity_field() {
         if k < 6 { ring.modes.rigid.shapes[(i, k)] } else { ring.modes.shapes[(i, k - 6)] }
     });
     for (node, x) in positions.iter().enumerate() {
-        let shapes = BodyPoint::new(&ring.modes, positions, &[node as u32], &[1.0]).unwrap().shapes;
+        let shapes = ring.modes.point(positions, &[node as u32], &[1.0]).unwrap().shapes;
         let sum = |coordinates: &[f64]| -> Vector3<f64> {
             Vector3::from_fn(|axis, _| coordinates.iter().enumerate().map(|(k, q)| shapes[(axis, k)] * q).sum())
         };

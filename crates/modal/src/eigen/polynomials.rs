@@ -12,10 +12,10 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::matrix::mass::NodalMass;
-use crate::matrix::pairs::PAIRS;
 use crate::matrix::stiffness::NodalStiffness;
+use reduced_body::ReducedBody;
 
-/// 1, x, y, z, then x_a x_b by [`PAIRS`].
+/// 1, x, y, z, then x_a x_b by [`ReducedBody::PAIRS`].
 pub(crate) const MONOMIALS: usize = 10;
 /// The same and two random numbers: whole vectors of numbers.
 const ALL: usize = 12;
@@ -107,13 +107,13 @@ impl Polynomials {
 
 /// The linear fields `x_a e_b + x_b e_a`, then the quadratic ones `x_a x_b e_c`.
 pub(crate) fn straining_fields() -> Vec<Field> {
-    let linear = PAIRS.map(|(a, b)| {
+    let linear = ReducedBody::PAIRS.map(|(a, b)| {
         let mut field = Field::default();
         field[a][1 + b] += 1.0;
         field[b][1 + a] += 1.0;
         field
     });
-    let quadratic = (0..PAIRS.len()).flat_map(|pair| {
+    let quadratic = (0..ReducedBody::PAIRS.len()).flat_map(|pair| {
         (0..3).map(move |axis| {
             let mut field = Field::default();
             field[axis][4 + pair] = 1.0;
@@ -143,7 +143,7 @@ fn monomials(node: u64, x: Vector3<f64>) -> Monomials {
     from_fn(|k| match k {
         0 => 1.0,
         1..4 => x[k - 1],
-        4..MONOMIALS => x[PAIRS[k - 4].0] * x[PAIRS[k - 4].1],
+        4..MONOMIALS => x[ReducedBody::PAIRS[k - 4].0] * x[ReducedBody::PAIRS[k - 4].1],
         _ => random(2 * node + (k - MONOMIALS) as u64),
     })
 }

@@ -10,12 +10,12 @@ use crate::eigen::polynomials::{Field, Polynomials, rigid_field, straining_field
 use crate::error::ModalError;
 use crate::matrix::dense::symmetric_eigen;
 use crate::matrix::mass_matrix::MassMatrix;
-use crate::matrix::pairs::PAIRS;
 use crate::matrix::stiffness::StiffnessMatrix;
 use crate::matrix::tall;
-use crate::support::motion::RigidMotion;
 use crate::support::rigid::RigidModes;
 use crate::support::rigid_fields::rigid_fields;
+use reduced_body::ReducedBody;
+use reduced_body::RigidMotion;
 
 /// Directions of the Gram matrix below this are taken for dependent.
 const DEPENDENT: f64 = 1e-10;
@@ -117,7 +117,7 @@ fn polynomial_fields(positions: &[[f64; 3]], center: &Vector3<f64>, dofs: usize)
     let mut fields = Mat::zeros(dofs * positions.len(), FIELDS);
     for (node, position) in positions.iter().enumerate() {
         let x = Vector3::from(*position) - center;
-        for (pair, (a, b)) in PAIRS.into_iter().enumerate() {
+        for (pair, (a, b)) in ReducedBody::PAIRS.into_iter().enumerate() {
             fields[(dofs * node + a, pair)] += x[b];
             fields[(dofs * node + b, pair)] += x[a];
             for axis in 0..3 {

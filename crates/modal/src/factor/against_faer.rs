@@ -21,7 +21,7 @@ use crate::matrix::mass_matrix::MassMatrix;
 use crate::matrix::stiffness::{NodalStiffness, StiffnessMatrix};
 use crate::solve::Solver;
 use crate::support::constraints::Constraints;
-use crate::support::motion::Support;
+use crate::support::held::Support;
 
 const STEEL: Material = Material { young_modulus: 2.1e5, poisson_ratio: 0.3, density: 7.85e-9 };
 /// Turns, of which the fastest counts.

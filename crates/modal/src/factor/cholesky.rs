@@ -324,7 +324,7 @@ mod tests {
     use crate::factor::substitution::tests::{grid, supernodal};
     use crate::matrix::mass_matrix::MassMatrix;
     use crate::support::constraints::Constraints;
-    use crate::support::motion::Support;
+    use crate::support::held::Support;
 
     /// The factor of A + shift·1 by this module on one thread and on three, and by faer.
     fn factors(a: &SparseColMat<usize, f64>, shift: f64) -> [Option<Vec<f64>>; 3] {

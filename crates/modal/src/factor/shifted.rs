@@ -303,7 +303,8 @@ mod tests {
     use super::*;
     use crate::eigen::lanczos::random_block;
     use crate::multigrid::coarse::tests::Block;
-    use crate::support::motion::{RigidMotion, Support};
+    use crate::support::held::Support;
+    use reduced_body::RigidMotion;
 
     /// A block on a hinge: the held rows have an unknown of their own.
     /// Conserved: the same answers in the factor's order and in the order of the nodes.

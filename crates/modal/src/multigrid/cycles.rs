@@ -23,7 +23,7 @@ use crate::multigrid::no_cycles::NoCycles;
 use crate::multigrid::smoother::Smoother;
 use crate::multigrid::spatial_order::spatial_order;
 use crate::support::constraints::Constraints;
-use crate::support::motion::Support;
+use crate::support::held::Support;
 
 /// Multiplications in the factor of K + sM, for each unknown and mode, from which on it takes longer than the cycles: of
 /// blocks, with 80 000 unknowns and twenty modes.

@@ -18,7 +18,7 @@ use crate::multigrid::{Cycles, NoCycles};
 use crate::solve::{Inverse, Solver};
 use crate::statics::response::StaticAccuracy;
 use crate::support::constraints::Constraints;
-use crate::support::motion::Support;
+use crate::support::held::Support;
 use crate::support::rigid_fields::rigid_fields;
 
 /// The cycle may work with single precision.

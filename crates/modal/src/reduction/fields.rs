@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 use crate::error::ModalError;
 use crate::input::check_rows;
 use crate::matrix::mass_matrix::MassMatrix;
-use crate::reduction::body::ReducedBody;
 use crate::reduction::turned::turned;
 use crate::support::rigid_fields::rigid_fields;
+use reduced_body::ReducedBody;
 
 /// Name of the positions in messages.
 const POSITIONS: &str = "positions";

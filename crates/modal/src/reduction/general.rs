@@ -17,7 +17,6 @@ use nalgebra::Vector3;
 
 use crate::error::ModalError;
 use crate::matrix::mass_matrix::GeneralMass;
-use crate::matrix::pairs::PAIRS;
 use crate::matrix::products::symmetric_product;
 use crate::matrix::tall::inner;
 use crate::memory_estimate::of_vectors;
@@ -26,6 +25,7 @@ use crate::reduction::parts::general_vectors;
 use crate::reduction::turned::turned;
 use crate::solve::Modes;
 use crate::support::rigid_fields::{General, rigid_fields};
+use reduced_body::ReducedBody;
 
 /// The products of the modes, whose shapes and positions fit the mass.
 pub(crate) fn general_products(
@@ -69,12 +69,13 @@ pub(crate) fn general_products(
         })
     });
     let rotation_momentum = |i: usize| field_momenta.subcols(3 + i, 1);
-    let inertia_first = PAIRS.map(|(i, j)| {
+    let inertia_first = ReducedBody::PAIRS.map(|(i, j)| {
         let ij = inner(turned[j].as_ref(), rotation_momentum(i));
         let ji = inner(turned[i].as_ref(), rotation_momentum(j));
         (0..nf).map(|k| 0.5 * (ij[(k, 0)] + ji[(k, 0)])).collect()
     });
-    let inertia_second = PAIRS.map(|(i, j)| symmetric(inner(turned[i].as_ref(), turned_momenta[j].as_ref()).as_ref()));
+    let inertia_second =
+        ReducedBody::PAIRS.map(|(i, j)| symmetric(inner(turned[i].as_ref(), turned_momenta[j].as_ref()).as_ref()));
     let gyroscopic = std::array::from_fn(|i| {
         let product = inner(flexible_momenta, turned[i].as_ref());
         Mat::from_fn(nf, nf, |k, l| 0.5 * (product[(k, l)] - product[(l, k)]))

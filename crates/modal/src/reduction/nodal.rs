@@ -6,12 +6,12 @@ use rayon::prelude::*;
 
 use crate::error::ModalError;
 use crate::matrix::mass::NodalMass;
-use crate::matrix::pairs::PAIRS;
 use crate::matrix::tall;
 use crate::memory_estimate::of_vectors;
 use crate::reduction::inertia_products::{Products, set_translations};
 use crate::reduction::parts::{GEOMETRY, NODES, PIECES, nodal_vectors, products_bytes};
 use crate::solve::Modes;
+use reduced_body::ReducedBody;
 
 /// The products of the modes, whose shapes and positions fit the mass.
 pub(crate) fn nodal_products(
@@ -75,7 +75,7 @@ pub(crate) fn nodal_products(
     let flexible = |a: usize, b: usize| products[a][b].submatrix(6, 6, nf, nf);
     let flexible_x = |a: usize, b: usize, k: usize| products[a][b][(6 + k, modal)];
     // [e_i×]ᵀ[e_j×] = δ_ij I − e_j e_iᵀ
-    let inertia_first = PAIRS.map(|(i, j)| {
+    let inertia_first = ReducedBody::PAIRS.map(|(i, j)| {
         (0..nf)
             .map(|k| {
                 let trace: f64 = if i == j { (0..3).map(|a| flexible_x(a, a, k)).sum() } else { 0.0 };
@@ -83,7 +83,7 @@ pub(crate) fn nodal_products(
             })
             .collect()
     });
-    let inertia_second = PAIRS.map(|(i, j)| {
+    let inertia_second = ReducedBody::PAIRS.map(|(i, j)| {
         let (ij, ji) = (flexible(i, j), flexible(j, i));
         Mat::from_fn(nf, nf, |k, l| {
             let trace: f64 = if i == j { (0..3).map(|a| flexible(a, a)[(k, l)]).sum() } else { 0.0 };

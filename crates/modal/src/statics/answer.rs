@@ -129,8 +129,8 @@ mod tests {
 
     use super::*;
     use crate::solve::SolveStats;
-    use crate::support::motion::RigidMotion;
     use crate::support::rigid::RigidModes;
+    use reduced_body::RigidMotion;
 
     /// Modes of a body whose M is 1 and whose K is diagonal.
     fn modes(eigenvalues: &[f64]) -> Modes {

@@ -12,6 +12,7 @@
 //! ([`Modes::uncoupled`]): then the other modes have no energy with a product, as K u_α is against what they have with its strain.
 
 use faer::{Mat, MatRef};
+use reduced_body::{LargeCoordinates, LargeProducts};
 
 use crate::error::ModalError;
 use crate::input::{check_finite_columns, check_rows};
@@ -21,87 +22,14 @@ use crate::solve::{Modes, Solver};
 
 /// Smallest part of a static response beside the modes with which it is added: less is rounding.
 const DEPENDENT: f64 = 1e-6;
-/// Factors of following modes in a product, at most: the body is linear in these about the large ones.
-const MAX_FOLLOWING: usize = 2;
-
-/// The products of the coordinates of some large modes and of modes that follow them. The large ones are numbered first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Products {
-    /// Number of large modes.
-    pub large: usize,
-    /// Number of modes that follow.
-    pub following: usize,
-}
-
-impl Products {
-    /// Number of both.
-    pub fn coordinates(&self) -> usize {
-        self.large + self.following
-    }
-
-    /// Products of two, by their factors, ascending.
-    pub fn second(&self) -> Vec<Vec<usize>> {
-        self.with(2, MAX_FOLLOWING)
-    }
-
-    /// Products of three large modes.
-    pub fn third(&self) -> Vec<Vec<usize>> {
-        self.with(3, 0)
-    }
-
-    /// All products that have a displacement: those of two, then those of three.
-    pub fn of_displacement(&self) -> Vec<Vec<usize>> {
-        [self.second(), self.third()].concat()
-    }
-
-    /// The products in the strain energy beyond the linear one, to the fifth: of three all, since a load holds the modes that
-    /// follow to one side, too, and that changes their stiffness by a first order.
-    pub fn of_energy(&self) -> Vec<Vec<usize>> {
-        let factors = [(3, 3), (4, MAX_FOLLOWING), (5, MAX_FOLLOWING)];
-        factors.into_iter().flat_map(|(factors, following)| self.with(factors, following)).collect()
-    }
-
-    /// Products by their number of factors, with a limit on those that follow, in ascending order.
-    fn with(&self, factors: usize, following: usize) -> Vec<Vec<usize>> {
-        let mut products: Vec<Vec<usize>> = vec![Vec::new()];
-        for _ in 0..factors {
-            let longer = |product: Vec<usize>| {
-                let first = product.last().copied().unwrap_or(0);
-                let followers = product.iter().filter(|k| **k >= self.large).count();
-                let end = if followers < following { self.coordinates() } else { self.large };
-                (first..end).map(move |k| [&product[..], &[k]].concat())
-            };
-            products = products.into_iter().flat_map(longer).collect();
-        }
-        products
-    }
-
-    /// True if a product has a factor that follows.
-    pub fn follows(&self, product: &[usize]) -> bool {
-        product.iter().any(|k| *k >= self.large)
-    }
-}
 
 /// Large modes, modes that follow them, and the shapes of their products.
 #[derive(Debug, Clone)]
 pub struct LargeShapes {
     /// The modes of the motion, then the vectors H; K-orthogonality is lost.
     pub modes: Modes,
-    /// Number of shapes that are coordinates of the motion.
-    pub dynamic: usize,
-    /// The large modes, numbered from 0, ascending.
-    pub large: Vec<usize>,
-    /// The modes that follow, numbered from 0, ascending.
-    pub following: Vec<usize>,
-    /// a_α (extended shapes × [`Products::of_displacement`]).
-    pub coefficients: Mat<f64>,
-}
-
-impl LargeShapes {
-    /// The products of their coordinates.
-    pub fn products(&self) -> Products {
-        Products { large: self.large.len(), following: self.following.len() }
-    }
+    /// The coordinates in these shapes.
+    pub coordinates: LargeCoordinates,
 }
 
 impl Solver<'_> {
@@ -123,7 +51,7 @@ impl Solver<'_> {
     }
 
     /// The shapes of the `large` ones of `modes` and of those that follow them, by the `fields` (N×products) of
-    /// [`Products::of_displacement`], which have been freed.
+    /// [`LargeProducts::of_displacement`], which have been freed.
     ///
     /// # Errors
     /// [`ModalError::Length`], [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::LargeModes`],
@@ -136,7 +64,7 @@ impl Solver<'_> {
         fields: MatRef<'_, f64>,
     ) -> Result<LargeShapes, ModalError> {
         let (size, dynamic) = (modes.shapes.nrows(), modes.shapes.ncols());
-        let products = Products { large: large.len(), following: following.len() };
+        let products = LargeProducts { large: large.len(), following: following.len() };
         let of_displacement = products.of_displacement();
         if fields.ncols() != of_displacement.len() {
             let (expected, found) = (of_displacement.len(), fields.ncols());
@@ -162,24 +90,7 @@ impl Solver<'_> {
         let of_beside = (0..beside.ncols()).map(|k| beside.col(k).transpose() * stiff.col(k));
         let mut modes = modes;
         modes.append(of_beside, shapes);
-        Ok(LargeShapes { modes, dynamic, large: large.to_vec(), following: following.to_vec(), coefficients })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn products_are_those_of_the_theory() {
-        let products = Products { large: 2, following: 1 };
-        assert_eq!(products.second(), [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]]);
-        assert_eq!(products.third(), [[0, 0, 0], [0, 0, 1], [0, 1, 1], [1, 1, 1]]);
-        assert!(products.follows(&[0, 2]));
-        // Of one large and three following modes, all fields take eleven solutions.
-        let products = Products { large: 1, following: 3 };
-        assert_eq!(products.of_displacement().len(), 11);
-        // q³, q² r, q r r and so on to the fifth.
-        assert_eq!(products.of_energy().len(), 10 + 3 * (1 + 3 + 6));
+        let (large, following) = (large.to_vec(), following.to_vec());
+        Ok(LargeShapes { modes, coordinates: LargeCoordinates { dynamic, large, following, coefficients } })
     }
 }

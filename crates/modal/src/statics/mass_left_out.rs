@@ -8,7 +8,7 @@ use crate::matrix::tall::inner;
 use crate::reduction::turned::turned;
 use crate::solve::Modes;
 
-/// The part of the mass that [`crate::ReducedBody::new`] leaves out because it does not commute with rotations, relative to the modal
+/// The part of the mass that [`Modes::reduced`](crate::Modes::reduced) leaves out because it does not commute with rotations, relative to the modal
 /// mass, which is 1: the largest entry of the symmetric parts of `Ψᵀ M (I⊗[e_i×]) Ψ` and of
 /// `Eᵀ [M, I⊗[e_i×]] Ψ/√m`, E the unit translations. Zero of a scalar mass for each pair of nodes.
 pub fn mass_left_out(mass: &MassMatrix<'_>, modes: &Modes) -> f64 {

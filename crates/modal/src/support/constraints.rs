@@ -15,7 +15,8 @@ use nalgebra::{DMatrix, Vector3};
 use crate::error::ModalError;
 use crate::input::check_held;
 use crate::matrix::renumbering::Renumbering;
-use crate::support::motion::{RigidMotion, Support};
+use crate::support::held::Support;
+use reduced_body::RigidMotion;
 
 /// A motion that moves the held nodes by less than this, relative to the size of the body, does not move them.
 pub(crate) const NEGLIGIBLE: f64 = 1e-7;

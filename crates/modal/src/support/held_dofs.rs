@@ -9,7 +9,8 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use crate::error::ModalError;
 use crate::input::{check_finite_positions, check_held};
 use crate::support::constraints::{NEGLIGIBLE, extent};
-use crate::support::motion::{RigidMotion, Support, Twist};
+use crate::support::held::Support;
+use reduced_body::{RigidMotion, Twist};
 
 /// A component of a unit vector below this is rounding.
 const ROUNDING: f64 = 1e-12;

@@ -9,8 +9,8 @@ use crate::matrix::dense::whitening;
 use crate::matrix::mass_matrix::MassMatrix;
 use crate::matrix::stiffness::StiffnessMatrix;
 use crate::matrix::tall;
-use crate::support::motion::RigidMotion;
 use crate::support::rigid_fields::{General, rigid_fields};
+use reduced_body::{BodyError, RigidMotion};
 
 /// ‖K r‖ relative to ‖D r‖, D the diagonal of K, that rounding in the assembly of K may leave.
 const FREE: f64 = 1e-9;
@@ -47,7 +47,7 @@ impl RigidModes {
     /// Mass properties and rigid modes of the nodes at `positions` (n×3) with the mass matrix `mass`.
     ///
     /// # Errors
-    /// [`ModalError::Length`] where there are not as many positions as nodes, or none; [`ModalError::NoInertia`] where a motion meets neither mass nor inertia; [`ModalError::NotUnit`];
+    /// [`ModalError::Length`] where there are not as many positions as nodes, or none; [`ModalError::Body`] where a motion meets neither mass nor inertia, or a direction is not a unit vector;
     /// [`ModalError::NoRigidBodyMass`] of a body that moves.
     pub fn new(mass: &MassMatrix<'_>, positions: &[[f64; 3]], motion: RigidMotion) -> Result<Self, ModalError> {
         if positions.len() != mass.nodes() || positions.is_empty() {
@@ -161,7 +161,7 @@ fn orthonormal_motions(
         Mat::from_fn(6, motions.len(), |i, k| if i < 3 { motions[k].velocity[i] } else { motions[k].rotation[i - 3] });
     let fields = tall::product(fields.as_ref(), coefficients.as_ref());
     let gram = tall::inner(fields.as_ref(), mass.product(fields.as_ref()).as_ref());
-    let whitening = whitening(&gram).map_err(|_| ModalError::NoInertia {
+    let whitening = whitening(&gram).map_err(|_| BodyError::NoInertia {
         mass: gram[(0, 0)],
         inertia: std::array::from_fn(|k| gram[(k.min(motions.len() - 1), k.min(motions.len() - 1))]),
     })?;

@@ -1,8 +1,9 @@
 //! The mass that each mode carries in motions of the base.
 
 use faer::Mat;
-use modal::{Participation, ReducedBody, RigidMotion, Support};
+use modal::Support;
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{Participation, RigidMotion};
 
 use crate::beam::Beam;
 use crate::held::supports;
@@ -12,7 +13,7 @@ fn cantilever(beam: &Beam, count: usize) -> Participation {
     let model = beam.model();
     let root = Vector3::from(model.positions[0]);
     let modes = model.modes(&Support::new(RigidMotion::clamp(root), vec![0]), count);
-    ReducedBody::new(&modes, model.mass.as_ref(), &model.positions).unwrap().participation(&root)
+    modes.reduced(model.mass.as_ref(), &model.positions).unwrap().participation(&root)
 }
 
 /// Closed form: Euler–Bernoulli cantilever with the roots β of cos β cosh β = −1: effective mass (2σ/β)² m = 0.6131, 0.1883, 0.0647 of
@@ -72,7 +73,7 @@ fn factors_equal_their_definition_whatever_the_support_leaves() {
     );
     for support in [Support::free(), hinge, Support::new(RigidMotion::pin(at), vec![0])] {
         let modes = body.held(&support).modes(5, |_| ()).unwrap();
-        let reduced = ReducedBody::new(&modes, body.matrices.mass(), &body.positions).unwrap();
+        let reduced = modes.reduced(body.matrices.mass(), &body.positions).unwrap();
         let found = reduced.participation(&about);
         let expected = modes.shapes.transpose() * &momenta;
         let of_rigid = modes.rigid.shapes.transpose() * &momenta;

@@ -2,8 +2,9 @@
 
 use faer::Mat;
 use fem_tet10::{BodyNumber, Material, Materials, MatrixRates, Mesh, MeshParts};
-use modal::{ModeRates, Modes, RigidMotion, Solver, Support};
+use modal::{ModeRates, Modes, Solver, Support};
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::bodies::{Body, STEEL, block_mesh};
 

@@ -1,8 +1,9 @@
 //! The constants of the reduced body against their definitions, evaluated node by node in physical space.
 
 use faer::Mat;
-use modal::{BodyPoint, Constants, Modes, ReducedBody, Support};
+use modal::{Modes, Support};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{Constants, ReducedBody};
 
 use crate::bodies::Body;
 use crate::held::supports;
@@ -28,7 +29,7 @@ fn case() -> Case {
 fn held_case(support: &Support) -> Case {
     let body = supports::body();
     let modes = body.held(support).modes(NF, |_| ()).unwrap();
-    let reduced = ReducedBody::new(&modes, body.matrices.mass(), &body.positions).unwrap();
+    let reduced = modes.reduced(body.matrices.mass(), &body.positions).unwrap();
     let psi = Mat::from_fn(modes.shapes.nrows(), 6 + NF, |i, j| {
         if j < 6 { modes.rigid.shapes[(i, j)] } else { modes.shapes[(i, j - 6)] }
     });
@@ -168,14 +169,14 @@ fn inertia_of_the_deformed_body_is_quadratic_in_the_modes() {
 fn points_and_rigid_shapes_are_rows_of_the_modes() {
     let case = case();
     for node in [0, 17, 60] {
-        let point = BodyPoint::new(&case.modes, &case.body.positions, &[node as u32], &[1.0]).unwrap();
+        let point = case.modes.point(&case.body.positions, &[node as u32], &[1.0]).unwrap();
         let rigid = case.reduced.rigid_shapes(&point.position_body);
         for axis in 0..3 {
             assert!((0..6).all(|k| (rigid[(axis, k)] - case.psi[(3 * node + axis, k)]).abs() < 1e-12));
             assert!((0..NF).all(|k| point.shapes[(axis, k)] == case.modes.shapes[(3 * node + axis, k)]));
         }
     }
-    let middle = BodyPoint::new(&case.modes, &case.body.positions, &[3, 40], &[0.25, 0.75]).unwrap();
+    let middle = case.modes.point(&case.body.positions, &[3, 40], &[0.25, 0.75]).unwrap();
     let mean = |i: usize, k: usize| 0.25 * case.modes.shapes[(9 + i, k)] + 0.75 * case.modes.shapes[(120 + i, k)];
     assert!((0..NF).all(|k| (0..3).all(|i| (middle.shapes[(i, k)] - mean(i, k)).abs() < 1e-14)));
     let place = 0.25 * Vector3::from(case.body.positions[3]) + 0.75 * Vector3::from(case.body.positions[40]);
@@ -187,7 +188,7 @@ fn points_and_rigid_shapes_are_rows_of_the_modes() {
 fn a_truncated_body_is_the_body_of_the_truncated_modes() {
     let case = case();
     let modes = case.modes.truncated(3);
-    let expected = ReducedBody::new(&modes, case.body.matrices.mass(), &case.body.positions).unwrap();
+    let expected = modes.reduced(case.body.matrices.mass(), &case.body.positions).unwrap();
     let found = case.reduced.truncated(3);
     assert_eq!(found.circular_frequencies, expected.circular_frequencies);
     let close = |a: &Mat<f64>, b: &Mat<f64>| a.shape() == b.shape() && (a - b).norm_max() < 1e-11 * b.norm_max();

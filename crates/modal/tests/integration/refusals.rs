@@ -2,8 +2,9 @@
 
 use faer::Mat;
 use faer::sparse::{SparseColMat, SparseColMatRef, Triplet};
-use modal::{BodyPoint, MassMatrix, ModalError, Modes, NodalMass, RigidModes, RigidMotion, Solver, Support};
+use modal::{MassMatrix, ModalError, Modes, NodalMass, RigidModes, Solver, Support};
 use nalgebra::Vector3;
+use reduced_body::{BodyError, RigidMotion};
 
 use crate::bodies::{Body, CORNER, block, free_modes, tetrahedra};
 
@@ -146,7 +147,7 @@ fn masses_that_no_rigid_body_has() {
 #[test]
 fn bodies_that_are_none() {
     let error = message(with_mass(|_, _, m| Some(-m)), &["mass", "all three moments"]);
-    assert!(matches!(error, ModalError::NoInertia { .. }));
+    assert!(matches!(error, ModalError::Body(BodyError::NoInertia { .. })));
     // Mass at one place only.
     let point = with_mass(|i, j, _| Some(if i == j && i < 3 { 1.0 } else { 0.0 }));
     assert!(point.is_err());
@@ -264,11 +265,14 @@ fn a_support_that_is_not_there() {
     let error = with_support(clamp, &[0, 1, 27]).unwrap();
     assert!(matches!(error, ModalError::HeldNode { node: 27, count: 27 }), "{error}");
     let error = with_support(RigidMotion::pin(Vector3::new(0.0, f64::NAN, 0.0)), &[0]).unwrap();
-    assert!(matches!(error, ModalError::NotFinite { what: "the support's point", index: 1, .. }), "{error}");
+    assert!(
+        matches!(error, ModalError::Body(BodyError::NotFinite { what: "the support's point", index: 1, .. })),
+        "{error}"
+    );
     for axis in [Vector3::new(1.0, 1.0, 0.0), Vector3::zeros(), Vector3::new(f64::NAN, 0.0, 0.0)] {
         for motion in [RigidMotion::hinge(Vector3::zeros(), axis), RigidMotion::slider(axis)] {
             let error = with_support(motion, &[0, 1, 3]).unwrap();
-            assert!(matches!(error, ModalError::NotUnit { .. }), "{error}");
+            assert!(matches!(error, ModalError::Body(BodyError::NotUnit { .. })), "{error}");
         }
     }
 }
@@ -294,7 +298,7 @@ fn what_does_not_fit_is_refused_wherever_it_is_given() {
     }
     let solver = body.held(&Support::free());
     let modes = solver.modes(3, |_| ()).unwrap();
-    let point = |weights: [f64; 2]| BodyPoint::new(&modes, positions, &[0, 1], &weights);
+    let point = |weights: [f64; 2]| modes.point(positions, &[0, 1], &weights);
     assert!(matches!(point([1.0, 1.0]), Err(ModalError::Weights { sum: 2.0 })));
     assert!(point([-0.5, 1.5]).is_ok());
 

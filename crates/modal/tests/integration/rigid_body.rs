@@ -1,8 +1,9 @@
 //! A rigid body without a mesh is the body of a mesh without flexible modes.
 
 use faer::Mat;
-use modal::{ModalError, ReducedBody, RigidMotion};
+
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyError, ReducedBody, RigidMotion};
 
 use crate::held::supports::{body, supports};
 
@@ -12,7 +13,7 @@ fn constants_equal_those_of_a_mesh_whatever_holds_it() {
     let body = body();
     for (support, rigid) in supports(&body.positions) {
         let modes = body.held(&support).modes(0, |_| ()).unwrap();
-        let expected = ReducedBody::new(&modes, body.matrices.mass(), &body.positions).unwrap();
+        let expected = modes.reduced(body.matrices.mass(), &body.positions).unwrap();
         let found =
             ReducedBody::rigid(expected.mass, expected.center_of_mass, expected.inertia, support.motion).unwrap();
         assert_eq!((found.flexible(), found.motion.count()), (0, rigid));
@@ -87,21 +88,21 @@ fn what_is_no_rigid_body_is_refused() {
     };
     let unit = Matrix3::identity();
     for mass in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(refused(mass, unit, RigidMotion::free()), ModalError::NoInertia { .. }));
+        assert!(matches!(refused(mass, unit, RigidMotion::free()), BodyError::NoInertia { .. }));
     }
     for inertia in [Matrix3::zeros(), -unit, Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0))] {
-        assert!(matches!(refused(1.0, inertia, RigidMotion::free()), ModalError::NoInertia { .. }));
+        assert!(matches!(refused(1.0, inertia, RigidMotion::free()), BodyError::NoInertia { .. }));
     }
     let nan = Matrix3::from_diagonal(&Vector3::new(1.0, f64::NAN, 1.0));
-    assert!(matches!(refused(1.0, nan, RigidMotion::free()), ModalError::NotFinite { .. }));
+    assert!(matches!(refused(1.0, nan, RigidMotion::free()), BodyError::NotFinite { .. }));
     let skewed = Matrix3::new(1.0, 0.1, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
     let error = refused(1.0, skewed, RigidMotion::free());
-    assert!(matches!(error, ModalError::NotSymmetric { what: "inertia", row: 1, column: 0, .. }), "{error}");
+    assert!(matches!(error, BodyError::NotSymmetric { row: 1, column: 0, .. }), "{error}");
     let slanted = RigidMotion::slider(Vector3::new(1.0, 1.0, 0.0));
-    assert!(matches!(refused(1.0, unit, slanted), ModalError::NotUnit { .. }));
+    assert!(matches!(refused(1.0, unit, slanted), BodyError::NotUnit { .. }));
     // Inertia about the hinge only is all that a hinge needs.
     let about_z = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, 2.0));
     let hinge = |axis| RigidMotion::hinge(Vector3::zeros(), axis);
     assert!(ReducedBody::rigid(1.0, Vector3::zeros(), about_z, hinge(Vector3::z())).is_ok());
-    assert!(matches!(refused(1.0, about_z, hinge(Vector3::x())), ModalError::NoInertia { .. }));
+    assert!(matches!(refused(1.0, about_z, hinge(Vector3::x())), BodyError::NoInertia { .. }));
 }

@@ -324,7 +324,7 @@ impl Named<'_> {
         add("damping_ratios", &[count], "1", "none", of_each("damping ratio"), ratios);
     }
 
-    /// [`modal::Constants`].
+    /// [`reduced_body::Constants`].
     fn add_constants(&mut self, model: &Model) {
         let body = &model.body;
         let nf = body.flexible();

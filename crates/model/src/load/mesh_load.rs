@@ -8,8 +8,9 @@ use dynamics::{
 };
 use faer::Mat;
 use fem_tet10::{Location, Matrices, Mesh};
-use modal::{BodyPoint, ModalError, Modes, NodalMass, ReducedBody};
+use modal::{ModalError, Modes, NodalMass};
 use nalgebra::Vector3;
+use reduced_body::{BodyPoint, ReducedBody};
 use rigid_kin::Attitude;
 use scene::{Choice, Force, Load, Moment, Scene, Traction};
 
@@ -511,7 +512,7 @@ impl MeshLoad {
         };
         Ok(match &self.action {
             Action::Force { nodes, weights, force } => {
-                let point = BodyPoint::new(modes, positions, nodes, weights).map_err(modal(scene))?;
+                let point = modes.point(positions, nodes, weights).map_err(modal(scene))?;
                 at(&point, force * self.size)?
             }
             Action::Weight { weight, force } => at(&weight.point(body, modes), force * self.size)?,

@@ -3,8 +3,9 @@
 use dynamics::{PatchTurn, RotationShapes};
 use faer::{ColMut, Mat};
 use fem_tet10::{Location, MeanRotation, Mesh};
-use modal::{Modes, ReducedBody};
+use modal::Modes;
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::ReducedBody;
 use scene::Scene;
 
 use crate::error::{BuildError, refuse};

@@ -1,8 +1,8 @@
 //! Rotations that the body of a scene can make.
 
 use dynamics::{Drive, DrivenMotion, Effect};
-use modal::RigidMotion;
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 use scene::{Choice, Scene};
 
 /// How a body can turn.

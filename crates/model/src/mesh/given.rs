@@ -3,7 +3,8 @@
 use fem_tet10::{Mesh, NodeGroup};
 use keys::Hash;
 use matrix_import::{BodyMatrices, MatrixError, MatrixFiles, Which};
-use modal::{MassMatrix, ModalError, RigidModes, RigidMotion};
+use modal::{MassMatrix, ModalError, RigidModes};
+use reduced_body::{BodyError, RigidMotion};
 use scene::Scene;
 
 use crate::error::{BuildError, modal};
@@ -66,7 +67,7 @@ fn refuse_file(scene: &Scene, error: MatrixError) -> BuildError {
             let found = format!("{found} in {}{line}", path.display());
             scene.refuse(&format!("body.matrices.{}", which.name()), found, expected, help).into()
         }
-        MatrixError::Memory(error) => modal(scene)(error.into()),
+        MatrixError::Memory(error) => modal(scene)(error),
         other => refused(scene, Which::Stiffness, other.to_string(), "matrices that can be read", "write them again"),
     }
 }
@@ -94,7 +95,7 @@ pub(crate) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
             let help = "look for a negative density, an element that is turned inside out, or the stiffness in place of the mass";
             refused(scene, Which::Mass, found, "a mass that gives every motion a positive kinetic energy", help)
         }
-        ModalError::NoInertia { mass: total, inertia } => {
+        ModalError::Body(BodyError::NoInertia { mass: total, inertia }) => {
             let found = format!(
                 "a body with mass {total:.3e} and moments of inertia {:.3e}, {:.3e}, {:.3e} in {mass}",
                 inertia[0], inertia[1], inertia[2]

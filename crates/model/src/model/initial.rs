@@ -1,8 +1,8 @@
 //! The state that a scene begins with.
 
 use dynamics::Initial;
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 use rigid_kin::Attitude;
 use scene::Scene;
 

@@ -1,8 +1,9 @@
 //! Parts of a motion about a bent reference that follow from what it carries already.
 
 use faer::Mat;
-use modal::{Modes, ReducedBody};
+use modal::Modes;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 use scene::About;
 
 use crate::load::directed::Directed;

@@ -1,7 +1,7 @@
 //! The damping of a scene.
 
 use dynamics::Effect;
-use modal::ReducedBody;
+use reduced_body::ReducedBody;
 use scene::{Choice, Scene};
 
 /// One damping ratio for each flexible mode.

@@ -1,7 +1,7 @@
 //! Frequencies and damping as they were measured, in the place of the model's.
 
 use dynamics::PointShapes;
-use modal::{Constants, ReducedBody};
+use reduced_body::{Constants, ReducedBody};
 use scene::{Measured, MeasuredMode, Scene};
 
 use crate::error::{BuildError, modal};

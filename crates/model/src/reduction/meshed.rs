@@ -8,8 +8,9 @@ use advice::{Refusal, limits, unsteady};
 use dynamics::{Effect, LoadedError, Physics, PointShapes};
 use faer::Mat;
 use fem_tet10::{Location, Mesh};
-use modal::{BodyPoint, Modes, ReducedBody};
+use modal::Modes;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 use scene::{Choice, Frame, Scene};
 
 use crate::building::assembly::AssembledMesh;
@@ -175,7 +176,7 @@ fn points(
 ) -> Result<Vec<(String, PointShapes)>, BuildError> {
     output_points(scene, |key: String, at: [f64; 3]| {
         let Location { nodes, weights } = mesh.locate(at).map_err(|error| refuse(scene, &key, error))?;
-        let point = BodyPoint::new(modes, positions, &nodes, &weights);
+        let point = modes.point(positions, &nodes, &weights);
         let point = PointShapes::new(body, &point.map_err(modal(scene))?);
         Ok(match reference {
             Some(reference) => point.moved_by(reference.displacement_at(&nodes, &weights)),

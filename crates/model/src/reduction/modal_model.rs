@@ -3,8 +3,9 @@
 use advice::Case;
 use dynamics::Initial;
 use faer::{ColRef, Mat};
-use modal::{Modes, ReducedBody};
+use modal::Modes;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 use crate::error::{BuildError, modal};
 use crate::load::directed::Directed;

@@ -2,7 +2,7 @@
 
 use advice::Advice;
 use dynamics::{Drive, Effect, EffectMap, Method};
-use modal::{ReducedBody, RigidMotion};
+use reduced_body::{ReducedBody, RigidMotion};
 use scene::{Choice, Large, Load, Scene};
 
 use crate::load::mesh_load::MeshLoad;

@@ -4,8 +4,9 @@ use advice::{Case, advise};
 use dynamics::{Effect, Physics, PointShapes};
 use faer::Mat;
 use frames_rk4::Paper;
-use modal::{BodyPoint, ReducedBody, Support};
+use modal::Support;
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody};
 use scene::{Frame, RigidBody, Scene};
 
 use crate::building::progress::BuildTimes;

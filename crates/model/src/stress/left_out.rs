@@ -10,8 +10,9 @@
 
 use dynamics::{DrivenMotion, History, Observation};
 use faer::Mat;
-use modal::{Modes, ReducedBody};
+use modal::Modes;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 use crate::error::BuildError;
 use crate::reduction::mesh_model::MeshModel;

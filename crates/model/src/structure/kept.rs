@@ -1,8 +1,9 @@
 //! Modes, shapes and the reduced body as they are kept in files.
 
 use faer::Mat;
-use modal::{Constants, LargeShapes, ModalError, Modes, Products, ReducedBody, RigidModes, RigidMotion, SolveStats};
+use modal::{LargeShapes, Modes, RigidModes, SolveStats};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{Constants, LargeCoordinates, LargeProducts, ReducedBody, RigidMotion};
 use sealed::SealedError;
 
 use crate::cache::kept::{Arrays, Keep, Kept};
@@ -203,7 +204,7 @@ impl Keep for OwnSecondOrder {
 }
 
 /// The shapes of large modes and of those that follow them, the body in the extended shapes, and the strain energies of
-/// [`Products::of_energy`].
+/// [`LargeProducts::of_energy`].
 #[derive(Debug)]
 pub(crate) struct Extended {
     pub shapes: LargeShapes,
@@ -216,7 +217,7 @@ impl Keep for Extended {
     type Known<'k> = (&'k Modes, &'k [usize], &'k [usize]);
 
     fn write(&self, to: &mut Arrays) {
-        let LargeShapes { modes, dynamic, coefficients, .. } = &self.shapes;
+        let LargeShapes { modes, coordinates: LargeCoordinates { dynamic, coefficients, .. } } = &self.shapes;
         write_added(modes, *dynamic, to);
         to.matrix("coefficients", coefficients.as_ref());
         to.list("energies", &self.energies);
@@ -225,13 +226,13 @@ impl Keep for Extended {
 
     fn read(from: &Kept<'_>, (modes, large, following): Self::Known<'_>) -> Result<Self, SealedError> {
         let dynamic = modes.shapes.ncols();
-        let products = Products { large: large.len(), following: following.len() };
+        let products = LargeProducts { large: large.len(), following: following.len() };
         let modes = read_added(from, modes, dynamic)?;
         let body = ReducedBody::read(from, &modes)?;
         let coefficients = from.matrix("coefficients", modes.shapes.ncols(), Some(products.of_displacement().len()))?;
         let energies = from.list("energies", Some(products.of_energy().len()))?;
         let (large, following) = (large.to_vec(), following.to_vec());
-        let shapes = LargeShapes { modes, dynamic, large, following, coefficients };
+        let shapes = LargeShapes { modes, coordinates: LargeCoordinates { dynamic, large, following, coefficients } };
         Ok(Self { shapes, body, energies })
     }
 }
@@ -279,6 +280,6 @@ impl Keep for ReducedBody {
             rotation_first: lists("rotation_first", 3, nf)?.try_into().map_err(|_| unfit())?,
             stress_stiffness: None,
         };
-        Self::from_constants(constants).map_err(|error: ModalError| from.damaged(error.to_string()))
+        Self::from_constants(constants).map_err(|error| from.damaged(error.to_string()))
     }
 }

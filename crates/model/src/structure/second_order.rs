@@ -2,7 +2,8 @@
 
 use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Expansion, second_order_energies, second_order_forces};
-use modal::{Modes, Products, StaticAccuracy};
+use modal::{Modes, StaticAccuracy};
+use reduced_body::LargeProducts;
 
 use crate::error::BuildError;
 use crate::structure::kept::{Extended, OwnSecondOrder, SecondOrder};
@@ -78,7 +79,7 @@ impl Structure<'_> {
         let (mesh, materials) = (&self.assembled.mesh, self.assembled.materials()?);
         let list = [large, following].concat();
         let (bent, uncoupled) = (shapes_of(modes, &list), modes.uncoupled(&list));
-        let products = Products { large: large.len(), following: following.len() };
+        let products = LargeProducts { large: large.len(), following: following.len() };
         let reference = self.reference().map(|reference| reference.displacement.as_ref());
         let mut known: Vec<Vec<usize>> = (0..products.coordinates()).map(|k| vec![k]).collect();
         let mut fields = bent.clone();

@@ -81,7 +81,7 @@ impl Statics {
         let drive = model.drive.as_ref().filter(|_| asked.drive).map(|drive| drive.motion);
         let of_drive = of_loads + if asked.spin { 6 } else { 0 };
         let count = of_drive + usize::from(drive.is_some());
-        memory::check("the forces of the loads", 8 * unknowns * count).map_err(|source| modal(scene)(source.into()))?;
+        memory::check("the forces of the loads", 8 * unknowns * count).map_err(modal(scene))?;
         let mut unit_forces = Mat::zeros(unknowns, of_loads);
         // A load without an amplitude has no response.
         for (load, (range, turned)) in loads.iter().zip(&columns).filter(|(load, _)| load.size() > 0.0) {

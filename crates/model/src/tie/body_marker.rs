@@ -2,8 +2,8 @@
 
 use dynamics::{Manifold, PointShapes, RotationShapes};
 use faer::Mat;
-use modal::{BodyPoint, ReducedBody};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody};
 use scene::{Marker, MarkerAxes, MarkerPlace, Scene};
 
 use crate::error::BuildError;

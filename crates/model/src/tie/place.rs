@@ -3,8 +3,9 @@
 use dynamics::{PointShapes, RotationShapes, SecondOrder};
 use faer::{ColMut, Mat};
 use fem_tet10::{MeanRotation, Mesh, Patch};
-use modal::{BodyPoint, Modes, ReducedBody};
+use modal::Modes;
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::ReducedBody;
 use scene::Scene;
 
 use crate::error::{BuildError, modal};
@@ -122,7 +123,7 @@ impl Place {
         &ShapedBody { body, modes, is_bent }: &ShapedBody<'_>,
         stiffness: Vec<Mat<f64>>,
     ) -> Result<(PointShapes, RotationShapes), BuildError> {
-        let point = BodyPoint::new(modes, mesh.positions(), &self.nodes, &self.weights).map_err(modal(scene))?;
+        let point = modes.point(mesh.positions(), &self.nodes, &self.weights).map_err(modal(scene))?;
         let mut point = PointShapes::new(body, &point);
         let mut turning = match &self.rotation {
             Some(rotation) if is_bent => {

@@ -3,8 +3,9 @@
 
 use faer::Mat;
 use fem_tet10::{Material, Materials, assemble, read_msh};
-use modal::{RigidMotion, Solver, Support};
+use modal::{Solver, Support};
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::{BENDING, BREADTH, CLAMPED, DENSITY, LENGTH, POISSON, YOUNG, bar, last, point};
 

@@ -1,7 +1,7 @@
 //! Every kind of support from a scene, and the paper's scheme on bodies that are held.
 
-use modal::RigidMotion;
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::{Observation, Scene, bar, build, observations, refusal};
 

@@ -4,8 +4,9 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use faer::Mat;
 use fem_tet10::{Material, Materials, assemble, read_msh};
-use modal::{RigidMotion, Solver, Support};
+use modal::{Solver, Support};
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::{CLAMPED, DENSITY, LENGTH, POISSON, YOUNG, bar, build, last, point};
 

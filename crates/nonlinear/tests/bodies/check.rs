@@ -1,12 +1,13 @@
 //! The error of a state that is wrong by a known amount.
 
 use faer::Mat;
-use modal::{RigidMotion, Support, faer};
+use modal::{Support, faer};
 use nalgebra::Vector3;
 use nonlinear::{
     EquilibriumSettings, ExternalForces, FullBody, FullState, StateErrorSettings, equilibrium, state_error,
     true_frequencies,
 };
+use reduced_body::RigidMotion;
 
 use crate::fixtures::{COLUMN_BENDING, L, body, column, force, mesh, modes, node, nodes};
 

@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use fem_tet10::{Material, Materials, Mesh, assemble, read_msh};
 use modal::faer::Mat;
-use modal::{NodalMass, NodalStiffness, RigidMotion, Solver, Support};
+use modal::{NodalMass, NodalStiffness, Solver, Support};
 use nalgebra::Vector3;
 use nonlinear::FullBody;
+use reduced_body::RigidMotion;
 
 /// A slender column of 1 × 0.025 × 0.025 along x.
 pub const COLUMN: Material = Material { young_modulus: 7e7, poisson_ratio: 0.0, density: 1000.0 };

@@ -1,8 +1,9 @@
 //! Equilibria.
 
-use modal::{RigidMotion, Support};
+use modal::Support;
 use nalgebra::Vector3;
 use nonlinear::{Acting, EquilibriumSettings, ExternalForces, equilibrium};
+use reduced_body::RigidMotion;
 
 use crate::fixtures::{COLUMN, COLUMN_BENDING, L, body, column, force, mesh, modes, node, nodes};
 

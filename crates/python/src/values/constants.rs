@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use flexframe::faer::Mat;
-use flexframe::modal::Constants;
 use flexframe::model::Model;
 use flexframe::nalgebra::{Matrix3, Vector3};
+use flexframe::reduced_body::Constants;
 use numpy::ndarray::ArrayView1;
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;

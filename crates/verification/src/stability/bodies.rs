@@ -2,8 +2,9 @@
 
 use dynamics::{Initial, PointShapes};
 use faer::sparse::{SparseColMat, Triplet};
-use modal::{BodyPoint, Constants, Modes, ReducedBody, RigidMotion, Solver, Support};
+use modal::{Modes, Solver, Support};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{Constants, ReducedBody, RigidMotion};
 
 /// A rigid body of mass 1 with these principal moments.
 pub fn rigid(moments: [f64; 3]) -> Result<ReducedBody, String> {
@@ -25,7 +26,7 @@ pub struct Elastic {
 impl Elastic {
     /// A node as a point.
     pub fn point(&self, node: u32) -> PointShapes {
-        let point = BodyPoint::new(&self.modes, &self.positions, &[node], &[1.0]).expect("a node of the body");
+        let point = self.modes.point(&self.positions, &[node], &[1.0]).expect("a node of the body");
         PointShapes::new(&self.body, &point)
     }
 
@@ -38,7 +39,7 @@ impl Elastic {
     ) -> Result<Self, String> {
         let solver = Solver::new(stiffness, mass, &positions, &Support::free()).map_err(|e| e.to_string())?;
         let modes = solver.modes(flexible, |_| ()).map_err(|e| e.to_string())?;
-        let body = ReducedBody::new(&modes, mass, &positions).map_err(|e| e.to_string())?;
+        let body = modes.reduced(mass, &positions).map_err(|e| e.to_string())?;
         Ok(Self { body, modes, positions })
     }
 }

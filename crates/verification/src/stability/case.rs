@@ -3,7 +3,7 @@
 use std::fmt;
 
 use dynamics::Method;
-use modal::ReducedBody;
+use reduced_body::ReducedBody;
 
 /// The schemes whose bounds are written down, in the order of [`HardCase::expected`].
 pub const BOUNDED: [Method; 4] = [Method::EXPONENTIAL, Method::RKMK4, frames_rk4::PAPER, frames_rk4::LIMIT];

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use dynamics::{Initial, Method};
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 use rigid_kin::{Attitude, Inertia, TorqueFreeMotion, euler_angular_acceleration};
 
 use crate::stability::Expected::{Refused, Within};

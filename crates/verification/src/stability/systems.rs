@@ -8,8 +8,8 @@ use dynamics::{
     PointShapes, RateError, Reached, Rows, StepControl, Stops, System, SystemMotion, SystemScheme, SystemSetup,
     SystemSimulation,
 };
-use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
 use crate::stability::Expected::{Refused, Within};

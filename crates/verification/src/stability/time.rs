@@ -9,8 +9,8 @@ use std::sync::Arc;
 use dynamics::{
     BodyField, Expression, FieldLoad, History, Initial, LoadFrame, Method, PointForce, SetupError, SharedLoad, Table,
 };
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 use crate::stability::Expected::{Refused, Within};
 use crate::stability::bodies::{Elastic, changed, cluster, spinning};

@@ -2,8 +2,8 @@
 
 use dynamics::{Initial, Method, Observation, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl};
 use frames_rk4::Paper;
-use modal::ReducedBody;
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 use rigid_kin::{Attitude, Inertia, TorqueFreeMotion};
 
 use crate::stability::Outcome;

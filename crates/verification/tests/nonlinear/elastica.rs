@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use dynamics::MotionState;
 use fem_tet10::{Materials, assemble};
-use modal::{RigidMotion, Support};
+use modal::Support;
 use model::{Builder, Checker, Mend};
 use nalgebra::{DMatrix, DVector};
 use nonlinear::{EquilibriumSettings, ExternalForces, FullBody, StateErrorSettings, equilibrium};
+use reduced_body::RigidMotion;
 use verification::nonlinear::bodies::{COLUMN, COLUMN_BENDING};
 use verification::nonlinear::cases::{self, Course};
 use verification::nonlinear::{Motion, NodalState, Solid, bodies};

@@ -105,8 +105,8 @@ impl Manifold {
 #[cfg(test)]
 pub(crate) mod tests {
     use faer::Mat;
-    use modal::{Constants, Products, ReducedBody, RigidMotion};
     use nalgebra::{DMatrix, Matrix3, Vector3};
+    use reduced_body::{Constants, LargeProducts, ReducedBody, RigidMotion};
 
     use super::*;
     use crate::conservative::manifold::Parts;
@@ -133,7 +133,7 @@ pub(crate) mod tests {
             rotation_first: std::array::from_fn(|_| vec![0.0; extended]),
             ..(*rigid).clone()
         };
-        let products = Products { large: 1, following: 1 };
+        let products = LargeProducts { large: 1, following: 1 };
         let count = products.of_displacement().len();
         Manifold::of_parts(Parts {
             body: ReducedBody::from_constants(constants).unwrap(),

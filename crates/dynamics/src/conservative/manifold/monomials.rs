@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use faer::Mat;
-use modal::Products;
+use reduced_body::LargeProducts;
 
 use crate::matrix::blocked_matrix::BlockedMatrix;
 use crate::matrix::triangle::entry;
@@ -22,7 +22,7 @@ pub(super) struct Monomials {
 
 impl Monomials {
     /// With at most two factors of following modes.
-    pub fn new(products: Products) -> Self {
+    pub fn new(products: LargeProducts) -> Self {
         let mut factors: Vec<Vec<usize>> = (0..products.coordinates()).map(|k| vec![k]).collect();
         let mut ends = [0, factors.len(), 0, 0, 0, 0];
         factors.extend(products.second());
@@ -111,7 +111,7 @@ pub(super) struct Energy {
 }
 
 impl Energy {
-    /// By the coefficient of each product of [`Products::of_energy`].
+    /// By the coefficient of each product of [`LargeProducts::of_energy`].
     pub fn new(monomials: &Monomials, products: &[Vec<usize>], energies: &[f64]) -> Self {
         let (first, one) = (monomials.count(2), monomials.count(1) as u8);
         let mut coefficients = vec![0.0; monomials.count(5) - first];

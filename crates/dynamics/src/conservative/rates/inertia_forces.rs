@@ -1,8 +1,8 @@
 //! The forces of inertia on the modes, and on a manifold their projection.
 
-use modal::ReducedBody;
 use nalgebra::Vector3;
 use pulp::Simd;
+use reduced_body::ReducedBody;
 
 use crate::conservative::body::ConservativeBody;
 use crate::conservative::rates::evaluation::Evaluation;

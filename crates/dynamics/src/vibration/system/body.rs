@@ -1,8 +1,8 @@
 //! One body in the linearised equations: Eqs. (L1), (L2) and (L11) of `docs/method/systems.md`.
 
 use faer::Mat;
-use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::ReducedBody;
 use rigid_kin::cross_matrix;
 
 use crate::conservative::ConservativeBody;

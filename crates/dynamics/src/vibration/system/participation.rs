@@ -1,8 +1,8 @@
 //! The part of a system's mass that each vibration carries in a motion of the ground: Eq. (L14) of `docs/method/systems.md`.
 
 use faer::{Mat, Side};
-use modal::Participation;
 use nalgebra::Vector3;
+use reduced_body::Participation;
 
 use crate::matrix::lists::dot;
 use crate::system::radau::SystemMotion;

@@ -4,10 +4,10 @@ use std::cell::RefCell;
 
 use dynamics::{SpinMode, SteadySpin};
 use faer::{Mat, c64};
-use modal::ReducedBody;
 use model::{Builder, FullModel, Model};
 use nalgebra::Vector3;
 use nonlinear::{EquilibriumSettings, ExternalForces, FullBody, SpinVibration, equilibrium, spin_vibrations};
+use reduced_body::ReducedBody;
 use scene::Scene;
 
 use super::error::CampbellError;

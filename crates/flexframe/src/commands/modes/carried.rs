@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 use dynamics::SystemParticipation;
-use modal::{OfBase, Participation};
 use model::Model;
 use nalgebra::Vector3;
+use reduced_body::{OfBase, Participation};
 use serde::Serialize;
 
 use crate::report::quantity;

@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use fem_tet10::Material;
-use modal::{Modes, RigidMotion, Support};
+use modal::{Modes, Support};
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::bodies::{Body, STEEL, block_mesh};
 use crate::held::supports::nodes;

@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use modal::{ModalError, RigidMotion, Support};
+use modal::{ModalError, Support};
 use nalgebra::{Matrix3, Vector3};
+use reduced_body::RigidMotion;
 
 use crate::beam::Beam;
 use crate::held::supports::{body, nodes};

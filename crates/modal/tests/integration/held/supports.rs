@@ -1,8 +1,9 @@
 //! Every way of holding the block of these tests.
 
 use faer::Mat;
-use modal::{RigidMotion, Support};
+use modal::Support;
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::bodies::{Body, block};
 

@@ -1,8 +1,9 @@
 //! Matrices over pairs of nodes against the same ones in compressed columns.
 
 use faer::sparse::{SparseColMat, Triplet};
-use modal::{ModalError, Modes, NodalMass, NodalStiffness, RigidMotion, Solver, Support};
+use modal::{ModalError, Modes, NodalMass, NodalStiffness, Solver, Support};
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::bodies::{Body, block};
 

@@ -1,10 +1,9 @@
 //! Bodies from matrices of other programs: six degrees of freedom a node, and masses that are not a scalar for each pair of nodes.
 
 use faer::sparse::{SparseColMat, Triplet};
-use modal::{
-    MassMatrix, ModalError, ReducedBody, RigidMotion, Solver, Support, acceleration_fields, centrifugal_fields,
-};
+use modal::{MassMatrix, ModalError, Solver, Support, acceleration_fields, centrifugal_fields};
 use nalgebra::{Matrix3, Rotation3, Vector3};
+use reduced_body::{BodyError, ReducedBody, RigidMotion};
 
 use crate::beam::{Beam, Sparse, order};
 use crate::held::supports;
@@ -68,7 +67,7 @@ fn a_turn_about_its_own_axis_is_exact_for_a_beam() {
     let beam = Beam { turn: Matrix3::identity(), ..Beam::default() };
     let model = beam.model();
     let modes = model.modes(&Support::free(), 4);
-    let reduced = ReducedBody::new(&modes, model.mass.as_ref(), &model.positions).unwrap();
+    let reduced = modes.reduced(model.mass.as_ref(), &model.positions).unwrap();
     for first in [0, 2] {
         let pair = reduced.gyroscopic[0].submatrix(first, first, 2, 2);
         assert!((pair[(0, 1)].abs() - 1.0).abs() < 1e-9 && pair[(0, 0)].abs() < 1e-9, "{pair:?}");
@@ -88,7 +87,7 @@ fn what_the_deformed_inertia_leaves_out_vanishes_with_the_square_of_the_elements
         let beam = Beam { elements: n, turn: Matrix3::identity(), stiffness: [90.0, 9e4, 9e4, 9e4], ..Beam::default() };
         let model = beam.model();
         let modes = model.modes(&Support::free(), 1);
-        let reduced = ReducedBody::new(&modes, model.mass.as_ref(), &model.positions).unwrap();
+        let reduced = modes.reduced(model.mass.as_ref(), &model.positions).unwrap();
         let exact = (2.0 * beam.mass[0] / beam.length).sqrt() * 2.0 * (beam.length / std::f64::consts::PI).powi(2);
         first.push(reduced.inertia_first[1][0].abs() / exact - 1.0);
 
@@ -97,7 +96,7 @@ fn what_the_deformed_inertia_leaves_out_vanishes_with_the_square_of_the_elements
         let beam = Beam { elements: n, turn: Matrix3::identity(), stiffness, mass, ..Beam::default() };
         let model = beam.model();
         let modes = model.modes(&Support::free(), 2);
-        let reduced = ReducedBody::new(&modes, model.mass.as_ref(), &model.positions).unwrap();
+        let reduced = modes.reduced(model.mass.as_ref(), &model.positions).unwrap();
         // The pair has some direction in the plane across; the sum over y and z does not depend on it.
         let trace = |p: usize| reduced.inertia_second[p][(0, 0)] + reduced.inertia_second[p][(1, 1)];
         second.push((trace(1) + trace(2)) / 2.0 - 1.0);
@@ -139,7 +138,7 @@ fn rotary_inertias_turn_with_their_nodes() {
     let (masses, inertias) = lumped(6);
     model.mass = lumped_mass(&masses, &inertias);
     let modes = model.modes(&Support::free(), 8);
-    let reduced = ReducedBody::new(&modes, model.mass.as_ref(), &model.positions).unwrap();
+    let reduced = modes.reduced(model.mass.as_ref(), &model.positions).unwrap();
     let inertia = |mode: usize, q: f64| -> Matrix3<f64> {
         let of_node = |node: usize| {
             let part = |first: usize| Vector3::from_fn(|i, _| q * modes.shapes[(6 * node + first + i, mode)]);
@@ -185,7 +184,7 @@ fn nodes_without_rotary_inertia_have_modes_too() {
         assert!(rest < 1e-7 * whole, "mode {mode}: {:e}", rest / whole);
     }
     let error = model.solver(&Support::free()).err().unwrap();
-    assert!(matches!(error, ModalError::NoInertia { .. }), "{error}");
+    assert!(matches!(error, ModalError::Body(BodyError::NoInertia { .. })), "{error}");
 }
 
 /// Conserved: both storages of the mass give the same.
@@ -217,8 +216,8 @@ fn solid_elements_are_the_same_with_any_storage_of_their_mass() {
             assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
         }
         // The same shapes, so that no sign or turn of a pair stands between.
-        let expected = ReducedBody::new(&modes, m, &body.positions).unwrap();
-        let found = ReducedBody::new(&modes, general.as_ref(), &body.positions).unwrap();
+        let expected = modes.reduced(m, &body.positions).unwrap();
+        let found = modes.reduced(general.as_ref(), &body.positions).unwrap();
         let matrices = |body: &ReducedBody| -> Vec<faer::Mat<f64>> {
             let vectors = [&body.inertia_first[..], &body.translation_first, &body.rotation_first].concat();
             let products = body.position_products.iter().flatten().chain(&vectors);
@@ -267,7 +266,7 @@ fn matrices_that_are_of_no_body_are_refused() {
     let solver = Solver::new(k.as_ref(), heavy.as_ref(), &model.positions, &clamp).unwrap();
     let (lighter, heavier) = (model.modes(&clamp, 2), solver.modes(2, |_| ()).unwrap());
     assert!(heavier.eigenvalues[0] < 0.99 * lighter.eigenvalues[0]);
-    let error = ReducedBody::new(&heavier, heavy.as_ref(), &model.positions).unwrap_err();
+    let error = heavier.reduced(heavy.as_ref(), &model.positions).unwrap_err();
     assert!(matches!(error, ModalError::NoRigidBodyMass { .. }), "{error}");
     // Six rows a node where the mass has three.
     let solid = supports::body();

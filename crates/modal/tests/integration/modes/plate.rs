@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use faer::sparse::{SparseColMat, SparseColMatRef, Triplet};
 use fem_tet10::{Material, Materials, Matrices, Mesh, PointMass, assemble};
-use modal::{Modes, ReducedBody};
+use modal::Modes;
 
 use crate::bodies::{free_modes, mesh_file};
 
@@ -110,8 +110,8 @@ fn plain_matrices_give_the_same_reduced_body() {
         // 1.3e-9 of the lowest, of which K has cancelled as many digits.
         assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
     }
-    let expected = ReducedBody::new(modes, matrices.mass(), mesh.positions()).unwrap();
-    let found = ReducedBody::new(&of_plain, m.as_ref(), mesh.positions()).unwrap();
+    let expected = modes.reduced(matrices.mass(), mesh.positions()).unwrap();
+    let found = of_plain.reduced(m.as_ref(), mesh.positions()).unwrap();
     assert_eq!((found.mass, found.inertia), (expected.mass, expected.inertia));
     let pairs = found.inertia_second.iter().zip(&expected.inertia_second);
     let pairs = pairs.chain(found.gyroscopic.iter().zip(&expected.gyroscopic));

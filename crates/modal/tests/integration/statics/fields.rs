@@ -1,8 +1,9 @@
 //! The forces of rigid motions on the nodes.
 
 use faer::Mat;
-use modal::{ModalError, ReducedBody, Support, acceleration_fields, centrifugal_fields, turning_field};
+use modal::{ModalError, Support, acceleration_fields, centrifugal_fields, turning_field};
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 
 use crate::bodies::STEEL;
 use crate::held::supports::{body, supports};
@@ -51,7 +52,7 @@ fn the_modes_meet_centrifugal_fields_as_c_ij() {
     for (support, _) in supports(&body.positions) {
         let solver = body.held(&support);
         let modes = solver.modes(6, |_| ()).unwrap();
-        let reduced = ReducedBody::new(&modes, body.matrices.mass(), &body.positions).unwrap();
+        let reduced = modes.reduced(body.matrices.mass(), &body.positions).unwrap();
         let fields = centrifugal_fields(solver.mass(), &body.positions, &reduced.origin).unwrap();
         let found = modes.shapes.transpose() * fields;
         let scale = reduced.inertia.norm().sqrt();

@@ -2,8 +2,9 @@
 
 use faer::Mat;
 use fem_tet10::{Material, Materials, second_order_forces};
-use modal::{ModalError, RigidMotion, StaticAccuracy, Support};
+use modal::{ModalError, StaticAccuracy, Support};
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::bodies::{Body, STEEL, block_mesh, mesh_file};
 use crate::held::supports::{allowed, body, nodes, supports};

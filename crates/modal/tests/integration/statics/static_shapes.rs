@@ -1,8 +1,9 @@
 //! Modes that static shapes complete.
 
 use faer::Mat;
-use modal::{Modes, RigidMotion, Solver, Support};
+use modal::{Modes, Solver, Support};
 use nalgebra::Vector3;
+use reduced_body::RigidMotion;
 
 use crate::bodies::Body;
 use crate::held::supports::{body, supports};

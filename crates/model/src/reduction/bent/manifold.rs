@@ -3,6 +3,7 @@
 use dynamics::Manifold;
 use faer::Mat;
 use modal::{LargeShapes, Modes};
+use reduced_body::LargeCoordinates;
 
 use crate::error::{BuildError, modal};
 use crate::reduction::bent::Bent;
@@ -78,11 +79,11 @@ impl LargeDeflection {
         let Extended { shapes, body, mut energies } = model.structure.large_shapes(modes, large, following)?;
         let reference_work = model.reference.map(|reference| {
             let forces = reference.modal_forces(&shapes.modes);
-            reference_work(&shapes, &forces, &mut energies)
+            reference_work(&shapes.coordinates, &forces, &mut energies)
         });
         let extended = spin.map(|spin| spin.each_ref().map(|k| in_shapes(k, body.flexible())));
         let body = body.with_stress_stiffness(extended).map_err(modal(model.scene))?;
-        Ok(Self { manifold: Manifold::new(body, &shapes, &energies)?, reference_work, shapes })
+        Ok(Self { manifold: Manifold::new(body, shapes.coordinates.clone(), &energies)?, reference_work, shapes })
     }
 
     /// The extended shapes.
@@ -92,8 +93,8 @@ impl LargeDeflection {
 
     /// The extended shapes after the modes.
     pub fn following(&self) -> Mat<f64> {
-        let LargeShapes { modes, dynamic, .. } = &self.shapes;
-        modes.shapes.get(.., *dynamic..).to_owned()
+        let LargeShapes { modes, coordinates } = &self.shapes;
+        modes.shapes.get(.., coordinates.dynamic..).to_owned()
     }
 
     /// The stress of loads and of a drive in the extended shapes: on the modes alone.
@@ -109,11 +110,11 @@ impl LargeDeflection {
 
 /// The work of forces in the extended shapes on the displacements of products: that of third order is added to the energies, that of
 /// second order is given as a stiffness.
-fn reference_work(shapes: &LargeShapes, forces: &[f64], energies: &mut [f64]) -> Mat<f64> {
-    let (products, of_energy) = (shapes.products(), shapes.products().of_energy());
-    let bent = [&shapes.large[..], &shapes.following].concat();
-    let mut stiffness = Mat::zeros(shapes.dynamic, shapes.dynamic);
-    for (product, displacement) in products.of_displacement().iter().zip(shapes.coefficients.col_iter()) {
+fn reference_work(coordinates: &LargeCoordinates, forces: &[f64], energies: &mut [f64]) -> Mat<f64> {
+    let (products, of_energy) = (coordinates.products(), coordinates.products().of_energy());
+    let bent = [&coordinates.large[..], &coordinates.following].concat();
+    let mut stiffness = Mat::zeros(coordinates.dynamic, coordinates.dynamic);
+    for (product, displacement) in products.of_displacement().iter().zip(coordinates.coefficients.col_iter()) {
         let work: f64 = displacement.iter().zip(forces).map(|(a, force)| a * force).sum();
         if let [j, k] = product[..] {
             stiffness[(bent[j], bent[k])] += work;

@@ -2,9 +2,9 @@
 
 use dynamics::Effect;
 use linear::{Channel, Output};
-use modal::Participation;
 use model::{HeldSlopes, Model};
 use nalgebra::Vector3;
+use reduced_body::Participation;
 use scene::Scene;
 
 use crate::commands::linear::linearize::channels::{along_axes, wrench_channels};

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix3, SMatrix, SVector, Vector3};
 
-use crate::reduction::body::ReducedBody;
+use crate::body::ReducedBody;
 
 /// Six numbers of the motions of a base: translations along the axes of the mesh, then rotations about them.
 pub type OfBase = [f64; 6];

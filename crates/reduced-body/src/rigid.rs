@@ -3,10 +3,9 @@
 use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::error::ModalError;
-use crate::input::check_finite_entries;
-use crate::reduction::body::{Constants, ReducedBody};
-use crate::support::motion::RigidMotion;
+use crate::body::{Constants, ReducedBody};
+use crate::error::{BodyError, check_finite};
+use crate::rigid_motion::RigidMotion;
 
 /// Entries of the inertia that differ from their mirror image by more than this, relative to its norm, are no rounding.
 const SYMMETRY: f64 = 1e-12;
@@ -16,20 +15,20 @@ impl ReducedBody {
     /// the centre of mass of a free or sliding body and the point of one that is held.
     ///
     /// # Errors
-    /// [`ModalError::NoInertia`] where the mass, or the inertia against a rotation that is free, is not positive;
-    /// [`ModalError::NotSymmetric`], [`ModalError::NotFinite`], [`ModalError::NotUnit`].
+    /// [`BodyError::NoInertia`] where the mass, or the inertia against a rotation that is free, is not positive;
+    /// [`BodyError::NotSymmetric`], [`BodyError::NotFinite`], [`BodyError::NotUnit`].
     pub fn rigid(
         mass: f64,
         center_of_mass: Vector3<f64>,
         inertia_about_origin: Matrix3<f64>,
         motion: RigidMotion,
-    ) -> Result<Self, ModalError> {
+    ) -> Result<Self, BodyError> {
         let inertia = inertia_about_origin;
-        check_finite_entries("inertia", inertia.iter().copied())?;
+        check_finite("inertia", inertia.iter().copied())?;
         for (row, column) in [(1, 0), (2, 0), (2, 1)] {
             let (value, mirrored) = (inertia[(row, column)], inertia[(column, row)]);
             if (value - mirrored).abs() > SYMMETRY * inertia.norm() {
-                return Err(ModalError::NotSymmetric { what: "inertia", row, column, value, mirrored });
+                return Err(BodyError::NotSymmetric { row, column, value, mirrored });
             }
         }
         let bases = motion.bases(mass, &inertia)?;
@@ -39,8 +38,8 @@ impl ReducedBody {
     /// A point mass: a free rigid body that has no moments of inertia, so that it does not turn.
     ///
     /// # Errors
-    /// [`ModalError::NoInertia`] where the mass is not positive; [`ModalError::NotFinite`].
-    pub fn point(mass: f64, place: Vector3<f64>) -> Result<Self, ModalError> {
+    /// [`BodyError::NoInertia`] where the mass is not positive; [`BodyError::NotFinite`].
+    pub fn point(mass: f64, place: Vector3<f64>) -> Result<Self, BodyError> {
         let motion = RigidMotion::free();
         let (translation_basis, _) = motion.bases(mass, &Matrix3::identity())?;
         Self::of_moments(mass, place, Matrix3::zeros(), motion, (translation_basis, Matrix3::zeros()))
@@ -52,7 +51,7 @@ impl ReducedBody {
         inertia: Matrix3<f64>,
         motion: RigidMotion,
         (translation_basis, rotation_basis): (Matrix3<f64>, Matrix3<f64>),
-    ) -> Result<Self, ModalError> {
+    ) -> Result<Self, BodyError> {
         let origin = motion.fixed_point().unwrap_or(center_of_mass);
 
         // The shape of mode k is T_k + B_k × X. Where there is any T, the origin is the centre of mass and ∫ρX is zero.

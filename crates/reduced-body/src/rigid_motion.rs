@@ -1,11 +1,10 @@
-//! Supports of a body, and the rigid motions that they leave.
+//! The rigid motions that the support of a body leaves.
 
 use keys::{Key, Keyed};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::error::ModalError;
-use crate::input::check_finite;
+use crate::error::{BodyError, check_finite};
 
 /// How far from 1 the length of a direction may be.
 const UNIT: f64 = 1e-9;
@@ -102,34 +101,6 @@ impl TryFrom<Vec<Vector3<f64>>> for Directions {
     }
 }
 
-/// How a body is held: the nodes and degrees of freedom that move with the support, and the motions that the support has.
-///
-/// A held node moves as the support does, i.e. as one of the rigid motions of [`Support::motion`] takes it along; a
-/// node on the axis of a hinge or at the point of a pin does not move at all. The same holds for single degrees of freedom:
-/// none of the motions that they leave moves them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Support {
-    /// The rigid motions left.
-    pub motion: RigidMotion,
-    /// Indices of the nodes that are held in all their degrees of freedom.
-    pub nodes: Vec<u32>,
-    /// Single degrees of freedom that are held, as pairs of a node and 0 to 2 for its translation along x, y or z, 3 to 5
-    /// for its rotation.
-    pub dofs: Vec<(u32, usize)>,
-}
-
-impl Support {
-    /// The support of a free body.
-    pub fn free() -> Self {
-        Self::new(RigidMotion::free(), Vec::new())
-    }
-
-    /// The support of nodes with these indices, which move as the `motion` takes them along.
-    pub fn new(motion: RigidMotion, nodes: Vec<u32>) -> Self {
-        Self { motion, nodes, dofs: Vec::new() }
-    }
-}
-
 impl RigidMotion {
     /// The motion of a free body: three translations and three rotations.
     pub const fn free() -> Self {
@@ -178,7 +149,7 @@ impl RigidMotion {
     }
 
     /// Motions of another kind, up to six; positions are measured from `origin`.
-    pub(crate) fn other(origin: Vector3<f64>, motions: impl Iterator<Item = Twist>) -> Self {
+    pub fn other(origin: Vector3<f64>, motions: impl Iterator<Item = Twist>) -> Self {
         let mut others = Twists::NONE;
         for motion in motions.take(others.list.len()) {
             others.list[others.count] = motion;
@@ -187,7 +158,7 @@ impl RigidMotion {
         Self { others, ..Self::clamp(origin) }
     }
 
-    /// A basis of the motions that [`Support::of_dofs`] left, as velocities of [`Self::fixed_point`] and angular
+    /// A basis of the motions that a support left, as velocities of [`Self::fixed_point`] and angular
     /// velocities, where they are not those of a free, pinned, hinged, sliding or clamped body: e.g. two translations and a
     /// rotation in a plane. Empty otherwise. Such a body has modes; the equations of large motion are not there for it.
     pub fn others(&self) -> &[Twist] {
@@ -237,10 +208,10 @@ impl RigidMotion {
     /// needed, which a sphere does not have.
     ///
     /// # Errors
-    /// [`ModalError::NoInertia`] where a motion meets none, [`ModalError::NotUnit`], [`ModalError::NotFinite`].
-    pub(crate) fn bases(&self, mass: f64, inertia: &Matrix3<f64>) -> Result<(Matrix3<f64>, Matrix3<f64>), ModalError> {
+    /// [`BodyError::NoInertia`] where a motion meets none, [`BodyError::NotUnit`], [`BodyError::NotFinite`].
+    pub fn bases(&self, mass: f64, inertia: &Matrix3<f64>) -> Result<(Matrix3<f64>, Matrix3<f64>), BodyError> {
         self.check()?;
-        let no_inertia = || ModalError::NoInertia { mass, inertia: inertia.diagonal().into() };
+        let no_inertia = || BodyError::NoInertia { mass, inertia: inertia.diagonal().into() };
         if !(mass > 0.0 && mass.is_finite()) {
             return Err(no_inertia());
         }
@@ -266,12 +237,7 @@ impl RigidMotion {
     }
 
     /// Displacements of the point X by each of the motions; rotations are by 1/`length`, of a free body about `center`.
-    pub(crate) fn displacements(
-        &self,
-        position: &Vector3<f64>,
-        center: &Vector3<f64>,
-        length: f64,
-    ) -> Vec<Vector3<f64>> {
+    pub fn displacements(&self, position: &Vector3<f64>, center: &Vector3<f64>, length: f64) -> Vec<Vector3<f64>> {
         let about = self.fixed_point.unwrap_or(*center);
         let turned = self.rotations().iter().map(|axis| axis.cross(&(position - about)) / length);
         let others = self.others().iter().map(|twist| twist.velocity + twist.rotation.cross(&(position - about)));
@@ -279,14 +245,14 @@ impl RigidMotion {
     }
 
     /// Angular velocities of the same motions.
-    pub(crate) fn turns(&self, length: f64) -> Vec<Vector3<f64>> {
+    pub fn turns(&self, length: f64) -> Vec<Vector3<f64>> {
         let unturned = self.translations().iter().map(|_| Vector3::zeros());
         let turned = self.rotations().iter().map(|axis| axis / length);
         unturned.chain(turned).chain(self.others().iter().map(|twist| twist.rotation)).collect()
     }
 
     /// Name of column `mode` of the six rigid shapes in messages.
-    pub(crate) fn name(&self, mode: usize) -> &'static str {
+    pub fn name(&self, mode: usize) -> &'static str {
         match (self.translations(), self.rotations()) {
             _ if self.others.count > 0 => "motion that the support leaves",
             (_, [_]) => "rotation about the hinge",
@@ -303,12 +269,12 @@ impl RigidMotion {
     }
 
     /// Refuses points that are not finite and directions that are not unit vectors.
-    pub(crate) fn check(&self) -> Result<(), ModalError> {
+    pub fn check(&self) -> Result<(), BodyError> {
         let point = self.fixed_point().unwrap_or_default();
-        check_finite("the support's point", "axis", point.iter().map(|c| [*c]))?;
+        check_finite("the support's point", point.iter().copied())?;
         let is_unit = |direction: &Vector3<f64>| (direction.norm() - 1.0).abs() < UNIT;
         match self.translations().iter().chain(self.rotations()).find(|direction| !is_unit(direction)) {
-            Some(direction) => Err(ModalError::NotUnit { direction: (*direction).into() }),
+            Some(direction) => Err(BodyError::NotUnit { direction: (*direction).into() }),
             None => Ok(()),
         }
     }
@@ -343,12 +309,5 @@ impl Keyed for RigidMotion {
         let key = key.with("rotations", self.rotations()).with("fixed point", &self.fixed_point);
         let others = &self.others.list[..self.others.count];
         others.iter().fold(key.with("others", &others.len()), |key, twist| twist.key(key))
-    }
-}
-
-impl Keyed for Support {
-    fn key(&self, key: Key) -> Key {
-        let dofs: Vec<usize> = self.dofs.iter().flat_map(|(node, dof)| [*node as usize, *dof]).collect();
-        key.of("support", 1).with("motion", &self.motion).with("nodes", &self.nodes).with("dofs", &dofs)
     }
 }
