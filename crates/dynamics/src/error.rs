@@ -6,6 +6,24 @@ use std::sync::Arc;
 
 use crate::vibration::system::error::SteadyError;
 
+/// A body of a system, as messages name it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BodyName {
+    /// Its number in the system, from 0.
+    pub number: usize,
+    /// Its name, if it has one.
+    pub name: Option<Box<str>>,
+}
+
+impl fmt::Display for BodyName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.name {
+            Some(name) => write!(f, "the body \"{name}\""),
+            None => write!(f, "body {} of the system", self.number + 1),
+        }
+    }
+}
+
 /// A motion that cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -48,11 +66,11 @@ pub enum SetupError {
         "a step of {step:e} is beyond the stability limit {limit:.4e} that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4; take a smaller step or fewer modes"
     )]
     StepBeyondLimit { step: f64, limit: f64, mode: usize, frequency: f64 },
-    /// The same of a system of bodies. `body`: from 1.
+    /// The same of a system of bodies.
     #[error(
-        "a step of {step:e} is beyond the stability limit {limit:.4e} that the fastest shape of body {body} ({frequency:.6} cycles per time) sets for the explicit scheme rkmk4; take a smaller step, or the scheme radau, which has no such limit"
+        "a step of {step:e} is beyond the stability limit {limit:.4e} that the fastest shape of {body} ({frequency:.6} cycles per time) sets for the explicit scheme rkmk4; take a smaller step, or the scheme radau, which has no such limit"
     )]
-    StepBeyondBody { step: f64, limit: f64, body: usize, frequency: f64 },
+    StepBeyondBody { step: f64, limit: f64, body: BodyName, frequency: f64 },
     /// A step that the spin is too fast for. `spin`: the largest known before the run, |ω| at the beginning or the
     /// driven speed, rad/time.
     #[error(
@@ -77,11 +95,11 @@ pub enum SetupError {
     /// Physics that the formulation does not have.
     #[error("the formulation {formulation} has no {what}; take the conservative one")]
     NotInFormulation { formulation: &'static str, what: &'static str },
-    /// A point mass that something would turn. `body`: counted from 1.
+    /// A point mass that something would turn.
     #[error(
-        "body {body} is a point mass, without moments of inertia, and {by} would turn it: give it an inertia, or let what acts on it act at its own point and hold none of its turns (a spherical joint, a spring, an equation between points)"
+        "{body} is a point mass, without moments of inertia, and {by} would turn it: give it an inertia, or let what acts on it act at its own point and hold none of its turns (a spherical joint, a spring, an equation between points)"
     )]
-    PointTurned { body: usize, by: Box<str> },
+    PointTurned { body: BodyName, by: Box<str> },
     /// A body alone without moments of inertia.
     #[error(
         "a point mass, without moments of inertia, moves in a system of bodies that joints or springs tie: give it an inertia"
@@ -174,11 +192,11 @@ pub enum StepError {
     /// The body turns by more than a full turn within a step.
     #[error("at time {time}: the body turns by {angle:.3} rad within a step of {step:.3e}; take a step of at most {:.1e}", step / angle)]
     TurnTooLarge { time: f64, step: f64, angle: f64 },
-    /// A point mass that a moment would turn. `body`: counted from 1.
+    /// A point mass that a moment would turn.
     #[error(
-        "at time {time}: a moment acts on body {body}, a point mass without moments of inertia: give it an inertia, or let forces act at its own point"
+        "at time {time}: a moment acts on {body}, a point mass without moments of inertia: give it an inertia, or let forces act at its own point"
     )]
-    PointTurned { time: f64, body: usize },
+    PointTurned { time: f64, body: BodyName },
     /// An energy that nothing accounts for. `energy`: without that of the motion of the origin; `step`: the longest so
     /// far.
     #[error(
@@ -223,6 +241,11 @@ pub enum StepError {
         "time {time} is not inside the last step, from {from} to {to}; ask for the steps to be kept before they are taken"
     )]
     OutsideLastStep { time: f64, from: f64, to: f64 },
+    /// A law that tells its kinks by no number. `law`: with the place that it acts at.
+    #[error(
+        "at time {time}: the function by which {law} tells its kinks is not a number; let it give a number at every time, which passes through zero at a kink"
+    )]
+    Switch { time: f64, law: Box<str> },
     /// An event's function that gives no finite number.
     #[error(
         "at time {time}: the function of an event gives {found}; let it give a finite number at every time, which passes through zero at the event"
@@ -236,6 +259,11 @@ pub enum StepError {
         "at time {time}: {what} is no longer a finite number; the motion has blown up: take a smaller step, and check loads and initial velocities"
     )]
     NotFinite { time: f64, what: &'static str },
+    /// The same of a body of a system.
+    #[error(
+        "at time {time}: a quantity of the motion of {body} is no longer a finite number; the motion has blown up: take a smaller step, and check loads and initial velocities"
+    )]
+    BodyNotFinite { time: f64, body: BodyName },
 }
 
 /// Rates that cannot be evaluated, before it is known in which step.
@@ -246,10 +274,15 @@ pub enum RateError {
     Turn(rigid_kin::BeyondFullTurn),
     /// The inertia of the deformed body has no inverse.
     Inertia,
-    /// A moment on a point mass. `body`: counted from 1.
+    /// A moment on a point mass.
     PointTurned {
-        /// The number of the body, counted from 1.
-        body: usize,
+        /// The body.
+        body: BodyName,
+    },
+    /// A law that tells its kinks by NaN.
+    Switch {
+        /// The place that the law acts at.
+        law: Box<str>,
     },
     /// An error of equations, a scheme or an observer from outside.
     Custom(CustomError),
@@ -265,6 +298,7 @@ impl RateError {
             Self::Turn(_) => StepError::NotFinite { time, what: "the angular velocity" },
             Self::Inertia => StepError::NotFinite { time, what: "the inverse of the deformed inertia" },
             Self::PointTurned { body } => StepError::PointTurned { time, body },
+            Self::Switch { law } => StepError::Switch { time, law },
             Self::Custom(error) => StepError::Custom { time, error },
         }
     }

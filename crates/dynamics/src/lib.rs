@@ -39,7 +39,7 @@ pub use conservative::manifold::{MAX_FOLLOWING, MAX_LARGE, Manifold};
 pub use conservative::{ConservativeBody, Evaluation as ConservativeEvaluation};
 pub use equations::sizes::Sizes;
 pub use equations::{Equations, ErrorNorm, Evaluation, Glance, Oscillators, PlainNorm, StepDone};
-pub use error::{CustomError, RateError, SetupError, StepError};
+pub use error::{BodyName, CustomError, RateError, SetupError, StepError};
 pub use history::{Expression, History, Table};
 pub use load::signal::Signal;
 pub use load::{

@@ -36,6 +36,14 @@ impl ErrorKinds {
         Self { place, deformation, drift, energy }
     }
 
+    /// Names of the kinds, in words.
+    pub const NAMES: [&'static str; 4] = ["place and attitude", "deformation", "drift of velocities", "work of laws"];
+
+    /// The kinds with their names.
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        Self::NAMES.into_iter().zip(self.list())
+    }
+
     /// The largest; a NaN stays one.
     pub fn largest(&self) -> f64 {
         self.list().into_iter().fold(0.0, |most, kind| if kind <= most { most } else { kind })
@@ -68,7 +76,16 @@ pub struct StatedError {
     pub forgotten: f64,
 }
 
+/// Sum of errors over the tolerance below which something else than errors set the lengths of the steps.
+const RULED: f64 = 0.05;
+
 impl StatedError {
+    /// The name of the kind of error that set the lengths of the steps; none where errors are far below the tolerance.
+    pub fn ruling(&self, tolerance: f64) -> Option<&'static str> {
+        let largest = self.kinds.named().reduce(|most, kind| if kind.1 > most.1 { kind } else { most });
+        largest.filter(|(_, sum)| *sum > RULED * tolerance).map(|(name, _)| name)
+    }
+
     /// Refuses numbers that are not finite.
     pub(crate) fn check(&self) -> Result<(), CheckpointError> {
         finite("the error of the steps", self.kinds.list().iter().chain([&self.sum, &self.forgotten]))
@@ -154,5 +171,24 @@ impl ErrorMeasure {
         )?;
         saved.allowance.check()?;
         saved.stated.check()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_kind_that_rules_the_steps_is_the_largest_unless_all_are_small() {
+        let mut measure = ErrorMeasure::new(1e-3, 1.0, f64::EPSILON);
+        for (end, errors) in [
+            (0.5, ErrorKinds { place: 2e-4, deformation: 1e-4, ..ErrorKinds::default() }),
+            (1.0, ErrorKinds { deformation: 3e-4, energy: 1e-5, ..ErrorKinds::default() }),
+        ] {
+            measure.taken(end, &errors, 0.0);
+        }
+        let stated = measure.stated();
+        assert_eq!([1e-3, 1.0].map(|tolerance| stated.ruling(tolerance)), [Some("deformation"), None]);
+        assert_eq!(stated.sum, 5e-4);
     }
 }

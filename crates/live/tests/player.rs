@@ -56,6 +56,7 @@ fn alone(control: StepControl, loads: usize) -> RunOfBody {
             loads: vec![Arc::new(force) as _; loads],
             physics: Physics::default(),
             points: Vec::new(),
+            name: None,
             body,
         },
         initial: Initial {
@@ -90,6 +91,7 @@ fn of_system() -> (LiveRun, RunOfSystem) {
         loads,
         physics: Physics::default(),
         points: Vec::new(),
+        name: None,
         body,
     };
     let state = |x: f64, flexible: usize| MotionState {

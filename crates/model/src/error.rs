@@ -62,11 +62,19 @@ pub enum StartError {
     /// The model is known to be wrong.
     #[error("{0}")]
     Refused(#[from] Refusal),
+    /// A point mass of a system that something would turn. `by`: what would.
+    #[error(
+        "{}",
+        at.show(&format!("found a point mass, without moments of inertia, that {by} would turn, expected an inertia"), POINT_HELP)
+    )]
+    Point { at: Box<Place>, by: Box<str> },
     /// Joints hold the body.
     #[error("{}", at.show("found a body that joints, springs or bushings hold, expected one that moves alone", TIED_HELP))]
     Tied { at: Box<Place> },
 }
 
+const POINT_HELP: &str = "give it an inertia, or let what acts on it act at its own point and hold none of its turns (a spherical joint, a \
+                          spring, an equation between points)";
 const TIED_HELP: &str = "run the whole scene, or take what ties the body out of it";
 
 impl StartError {
@@ -81,14 +89,27 @@ impl StartError {
     /// The message, which begins with the scene file.
     pub fn in_scene(&self, path: &Path) -> String {
         match self {
-            Self::Step { .. } | Self::Tied { .. } => self.to_string(),
+            Self::Step { .. } | Self::Tied { .. } | Self::Point { .. } => self.to_string(),
             Self::Setup(_) | Self::Refused(_) => format!("{}: {self}", path.display()),
         }
     }
 
-    /// At the key of the scene, where it is the step.
+    /// Number in its system of the body that is refused, if it is one.
+    pub fn body_of_system(&self) -> Option<usize> {
+        match self {
+            Self::Setup(SetupError::PointTurned { body, .. } | SetupError::StepBeyondBody { body, .. }) => {
+                Some(body.number)
+            }
+            _ => None,
+        }
+    }
+
+    /// At the key of the scene, where it is the step or an inertia.
     #[must_use]
     pub fn at_key(self, scene: &Scene) -> Self {
+        if let Self::Setup(SetupError::PointTurned { by, .. }) = self {
+            return Self::Point { at: scene.place("body.rigid.inertia").into(), by };
+        }
         let (step, limit, why, help) = match &self {
             Self::Setup(SetupError::StepBeyondLimit { step, limit, mode, frequency }) => (
                 step,
@@ -100,8 +121,7 @@ impl StartError {
                 step,
                 limit,
                 format!(
-                    "the stability limit that the fastest shape of the {} body ({frequency:.6} cycles per time) sets for `rkmk4`",
-                    ordinal(*body)
+                    "the stability limit that the fastest shape of {body} ({frequency:.6} cycles per time) sets for `rkmk4`"
                 ),
                 "take a smaller step, or `scheme = \"radau\"`, which has no such limit",
             ),
@@ -115,16 +135,6 @@ impl StartError {
         };
         let (found, expected) = (format!("a step of {step:e}, beyond {why}"), format!("at most {limit:.4e}"));
         Self::Step { at: scene.place("time.step").into(), found, expected, help }
-    }
-}
-
-/// "first", "second", "third", "4th".
-fn ordinal(number: usize) -> String {
-    match number {
-        1 => "first".to_owned(),
-        2 => "second".to_owned(),
-        3 => "third".to_owned(),
-        _ => format!("{number}th"),
     }
 }
 

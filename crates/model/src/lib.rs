@@ -62,5 +62,5 @@ pub use stress::products::ProductStrains;
 pub use stress::shapes::{BodyStress, StressPeak};
 pub use support::reactions::SupportRows;
 pub use tie::body_marker::{BodyMarker, MarkerPart, UnknownTurns};
-pub use tie::tied::{Tied, tie, tie_models};
+pub use tie::tied::{Tied, physics_in_system, tie, tie_models};
 pub use tie::warp::Warp;

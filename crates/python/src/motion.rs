@@ -3,6 +3,7 @@
 pub(crate) mod faults;
 pub(crate) mod joint_equation;
 pub(crate) mod joint_force;
+pub(crate) mod law;
 pub(crate) mod load;
 pub(crate) mod marker_force;
 pub(crate) mod seen;

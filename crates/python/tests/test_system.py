@@ -299,4 +299,71 @@ def test_a_law_pushes_a_free_body_of_a_system_from_rest(tolerance, force):
     }
     push = flexframe.Force("center", lambda motion: np.array([0.0, 0.0, force]))
     results = flexframe.Simulation(flexframe.System(flexframe.Scene(scene)), {"ball": [push]}).run()
-    assert results["bodies/ball/position"][-1, 2] == pytest.approx(0.5 * force * 9.0 / 0.2, rel=1e-9)
+    assert results["position"][-1, 2] == pytest.approx(0.5 * force * 9.0 / 0.2, rel=1e-9)
+
+
+def bouncing(**told):
+    """A ball that falls on a ground of 1e4 N/m, as a law between markers and as one along a slide, and the calls of each."""
+    inertia = [[0.01, 0, 0], [0, 0.01, 0], [0, 0, 0.01]]
+    scene = {
+        "title": "ball",
+        "units": {"length": "m", "mass": "kg", "time": "s"},
+        "bodies": {
+            "ball": {
+                "rigid": {"mass": 1.0, "center_of_mass": [0, 0, 0], "inertia": inertia},
+                "markers": {"middle": {"at": [0, 0, 0]}},
+                "loads": [WEIGHT | {"direction": [0, 0, -1]}],
+            },
+        },
+        "ground": {"markers": {"floor": {"at": [0, 0, -0.5]}}},
+        "time": {"end": 1.0, "tolerance": 1e-6, "scheme": "gauss"},
+        "output": {"interval": 0.1},
+    }
+    calls = [0]
+
+    def on_markers(time, motion):
+        calls[0] += 1
+        return [0.0, 0.0, 1e4 * max(-motion.position[2], 0.0)]
+
+    def on_slide(time, path, rate):
+        calls[0] += 1
+        return 1e4 * max(-0.5 - path, 0.0)
+
+    slide = {"name": "slide", "kind": "prismatic", "between": ["ground", "ball.middle"], "axis": [0, 0, 1]}
+    markers = flexframe.MarkerForce(["ground.floor", "ball.middle"], on_markers, switch=told.get("gap"))
+    along = flexframe.JointForce("slide", on_slide, switch=told.get("path"))
+    for own, ties in [({"marker_forces": [markers]}, {}), ({"joint_forces": [along]}, {"joints": [slide]})]:
+        calls[0] = 0
+        simulation = flexframe.Simulation(flexframe.System(flexframe.Scene(scene | ties)), **own)
+        results = simulation.run()
+        height, speed = (results[column][:, 2] for column in ["position", "velocity"])
+        energy = 0.5 * speed**2 + 9.81 * height + 0.5e4 * np.maximum(-0.5 - height, 0.0) ** 2
+        yield energy / (9.81 * 0.5), calls[0]
+
+
+# Conserved: the energy of the ball with its height and the ground.
+def test_steps_end_at_the_kinks_that_laws_tell():
+    silent = list(bouncing())
+    told = list(bouncing(gap=lambda time, motion: motion.position[2], path=lambda time, path, rate: path + 0.5))
+    for energy, _ in silent + told:
+        assert np.abs(energy - energy[0]).max() < 1e-6
+    for (_, before), (_, now) in zip(silent, told):
+        assert now < 0.75 * before
+
+
+def test_a_switch_that_is_none_is_told():
+    for switch, words in [(1.0, "a switch is a function"), ([0.0], "found list")]:
+        with pytest.raises(TypeError, match=words):
+            flexframe.JointForce("slide", lambda time, path, rate: 0.0, switch=switch)
+
+    def late(value):
+        return lambda time, motion: 1.0 if time < 0.1 else value()
+
+    for value, error, words in [
+        (lambda: math.nan, flexframe.InputError, "the switch of the law `on_markers`: found NaN"),
+        (lambda: None, flexframe.InputError, "the switch of the law `on_markers`: found None"),
+        (lambda: 1 / 0, ZeroDivisionError, "division"),
+    ]:
+        with pytest.raises(error, match=words) as raised:
+            next(bouncing(gap=late(value)))
+        assert any("in the switch of the law `on_markers`" in note for note in raised.value.__notes__)

@@ -207,6 +207,11 @@ interval = 0.1
     assert!(held.joint == "brake" && held.time > 0.999 && (held.path / expected - 1.0).abs() < 1e-3, "{held:?}");
     let text = report.to_string();
     assert!(text.contains("held     by friction of brake for 1, in which it creeps by 1.8"), "{text}");
+    let rule = report.tied[0].step_errors.as_ref().and_then(|errors| errors.ruled_by).unwrap();
+    assert!(
+        text.contains(&format!("lengths  of steps were set by the error of {rule}; sums of errors: place")),
+        "{text}"
+    );
     // At rest, balances stand over what its weight could give, and raise no alarm.
     let balances = &report.bodies[0].balances;
     assert!(balances.energy < 1e-2 && balances.angular_momentum < 1e-1, "{balances:?}");
@@ -333,4 +338,24 @@ fn a_joint_that_holds_nothing_holds_nothing() {
     let results = Results::open(&report.results, &COLUMNS).unwrap();
     let [_, _, height] = *results.vectors::<3>("bodies/ball/position").unwrap().last().unwrap();
     assert!((height + 1.0).abs() < 1e-9, "{height}");
+}
+
+/// A point mass that a joint would turn is told by its name, and at its line of the scene.
+#[test]
+fn what_is_refused_of_a_body_in_joints_names_it() {
+    let text = "title = \"arm and bob\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n\
+                [bodies.arm.rigid]\nmass = 1.0\ncenter_of_mass = [0, 0, 0]\ninertia = [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]\n\
+                [bodies.arm.markers]\nroot = { at = [0, 0, 0] }\ntip = { at = [0.5, 0, 0] }\n\
+                [bodies.bob.rigid]\nmass = 1.0\ncenter_of_mass = [0, 0, 0]\ninertia = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]\n\
+                [bodies.bob]\nmarkers = { middle = { at = [0, 0, 0] } }\ninitial = { position = [0.5, 0, 0] }\n\
+                [[joints]]\nname = \"root\"\nkind = \"revolute\"\nbetween = [\"ground\", \"arm.root\"]\naxis = [0, 0, 1]\n\
+                [[joints]]\nname = \"tip\"\nkind = \"revolute\"\nbetween = [\"arm.tip\", \"bob.middle\"]\naxis = [0, 0, 1]\n\
+                [time]\nend = 1.0\ntolerance = 1e-4\n[output]\ninterval = 0.1\n";
+    let system = System::parse(text, Path::new("arm_and_bob.toml")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let message = run(&system, folder.path(), &RunSettings::default(), |_| ()).err().unwrap().to_string();
+    let at = "arm_and_bob.toml:13:11: `bodies.bob.rigid.inertia`";
+    for words in [at, "a point mass", "that the joint \"tip\" would turn", "give it an inertia"] {
+        assert!(message.contains(words), "{message}");
+    }
 }

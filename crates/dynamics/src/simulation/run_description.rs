@@ -59,6 +59,9 @@ pub struct DescribedBody {
     pub physics: Physics,
     /// Points whose motion is observed.
     pub points: Vec<PointShapes>,
+    /// Its name for messages, which data do not hold.
+    #[serde(skip)]
+    pub name: Option<Box<str>>,
 }
 
 /// The run of a body alone: what [`Setup`] has.
@@ -186,7 +189,7 @@ impl RunOfBody {
     /// As [`Simulation::new`].
     pub fn begin(&self) -> Result<Simulation, SetupError> {
         let Self { body, initial, method, control, end, rows } = self;
-        let DescribedBody { body, damping_ratios, loads, physics, points } = body;
+        let DescribedBody { body, damping_ratios, loads, physics, points, .. } = body;
         Simulation::new(&Setup {
             body,
             damping_ratios,
@@ -212,7 +215,8 @@ impl RunOfSystem {
             ConservativeBody::new(&body.body, &body.damping_ratios, body.loads.clone(), &body.physics)
         };
         let bodies = self.bodies.iter().map(of).collect::<Result<_, _>>()?;
-        let system = System::new(bodies, self.joints.clone())?;
+        let names: Option<Vec<_>> = self.bodies.iter().map(|body| body.name.clone()).collect();
+        let system = System::new(bodies, self.joints.clone())?.with_names(names.unwrap_or_default());
         SystemSimulation::new(SystemSetup {
             system: system.with_couplings(self.couplings.clone())?.with_elements(self.elements.clone())?,
             states: self.states.clone(),

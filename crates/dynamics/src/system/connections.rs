@@ -61,6 +61,12 @@ impl Connections {
         self.joint_forces().map(|_| 1).chain(self.elements.iter().map(|element| element.directions()))
     }
 
+    /// True if there are laws that Newton's method does not ask in each of its passes: elements, and laws from outside at joints.
+    pub fn has_laws(&self) -> bool {
+        let has_directions = self.elements.iter().any(|element| element.directions() > 0);
+        has_directions || self.joint_forces().any(|(.., force)| !force.laws.is_empty())
+    }
+
     /// True if there are no compliant rows.
     pub fn is_rigid(&self) -> bool {
         self.compliant_groups().all(|rows| rows == 0)

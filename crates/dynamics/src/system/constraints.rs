@@ -167,6 +167,17 @@ impl Constraints {
         }
     }
 
+    /// Takes some compliant rows of another.
+    pub fn take_compliant(&mut self, other: &Self, rows: std::ops::Range<usize>) {
+        self.compliant[rows.clone()].copy_from_slice(&other.compliant[rows.clone()]);
+        for row in rows {
+            let row = self.residuals.len() + row;
+            for (own, other) in self.ends[row].iter_mut().zip(&other.ends[row]) {
+                own.entries.copy_from_slice(&other.entries);
+            }
+        }
+    }
+
     /// out = G v + g_t (m)
     pub fn rates(&self, velocities: &[f64], out: &mut [f64]) {
         out.copy_from_slice(&self.own_rates);

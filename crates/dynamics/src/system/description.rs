@@ -7,7 +7,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::conservative::ConservativeBody;
-use crate::error::SetupError;
+use crate::error::{BodyName, SetupError};
 use crate::system::connections::Connections;
 use crate::system::description::islands::{Island, islands};
 use crate::system::element::ForceElement;
@@ -24,6 +24,8 @@ use crate::system::marker::motion::MarkerMotion;
 #[derive(Debug, Clone)]
 pub struct System {
     pub(crate) bodies: Vec<ConservativeBody>,
+    /// Names of the bodies for messages; none of those that have none.
+    names: Vec<Box<str>>,
     pub(crate) connections: Connections,
     /// First coordinate of each body, and the number of coordinates: six and the modes of each.
     pub(crate) first: Vec<usize>,
@@ -48,7 +50,7 @@ impl System {
             if !body.is_free() {
                 return Err(SetupError::NotInFormulation {
                     formulation: "systems with joints",
-                    what: "a body that is held or driven",
+                    what: "body that is held or driven",
                 });
             }
             first.push(first[first.len() - 1] + 6 + body.flexible());
@@ -59,7 +61,15 @@ impl System {
         let connections = Connections { joints, ..Connections::default() };
         connections.markers().try_for_each(|marker| check(marker, &bodies))?;
         let (islands, sizes) = (Vec::new(), Vec::new());
-        Ok(Self { bodies, connections, first, free_groups, islands, sizes, rounding: 0.0 }.with_islands())
+        Ok(Self { bodies, names: Vec::new(), connections, first, free_groups, islands, sizes, rounding: 0.0 }
+            .with_islands())
+    }
+
+    /// The same with names of its bodies for messages, in their order.
+    #[must_use]
+    pub fn with_names(mut self, names: Vec<Box<str>>) -> Self {
+        self.names = names;
+        self
     }
 
     /// The same with couplings of its joints.
@@ -108,7 +118,8 @@ impl System {
             return Err(SetupError::Length { what: "the list of bodies", expected, found });
         }
         let Connections { joints, couplings, elements, .. } = self.connections;
-        Self::new(bodies, joints)?.with_couplings(couplings)?.with_elements(elements)
+        let system = Self::new(bodies, joints)?.with_couplings(couplings)?.with_elements(elements)?;
+        Ok(system.with_names(self.names))
     }
 
     /// The same with one more law for the force along a coordinate of a joint.
@@ -143,6 +154,11 @@ impl System {
     /// The bodies.
     pub fn bodies(&self) -> &[ConservativeBody] {
         &self.bodies
+    }
+
+    /// A body in a message, by its number from 0.
+    pub(crate) fn named(&self, number: usize) -> BodyName {
+        BodyName { number, name: self.names.get(number).cloned() }
     }
 
     /// The joints.

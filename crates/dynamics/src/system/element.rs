@@ -1,5 +1,6 @@
 //! Forces between markers: laws from outside, and those that are here.
 
+mod differences;
 pub(crate) mod law;
 pub(crate) mod springs;
 
@@ -62,15 +63,26 @@ pub trait ForceElement: fmt::Debug + Send + Sync + Any {
         Vec::new()
     }
 
-    /// Number of directions in which it may be stiff. Steps with a stiff law that has none are as short as its period asks.
+    /// Number of directions in which it may be stiff. By default, with [`Self::linearize`], six for each of up to two markers that are on
+    /// bodies. Steps with a stiff law that has none are as short as its period asks.
     fn directions(&self) -> usize {
-        0
+        differences::directions(self.markers())
     }
 
     /// Calls `set` for each direction, by its number: with its stiffness and damping, neither negative, and with the wrenches of
     /// one unit of force along it. Where the markers move along it, by a path that is the work of those wrenches, the wrenches
-    /// fall by (stiffness × path + damping × rate of the path) times them. It need not be exact: it is for Newton's method.
-    fn linearize(&self, _times: [f64; 2], _motions: &[MarkerMotion], _set: &mut SetDirection<'_>) {}
+    /// fall by (stiffness × path + damping × rate of the path) times them. It need not be exact: it is for Newton's method, which asks
+    /// once a step at each of its three stages, and again where it converges slowly.
+    ///
+    /// A law without a method of its own is differentiated, by up to 25 calls.
+    fn linearize(&self, times: [f64; 2], motions: &[MarkerMotion], set: &mut SetDirection<'_>) {
+        differences::linearize(
+            self.markers(),
+            motions,
+            |motions, wrenches| self.apply(times, motions, wrenches),
+            |number, slopes, wrenches| set(number, slopes, wrenches),
+        );
+    }
 
     /// Finds the change of the wrench on each of its markers by small changes of their motions, for the linearised equations.
     /// `changes` are zero before.

@@ -7,3 +7,4 @@ pub(crate) mod matrices;
 pub(crate) mod newton;
 pub(crate) mod number;
 pub(crate) mod patterns;
+pub(crate) mod tension;

@@ -277,7 +277,7 @@ pub(crate) struct MarkerPlace {
     /// Columns, global.
     pub axes: Matrix3<f64>,
     /// From the origin of the body, body axes.
-    arm: Vector3<f64>,
+    pub arm: Vector3<f64>,
     body_from_global: Matrix3<f64>,
     /// T: the angular velocity of the marker in the body is T Θ q̇.
     tangent: Matrix3<f64>,

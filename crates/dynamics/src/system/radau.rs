@@ -319,6 +319,13 @@ impl SystemMotion {
         self.size
     }
 
+    /// Rounding of the places of bodies in their frames, over the size of the largest.
+    pub(super) fn rounding_of_places(&self) -> f64 {
+        let place = |(body, state): (&ConservativeBody, &State)| get(body.list(state).slow(), part::POSITION).norm();
+        let farthest = self.system.bodies.iter().zip(&self.bodies).map(place).fold(0.0, f64::max);
+        f64::EPSILON * farthest / self.size
+    }
+
     /// The turn and the slide of a joint, with their rates. Turns are counted from the beginning on.
     pub fn joint_coordinates(&self, joint: usize) -> JointCoordinates {
         self.start.joints[joint]
@@ -466,14 +473,14 @@ impl SystemMotion {
             self.predict(h);
             passes = self.newton(h, bound, FrictionSlope::Secant);
         }
-        let tried = passes.map(|passes| {
+        let tried = passes.and_then(|passes| {
             let mut estimate = self.errors(h, bound.span);
             estimate.errors.energy = self.energy_error(h);
             let forgotten = estimate.forget(bound);
             let Estimate { errors, has_order_of_scheme, .. } = estimate;
             let has_order_of_scheme = has_order_of_scheme && errors.energy < errors.largest();
-            let kink = if over_kinks { None } else { self.length_to_kink(h) };
-            Tried { errors, forgotten, has_order_of_scheme, passes, kink }
+            let kink = if over_kinks { None } else { self.length_to_kink(h)? };
+            Ok(Tried { errors, forgotten, has_order_of_scheme, passes, kink })
         });
         let is_taken = tried.as_ref().is_ok_and(|tried| bound.ratio(&tried.errors) <= 1.0 && tried.kink.is_none());
         if !is_taken {

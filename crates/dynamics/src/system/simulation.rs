@@ -74,6 +74,8 @@ pub struct SystemSimulation {
     largest_residual: f64,
     /// The first time at which the rounding of places of the ground decides how a linkage goes on.
     undecided_at: Option<f64>,
+    /// The largest rounding of places of bodies at the ends of steps, over the size of the largest body.
+    rounding_of_places: f64,
     stats: Stats,
     account: EnergyAccount,
     /// Energy exchanged of each body, see [`Self::exchanged`].
@@ -169,6 +171,7 @@ impl SystemSimulation {
             branching,
             largest_residual: 0.0,
             undecided_at: None,
+            rounding_of_places: 0.0,
             stats: Stats::NONE,
             account: EnergyAccount::default(),
             events: Events::default(),
@@ -234,6 +237,12 @@ impl SystemSimulation {
         self.undecided_at
     }
 
+    /// The largest rounding of places of bodies at the ends of the steps so far, over the size of the largest body: bodies that run far along
+    /// a rail, from where a joint holds it to the ground, lose digits.
+    pub fn rounding_of_places(&self) -> f64 {
+        self.rounding_of_places
+    }
+
     /// Degrees of freedom that the joints leave rigid bodies at the beginning.
     pub fn rigid_dofs(&self) -> usize {
         let system = self.motion.system();
@@ -256,6 +265,11 @@ impl SystemSimulation {
     pub fn stats(&self) -> Stats {
         let error = self.measure.as_ref().map(ErrorMeasure::stated);
         Stats { evaluations: self.motion.evaluations(), error, ..self.stats }
+    }
+
+    /// The tolerance that bounds the errors of the steps; none of fixed steps.
+    pub fn tolerance(&self) -> Option<f64> {
+        self.measure.as_ref().map(|measure| measure.tolerance)
     }
 
     /// Room for the motion of a body.
@@ -295,7 +309,7 @@ impl SystemSimulation {
         for (body, out) in out.into_iter().enumerate() {
             motion.observe(body, &self.points[body], out).map_err(in_step)?;
             if !out.is_finite() {
-                return Err(StepError::NotFinite { time, what: "a quantity of the motion" });
+                return Err(StepError::BodyNotFinite { time, body: motion.system().named(body) });
             }
             sum.internal += out.energy();
             sum.work += out.work.work;
@@ -630,6 +644,7 @@ impl SystemSimulation {
     fn count(&mut self, length: f64) {
         self.stats.take(1, length);
         self.largest_residual = larger(self.largest_residual, self.motion.residual_of_last_step());
+        self.rounding_of_places = self.rounding_of_places.max(self.motion.rounding_of_places());
         if self.motion.is_undecided() {
             self.undecided_at.get_or_insert(self.motion.time());
         }

@@ -241,7 +241,7 @@ impl Stage {
         self.find_constraints(system, start, times);
         self.add_elements(system, times);
         if let Some(body) = self.turned_point(system) {
-            return Err(RateError::PointTurned { body: body + 1 });
+            return Err(RateError::PointTurned { body: system.named(body) });
         }
         self.constraints.rates(&self.velocities, &mut self.constraint_rates);
         Ok(())
@@ -394,18 +394,37 @@ impl Stage {
         }
     }
 
-    /// Finds the functions that change their signs at kinks of the forces of joints and of elements, in the order of these.
-    pub fn find_switches(&mut self, system: &System, start: &Start, times: [f64; 2], out: &mut Vec<f64>) {
+    /// Finds the functions that change their signs at kinks of the forces of joints and of elements, in the order of these; an error where
+    /// one is not a number.
+    pub fn find_switches(
+        &mut self,
+        system: &System,
+        start: &Start,
+        times: [f64; 2],
+        out: &mut Vec<f64>,
+    ) -> Result<(), RateError> {
         out.clear();
+        let extend = |out: &mut Vec<f64>, switch: f64, law: &dyn Fn() -> String| {
+            if switch.is_nan() {
+                return Err(RateError::Switch { law: law().into() });
+            }
+            out.push(switch);
+            Ok(())
+        };
         for (joint, coordinate, force) in system.connections.joint_forces() {
             if force.stops.is_some() || !force.laws.is_empty() {
-                out.extend(force.switches(self.joint_coordinates(system, start, joint).along(coordinate), times));
+                let name = || format!("a law at the joint \"{}\"", system.connections.joints[joint].name);
+                let at = self.joint_coordinates(system, start, joint).along(coordinate);
+                force.switches(at, times).try_for_each(|switch| extend(out, switch, &name))?;
             }
         }
         for (number, element) in system.connections.elements.iter().enumerate() {
             self.find_marker_motions(system, number, times[0]);
-            out.extend(element.switch(times, &self.marker_motions));
+            if let Some(switch) = element.switch(times, &self.marker_motions) {
+                extend(out, switch, &|| format!("the force element {} of the system", number + 1))?;
+            }
         }
+        Ok(())
     }
 
     /// Finds the wrenches of an element and their power, where the motions of its markers have been found.
@@ -481,16 +500,24 @@ impl Stage {
         }
     }
 
-    /// Finds what Newton's method is to know of the forces of joints and of elements, where the stage has been evaluated.
-    pub fn linearize(&mut self, system: &System, times: [f64; 2], by: FrictionSlope) {
+    /// Finds what Newton's method is to know of the forces of joints and of elements, where the stage has been evaluated. Without
+    /// `of_laws`, elements and forces with laws from outside stay as they were last found: these may take long.
+    pub fn linearize(&mut self, system: &System, times: [f64; 2], by: FrictionSlope, of_laws: bool) {
         let mut number = 0;
         for (_, _, force) in system.connections.joint_forces() {
+            if !of_laws && !force.laws.is_empty() {
+                number += 1;
+                continue;
+            }
             let mut rate = 0.0;
             let constraints = &mut self.constraints;
             constraints.compliant_ends()[number].iter().for_each(|end| end.add_rate(1.0, &self.velocities, &mut rate));
             let [stiffness, damping] = force.stiffness_and_damping([constraints.coordinates[number], rate], times, by);
             constraints.compliant[number] = Compliant { stiffness, damping };
             number += 1;
+        }
+        if !of_laws {
+            return;
         }
         let elements = system.connections.elements.iter().zip(&system.connections.element_markers).enumerate();
         for (of_element, (element, markers)) in elements.filter(|(_, (element, _))| element.directions() > 0) {

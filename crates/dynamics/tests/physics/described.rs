@@ -36,7 +36,7 @@ fn run(motion: RigidMotion, loads: Vec<SharedLoad>, physics: Physics) -> RunOfBo
     let points = vec![point(&body, [0.3, 0.1, -0.2])];
     RunOfBody {
         initial: start(body.flexible()),
-        body: DescribedBody { body, damping_ratios: vec![0.01, 0.02, 0.03], loads, physics, points },
+        body: DescribedBody { body, damping_ratios: vec![0.01, 0.02, 0.03], loads, physics, points, name: None },
         method: Method::EXPONENTIAL,
         control: StepControl::Fixed(0.01),
         end: 1.0,

@@ -46,6 +46,7 @@ pub fn run() -> RunOfSystem {
         loads,
         physics: Physics::default(),
         points,
+        name: None,
     };
     let at = |body: &ReducedBody, origin: Vector3<f64>| MotionState {
         time: 0.0,

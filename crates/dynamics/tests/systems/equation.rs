@@ -175,10 +175,10 @@ fn what_would_turn_a_point_mass_is_told() {
         Joint::locked("it", [at(), ground()], [true, false, false], [false; 3]),
         rod("it", [ground(), off()], 1.0),
     ] {
-        let system = System::new(vec![point(1.0, GRAVITY)], vec![joint]).unwrap();
+        let system = System::new(vec![point(1.0, GRAVITY)], vec![joint]).unwrap().with_names(vec!["bob".into()]);
         let refused = begin(system, vec![state([0.0, 0.6, -0.8], [0.0; 3], [0.0; 3])]).err();
-        let Some(SetupError::PointTurned { body: 1, by }) = &refused else { panic!("{refused:?}") };
-        assert_eq!(&**by, "the joint \"it\"");
+        let Some(SetupError::PointTurned { body, by }) = &refused else { panic!("{refused:?}") };
+        assert_eq!((body.number, body.to_string(), &**by), (0, "the body \"bob\"".to_owned(), "the joint \"it\""));
     }
     let bead = Joint::locked("bead", [ground(), at()], [true, true, false], [false; 3]);
     let system = System::new(vec![point(1.0, GRAVITY)], vec![bead]).unwrap();

@@ -217,6 +217,11 @@ impl ForceElement for Pull {
         self.seen.lock().unwrap().push([position_global, velocity_global]);
         wrenches[0].force_global = -1e-3 * (position_global - Vector3::x() * 7e6);
     }
+
+    /// None, so that it sees no differences.
+    fn directions(&self) -> usize {
+        0
+    }
 }
 
 /// Laws from outside see global places and velocities, wherever steps count from.

@@ -123,6 +123,53 @@ fn a_joint_at_the_centre_of_mass_does_nothing() {
     assert!((motion.reaction(0).force_global.z - 2.0 * GRAVITY).abs() < 1e-9);
 }
 
+/// A payload of 1 kg on hinged links, each of this part of its mass, straight and 45° from the vertical.
+fn taut_chain(links: usize, part: f64) -> SystemMotion {
+    let (length, mass) = (0.1, part);
+    let mut bodies =
+        vec![body(mass, Vector3::new(1e-5, 1.0 / 12.0, 1.0 / 12.0) * mass * length * length, GRAVITY); links];
+    bodies.push(body(1.0, Vector3::repeat(1e-3), GRAVITY));
+    let along = Vector3::new(1.0, 0.0, -1.0).normalize();
+    let tilt = Attitude::identity().advanced_by(&(Vector3::y() * 0.25 * PI));
+    let mut joints =
+        vec![Joint::revolute("0", [ground(0.0, 0.0, 0.0, about_y()), at(0, -0.5 * length, 0.0, 0.0, about_y())])];
+    for link in 0..links {
+        let next = if link + 1 < links { -0.5 * length } else { 0.0 };
+        let markers = [at(link, 0.5 * length, 0.0, 0.0, about_y()), at(link + 1, next, 0.0, 0.0, about_y())];
+        joints.push(Joint::revolute(&format!("{}", link + 1), markers));
+    }
+    let states: Vec<MotionState> = (0..=links)
+        .map(|k| {
+            let from_root = if k < links { k as f64 + 0.5 } else { links as f64 };
+            MotionState { attitude: tilt, ..state(along * (from_root * length), Vector3::zeros(), Vector3::zeros()) }
+        })
+        .collect();
+    SystemMotion::new(System::new(bodies, joints).unwrap(), &states).unwrap()
+}
+
+/// Counted: a taut chain does not pay for the lightness of its links. Conserved: its length is that of the string that it becomes.
+#[test]
+fn a_taut_chain_of_light_links_does_not_pay_for_its_ratio() {
+    for links in [3, 12] {
+        let steps = [1.0, 1e3, 1e6, 1e8].map(|ratio| {
+            let mut motion = taut_chain(links, 1.0 / ratio);
+            motion.assemble().unwrap();
+            let steps = motion.advance(1.0, 1e-6, &mut 1e-3).unwrap();
+            let at = motion.state(links).unwrap().origin_global;
+            let shorter = 1.0 - at.norm() / (0.1 * links as f64);
+            println!(
+                "{links} links {ratio:e}: {steps} steps, {} evaluations, {shorter:e} shorter",
+                motion.evaluations()
+            );
+            assert!(shorter.abs() < 1.0 / ratio + 1e-12, "{shorter}");
+            steps
+        });
+        // By the frequencies of the links it would be a thousand times as many for a ratio of 1e6.
+        let [heavy, .., lightest] = steps;
+        assert!(lightest < 4 * heavy && steps.iter().all(|of| *of < 15 * heavy), "{links} links: {steps:?}");
+    }
+}
+
 /// Closed form: a bob on a rod of 1e-9 of its mass, between two hinges, has the period of a point on a string, by the
 /// arithmetic-geometric mean.
 #[test]

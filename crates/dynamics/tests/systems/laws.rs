@@ -1,11 +1,13 @@
 //! Energy of laws of one's own, kinks, rest and friction.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use dynamics::{
-    ConservativeBody, Coordinate, Friction, History, Joint, JointForce, JointLawFn, Marker, MarkerForce, MarkerLaw,
-    MotionState, Observation, Physics, PointForce, PointShapes, Reached, RelativeMotion, Rows, SharedLoad, StepControl,
-    Stops, System, SystemMotion, SystemScheme, SystemSetup, SystemSimulation,
+    Bushing, ConservativeBody, Coordinate, ForceElement, Friction, History, Joint, JointForce, JointLawFn, Marker,
+    MarkerForce, MarkerLaw, MarkerMotion, MarkerWrench, MotionState, Observation, Physics, PointForce, PointShapes,
+    Reached, RelativeMotion, Rows, SharedLoad, StepControl, Stops, System, SystemMotion, SystemScheme, SystemSetup,
+    SystemSimulation,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -104,6 +106,73 @@ fn steps_end_at_kinks_that_are_told() {
     });
     println!("silent {silent}, told {told}, stop {stop}, law of a joint {law}");
     assert!(4 * told < 3 * silent && 4 * stop.abs_diff(law) < law, "{silent} {told} {stop} {law}");
+}
+
+/// A stiff support of one's own between the ball and the ground, with dampers, that says nothing of its slopes; calls of it are counted.
+#[derive(Debug)]
+struct Support {
+    markers: [Marker; 2],
+    calls: Arc<AtomicUsize>,
+}
+
+/// Stiffness and damping along each axis, of the support.
+const OF_SUPPORT: [f64; 2] = [1e8, 2e4];
+
+impl Support {
+    fn pull(&self, position: Vector3<f64>, velocity: Vector3<f64>) -> Vector3<f64> {
+        self.calls.fetch_add(1, Ordering::Relaxed);
+        -(position * OF_SUPPORT[0] + velocity * OF_SUPPORT[1])
+    }
+}
+
+impl ForceElement for Support {
+    fn markers(&self) -> &[Marker] {
+        &self.markers
+    }
+
+    fn apply(&self, _: [f64; 2], motions: &[MarkerMotion], wrenches: &mut [MarkerWrench]) {
+        let [i, j] = motions else { unreachable!() };
+        let force = self.pull(j.position_global - i.position_global, j.velocity_global - i.velocity_global);
+        (wrenches[0].force_global, wrenches[1].force_global) = (-force, force);
+    }
+}
+
+impl MarkerLaw for Support {
+    fn force_and_moment(&self, _: [f64; 2], motion: &RelativeMotion) -> [Vector3<f64>; 2] {
+        [self.pull(motion.position, motion.velocity), Vector3::zeros()]
+    }
+}
+
+/// Closed form: a body at rest on a support, by its weight. Counted: Newton's method knows the slopes of a law of one's own by differences, which it asks for once a step: a support of 1e8 N/m takes
+/// as many steps as a spring of the program, as a law between markers and as an element; its calls are counted.
+#[test]
+fn a_stiff_element_of_ones_own_takes_no_shorter_steps() {
+    let axes = Matrix3::identity();
+    let markers = || [Marker::on_ground(Vector3::zeros(), axes), Marker::on_rigid(0, Vector3::zeros(), axes)];
+    let [stiffness, damping] = OF_SUPPORT.map(|of| [Vector3::repeat(of), Vector3::zeros()]);
+    let calls = Arc::new(AtomicUsize::new(0));
+    let support = || Support { markers: markers(), calls: Arc::clone(&calls) };
+    let elements: [(&str, Arc<dyn ForceElement>); 3] = [
+        ("bushing", Arc::new(Bushing { markers: markers(), stiffness, damping })),
+        ("law between markers", Arc::new(MarkerForce { markers: markers(), law: Arc::new(support()) })),
+        ("element", Arc::new(support())),
+    ];
+    let mut counted = Vec::new();
+    for (name, element) in elements {
+        calls.store(0, Ordering::Relaxed);
+        let system = System::new(vec![ball()], Vec::new()).unwrap().with_elements(vec![element]).unwrap();
+        let mut motion = SystemMotion::new(system, &[at_rest(Vector3::y() * 1e-4)]).unwrap();
+        let steps = motion.advance(1.0, 1e-4, &mut 1e-3).unwrap();
+        let at = motion.state(0).unwrap().origin_global.y;
+        counted.push((steps, motion.evaluations(), calls.load(Ordering::Relaxed) as u64));
+        println!("{name}: {:?}, at {at:e}", counted.last());
+        // The weight over the stiffness, once the swing has died.
+        assert!((at + GRAVITY / OF_SUPPORT[0]).abs() < 1e-12, "{at:e}");
+    }
+    let [(spring, ..), (law, _, of_law), (element, _, of_element)] = counted[..] else { panic!("{counted:?}") };
+    assert!(law <= 2 * spring && element <= 2 * spring, "{counted:?}");
+    // Each of the three stages costs thirteen calls a step, and some more.
+    assert!(of_law <= 80 * law && of_element <= 80 * element, "{counted:?}");
 }
 
 /// A marker whose z axis is up, on the ball or on the ground.

@@ -300,7 +300,7 @@ impl Fault for StartError {
                 help: Some((*help).to_owned()),
                 ..Details::of_file(&at.file)
             },
-            Self::Tied { at } => {
+            Self::Tied { at } | Self::Point { at, .. } => {
                 Details { line: Some(at.line), key: Some(at.key.clone()), ..Details::of_file(&at.file) }
             }
             _ => Details::default(),

@@ -7,7 +7,7 @@ use dynamics::{
     PointShapes, Rows, RunOfBody, RunOfSystem, Setup, SetupError, SharedLoad, Simulation, StepControl, SystemScheme,
     SystemSimulation,
 };
-use model::{BuildError, Model, StartError, Tied, tie_models};
+use model::{BuildError, Model, StartError, Tied, physics_in_system, tie_models};
 use scene::{End, Scene, System};
 
 use super::Motion;
@@ -143,9 +143,12 @@ pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Resul
     }
     for tied in tied {
         let (bodies, joints, elements) = (tied.bodies.clone(), tied.joints.clone(), elements_in_rows(system, &tied));
-        let scene = &system.bodies[bodies[0]];
         let simulation = start_tied(system, models, tied, beginning);
-        let simulation = simulation.map_err(|source| BeginError::start(bodies[0], scene, source))?;
+        let simulation = simulation.map_err(|source| {
+            // At the body that is meant, where it is one.
+            let number = source.body_of_system().map_or(bodies[0], |number| bodies[number]);
+            BeginError::start(number, &system.bodies[number], source)
+        })?;
         all.push(Moving { motion: Motion::Tied(Box::new(simulation)), bodies, joints, elements });
     }
     Ok(all)
@@ -258,8 +261,9 @@ fn start_tied(system: &System, models: &[&Model], tied: Tied, of: &Beginning) ->
 }
 
 /// A body with what acts on it.
-fn described_body(model: &Model, forces: &BodyForces) -> DescribedBody {
+fn described_body(scene: &Scene, model: &Model, forces: &BodyForces) -> DescribedBody {
     DescribedBody {
+        name: scene.name.as_deref().map(Into::into),
         body: model.body.clone(),
         damping_ratios: forces.damping_ratios.clone(),
         loads: forces.loads.clone(),
@@ -271,7 +275,7 @@ fn described_body(model: &Model, forces: &BodyForces) -> DescribedBody {
 /// The run of a body alone, as data have it: all but the reference points of the paper's formulation.
 pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> RunOfBody {
     RunOfBody {
-        body: described_body(model, forces),
+        body: described_body(scene, model, forces),
         initial: model.initial(scene),
         method: of.method,
         control: of.control,
@@ -283,7 +287,14 @@ pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of:
 /// The run of tied bodies.
 pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: &Beginning) -> RunOfSystem {
     RunOfSystem {
-        bodies: tied.bodies.iter().map(|number| described_body(models[*number], &of.bodies[*number])).collect(),
+        bodies: {
+            let described = |number: &usize| {
+                let (scene, forces) = (&system.bodies[*number], &of.bodies[*number]);
+                let physics = physics_in_system(scene, &forces.physics);
+                DescribedBody { physics, ..described_body(scene, models[*number], forces) }
+            };
+            tied.bodies.iter().map(described).collect()
+        },
         joints: tied.system.joints().to_vec(),
         couplings: tied.system.couplings().to_vec(),
         elements: tied.system.elements().to_vec(),

@@ -2,10 +2,14 @@
 
 use std::sync::Arc;
 
-use dynamics::{ConservativeBody, Coordinate, ForceElement, JointForce, JointPart, Marker, MotionState, PointSpring};
+use dynamics::{
+    ConservativeBody, Coordinate, Effect, ForceElement, JointForce, JointPart, Marker, MotionState, Physics,
+    PointSpring,
+};
 use nalgebra::{Matrix3, Vector3};
 use scene::{
-    AlongAndAbout, Bushing, CouplingKind, End, Joint, JointDrive, JointKind, JointSpring, Locked, Spring, System,
+    AlongAndAbout, Bushing, Choice, CouplingKind, End, Joint, JointDrive, JointKind, JointSpring, Locked, Scene,
+    Spring, System,
 };
 
 use crate::error::BuildError;
@@ -57,6 +61,15 @@ pub fn tie(system: &System, models: &[Model]) -> Result<Vec<Tied>, BuildError> {
 pub fn tie_models(system: &System, models: &[&Model], together: bool) -> Result<Vec<Tied>, BuildError> {
     let systems = if together { vec![(0..models.len()).collect()] } else { islands_of(system, models.len()) };
     systems.into_iter().map(|bodies| Island::new(system, models, bodies)?.tied()).collect()
+}
+
+/// The physics of a body in a system: one at rest that nothing of its scene moves may be moved by others, and by laws from outside.
+pub fn physics_in_system(scene: &Scene, physics: &Physics) -> Physics {
+    let mut physics = physics.clone();
+    for effect in [Effect::Translation, Effect::Rotation] {
+        physics.effects[effect] |= scene.effects.choices[effect] == Choice::Auto;
+    }
+    physics
 }
 
 impl Tied {
@@ -122,7 +135,8 @@ impl<'a> Island<'a> {
         let scene = self.scene;
         let conservative = |number: &usize| {
             let model = self.models[*number];
-            ConservativeBody::new(&model.body, model.damping_ratios(), model.loads().to_vec(), &model.physics)
+            let physics = physics_in_system(&self.scene.bodies[*number], &model.physics);
+            ConservativeBody::new(&model.body, model.damping_ratios(), model.loads().to_vec(), &physics)
         };
         let bodies = self.bodies.iter().map(conservative).collect::<Result<_, _>>()?;
         let of_joints = scene.joints.iter().enumerate().filter(|(_, joint)| self.has(joint.between));

@@ -282,7 +282,8 @@ class JointForce:
     length) and its rate that returns a number. It is positive on the second body along the coordinate, as the motor of a scene.
 
     `along` is "turn" or "slide"; a joint that has but one needs none. The law is evaluated several times a step, and must depend on
-    nothing but these. `discontinuities` are times at which it or its rate jumps, so that steps end there.
+    nothing but these. `discontinuities` are times at which it or its rate jumps, so that steps end there. `switch` is a function of
+    the same that changes its sign where the law has a kink or a jump, such as the gap of a stop: under a tolerance steps end there.
     """
 
     def __new__(
@@ -293,6 +294,7 @@ class JointForce:
         along: Literal["turn", "slide"] | None = None,
         name: str | None = None,
         discontinuities: Sequence[float] = ...,
+        switch: Callable[[float, float, float], float] | None = None,
     ) -> JointForce: ...
 
 @final
@@ -319,7 +321,8 @@ class MarkerForce:
 
     `between` names the markers as `between` of a scene does: "BODY.MARKER", "ground.MARKER" or "ground", which is where the other
     marker is at the start. Their axes are those of a bushing there. The law is evaluated many times a step, and must depend on
-    nothing but these. `discontinuities` are times at which it or its rate jumps, so that steps end there.
+    nothing but these. `discontinuities` are times at which it or its rate jumps, so that steps end there. `switch` is a function of the same that
+    changes its sign where the law has a kink or a jump, such as the gap of a contact: under a tolerance steps end there.
     """
 
     def __new__(
@@ -329,6 +332,7 @@ class MarkerForce:
         *,
         name: str | None = None,
         discontinuities: Sequence[float] = ...,
+        switch: Callable[[float, RelativeMotion], float] | None = None,
     ) -> MarkerForce: ...
 
 @final

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use crate::errors::wrong_input;
 use crate::motion::faults::Faults;
 use crate::motion::joint_force::joint_number;
-use crate::motion::load::Law;
+use crate::motion::law::Law;
 use crate::values::arrays::matrix;
 use crate::values::numbers::{described, number, vector};
 

@@ -1,6 +1,5 @@
 //! The class JointForce: a force along the coordinate of a joint, whose law is a function of Python.
 
-use std::fmt;
 use std::sync::Arc;
 
 use flexframe::dynamics::{Coordinate, JointLaw};
@@ -10,31 +9,33 @@ use pyo3::prelude::*;
 
 use crate::errors::wrong_input;
 use crate::motion::faults::Faults;
-use crate::motion::load::Law;
-use crate::values::numbers::{described, number};
+use crate::motion::law::{LawInRun, OwnLaw};
+use crate::values::numbers::number_that;
 
 /// A moment about the turn of a joint, or a force along its slide, by a law: a function of the time, the coordinate (rad or a
 /// length) and its rate that returns a number. It is positive on the second body along the coordinate, as the motor of a scene.
 ///
 /// `along` is "turn" or "slide"; a joint that has but one needs none. The law is evaluated several times a step, and must depend on
-/// nothing but these. `discontinuities` are times at which it or its rate jumps, so that steps end there.
+/// nothing but these. `discontinuities` are times at which it or its rate jumps, so that steps end there. `switch` is a function of
+/// the same that changes its sign where the law has a kink or a jump, such as the gap of a stop: under a tolerance steps end there.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct JointForce {
     joint: String,
     along: Option<scene::Coordinate>,
-    law: Law,
+    law: OwnLaw,
 }
 
 #[pymethods]
 impl JointForce {
     #[new]
-    #[pyo3(signature = (joint, law, *, along=None, name=None, discontinuities=Vec::new()))]
+    #[pyo3(signature = (joint, law, *, along=None, name=None, discontinuities=Vec::new(), switch=None))]
     fn new(
         joint: String,
         law: &Bound<'_, PyAny>,
         along: Option<&str>,
         name: Option<String>,
         discontinuities: Vec<f64>,
+        switch: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let along = match along {
             None => None,
@@ -45,11 +46,11 @@ impl JointForce {
                 return Err(wrong_input(law.py(), "along", &format!("`{other}`"), "`turn` or `slide`", help));
             }
         };
-        Ok(Self { joint, along, law: Law::new(law, name, discontinuities, None)? })
+        Ok(Self { joint, along, law: OwnLaw::new(law, name, discontinuities, switch)? })
     }
 
     fn __repr__(&self) -> String {
-        format!("JointForce({:?}, {})", self.joint, self.law.name)
+        format!("JointForce({:?}, {})", self.joint, self.law.name())
     }
 }
 
@@ -76,13 +77,7 @@ impl JointForce {
             scene::Coordinate::Turn => Coordinate::Turn,
             scene::Coordinate::Slide => Coordinate::Slide,
         };
-        let law = PythonLaw {
-            function: self.law.function.clone_ref(py),
-            name: self.law.name.clone(),
-            discontinuities: self.law.discontinuities.clone(),
-            faults: faults.clone(),
-        };
-        Ok(JointForces { joint: number, along, law: Arc::new(law) })
+        Ok(JointForces { joint: number, along, law: Arc::new(self.law.in_run(py, faults)) })
     }
 }
 
@@ -95,33 +90,17 @@ pub(crate) fn joint_number(py: Python<'_>, name: &str, system: &scene::System) -
     })
 }
 
-struct PythonLaw {
-    function: Py<PyAny>,
-    name: String,
-    discontinuities: Vec<f64>,
-    faults: Faults,
-}
-
-impl fmt::Debug for PythonLaw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "PythonLaw({})", self.name)
-    }
-}
-
-impl JointLaw for PythonLaw {
+impl JointLaw for LawInRun {
     fn force(&self, [time, _]: [f64; 2], [coordinate, rate]: [f64; 2]) -> f64 {
-        let asked = self.faults.ask(
-            || format!("in the law `{}` at time {time}", self.name),
-            |py| {
-                let value = self.function.bind(py).call1((time, coordinate, rate))?;
-                number(&value).ok_or_else(|| {
-                    let help = "return the force or the moment";
-                    let what = format!("the force of the law `{}`", self.name);
-                    wrong_input(py, &what, &described(&value), "a number", help)
-                })
-            },
-        );
-        asked.unwrap_or(f64::NAN)
+        let read = |value: &Bound<'_, PyAny>| {
+            let what = format!("the force of the law `{}`", self.name);
+            number_that(value, f64::is_finite, [&what, "a finite number", "return the force or the moment"])
+        };
+        self.ask(time, (time, coordinate, rate), read).unwrap_or(f64::NAN)
+    }
+
+    fn switch(&self, [time, _]: [f64; 2], [coordinate, rate]: [f64; 2]) -> Option<f64> {
+        self.switch_at(time, (time, coordinate, rate))
     }
 
     fn discontinuities(&self) -> Vec<f64> {

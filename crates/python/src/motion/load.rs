@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 
 use crate::errors::wrong_input;
 use crate::motion::faults::Faults;
+use crate::motion::law::Law;
 use crate::motion::seen::{Motion, Points, point_number};
 use crate::values::numbers::{numbers, vector};
 
@@ -24,41 +25,7 @@ pub(crate) fn listed(loads: Option<Bound<'_, PyAny>>) -> PyResult<Vec<Bound<'_, 
     })
 }
 
-/// A law: a function of the motion, and what steps must know of it.
-pub(crate) struct Law {
-    pub function: Py<PyAny>,
-    pub name: String,
-    pub discontinuities: Vec<f64>,
-    longest_step: Option<f64>,
-}
-
 impl Law {
-    pub fn new(
-        function: &Bound<'_, PyAny>,
-        name: Option<String>,
-        discontinuities: Vec<f64>,
-        longest_step: Option<f64>,
-    ) -> PyResult<Self> {
-        let py = function.py();
-        if !function.is_callable() {
-            let found = function.get_type().name()?;
-            return Err(PyTypeError::new_err(format!("a law is a function of the motion; found {found}")));
-        }
-        if let Some(discontinuity) = discontinuities.iter().find(|discontinuity| !discontinuity.is_finite()) {
-            let help = "name the times at which the law or its rate jumps";
-            return Err(wrong_input(py, "discontinuities", &discontinuity.to_string(), "finite times", help));
-        }
-        if let Some(step) = longest_step.filter(|step| !(*step > 0.0 && step.is_finite())) {
-            let help = "name the longest step that sees the law as it is";
-            return Err(wrong_input(py, "longest_step", &step.to_string(), "a positive number", help));
-        }
-        let name = match name {
-            Some(name) => name,
-            None => function.getattr("__name__").and_then(|name| name.extract()).unwrap_or_else(|_| "law".to_owned()),
-        };
-        Ok(Self { function: function.clone().unbind(), name, discontinuities, longest_step })
-    }
-
     /// The load whose law is `act`: it applies what the function gives, or keeps what it raises.
     fn load(
         &self,

@@ -1,6 +1,5 @@
 //! The class MarkerForce: a force and a moment between two markers, whose law is a function of Python; and RelativeMotion, what it sees.
 
-use std::fmt;
 use std::sync::Arc;
 
 use flexframe::dynamics::{self, MarkerLaw};
@@ -12,7 +11,7 @@ use pyo3::prelude::*;
 
 use crate::errors::wrong_input;
 use crate::motion::faults::Faults;
-use crate::motion::load::Law;
+use crate::motion::law::{LawInRun, OwnLaw};
 use crate::values::arrays::matrix;
 use crate::values::numbers::{described, vector};
 
@@ -21,28 +20,30 @@ use crate::values::numbers::{described, vector};
 ///
 /// `between` names the markers as `between` of a scene does: "BODY.MARKER", "ground.MARKER" or "ground", which is where the other marker
 /// is at the start. Their axes are those of a bushing there. The law is evaluated many times a step, and must depend on nothing but
-/// these. `discontinuities` are times at which it or its rate jumps, so that steps end there.
+/// these. `discontinuities` are times at which it or its rate jumps, so that steps end there. `switch` is a function of the same that
+/// changes its sign where the law has a kink or a jump, such as the gap of a contact: under a tolerance steps end there.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct MarkerForce {
     between: [String; 2],
-    law: Law,
+    law: OwnLaw,
 }
 
 #[pymethods]
 impl MarkerForce {
     #[new]
-    #[pyo3(signature = (between, law, *, name=None, discontinuities=Vec::new()))]
+    #[pyo3(signature = (between, law, *, name=None, discontinuities=Vec::new(), switch=None))]
     fn new(
         between: [String; 2],
         law: &Bound<'_, PyAny>,
         name: Option<String>,
         discontinuities: Vec<f64>,
+        switch: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        Ok(Self { between, law: Law::new(law, name, discontinuities, None)? })
+        Ok(Self { between, law: OwnLaw::new(law, name, discontinuities, switch)? })
     }
 
     fn __repr__(&self) -> String {
-        format!("MarkerForce({:?}, {})", self.between, self.law.name)
+        format!("MarkerForce({:?}, {})", self.between, self.law.name())
     }
 }
 
@@ -64,13 +65,8 @@ impl MarkerForce {
             let help = "let the force act between two bodies, or between one and the ground";
             return Err(wrong_input(py, "between", &found, "two markers, of which one is on a body", help));
         }
-        let law = PythonLaw {
-            function: self.law.function.clone_ref(py),
-            name: self.law.name.clone(),
-            discontinuities: self.law.discontinuities.clone(),
-            faults: faults.clone(),
-        };
-        Ok(MarkerForces { name: self.law.name.clone(), between, law: Arc::new(law) })
+        let law = self.law.in_run(py, faults);
+        Ok(MarkerForces { name: law.name.clone(), between, law: Arc::new(law) })
     }
 }
 
@@ -110,42 +106,28 @@ impl RelativeMotion {
     }
 }
 
-struct PythonLaw {
-    function: Py<PyAny>,
-    name: String,
-    discontinuities: Vec<f64>,
-    faults: Faults,
-}
-
-impl PythonLaw {
-    /// The force and the moment that the function returns.
-    fn returned(&self, value: &Bound<'_, PyAny>) -> PyResult<[Vector3<f64>; 2]> {
-        let [force, moment] = ["force", "moment"].map(|of| format!("the {of} of the law `{}`", self.name));
-        match value.len() {
-            Ok(3) => Ok([vector(value, &force)?, Vector3::zeros()]),
-            Ok(2) => Ok([vector(&value.get_item(0)?, &force)?, vector(&value.get_item(1)?, &moment)?]),
-            _ => {
-                let (what, expected) = (format!("the law `{}`", self.name), "a force, or a force and a moment");
-                let help = "return three numbers, or two times three";
-                Err(wrong_input(value.py(), &what, &described(value), expected, help))
-            }
+/// The force and the moment that a law of this name has returned.
+fn returned(value: &Bound<'_, PyAny>, name: &str) -> PyResult<[Vector3<f64>; 2]> {
+    let [force, moment] = ["force", "moment"].map(|of| format!("the {of} of the law `{name}`"));
+    match value.len() {
+        Ok(3) => Ok([vector(value, &force)?, Vector3::zeros()]),
+        Ok(2) => Ok([vector(&value.get_item(0)?, &force)?, vector(&value.get_item(1)?, &moment)?]),
+        _ => {
+            let (what, expected) = (format!("the law `{name}`"), "a force, or a force and a moment");
+            let help = "return three numbers, or two times three";
+            Err(wrong_input(value.py(), &what, &described(value), expected, help))
         }
     }
 }
 
-impl fmt::Debug for PythonLaw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "PythonLaw({})", self.name)
-    }
-}
-
-impl MarkerLaw for PythonLaw {
+impl MarkerLaw for LawInRun {
     fn force_and_moment(&self, [time, _]: [f64; 2], motion: &dynamics::RelativeMotion) -> [Vector3<f64>; 2] {
-        let asked = self.faults.ask(
-            || format!("in the law `{}` at time {time}", self.name),
-            |py| self.returned(&self.function.bind(py).call1((time, RelativeMotion(*motion)))?),
-        );
+        let asked = self.ask(time, (time, RelativeMotion(*motion)), |value| returned(value, &self.name));
         asked.unwrap_or([Vector3::repeat(f64::NAN); 2])
+    }
+
+    fn switch(&self, [time, _]: [f64; 2], motion: &dynamics::RelativeMotion) -> Option<f64> {
+        self.switch_at(time, (time, RelativeMotion(*motion)))
     }
 
     fn discontinuities(&self) -> Vec<f64> {

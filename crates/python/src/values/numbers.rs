@@ -38,6 +38,20 @@ pub(crate) fn number(value: &Bound<'_, PyAny>) -> Option<f64> {
     value.extract().ok().filter(|_| !is_complex)
 }
 
+/// A real number from Python that is what it is to be; or else an exception that says what was found.
+pub(crate) fn number_that(
+    value: &Bound<'_, PyAny>,
+    is_one: impl Fn(f64) -> bool,
+    [what, expected, help]: [&str; 3],
+) -> PyResult<f64> {
+    let found = match number(value) {
+        Some(number) if is_one(number) => return Ok(number),
+        Some(number) => number.to_string(),
+        None => described(value),
+    };
+    Err(wrong_input(value.py(), what, &found, expected, help))
+}
+
 /// Three of them.
 pub(crate) fn vector(value: &Bound<'_, PyAny>, what: &str) -> PyResult<Vector3<f64>> {
     Ok(Vector3::from_vec(numbers(value, 3, what)?))

@@ -87,21 +87,19 @@ impl RelativeMotion {
 }
 
 impl MarkerForce {
-    /// How a force or a moment, by its number, falls with a change of the motion: the matrix of differences, in the axes of the first
-    /// marker.
+    /// How a force or a moment, by its number, falls from where it is with a change of the motion: the matrix of differences, in the axes of
+    /// the first marker.
     fn fall(
         &self,
         times: [f64; 2],
         motion: &RelativeMotion,
-        which: usize,
+        (which, here): (usize, &Vector3<f64>),
         size: f64,
         change: impl Fn(RelativeMotion, &Vector3<f64>) -> RelativeMotion,
     ) -> Matrix3<f64> {
         let small = DIFFERENCE * size.max(1.0);
         let column = |k: usize| {
-            let [below, above] = [-small, small]
-                .map(|by| self.law.force_and_moment(times, &change(*motion, &Vector3::ith(k, by)))[which]);
-            (below - above) / (2.0 * small)
+            (here - self.law.force_and_moment(times, &change(*motion, &Vector3::ith(k, small)))[which]) / small
         };
         Matrix3::from_columns(&[column(0), column(1), column(2)])
     }
@@ -143,13 +141,15 @@ impl ForceElement for MarkerForce {
         let [i, j] = motions else { return };
         let (line, zero) = (j.position_global - i.position_global, Vector3::zeros());
         let motion = RelativeMotion::between([i, j]);
+        let here = self.law.force_and_moment(times, &motion);
+        let [force, moment] = [(0, &here[0]), (1, &here[1])];
         let stiffness = [
-            self.fall(times, &motion, 0, motion.position.norm(), |motion, by| motion.moved(by)),
-            self.fall(times, &motion, 1, 0.0, |motion, by| motion.turned(by)),
+            self.fall(times, &motion, force, motion.position.norm(), |motion, by| motion.moved(by)),
+            self.fall(times, &motion, moment, 0.0, |motion, by| motion.turned(by)),
         ];
         let damping = [
-            self.fall(times, &motion, 0, motion.velocity.norm(), |motion, by| motion.faster(by)),
-            self.fall(times, &motion, 1, motion.omega.norm(), |motion, by| motion.spinning(by)),
+            self.fall(times, &motion, force, motion.velocity.norm(), |motion, by| motion.faster(by)),
+            self.fall(times, &motion, moment, motion.omega.norm(), |motion, by| motion.spinning(by)),
         ];
         for which in 0..2 {
             let [stiff, damped] =

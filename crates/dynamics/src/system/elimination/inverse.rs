@@ -103,7 +103,9 @@ pub(crate) struct Inverse<T> {
     modes: Vec<T>,
     bent: Option<BentInverse<T>>,
     coupling: [Vec<f64>; 3],
-    /// (κ J − κ² Sᵀ z⁻¹ S)⁻¹
+    /// K of the body: see [`super::tension`].
+    pub tension: Matrix3<f64>,
+    /// (κ J − κ² Sᵀ z⁻¹ S + K/κ)⁻¹
     spin: Matrix3<T>,
 }
 
@@ -111,7 +113,8 @@ impl<T: Number> Inverse<T> {
     pub fn new(flexible: usize) -> Self {
         let one = T::from_real(1.0);
         let coupling = std::array::from_fn(|_| vec![0.0; flexible]);
-        Self { kappa: one, mass: one, modes: vec![one; flexible], bent: None, coupling, spin: Matrix3::identity() }
+        let (spin, tension) = (Matrix3::identity(), Matrix3::zeros());
+        Self { kappa: one, mass: one, modes: vec![one; flexible], bent: None, coupling, tension, spin }
     }
 
     /// Room for that of a body.
@@ -139,7 +142,9 @@ impl<T: Number> Inverse<T> {
             *inverse = (kappa + T::from_real(damping) + T::from_real(stiffness) / kappa).recip();
         }
         // J = (J − SᵀM⁻¹S) + SᵀM⁻¹S, so that the sum is κ (J − SᵀM⁻¹S) + κ Sᵀ (M⁻¹ − κ z⁻¹) S.
-        let mut spin = inertia.locked.map(|entry| kappa * T::from_real(entry));
+        let mut spin = inertia
+            .locked
+            .zip_map(&self.tension, |entry, tension| kappa * T::from_real(entry) + T::from_real(tension) / kappa);
         if let (Some(bent), Some(of_mass)) = (&mut self.bent, &inertia.bent) {
             bent.find(kappa, &of_mass.terms, &self.modes, oscillators);
             bent.solve_coupling(&self.modes, &inertia.coupling);

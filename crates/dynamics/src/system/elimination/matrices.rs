@@ -1,6 +1,6 @@
 //! The factors that the steps of a system need.
 
-use nalgebra::Complex;
+use nalgebra::{Complex, Matrix3};
 
 use crate::conservative::ConservativeBody;
 use crate::system::constraints::{Compliant, End};
@@ -9,6 +9,7 @@ use crate::system::elimination::inverse::Inverse;
 use crate::system::elimination::joint_matrix::JointMatrix;
 use crate::system::elimination::number::Number;
 use crate::system::elimination::patterns::Patterns;
+use crate::system::elimination::tension::Tension;
 use crate::system::stage::Stage;
 
 /// Factors of a step.
@@ -18,6 +19,7 @@ pub(in crate::system) struct Matrices {
     pub compliant: Vec<Compliant>,
     /// True for each row that others imply, or that is compliant without stiffness.
     pub is_left_out: Vec<bool>,
+    pub tension: Tension,
     mass: Vec<Inverse<f64>>,
     pub of_mass: JointMatrix<f64>,
     pub real: NewtonMatrix<f64>,
@@ -43,6 +45,7 @@ impl Matrices {
         Self {
             compliant: vec![Compliant::default(); patterns.newton.len() - patterns.rows.len()],
             is_left_out: vec![false; patterns.newton.len()],
+            tension: Tension::new(system.bodies.len()),
             mass: system.bodies.iter().map(Inverse::of).collect(),
             of_mass: JointMatrix::new(&patterns.rows, coordinates),
             real: NewtonMatrix::new(system, patterns),
@@ -64,18 +67,29 @@ impl Matrices {
         true
     }
 
-    /// Factors of G M⁻¹ Gᵀ, and of the Newton matrix of a real κ, where a stage is. False where an inertia is singular.
-    pub fn factor_real(&mut self, system: &System, patterns: &Patterns, stage: &Stage, kappa: f64) -> bool {
+    /// Factors of G M⁻¹ Gᵀ, and of the Newton matrix of a real κ, where a stage is, with K of taut bodies or without. False where an
+    /// inertia is singular.
+    pub fn factor_real(
+        &mut self,
+        system: &System,
+        patterns: &Patterns,
+        stage: &Stage,
+        kappa: f64,
+        with_tension: bool,
+    ) -> bool {
         if !self.factor_mass(patterns, stage) {
             return false;
         }
         let compliant = self.is_left_out[system.rows()..].iter_mut().zip(&self.compliant);
         compliant.for_each(|(is_left_out, row)| *is_left_out = row.is_slack());
-        let Self { compliant, is_left_out, real, .. } = self;
+        let Self { compliant, is_left_out, real, tension, .. } = self;
+        for (b, inverse) in real.bodies.iter_mut().enumerate() {
+            inverse.tension = if with_tension { tension.frozen[b] } else { Matrix3::zeros() };
+        }
         real.factor(kappa, system, patterns, stage, compliant, is_left_out)
     }
 
-    /// Factor of the Newton matrix for what drifts where a stage is, after the factor of a step.
+    /// Factor of the Newton matrix for what drifts where a stage is, after the factor of a step. Taut bodies hang together, and drift.
     pub fn factor_drift(&mut self, system: &System, patterns: &Patterns, stage: &Stage, kappa: f64) -> bool {
         let Self { compliant, is_left_out, drift, .. } = self;
         drift.factor(kappa, system, patterns, stage, compliant, is_left_out)
@@ -95,7 +109,8 @@ impl Matrices {
 
     /// Factor of the Newton matrix of a complex κ where a stage is, after that of a real one.
     pub fn factor_complex(&mut self, system: &System, patterns: &Patterns, stage: &Stage, kappa: Complex<f64>) -> bool {
-        let Self { compliant, is_left_out, complex, .. } = self;
+        let Self { compliant, is_left_out, complex, tension, .. } = self;
+        complex.bodies.iter_mut().zip(&tension.frozen).for_each(|(inverse, tension)| inverse.tension = *tension);
         complex.factor(kappa, system, patterns, stage, compliant, is_left_out)
     }
 }

@@ -1,6 +1,9 @@
 //! One pass of Newton's method: Eqs. (J8) of `docs/method/systems.md`.
 
+use nalgebra::{Matrix3, Vector3};
+
 use crate::system::description::System;
+use crate::system::elimination::inverse::product;
 use crate::system::elimination::joint_matrix::Times;
 use crate::system::elimination::matrices::{Matrices, NewtonMatrix};
 use crate::system::elimination::number::Number;
@@ -78,6 +81,12 @@ impl Frozen<'_> {
                 let (omega, zeta) = (body.circular_frequencies[k], body.damping_ratios[k]);
                 let forces = velocity[at].scale(2.0 * zeta * omega) - x[at].scale(omega * omega) / kappa;
                 y[at] += forces;
+            }
+            // Of taut bodies −K RX/κ beside it.
+            let tension = &inverses[b].tension;
+            if *tension != Matrix3::zeros() {
+                let turned = product(tension, &Vector3::from_fn(|i, _| x[own.start + 3 + i]));
+                (0..3).for_each(|i| y[own.start + 3 + i] -= turned[i] / kappa);
             }
         }
         // −(k/κ W RX − c W M⁻¹Gᵀμ) / (k/κ + c) of compliant rows

@@ -34,7 +34,9 @@ impl SystemMotion {
         self.keep_spring_energies();
         self.keep_coordinates();
         let since = self.time;
-        self.project_positions(times, h)?;
+        // Newton's method knows the laws by now.
+        let is_explicit = self.scheme.is_explicit;
+        self.project_positions(times, h, is_explicit)?;
         self.watch(times)?;
         if self.stages[STAGES - 1].hold_points(&self.system, &self.start) {
             // They have no spin that takes up what the projection has moved them by.
@@ -59,18 +61,18 @@ impl SystemMotion {
     /// Projects the end of a step, and takes it for the state. Returns the largest residual and rate that are left.
     /// The second time says which branches of the drives hold.
     pub(super) fn end(&mut self, times: [f64; 2], h: f64) -> Result<[f64; 2], Failed> {
-        let left = self.project_positions(times, h)?;
+        let left = self.project_positions(times, h, true)?;
         Ok([left, self.project_velocities(times)?])
     }
 
     /// Moves the bodies at the end of a step so that the rows that are kept close. Returns the largest residual that is left.
-    fn project_positions(&mut self, times: [f64; 2], h: f64) -> Result<f64, Failed> {
+    fn project_positions(&mut self, times: [f64; 2], h: f64, of_laws: bool) -> Result<f64, Failed> {
         let Self { stages: [.., last], system, start, matrices, patterns, room, scheme, .. } = self;
         last.place(system, start);
         last.find_constraints(system, start, times);
-        last.linearize(system, times, FrictionSlope::Secant);
+        last.linearize(system, times, FrictionSlope::Secant, of_laws);
         matrices.compliant.copy_from_slice(&last.constraints.compliant);
-        if !matrices.factor_real(system, patterns, last, scheme.real / h) {
+        if !matrices.factor_real(system, patterns, last, scheme.real / h, false) {
             return Err(Failed::Rates(RateError::Inertia));
         }
         // Positions.

@@ -208,12 +208,19 @@ impl SystemMotion {
 
     /// Errors of places and of deformation by an estimate.
     pub(super) fn errors_of_places(&self, [h, span]: [f64; 2], energy: f64) -> ErrorKinds {
-        let Self { stages: [.., last], system, room, past, start, size, .. } = self;
+        let Self { stages: [.., last], system, room, past, start, size, matrices, .. } = self;
         let x = &room.real.x;
+        let kappa = self.scheme.real / (HELD_WITHIN * span);
         let (mut place, mut deformed) = (0.0, 0.0);
         for (b, body) in system.bodies.iter().enumerate() {
             let own = system.first[b]..system.first[b + 1];
-            place = larger(place, largest_place(&x[own.clone()], *size));
+            let of_place = largest_place(&x[own.clone()], *size);
+            // Light links of a taut chain follow what they hang between, and vibrate about it as a string that deforms.
+            if span.is_finite() && matrices.tension.holds(b, kappa) {
+                deformed = larger(deformed, of_place);
+            } else {
+                place = larger(place, of_place);
+            }
             let shapes = &x[own.start + 6..own.end];
             let [shift, turn] = [0, 3].map(|part| vector(x, own.start + part));
             let rigid = body.mass() * shift.norm_squared() + turn.dot(&(body.undeformed_inertia() * turn));
@@ -246,7 +253,8 @@ impl SystemMotion {
         held.x.copy_from_slice(&real.x);
         frozen.solve(held, &matrices.drift);
         let of_body = |body: usize| largest_place(&held.x[system.first[body]..], *size);
-        let place = kappa * (0..system.bodies.len()).map(of_body).fold(0.0, larger);
+        let lasts = |body: &usize| !matrices.tension.holds(*body, kappa);
+        let place = kappa * (0..system.bodies.len()).filter(lasts).map(of_body).fold(0.0, larger);
         if energy == 0.0 {
             return [place, 0.0];
         }
@@ -257,7 +265,7 @@ impl SystemMotion {
             let [velocity, spin] = [0, 3].map(|part| kappa * kappa * vector(&held.x, system.first[b] + part));
             body.mass() * velocity.norm_squared() + spin.dot(&(body.undeformed_inertia() * spin))
         };
-        let square: f64 = system.bodies.iter().enumerate().map(of_body).sum();
+        let square: f64 = system.bodies.iter().enumerate().filter(|(b, _)| lasts(b)).map(of_body).sum();
         [place, (square / (2.0 * energy)).sqrt()]
     }
 }

@@ -49,7 +49,7 @@ impl SystemMotion {
         self.raise_energies(h);
         let embedded = self.errors_of_places([h, bound.span], self.largest_moving);
         let errors = ErrorKinds { energy: self.energy_error(h), ..embedded.of_scheme(OF_EMBEDDED) };
-        let kink = if over_kinks { None } else { self.length_to_kink(h) };
+        let kink = if over_kinks { None } else { self.length_to_kink(h)? };
         if bound.ratio(&errors) <= 1.0 && kink.is_none() {
             self.last_length = h;
             self.keep_past();

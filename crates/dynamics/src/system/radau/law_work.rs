@@ -4,6 +4,7 @@
 //! jump, or much curvature within the step, the two differ: by energy that the step makes or loses. Eqs. (J23) of
 //! `docs/method/systems.md`.
 
+use crate::error::RateError;
 use crate::system::collocation::{Collocation, STAGES};
 use crate::system::description::System;
 use crate::system::joint::work::JointWork;
@@ -90,8 +91,8 @@ impl LawWork {
         stage.x.fill(0.0);
         stage.velocities.fill(0.0);
         stage.place(system, start);
-        stage.find_switches(system, start, [start.time; 2], first);
-        *has_switches = !first.is_empty();
+        // Steps tell of those that are not numbers.
+        *has_switches = stage.find_switches(system, start, [start.time; 2], first).is_err() || !first.is_empty();
     }
 
     /// Finds the works from the start of a step to a part of it.
@@ -203,33 +204,36 @@ impl LawWork {
     }
 
     /// The part of a step after which a law has its first kink of those that laws tell; none without.
-    pub(super) fn first_kink(&mut self, path: &Path<'_>) -> Option<f64> {
+    ///
+    /// # Errors
+    /// [`RateError::Switch`].
+    pub(super) fn first_kink(&mut self, path: &Path<'_>) -> Result<Option<f64>, RateError> {
         if !self.has_switches {
-            return None;
+            return Ok(None);
         }
         let Self { stage, switches: [before, after], .. } = self;
         let mut find = |part: f64, out: &mut Vec<f64>| {
             let times = path.follow(part, stage);
-            stage.find_switches(path.system, path.start, times, out);
+            stage.find_switches(path.system, path.start, times, out)
         };
         let mut last = FIRST_PLACE;
-        find(last, before);
+        find(last, before)?;
         for place in 1..=PLACES {
             let next = f64::from(place) / f64::from(PLACES);
-            find(next, after);
+            find(next, after)?;
             if is_passed(before, after) {
                 let [mut low, mut high] = [last, next];
                 for _ in 0..BISECTIONS {
                     let middle = 0.5 * (low + high);
-                    find(middle, after);
+                    find(middle, after)?;
                     *(if is_passed(before, after) { &mut high } else { &mut low }) = middle;
                 }
-                return Some(low * (1.0 - BEFORE));
+                return Ok(Some(low * (1.0 - BEFORE)));
             }
             std::mem::swap(before, after);
             last = next;
         }
-        None
+        Ok(None)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The work of laws in a step as an error of the step, and in its balances; the first kink of a law.
 
 use crate::conservative::part;
+use crate::error::RateError;
 use crate::system::collocation::STAGES;
 use crate::system::joint::work::JointWork;
 use crate::system::marker::Marker;
@@ -43,9 +44,9 @@ impl SystemMotion {
     }
 
     /// Length of the step to the first kink of a law within it; none without.
-    pub(super) fn length_to_kink(&mut self, h: f64) -> Option<f64> {
+    pub(super) fn length_to_kink(&mut self, h: f64) -> Result<Option<f64>, RateError> {
         let (path, works) = self.path(h);
-        works.first_kink(&path).map(|part| part * h)
+        Ok(works.first_kink(&path)?.map(|part| part * h))
     }
 
     /// Keeps the coordinates of forces of joints where a step begins.

@@ -6,6 +6,7 @@ use crate::error::RateError;
 use crate::matrix::lists::larger;
 use crate::system::collocation::STAGES;
 use crate::system::constraints::Compliant;
+use crate::system::description::System;
 use crate::system::elimination::newton::{Frozen, sizes};
 use crate::system::joint::force::FrictionSlope;
 use crate::system::radau::bound::Bound;
@@ -20,6 +21,9 @@ const STILL: f64 = 1e-8;
 const STIFF_RATE: f64 = 0.1;
 /// Where rounding keeps Newton's method from the end, what velocities may be off by, over what places may.
 const OF_VELOCITIES: f64 = 1e3;
+/// The rate of convergence above which laws are asked anew, and how many times in a step.
+const SLOW: f64 = 0.2;
+const MAX_RENEWALS: usize = 3;
 /// Passes of Newton's method before a step is given up.
 const MAX_PASSES: usize = 20;
 
@@ -46,17 +50,20 @@ impl SystemMotion {
         self.velocity_multipliers.iter_mut().for_each(|mu| mu.fill(0.0));
     }
 
-    /// Factors of the Newton matrix with the geometry of the second stage, where there are none yet or a compliant row has changed
-    /// much. Returns whether they are new.
-    fn factor(&mut self, h: f64, is_first: bool, by: FrictionSlope) -> Result<bool, Failed> {
-        let Self { matrices, system, stages, scheme, patterns, start, .. } = self;
+    /// Factors of the Newton matrix with the geometry of the second stage, where there are none yet, where laws are asked anew, or a
+    /// compliant row has changed much. Returns whether they are new.
+    fn factor(&mut self, h: f64, of_laws: bool, by: FrictionSlope) -> Result<bool, Failed> {
+        let Self { matrices, system, stages, scheme, patterns, start, multipliers, .. } = self;
         let kappa = scheme.real / h;
         if !system.connections.is_rigid() {
             for (stage, c) in stages.iter_mut().zip(scheme.times) {
-                stage.linearize(system, [start.time + c * h, start.time + 0.5 * h], by);
+                stage.linearize(system, [start.time + c * h, start.time + 0.5 * h], by, of_laws);
+            }
+            if of_laws {
+                take_stiffest(stages, system, kappa);
             }
         }
-        let mut is_new = is_first;
+        let mut is_new = of_laws;
         // Tangents of friction are those of the middle stage: the largest of all would hold what slides.
         let mut frictions = system.connections.joint_forces().map(|(.., force)| force.friction.is_some());
         for (row, frozen) in matrices.compliant.iter_mut().enumerate() {
@@ -65,12 +72,16 @@ impl SystemMotion {
             if by == FrictionSlope::Tangent && frictions.next().is_some_and(|is_held| is_held) {
                 largest = stages[1].constraints.compliant[row];
             }
-            if is_first || largest.is_far_from(*frozen, kappa) {
+            if of_laws || largest.is_far_from(*frozen, kappa) {
                 (*frozen, is_new) = (largest, true);
             }
         }
+        is_new |= matrices.tension.find(system, &stages[1], &multipliers[1], kappa);
+        if is_new {
+            matrices.tension.freeze();
+        }
         let is_regular = !is_new
-            || matrices.factor_real(system, patterns, &stages[1], kappa)
+            || matrices.factor_real(system, patterns, &stages[1], kappa, true)
                 && matrices.factor_complex(system, patterns, &stages[1], scheme.complex / h);
         if is_regular { Ok(is_new) } else { Err(Failed::Newton) }
     }
@@ -78,16 +89,18 @@ impl SystemMotion {
     /// Newton's method for the stages. Returns the number of passes.
     pub(super) fn newton(&mut self, h: f64, bound: &Bound, by: FrictionSlope) -> Result<usize, Failed> {
         let Bound { exactness, enough, .. } = *bound;
-        // With compliant rows the first changes fall faster than the later ones, which turn the axes of stiff forces.
-        let slowest = if self.system.connections.is_rigid() { 0.0 } else { STIFF_RATE };
+        // With compliant rows, and in taut chains, the first changes fall faster than the later ones, which turn the axes of stiff forces.
+        let is_rigid = self.system.connections.is_rigid();
         // Near a singular position what rounds off in a residual moves bodies by more.
         let weakest = self.judgement.as_ref().map_or(1.0, |known| known.rank.smallest.min(1.0));
         let rounding = ROUNDING / weakest;
         let ([mut last_position, mut last], mut since) = ([f64::INFINITY; 2], 0);
+        let mut renewals = if self.system.connections.has_laws() { MAX_RENEWALS } else { 0 };
+        let mut asks_laws = true;
         for pass in 1..=MAX_PASSES {
             self.evaluate_stages(h)?;
             self.find_energy(h);
-            since = if self.factor(h, pass == 1, by)? { 1 } else { since + 1 };
+            since = if self.factor(h, asks_laws, by)? { 1 } else { since + 1 };
             let [position, change] = self.improve(h, bound.span.is_finite());
             if !change.is_finite() {
                 // The next try begins with them.
@@ -95,6 +108,8 @@ impl SystemMotion {
                 return Err(Failed::Newton);
             }
             let rate = if since == 1 { 0.5 } else { change / last };
+            asks_laws = since > 1 && rate > SLOW && renewals > 0;
+            renewals -= usize::from(asks_laws);
             if position <= rounding && rate > 0.3 {
                 return Ok(pass);
             }
@@ -104,6 +119,7 @@ impl SystemMotion {
                 return if is_enough { Ok(pass) } else { Err(Failed::Newton) };
             }
             (last_position, last) = (position, change);
+            let slowest = if is_rigid && !self.matrices.tension.is_taut() { 0.0 } else { STIFF_RATE };
             // The error that is left, by the rate of convergence.
             let left = change * rate.max(slowest) / (1.0 - rate.min(0.9));
             if left <= exactness || change <= rounding {
@@ -238,5 +254,30 @@ impl SystemMotion {
             bend.iter_mut().zip(change).for_each(|(bend, change)| *bend = scheme.real * change);
         }
         stages[1].to_global_axes(system, x, y);
+    }
+}
+
+/// Takes the directions of each element at the stage at which they are stiffest for all stages: those of one stage belong together.
+fn take_stiffest(stages: &mut [Stage; STAGES], system: &System, kappa: f64) {
+    let connections = &system.connections;
+    let mut first = connections.joint_forces().count();
+    for element in &connections.elements {
+        let rows = first..first + element.directions();
+        first = rows.end;
+        let resistance = |stage: &Stage| {
+            stage.constraints.compliant[rows.clone()].iter().map(|row| row.resistance(kappa)).sum::<f64>()
+        };
+        let mut stiffest = (1, resistance(&stages[1]));
+        for stage in [0, 2] {
+            let here = resistance(&stages[stage]);
+            if here > stiffest.1 {
+                stiffest = (stage, here);
+            }
+        }
+        for to in (0..STAGES).filter(|to| *to != stiffest.0) {
+            if let Ok([to, from]) = stages.get_disjoint_mut([to, stiffest.0]) {
+                to.constraints.take_compliant(&from.constraints, rows.clone());
+            }
+        }
     }
 }

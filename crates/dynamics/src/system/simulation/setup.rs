@@ -67,7 +67,8 @@ impl SystemSetup {
             StepControl::Fixed(step) => {
                 positive("the step", step)?;
                 if let Some(ShapeLimit { body, frequency, limit }) = self.shape_limit().filter(|of| of.limit < step) {
-                    return Err(SetupError::StepBeyondBody { step, limit, body: body + 1, frequency });
+                    let body = self.system.named(body);
+                    return Err(SetupError::StepBeyondBody { step, limit, body, frequency });
                 }
             }
             StepControl::Tolerance(tolerance) => positive("the tolerance", tolerance)?,
@@ -210,7 +211,7 @@ fn refuse_axes_of_points(system: &System) -> Result<(), SetupError> {
                 let along = rows.iter().filter(|row| matches!(row, Row::Point { of, .. } if *of == k)).count();
                 let has_force = joint.forces().any(|(along, _)| along == Coordinate::Turn || k == 0);
                 if system.bodies()[body].is_point() && (along % 3 != 0 || has_force) {
-                    return Err(SetupError::PointTurned { body: body + 1, by: named(&joint.name) });
+                    return Err(SetupError::PointTurned { body: system.named(body), by: named(&joint.name) });
                 }
             }
         }
@@ -238,7 +239,7 @@ fn refuse_turned_points(motion: &mut SystemMotion) -> Result<(), SetupError> {
             let [force, moment] = [0, 3].map(|part| vector(&end.entries, part).norm());
             if moment > OF_PLACES * size * force {
                 let by = names.get(row).map_or_else(|| "a force element".into(), |name| named(name));
-                return Err(SetupError::PointTurned { body: end.body + 1, by });
+                return Err(SetupError::PointTurned { body: motion.system().named(end.body), by });
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use dynamics::{Joint, Marker, ShapeLimit, SystemSimulation};
+use dynamics::{ErrorKinds, Joint, Marker, ShapeLimit, SystemSimulation};
 use serde::Serialize;
 
 use crate::files::json;
@@ -13,6 +13,9 @@ const TOLD: f64 = 1e-9;
 /// Moves over the size of the system, and turns (rad), above which a place in the scene may be wrong.
 const FAR: f64 = 0.1;
 
+/// Rounding of places over the tolerance above which it is told, and the tolerance that fixed steps are taken to have.
+const COARSE: f64 = 0.01;
+const FIXED: f64 = 1e-6;
 /// Part of the run above which friction that holds is told.
 const HELD: f64 = 0.01;
 
@@ -38,6 +41,12 @@ pub struct TiedReport {
     pub branches: Vec<(String, [f64; 2])>,
     /// Changes by which the joints closed at the beginning, of the bodies that were not where they had to be.
     pub assembled: Vec<AssembledReport>,
+    /// The largest rounding of places of bodies, over the size of the largest.
+    #[serde(serialize_with = "json::number")]
+    pub rounding_of_places: f64,
+    /// Tolerance of the steps; none of fixed ones.
+    #[serde(skip)]
+    tolerance: Option<f64>,
     /// Size of the system.
     #[serde(skip)]
     size: f64,
@@ -45,10 +54,23 @@ pub struct TiedReport {
     pub steps: u64,
     /// The limit that the shapes of a body set for the steps of an explicit scheme, where steps came near to it.
     pub step_limit: Option<StepLimitReport>,
+    /// Errors that set the lengths of the steps under a tolerance.
+    pub step_errors: Option<StepErrorsReport>,
     /// Joints whose friction has held.
     pub held: Vec<HeldReport>,
     /// Joints with stops on flexible bodies.
     pub flexible_stops: Vec<String>,
+}
+
+/// Sums over the steps of the errors that they state, and the kind that set their lengths.
+#[derive(Debug, Clone, Serialize)]
+pub struct StepErrorsReport {
+    /// The name of the kind; none where errors were far below the tolerance.
+    pub ruled_by: Option<&'static str>,
+    /// Sums of each kind: place over the size of the largest body, and attitude; deformation over its largest; velocities that nothing
+    /// holds back over the largest speed; energy made or lost at laws over twice the largest. In the order of [`ErrorKinds::NAMES`].
+    #[serde(serialize_with = "json::numbers")]
+    pub sums: [f64; 4],
 }
 
 /// Friction that has held.
@@ -134,8 +156,15 @@ impl TiedReport {
             undecided_at: simulation.undecided_at(),
             branches: simulation.branching().map(|of| of.joints.clone()).unwrap_or_default(),
             assembled: assembled.filter(is_told).collect(),
+            rounding_of_places: simulation.rounding_of_places(),
+            tolerance: simulation.tolerance(),
             size,
             steps: simulation.stats().accepted,
+            step_errors: simulation.stats().error.zip(simulation.tolerance()).map(|(stated, tolerance)| {
+                let mut sums = [0.0; 4];
+                sums.iter_mut().zip(stated.kinds.named()).for_each(|(sum, (_, of_kind))| *sum = of_kind);
+                StepErrorsReport { ruled_by: stated.ruling(tolerance), sums }
+            }),
             step_limit: simulation.met_shape_limit().map(|ShapeLimit { body, frequency, limit }| StepLimitReport {
                 body: bodies[body].clone(),
                 frequency,
@@ -161,6 +190,13 @@ impl TiedReport {
                 "at time {} the linkage passes a singular position, nearer than its places on the ground are known so far from the origin: \
                  their rounding decides which way it goes on; put the origin of the scene near its bodies",
                 quantity(rounded(time, 4))
+            )
+        }))
+        .chain((self.rounding_of_places > COARSE * self.tolerance.unwrap_or(FIXED)).then(|| {
+            format!(
+                "bodies have come so far from where joints hold them to the ground that their places are rounded to {:.1e} of their size: \
+                 velocities and reactions there have as few digits; hold them to a ground that is nearer",
+                self.rounding_of_places
             )
         }))
     }
@@ -217,6 +253,16 @@ impl fmt::Display for TiedReport {
                 "  closed   {body} moved by {moved} and turned by {turned} rad, its velocity changed by {velocity} and \
                  its angular velocity by {angular_velocity} rad per time, so that the joints hold at the start"
             )?;
+        }
+        if let Some(StepErrorsReport { ruled_by, sums }) = &self.step_errors {
+            let kinds: Vec<String> =
+                ErrorKinds::NAMES.iter().zip(sums).map(|(name, sum)| format!("{name} {sum:.1e}")).collect();
+            let rule = match ruled_by {
+                Some(name) => format!("set by the error of {name}"),
+                None => "set by convergence, events and the length of the run: errors are far below the tolerance"
+                    .to_owned(),
+            };
+            writeln!(f, "  lengths  of steps were {rule}; sums of errors: {}", kinds.join(", "))?;
         }
         for HeldReport { joint, time, path } in &self.held {
             let [time, path] = [time, path].map(|x| quantity(rounded(*x, 4)));
