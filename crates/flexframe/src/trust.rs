@@ -8,7 +8,9 @@ mod full;
 mod mesh;
 mod steps;
 
+pub(crate) use card::percent;
 pub use card::{Place, TrustCard, TrustLine};
+pub(crate) use full::model_error;
 
 use model::Model;
 use results::Results;
@@ -18,12 +20,14 @@ use crate::commands::check::report::CheckReport;
 use crate::commands::run::body_report::BodyRunReport;
 use card::worst;
 
-/// The card of a run that has come to its end. `check`: the check by the full body, or the reason why there is none.
+/// The card of a run that has come to its end. `check`: the check by the full body, or the reason why there is none; `better`: the
+/// cure of large modes that are worse than others.
 pub(crate) fn of_run(
     (system, models): (&System, &[Model]),
     results: &Results,
     reports: &[BodyRunReport],
     check: Result<&CheckReport, &str>,
+    better: Option<&str>,
     file: &str,
 ) -> TrustCard {
     let name = |number: usize| reports.get(number).filter(|_| reports.len() > 1).map(|report| report.name.clone());
@@ -34,7 +38,7 @@ pub(crate) fn of_run(
         lines.extend(of_steps.map(|line| line.of(name(number))));
         lines.push(mesh::line(model, results, number, &scene_file).of(name(number)));
         let of_body = check.map(|check| check.bodies.get(number));
-        lines.extend(full::lines(model.body.flexible() == 0, of_body, file).map(|line| line.of(name(number))));
+        lines.extend(full::lines(model.body.flexible() == 0, of_body, better, file).map(|line| line.of(name(number))));
     }
     TrustCard::new(worst(lines))
 }
@@ -43,7 +47,7 @@ pub(crate) fn of_run(
 pub(crate) fn of_check(results: &Results, check: &CheckReport, file: &str) -> TrustCard {
     let name = |body: &str| results.metadata.only_body().is_none().then(|| body.to_owned());
     let found = check.bodies.iter().zip(&results.metadata.bodies).flat_map(|(body, of)| {
-        full::lines(of.model.frequencies.is_empty(), Ok(Some(body)), file).map(|line| line.of(name(&body.name)))
+        full::lines(of.model.frequencies.is_empty(), Ok(Some(body)), None, file).map(|line| line.of(name(&body.name)))
     });
     let is_kept = |line: &TrustLine| ![Place::Modes, Place::Model].iter().any(|place| line.place == place.name());
     let kept = TrustCard::of_file(&results.metadata, file).lines.into_iter().filter(is_kept);

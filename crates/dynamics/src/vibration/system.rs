@@ -9,12 +9,15 @@
 //! ξ = N η,  Nᵀ M N = 1:   η̈ + NᵀC N η̇ + NᵀK N η = 0
 //! ```
 
+mod blocks;
 mod body;
 pub(crate) mod configuration;
 pub(crate) mod error;
+mod graded;
 mod linearization;
 mod load;
 mod mode;
+mod null_space;
 mod participation;
 mod reaction;
 mod rotor;

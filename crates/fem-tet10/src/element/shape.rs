@@ -7,7 +7,8 @@
 pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
 
 /// Gradients of `L₀ … L₃` with respect to (ξ, η, ζ).
-const BARYCENTRIC_GRADIENTS: [[f64; 3]; 4] = [[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(crate) const BARYCENTRIC_GRADIENTS: [[f64; 3]; 4] =
+    [[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Reference coordinates (ξ, η, ζ) of the ten nodes.
 pub(crate) const NODES: [[f64; 3]; 10] = [
@@ -22,6 +23,22 @@ pub(crate) const NODES: [[f64; 3]; 10] = [
     [0.0, 0.5, 0.5],
     [0.5, 0.0, 0.5],
 ];
+
+/// The place in [`EDGES`] of the edge between two corners.
+pub(crate) const fn edge_between(a: usize, b: usize) -> usize {
+    const OF: [[usize; 4]; 4] = {
+        let mut of = [[0; 4]; 4];
+        let mut edge = 0;
+        while edge < EDGES.len() {
+            let [a, b] = EDGES[edge];
+            of[a][b] = edge;
+            of[b][a] = edge;
+            edge += 1;
+        }
+        of
+    };
+    OF[a][b]
+}
 
 pub(crate) fn barycentric([xi, eta, zeta]: [f64; 3]) -> [f64; 4] {
     [1.0 - xi - eta - zeta, xi, eta, zeta]

@@ -1,17 +1,30 @@
 //! Error of the mesh: the recovered stress against that of the elements (Zienkiewicz and Zhu 1987).
+//!
+//! A few fields at a time, in three passes: the stress of each element at its nodes, its mean at the sites, and the energies of both. What
+//! depends on the place alone is found once for all fields of a pass, or for all passes.
 
 use faer::{ColRef, MatRef};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::{COMPONENTS, StressRecovery};
-use crate::element::deformation::{
-    check_field, displacement_gradients, relative_displacements, second_strain, strain, stress,
-};
-use crate::element::integration::{IntegrationPoint, RulePoint, is_straight};
-use crate::element::shape::{EDGES, NODES, shape_functions, shape_gradients};
-use crate::error::{AssemblyError, AssemblyFault};
+use crate::element::deformation::check_field;
+use crate::element::integration::{IntegrationPoint, RulePoint, is_straight, jacobian};
+use crate::element::shape::{BARYCENTRIC_GRADIENTS, EDGES, NODES, edge_between, shape_functions, shape_gradients};
+use crate::error::AssemblyError;
 use crate::material::Material;
+
+/// Fields of a pass.
+const LANES: usize = 4;
+
+/// A value of each field.
+type Lanes = [f64; LANES];
+/// ∂u_a/∂x_b, by a, then b.
+type Gradient = [[Lanes; 3]; 3];
+/// Stress, in the order of [`COMPONENTS`].
+type Stress = [Lanes; 6];
+/// Displacements of the nodes of an element.
+type Displacements = [[Lanes; 3]; 10];
 
 /// Strain energies of an element, or of a body: of its stress, and of the difference between its stress and the
 /// recovered one.
@@ -37,18 +50,13 @@ impl std::iter::Sum for StressError {
 }
 
 impl StressRecovery<'_> {
-    /// The estimate by element, then by field: of displacement fields (N×k, length) and their
-    /// [`nodal_stress`](Self::nodal_stress) (6m×k, force per area), Eq. (S3) of `docs/method/stress.md`. The estimate of the body is
-    /// the sum over its elements.
+    /// The estimate by element, then by field, of displacement fields (N×k, length), Eq. (S3) of `docs/method/stress.md`: the stress of each
+    /// element against [`nodal_stress`](Self::nodal_stress). The estimate of the body is the sum over its elements.
     ///
     /// # Errors
     /// Fields of other lengths, or with an entry that is not finite; not enough memory.
-    pub fn error_estimate(
-        &self,
-        displacements: MatRef<'_, f64>,
-        nodal_stress: MatRef<'_, f64>,
-    ) -> Result<Vec<StressError>, AssemblyError> {
-        self.estimate(displacements, None, nodal_stress)
+    pub fn error_estimate(&self, displacements: MatRef<'_, f64>) -> Result<Vec<StressError>, AssemblyError> {
+        self.estimate(displacements, None)
     }
 
     /// The same of displacement fields u whose strain has a product in it, sym(∇u) + sym(∇aᵀ∇b) with a field b (N×k) for each u: about
@@ -60,144 +68,260 @@ impl StressRecovery<'_> {
         &self,
         displacements: MatRef<'_, f64>,
         (a, b): (ColRef<'_, f64>, MatRef<'_, f64>),
-        nodal_stress: MatRef<'_, f64>,
     ) -> Result<Vec<StressError>, AssemblyError> {
-        self.estimate(displacements, Some((a, b)), nodal_stress)
+        check_field(self.mesh, "fields", a.as_mat())?;
+        check_field(self.mesh, "fields", b)?;
+        self.estimate(displacements, Some((a, b)))
     }
 
     fn estimate(
         &self,
         displacements: MatRef<'_, f64>,
         product: Option<(ColRef<'_, f64>, MatRef<'_, f64>)>,
-        nodal_stress: MatRef<'_, f64>,
     ) -> Result<Vec<StressError>, AssemblyError> {
         check_field(self.mesh, "displacements", displacements)?;
-        if let Some((a, b)) = product {
-            check_field(self.mesh, "fields", a.as_mat())?;
-            check_field(self.mesh, "fields", b)?;
-        }
-        let (expected, found) = (6 * self.sites.len(), nodal_stress.nrows());
-        if found != expected {
-            return Err(AssemblyFault::FieldRows { what: "nodal stress", expected, found }.into());
-        }
         let (elements, count) = (self.mesh.elements().len(), displacements.ncols());
-        let mut errors = memory::with_capacity("the error of each element", elements * count)?;
+        let what = "the error of each element";
+        let mut errors = memory::with_capacity(what, elements * count)?;
         errors.resize(elements * count, StressError::default());
-        if count == 0 {
-            return Ok(errors);
-        }
+        let mut places: Vec<Place> = memory::with_capacity(what, elements)?;
+        (0..elements)
+            .into_par_iter()
+            .map(|e| Place::new(&self.mesh.element_positions(e)))
+            .collect_into_vec(&mut places);
+        let mut raw: Vec<[Stress; 10]> = memory::with_capacity(what, elements)?;
         let products = products_of_shapes(self.rules.fine());
-        errors.par_chunks_mut(count).enumerate().for_each_init(Room::default, |room, (e, errors)| {
-            let nodes = &self.mesh.elements()[e];
-            room.fields.clear();
-            room.fields.push(relative_displacements(displacements, nodes));
-            if let Some((a, b)) = product {
-                room.fields.extend([relative_displacements(a.as_mat(), nodes), relative_displacements(b, nodes)]);
-            }
-            let positions = self.mesh.element_positions(e);
-            if is_straight(&positions) {
-                self.of_straight(e, &positions, &products, nodal_stress, room, errors);
-            } else {
-                self.of_curved(e, &positions, nodal_stress, room, errors);
-            }
-        });
+        for first in (0..count).step_by(LANES) {
+            let lanes = LANES.min(count - first);
+            let of_nodes = |fields: MatRef<'_, f64>| by_node(fields.subcols(first, lanes));
+            let u = of_nodes(displacements);
+            let bent = product.map(|(a, b)| (by_node_alike(a), of_nodes(b)));
+            let fields = Fields { u: &u, bent: bent.as_ref().map(|(a, b)| (&a[..], &b[..])) };
+            let at_nodes = |e: usize| self.at_nodes_of(e, &places[e], &fields);
+            (0..elements).into_par_iter().map(at_nodes).collect_into_vec(&mut raw);
+            let mean = |site: usize| self.mean_at(site, &places, &raw);
+            let nodal: Vec<Stress> = (0..self.sites.len()).into_par_iter().map(mean).collect();
+            errors.par_chunks_mut(count).enumerate().for_each(|(e, errors)| {
+                let [energy, error] = match &places[e] {
+                    Place::Straight { determinant, .. } => {
+                        self.of_straight(e, determinant / 6.0, &products, &raw[e], &nodal)
+                    }
+                    Place::Curved { .. } => self.of_curved(e, &fields, &nodal),
+                };
+                let of_lanes = energy.into_iter().zip(error);
+                for (found, (energy, error)) in errors[first..first + lanes].iter_mut().zip(of_lanes) {
+                    *found = StressError { energy, error };
+                }
+            });
+        }
         Ok(errors)
+    }
+
+    /// The stress of an element at its nodes.
+    fn at_nodes_of(&self, e: usize, place: &Place, fields: &Fields<'_>) -> [Stress; 10] {
+        let nodes = &self.mesh.elements()[e];
+        let gradients: FieldGradients<[Gradient; 10]> = match place {
+            Place::Straight { barycentric, .. } => fields.of_element(nodes, |u| at_nodes_of_straight(barycentric, u)),
+            Place::Curved { .. } => {
+                let positions = self.mesh.element_positions(e);
+                let points = NODES.map(|at| IntegrationPoint::new(&positions, &shape_gradients(at), 1.0));
+                fields.of_element(nodes, |u| std::array::from_fn(|node| gradient(&points[node].gradients, u)))
+            }
+        };
+        std::array::from_fn(|node| {
+            let bent = gradients.bent.as_ref().map(|(a, b)| (&a[node], &b[node]));
+            stress(&self.materials[e], &gradients.u[node], bent)
+        })
+    }
+
+    /// The mean of the elements around a site, weighted with the volumes that they would have if they were as there throughout.
+    fn mean_at(&self, site: usize, places: &[Place], raw: &[[Stress; 10]]) -> Stress {
+        let (mut mean, mut volume) = (Stress::default(), 0.0);
+        for (e, node) in self.elements_at(site) {
+            let determinant = match &places[e] {
+                Place::Straight { determinant, .. } => *determinant,
+                Place::Curved { determinants } => determinants[node],
+            };
+            volume += determinant;
+            each(&mut mean, &raw[e][node], |mean, stress| mean + determinant * stress);
+        }
+        mean.as_flattened_mut().iter_mut().for_each(|sum| *sum /= volume);
+        mean
     }
 
     /// On a straight element both stresses are quadratic in space: their energies are forms of their values at the ten nodes.
     fn of_straight(
         &self,
         e: usize,
-        positions: &[[f64; 3]; 10],
+        volume: f64,
         products: &[[f64; 10]; 10],
-        nodal: MatRef<'_, f64>,
-        room: &mut Room,
-        errors: &mut [StressError],
-    ) {
-        let count = errors.len();
-        let corners: [IntegrationPoint; 4] =
-            std::array::from_fn(|corner| IntegrationPoint::new(positions, &shape_gradients(NODES[corner]), 1.0));
-        room.place(&corners, count);
-        // A sixth of the determinant.
-        let volume = corners[0].volume / 6.0;
-        let sites = self.sites.of_element(e);
-        for (k, error) in errors.iter_mut().enumerate() {
-            let raw: [Matrix3<f64>; 10] = std::array::from_fn(|node| {
-                // Gradients are linear in space.
-                let mean = |field: usize, k: usize| match node {
-                    0..4 => room.gradients[node][field][k],
-                    _ => {
-                        let [a, b] = EDGES[node - 4];
-                        0.5 * (room.gradients[a][field][k] + room.gradients[b][field][k])
-                    }
-                };
-                let of_product = (room.fields.len() > 1).then(|| second_strain(&mean(1, 0), &mean(2, k)));
-                stress(&self.materials[e], &(strain(&mean(0, k)) + of_product.unwrap_or_default()))
-            });
-            let raw = raw.map(|tensor| COMPONENTS.map(|at| tensor[at]));
-            let off: [[f64; 6]; 10] = std::array::from_fn(|node| {
-                std::array::from_fn(|c| nodal[(6 * sites[node] as usize + c, k)] - raw[node][c])
-            });
-            let half = 0.5 * volume;
-            let energy = |tensors: &[[f64; 6]; 10]| half * complementary_form(&self.materials[e], products, tensors);
-            *error = StressError { energy: energy(&raw), error: energy(&off) };
+        raw: &[Stress; 10],
+        nodal: &[Stress],
+    ) -> [Lanes; 2] {
+        let mut off = *raw;
+        for (off, site) in off.iter_mut().zip(self.sites.of_element(e)) {
+            each(off, &nodal[*site as usize], |raw, nodal| nodal - raw);
         }
+        [raw, &off]
+            .map(|at_nodes| complementary_form(&self.materials[e], products, at_nodes).map(|mean| 0.5 * volume * mean))
     }
 
-    fn of_curved(
-        &self,
-        e: usize,
-        positions: &[[f64; 3]; 10],
-        nodal: MatRef<'_, f64>,
-        room: &mut Room,
-        errors: &mut [StressError],
-    ) {
-        errors.fill(StressError::default());
-        let points = self.rules.fine_points(positions);
-        let sites = self.sites.of_element(e);
+    fn of_curved(&self, e: usize, fields: &Fields<'_>, nodal: &[Stress]) -> [Lanes; 2] {
+        let mut energies = [Lanes::default(); 2];
+        let nodes = &self.mesh.elements()[e];
+        let points = self.rules.fine_points(&self.mesh.element_positions(e));
         for (point, rule) in points.iter().zip(self.rules.fine()) {
-            let shapes = shape_functions(rule.point.at);
-            room.place(std::slice::from_ref(point), errors.len());
-            let half: f64 = 0.5 * point.volume;
-            for (k, error) in errors.iter_mut().enumerate() {
-                let [of_fields, product @ ..] = &room.gradients[0][..] else { continue };
-                let mut strains = strain(&of_fields[k]);
-                if let [a, b] = product {
-                    strains += second_strain(&a[0], &b[k]);
+            let gradients = fields.of_element(nodes, |u| gradient(&point.gradients, u));
+            let bent = gradients.bent.as_ref().map(|(a, b)| (a, b));
+            let raw = stress(&self.materials[e], &gradients.u, bent);
+            let mut off = raw.map(|component| component.map(|stress| -stress));
+            for (site, shape) in self.sites.of_element(e).iter().zip(shape_functions(rule.point.at)) {
+                each(&mut off, &nodal[*site as usize], |off, nodal| off + shape * nodal);
+            }
+            for (energy, stress) in energies.iter_mut().zip([raw, off]) {
+                let density = complementary_form(&self.materials[e], &[[1.0]], &[stress]);
+                energy.iter_mut().zip(density).for_each(|(sum, density)| *sum += 0.5 * point.volume * density);
+            }
+        }
+        energies
+    }
+}
+
+/// What is known of the place of an element, of all fields.
+enum Place {
+    /// The gradients of the barycentric coordinates, per length, and the determinant of the Jacobian, which is the same everywhere.
+    Straight { barycentric: [[f64; 3]; 4], determinant: f64 },
+    /// The determinants at the nodes.
+    Curved { determinants: [f64; 10] },
+}
+
+impl Place {
+    fn new(positions: &[[f64; 3]; 10]) -> Self {
+        if !is_straight(positions) {
+            let determinants = NODES.map(|at| jacobian(positions, &shape_gradients(at)).determinant());
+            return Self::Curved { determinants };
+        }
+        let [first, others @ ..]: [Vector3<f64>; 4] = std::array::from_fn(|corner| Vector3::from(positions[corner]));
+        let jacobian = Matrix3::from_columns(&others.map(|other| other - first));
+        // A mesh that has been checked has no singular Jacobian.
+        let inverse = jacobian.try_inverse().unwrap_or_else(Matrix3::zeros).transpose();
+        let barycentric = BARYCENTRIC_GRADIENTS.map(|d| <[f64; 3]>::from(inverse * Vector3::from(d)));
+        Self::Straight { barycentric, determinant: jacobian.determinant() }
+    }
+}
+
+/// Displacement fields u, and a and b of a product, by node.
+struct Fields<'a> {
+    u: &'a [[Lanes; 3]],
+    bent: Option<(&'a [[Lanes; 3]], &'a [[Lanes; 3]])>,
+}
+
+/// The gradients of [`Fields`] somewhere.
+struct FieldGradients<T> {
+    u: T,
+    bent: Option<(T, T)>,
+}
+
+impl Fields<'_> {
+    /// The gradients in an element, by its displacements.
+    fn of_element<T>(&self, nodes: &[u32; 10], gradients: impl Fn(&Displacements) -> T) -> FieldGradients<T> {
+        let of = |field: &[[Lanes; 3]]| gradients(&nodes.map(|node| field[node as usize]));
+        FieldGradients { u: of(self.u), bent: self.bent.map(|(a, b)| (of(a), of(b))) }
+    }
+}
+
+/// Fields (N×k), k at most [`LANES`], by node.
+fn by_node(fields: MatRef<'_, f64>) -> Vec<[Lanes; 3]> {
+    let of_node = |node: usize| {
+        std::array::from_fn(|axis| {
+            std::array::from_fn(|k| if k < fields.ncols() { fields[(3 * node + axis, k)] } else { 0.0 })
+        })
+    };
+    (0..fields.nrows() / 3).into_par_iter().map(of_node).collect()
+}
+
+/// The same field in each lane, by node.
+fn by_node_alike(field: ColRef<'_, f64>) -> Vec<[Lanes; 3]> {
+    (0..field.nrows() / 3).map(|node| std::array::from_fn(|axis| [field[3 * node + axis]; LANES])).collect()
+}
+
+/// Changes each number of `list` by that of `other` in its place.
+#[inline]
+fn each<const N: usize>(list: &mut [Lanes; N], other: &[Lanes; N], of: impl Fn(f64, f64) -> f64) {
+    for (list, other) in list.iter_mut().zip(other) {
+        for lane in 0..LANES {
+            list[lane] = of(list[lane], other[lane]);
+        }
+    }
+}
+
+/// ∇u by the gradients of the shape functions.
+fn gradient(shapes: &[[f64; 3]; 10], u: &Displacements) -> Gradient {
+    let mut gradient = Gradient::default();
+    for (shape, of_node) in shapes.iter().zip(u).skip(1) {
+        let mut relative = *of_node;
+        each(&mut relative, &u[0], |u, first| u - first);
+        add_product(&mut gradient, &relative, shape);
+    }
+    gradient
+}
+
+/// ∇u at the nodes of a straight element, where it is linear in space. At corner c it is Σ (4 u_ci − u_i − 3 u_c) ⊗ ∇L_i over the other
+/// corners i, u_ci of the node on the edge between.
+fn at_nodes_of_straight(barycentric: &[[f64; 3]; 4], u: &Displacements) -> [Gradient; 10] {
+    let mut gradients = [Gradient::default(); 10];
+    for corner in 0..4 {
+        for other in (0..4).filter(|other| *other != corner) {
+            let mut along = u[4 + edge_between(corner, other)];
+            for (axis, along) in along.iter_mut().enumerate() {
+                for (lane, along) in along.iter_mut().enumerate() {
+                    let here = u[corner][axis][lane];
+                    *along = 4.0 * (*along - here) - (u[other][axis][lane] - here);
                 }
-                let raw = COMPONENTS.map(|at| stress(&self.materials[e], &strains)[at]);
-                let off: [f64; 6] = std::array::from_fn(|c| {
-                    let recovered = |(site, shape): (&u32, f64)| shape * nodal[(6 * *site as usize + c, k)];
-                    sites.iter().zip(shapes).map(recovered).sum::<f64>() - raw[c]
-                });
-                let energy = |tensor: &[f64; 6]| half * complementary(&self.materials[e], tensor, tensor);
-                error.energy += energy(&raw);
-                error.error += energy(&off);
             }
+            add_product(&mut gradients[corner], &along, &barycentric[other]);
+        }
+    }
+    for (edge, [a, b]) in EDGES.into_iter().enumerate() {
+        let mut mean = gradients[a];
+        for (mean, other) in mean.iter_mut().zip(&gradients[b]) {
+            each(mean, other, |a, b| 0.5 * (a + b));
+        }
+        gradients[4 + edge] = mean;
+    }
+    gradients
+}
+
+/// Adds u ⊗ g.
+#[inline]
+fn add_product(gradient: &mut Gradient, u: &[Lanes; 3], g: &[f64; 3]) {
+    for (row, u) in gradient.iter_mut().zip(u) {
+        for (entry, g) in row.iter_mut().zip(g) {
+            entry.iter_mut().zip(u).for_each(|(sum, u)| *sum += u * g);
         }
     }
 }
 
-/// Room of one thread for the fields in an element: the displacements, and those of a product.
-#[derive(Default)]
-struct Room {
-    /// Displacements of the nodes 1 to 9 against node 0.
-    fields: Vec<Vec<f64>>,
-    /// Gradients by place, then field, then column.
-    gradients: Vec<Vec<Vec<Matrix3<f64>>>>,
-}
-
-impl Room {
-    /// Finds the gradients of all fields at some places; the second field has one column.
-    fn place(&mut self, places: &[IntegrationPoint], count: usize) {
-        self.gradients.resize_with(places.len(), Vec::new);
-        for (place, gradients) in places.iter().zip(&mut self.gradients) {
-            gradients.resize_with(self.fields.len(), Vec::new);
-            for (field, (relative, gradients)) in self.fields.iter().zip(gradients).enumerate() {
-                displacement_gradients(relative, place, if field == 1 { 1 } else { count }, gradients);
+/// C:(sym(∇u) + sym(∇aᵀ∇b)).
+#[inline]
+fn stress(material: &Material, u: &Gradient, bent: Option<(&Gradient, &Gradient)>) -> Stress {
+    let (lambda, mu) = material.lame();
+    // Twice the strain.
+    let mut strain = COMPONENTS.map(|(i, j)| u[i][j]);
+    for (strain, (i, j)) in strain.iter_mut().zip(COMPONENTS) {
+        strain.iter_mut().zip(&u[j][i]).for_each(|(sum, u)| *sum += u);
+    }
+    if let Some((a, b)) = bent {
+        for (strain, (i, j)) in strain.iter_mut().zip(COMPONENTS) {
+            for (a, b) in a.iter().zip(b) {
+                (0..LANES).for_each(|lane| strain[lane] += a[i][lane] * b[j][lane] + a[j][lane] * b[i][lane]);
             }
         }
     }
+    let trace: Lanes = std::array::from_fn(|lane| 0.5 * lambda * (strain[0][lane] + strain[1][lane] + strain[2][lane]));
+    let mut stress = strain.map(|component| component.map(|twice| mu * twice));
+    stress[..3].iter_mut().for_each(|normal| normal.iter_mut().zip(trace).for_each(|(sum, trace)| *sum += trace));
+    stress
 }
 
 /// ∫ N_a N_b dV over the volume, of a straight element.
@@ -213,24 +337,27 @@ fn products_of_shapes(rule: &[RulePoint]) -> [[f64; 10]; 10] {
     products
 }
 
-/// The mean of σ:C⁻¹:σ over an element, by its values at the nodes.
-fn complementary_form(material: &Material, products: &[[f64; 10]; 10], tensors: &[[f64; 6]; 10]) -> f64 {
-    let of_node = |(row, tensor): (&[f64; 10], &[f64; 6])| {
-        let mut sum = [0.0; 6];
-        for (product, other) in row.iter().zip(tensors) {
-            sum.iter_mut().zip(other).for_each(|(sum, entry)| *sum += product * entry);
+/// Σ P_ab σ_a:C⁻¹:σ_b of stresses at some places, P symmetric.
+fn complementary_form<const N: usize>(material: &Material, products: &[[f64; N]; N], at: &[Stress; N]) -> Lanes {
+    let form = |of: &[Lanes; N]| {
+        let mut sum = Lanes::default();
+        for (a, products) in products.iter().enumerate() {
+            let mut with: Lanes = of[a].map(|value| 0.5 * products[a] * value);
+            for (product, other) in products.iter().zip(&of[..a]) {
+                with.iter_mut().zip(other).for_each(|(sum, other)| *sum += product * other);
+            }
+            (0..LANES).for_each(|lane| sum[lane] += 2.0 * of[a][lane] * with[lane]);
         }
-        complementary(material, tensor, &sum)
+        sum
     };
-    products.iter().zip(tensors).map(of_node).sum()
-}
-
-/// σ:C⁻¹:τ, in the order of [`COMPONENTS`].
-fn complementary(material: &Material, sigma: &[f64; 6], tau: &[f64; 6]) -> f64 {
     let nu = material.poisson_ratio;
-    let trace = |t: &[f64; 6]| t[0] + t[1] + t[2];
-    let product = |range: std::ops::Range<usize>| -> f64 {
-        sigma[range.clone()].iter().zip(&tau[range]).map(|(s, t)| s * t).sum()
-    };
-    ((1.0 + nu) * (product(0..3) + 2.0 * product(3..6)) - nu * trace(sigma) * trace(tau)) / material.young_modulus
+    let mut whole = Lanes::default();
+    for component in 0..6 {
+        let times = if component < 3 { 1.0 + nu } else { 2.0 * (1.0 + nu) };
+        let of = form(&std::array::from_fn(|a| at[a][component]));
+        whole.iter_mut().zip(of).for_each(|(sum, of)| *sum += times * of);
+    }
+    let trace =
+        form(&std::array::from_fn(|a| std::array::from_fn(|lane| at[a][0][lane] + at[a][1][lane] + at[a][2][lane])));
+    std::array::from_fn(|lane| (whole[lane] - nu * trace[lane]) / material.young_modulus)
 }

@@ -9,6 +9,7 @@ pub(crate) mod body_report;
 mod checkpoint;
 mod error;
 mod estimate;
+mod large_choice;
 mod metadata;
 mod mover;
 mod recorder;
@@ -33,6 +34,7 @@ pub use body::RunBody;
 pub use body_report::BodyRunReport;
 pub use error::{RunError, RunFailure};
 pub use estimate::Estimate;
+pub use large_choice::LargeChoice;
 pub(crate) use metadata::units;
 pub use metadata::{metadata, metadata_of_system};
 pub use report::{RunReport, SystemReport, TableInUse};
@@ -75,8 +77,37 @@ pub fn run(
     let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
     // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
     progress(RunProgress::Built);
-    let report = run_models(system, &models, folder, settings, progress)?;
-    Ok((models, report))
+    let report = run_models(system, &models, folder, settings, &mut progress)?;
+    let chosen = report.large_choice.as_ref().and_then(|choice| choice.taken(system, report.steps));
+    let Some(chosen) = chosen else { return Ok((models, report)) };
+    again(&chosen, (models, report), folder, settings, progress)
+}
+
+/// Runs a system once more with the large modes that the check of the first run has found better. The first stands where this cannot be done.
+fn again(
+    system: &System,
+    (models, first): (Vec<Model>, RunReport),
+    folder: &Path,
+    settings: &RunSettings,
+    mut progress: impl FnMut(RunProgress),
+) -> Result<(Vec<Model>, RunReport), RunError> {
+    let over = RunSettings { overwrite: true, ..settings.clone() };
+    let second = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))
+        .map_err(RunError::from)
+        .and_then(|models| Ok((run_models(system, &models, folder, &over, progress)?, models)));
+    match second {
+        Ok((mut report, models)) => {
+            report.times.add_all(&first.times);
+            Ok((models, RunReport { large_choice: first.large_choice, large_is_chosen: true, ..report }))
+        }
+        Err(error) => {
+            // What was written of it is of no use: the results of the first are whole.
+            std::fs::remove_file(unfinished(&first.results)).ok();
+            let mut report = first;
+            report.warnings.push(format!("the run with other large modes has failed: {error}"));
+            Ok((models, report))
+        }
+    }
 }
 
 /// Checks the worst rows of each body by the full body, as many as cost no more than the reduction did, if the run is to be checked; states
@@ -98,6 +129,12 @@ fn conclude(
             let (path, builder, rows) = (&report.results, &settings.builder, CheckRows::Cheap);
             check_run(path, &results, system, models, builder, &rows, |p| progress(RunProgress::Check(p)))
         });
+        if let Some(Ok(checked)) = &checked {
+            match LargeChoice::better(&report.results, &results, (system, models), &settings.builder, checked) {
+                Ok(better) => report.large_choice = better,
+                Err(error) => report.warnings.push(format!("other large modes could not be checked: {error}")),
+            }
+        }
         if settings.check {
             report.times.add("check", started.elapsed());
         }
@@ -115,7 +152,8 @@ fn conclude(
             }
         };
         let check = report.check.as_ref().ok_or(not_checked);
-        let card = trust::of_run((system, models), &results, &report.bodies, check, &file);
+        let cure = report.large_choice.as_ref().map(LargeChoice::cure);
+        let card = trust::of_run((system, models), &results, &report.bodies, check, cure.as_deref(), &file);
         writer.trust(card.lines.clone());
         report.trust = Some(card);
         report.times.add("trust", started.elapsed());

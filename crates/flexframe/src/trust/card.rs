@@ -114,7 +114,7 @@ fn rank(line: &TrustLine) -> f64 {
 }
 
 /// "0.21 %", "0.003 %"; with a power of ten where that has too many zeros.
-pub(super) fn percent(part: f64) -> String {
+pub(crate) fn percent(part: f64) -> String {
     let percent = 100.0 * part;
     match percent {
         0.0 => "0 %".to_owned(),

@@ -5,11 +5,13 @@ use model::{ErrorDirection, ErrorPart};
 use super::card::{Line, Place, SMALL, percent};
 use crate::commands::check::report::{BodyCheck, DEAR, RowCheck};
 
-/// Cure for vibrations that go out of step.
-const DRIFT: &str = "another number of large modes (`[modes] large`, `following`), or modes about the bent rest (`[modes] about`), and compare";
-
-/// The lines of a body: of its modes and of its model.
-pub(super) fn lines(is_rigid: bool, check: Result<Option<&BodyCheck>, &str>, file: &str) -> [Line; 2] {
+/// The lines of a body: of its modes and of its model. `better` is the cure of large modes that are worse than others.
+pub(super) fn lines(
+    is_rigid: bool,
+    check: Result<Option<&BodyCheck>, &str>,
+    better: Option<&str>,
+    file: &str,
+) -> [Line; 2] {
     if is_rigid {
         let (why, next) = ("the body is taken as rigid", "give it modes (`[modes] flexible`) and compare");
         let none = ("no error: a rigid body has none", "by the scene");
@@ -25,28 +27,35 @@ pub(super) fn lines(is_rigid: bool, check: Result<Option<&BodyCheck>, &str>, fil
         Err(why) => not_known(why, &command),
         Ok(None) => not_known("the check does not have this body", &command),
         Ok(Some(BodyCheck { rows, not_checked, .. })) => match (rows.is_empty(), not_checked) {
-            (false, _) => known(rows),
+            (false, _) => known(rows, better),
             (true, Some(why)) if why != DEAR => not_known(why, "compare with more modes, and with a mesh of its own"),
             (true, _) => not_known("the full body costs more than the reduction did", &command),
         },
     }
 }
 
-fn known(rows: &[RowCheck]) -> [Line; 2] {
+/// The size of the parts of the error of a row that modes leave out, or of its other parts, and the mend of the largest of them.
+fn parts(row: &RowCheck, of_modes: bool) -> (f64, String) {
+    let is_of_modes = |part: &&ErrorPart| part.direction == ErrorDirection::LinearAnswer;
+    let parts = row.state.parts.iter().filter(|part| is_of_modes(part) == of_modes);
+    let square: f64 = parts.clone().map(|part| part.size * part.size).sum();
+    let mend = parts.max_by(|a, b| a.size.total_cmp(&b.size)).and_then(|part| part.mend);
+    (square.sqrt(), mend.map_or_else(String::new, |mend| mend.words().to_owned()))
+}
+
+/// The error of the model in rows of a run: its displacements, and the vibrations that come out of step by the end.
+pub(crate) fn model_error(rows: &[RowCheck]) -> f64 {
+    rows.iter().map(|row| parts(row, false).0.max(row.state.drift)).fold(0.0, f64::max)
+}
+
+fn known(rows: &[RowCheck], better: Option<&str>) -> [Line; 2] {
     let measured = match rows {
         [row] => format!("measured by the full nonlinear body at time {:.6}", row.state.time),
         _ => format!("measured by the full nonlinear body in {} rows", rows.len()),
     };
     let about = if rows.iter().all(|row| row.state.is_settled) { "" } else { "about " };
-    let is_of_modes = |part: &&ErrorPart| part.direction == ErrorDirection::LinearAnswer;
-    let of = |row: &RowCheck, of_modes: bool| {
-        let parts = row.state.parts.iter().filter(|part| is_of_modes(part) == of_modes);
-        let square: f64 = parts.clone().map(|part| part.size * part.size).sum();
-        let mend = parts.max_by(|a, b| a.size.total_cmp(&b.size)).and_then(|part| part.mend);
-        (square.sqrt(), mend.map_or_else(String::new, |mend| mend.words().to_owned()))
-    };
     let worst = |of_modes: bool| {
-        let each = rows.iter().map(|row| of(row, of_modes));
+        let each = rows.iter().map(|row| parts(row, of_modes));
         each.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
     };
     let off = |error: f64| format!("displacements off by {about}{} of the largest", percent(error));
@@ -55,11 +64,14 @@ fn known(rows: &[RowCheck]) -> [Line; 2] {
     let modes = Place::Modes.known(of_modes, off(of_modes), measured.clone(), next);
     let (mut of_model, mut next) = worst(false);
     let mut meaning = off(of_model);
-    let drift = rows.iter().map(|row| row.state.drift).fold(0.0, f64::max);
-    if drift >= SMALL && drift > of_model {
+    let worst = rows.iter().map(|row| (row.state.drift, row.state.drift_mend)).max_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some((drift, Some(mend))) = worst.filter(|(drift, _)| *drift > of_model) {
         meaning = format!("{meaning}, its vibrations by up to {} at the end", percent(drift));
         of_model = drift;
-        next = DRIFT.to_owned();
+        mend.words().clone_into(&mut next);
+    }
+    if let Some(better) = better {
+        better.clone_into(&mut next);
     }
     let frequencies = rows.iter().flat_map(|row| &row.state.frequencies).map(|frequency| frequency.error.abs());
     let frequency = frequencies.fold(0.0, f64::max);

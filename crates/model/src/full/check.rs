@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::error::refuse;
 use crate::full::acting::MarkerForce;
-use crate::full::mends::{ErrorPart, Mend, mends, parts};
+use crate::full::mends::{ErrorPart, Mend, mend_of_drift, mends, parts};
 use crate::full::stress::{StressCheck, stress_check};
 use crate::full::{FullError, FullModel};
 use crate::model::Model;
@@ -42,6 +42,8 @@ pub struct StateCheck {
     /// The error to which the vibrations of the run may come by its end, over the largest displacements as `error_of_largest`: if the forces along
     /// the modes are wrong all the time as much as here, in step with them, Eq. (K8) of `docs/method/check.md`.
     pub drift: f64,
+    /// The mend of that.
+    pub drift_mend: Option<Mend>,
     /// Largest error of the displacement of a node, length.
     pub largest_error: f64,
     /// Largest true displacement by deformation of a node, length.
@@ -181,6 +183,7 @@ impl<'a> Checker<'a> {
             beside_modes: beside,
             parts,
             drift,
+            drift_mend: mend_of_drift(drift, has_large_modes),
             largest_error: peak(&found.error),
             largest_displacement: peak(&truth),
             points: self.points.iter().map(|point| checked(point, &truth, &found.error)).collect(),

@@ -19,6 +19,8 @@ pub enum Mend {
     LargeModes,
     /// It bends further than the large modes hold: modes about its deformed rest do.
     Reference,
+    /// Its vibrations come out of step with these large modes.
+    OtherLargeModes,
 }
 
 impl Mend {
@@ -29,6 +31,9 @@ impl Mend {
             Self::MoreModes => "more modes (`[modes] flexible`)",
             Self::LargeModes => "large modes (`[effects] large_deflection = true`)",
             Self::Reference => "modes about the bent rest (`[modes] about`), or fewer loads",
+            Self::OtherLargeModes => {
+                "another number of large modes (`[modes] large`, `following`), or modes about the bent rest (`[modes] about`), and compare"
+            }
         }
     }
 }
@@ -85,6 +90,12 @@ pub(crate) fn parts(
     .map(|(direction, size, mend)| ErrorPart { direction, size, mend: (size >= SMALL).then_some(mend) })
 }
 
+/// The mend of vibrations that come out of step by this part of the largest.
+pub(crate) fn mend_of_drift(drift: f64, has_large_modes: bool) -> Option<Mend> {
+    let mend = if has_large_modes { Mend::OtherLargeModes } else { Mend::LargeModes };
+    (drift >= SMALL).then_some(mend)
+}
+
 /// The mends of the larger parts, each once.
 pub(crate) fn mends(parts: &[ErrorPart; 3]) -> Vec<Mend> {
     let error = parts.iter().map(|part| part.size * part.size).sum::<f64>().sqrt();
@@ -118,5 +129,7 @@ mod tests {
         let [along, left_out, _] = parts([9e-4, 0.4, 0.5, 0.6], true, false);
         assert!((left_out.size - 0.5).abs() < 1e-15 && left_out.mend == Some(Mend::MoreModes) && along.mend.is_none());
         assert_eq!(parts([9e-4, 0.0, 0.0, 0.0], false, false)[0].mend, None);
+        let of_drift = [(0.4, false), (0.4, true), (9e-4, true)].map(|(drift, large)| mend_of_drift(drift, large));
+        assert_eq!(of_drift, [Some(Mend::LargeModes), Some(Mend::OtherLargeModes), None]);
     }
 }

@@ -7,10 +7,9 @@ use faer::{Col, MatRef};
 use fem_tet10::{AssemblyError, StressError, StressRecovery};
 
 use crate::model::Meshed;
-use crate::stress::about::stress_about;
 
-/// Displacement fields whose stress is recovered at once, which bounds the room for it.
-const BLOCK: usize = 8;
+/// Displacement fields that are seen at once, which bounds the room for their errors.
+const BLOCK: usize = 32;
 
 impl Meshed {
     /// The error in each element of small displacements (3n×k) from the rest of the modes: `see` is given blocks of displacements one
@@ -28,11 +27,8 @@ impl Meshed {
             let count = BLOCK.min(displacements.ncols() - first);
             let block = displacements.subcols(first, count);
             let errors = match &self.reference {
-                None => recovery.error_estimate(block, recovery.nodal_stress(block)?.as_ref())?,
-                Some(reference) => {
-                    let nodal = stress_about(recovery, reference.as_ref(), block)?;
-                    recovery.error_estimate_of_product(block, (reference.col(0), block), nodal.subcols(0, count))?
-                }
+                None => recovery.error_estimate(block)?,
+                Some(reference) => recovery.error_estimate_of_product(block, (reference.col(0), block))?,
             };
             see(count, &errors);
         }
@@ -51,14 +47,12 @@ impl Meshed {
         let displacement = &self.modes.shapes * Col::from_iter(modal_displacement.iter().copied());
         let displacement = displacement.as_mat();
         let Some(reference) = &self.reference else {
-            return recovery.error_estimate(displacement, recovery.nodal_stress(displacement)?.as_ref());
+            return recovery.error_estimate(displacement);
         };
         // E(u₀) + sym(F₀ᵀ∇u) = sym ∇(u₀ + u) + sym(∇u₀ᵀ∇(½u₀ + u)).
         let rest = reference.col(0);
         let whole = Col::from_fn(rest.nrows(), |i| rest[i] + displacement[(i, 0)]);
         let half = Col::from_fn(rest.nrows(), |i| 0.5 * rest[i] + displacement[(i, 0)]);
-        let of_both = stress_about(recovery, reference.as_ref(), displacement)?;
-        let nodal = of_both.col(0) + of_both.col(1);
-        recovery.error_estimate_of_product(whole.as_mat(), (rest, half.as_mat()), nodal.as_mat())
+        recovery.error_estimate_of_product(whole.as_mat(), (rest, half.as_mat()))
     }
 }

@@ -24,6 +24,7 @@ fn of_row<'py>(py: Python<'py>, RowCheck { row, why, state }: &RowCheck) -> PyRe
     data.set_item("error", state.error)?;
     data.set_item("error_of_largest", state.error_of_largest)?;
     data.set_item("drift", state.drift)?;
+    data.set_item("drift_mend", state.drift_mend.map(flexframe::model::Mend::words))?;
     let parts = PyDict::new(py);
     for part in &state.parts {
         parts.set_item(part.direction.words(), (part.size, part.mend.map(flexframe::model::Mend::words)))?;

@@ -1,10 +1,12 @@
 //! The reduction of the linearised equations to independent coordinates.
 
+use faer::Mat;
 use faer::linalg::solvers::Solve;
-use faer::{Mat, Side};
 
 use crate::system::description::System;
+use crate::vibration::system::blocks::Blocks;
 use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::null_space::null_space;
 use crate::vibration::system::terms::{Spring, Terms};
 use crate::vibration::system::tie::{Tie, stiffnesses};
 
@@ -47,36 +49,27 @@ impl Linearization {
             system.bodies.iter().flat_map(|body| std::iter::repeat_n(0.0, 6).chain(stiffnesses(body))).collect();
         let size = basis.ncols();
         let strained: Vec<usize> = (0..n).filter(|k| strain[*k] > 0.0).collect();
-        let roots = Mat::from_fn(strained.len(), size, |i, j| strain[strained[i]].sqrt() * basis[(strained[i], j)]);
-        // Right singular vectors by falling strain; those of motions that deform nothing are the last.
-        let svd = roots.svd().map_err(|_| SteadyError::Numbers)?;
         let rigid = terms.rigid_motions.min(size).max(size.saturating_sub(strained.len()));
-        let order: Vec<usize> = (0..size).rev().collect();
-        let turned = Mat::from_fn(size, size, |i, j| svd.V()[(i, order[j])]);
-        let mut basis: Mat<f64> = basis * turned;
-        let values = svd.S().column_vector();
-        let strain_rates: Vec<f64> = order
-            .iter()
-            .enumerate()
-            .map(|(k, of)| if k < rigid || *of >= values.nrows() { 0.0 } else { values[*of] })
-            .collect();
-        for (k, j) in (0..rigid).flat_map(|j| strained.iter().map(move |k| (*k, j))) {
-            basis[(k, j)] = 0.0;
-        }
+        let (basis, strain_rates) = match strained.is_empty() {
+            true => (basis, vec![0.0; size]),
+            false => rigid_first(basis, rigid, &strained, &strain)?,
+        };
         let (basis, strains, unsprung) = unstrained_first(basis, rigid, &terms.springs)?;
-        let reduce = |matrix: &Mat<f64>| basis.transpose() * (matrix * &basis);
         // |N|ᵀ |K| |N| of the coordinates that deform nothing.
         let absolute = |matrix: &Mat<f64>| Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)].abs());
         let columns = absolute(&basis.get(.., ..unsprung).to_owned());
-        let magnitude = |matrix: &Mat<f64>| (columns.transpose() * (absolute(matrix) * &columns)).norm_max();
+        let magnitude = |matrix: &Blocks| matrix.absolute().reduced(&columns).norm_max();
         let [of_forces, accelerated] = [&terms.unsprung, &terms.accelerated].map(magnitude);
         let magnitudes = [of_forces.max(accelerated), magnitude(&terms.damping)];
         let of_springs = absolute(&terms.springs) * &columns;
         let of_springs = (0..unsprung).map(|k| of_springs.col(k).squared_norm_l2()).fold(0.0, f64::max);
         let of_bodies = strain.iter().copied().filter(|strain| *strain > 0.0).reduce(f64::min);
         let strain_floor = of_springs.max(of_bodies.unwrap_or(0.0));
-        let mut stiffness = reduce(&terms.unsprung) + strains.transpose() * &strains;
-        let damping = reduce(&terms.damping);
+        let mut stiffness = terms.unsprung.reduced(&basis);
+        if strains.nrows() > 0 {
+            stiffness += strains.transpose() * &strains;
+        }
+        let damping = terms.damping.reduced(&basis);
         strain_rates.iter().enumerate().for_each(|(k, rate)| stiffness[(k, k)] += rate * rate);
         Ok(Self {
             basis,
@@ -131,6 +124,32 @@ impl Linearization {
     }
 }
 
+/// Turns the motions so that those that deform no body come first, without the rounding of what does, and gives the root of the strain of each (Λ).
+fn rigid_first(
+    basis: Mat<f64>,
+    rigid: usize,
+    strained: &[usize],
+    strain: &[f64],
+) -> Result<(Mat<f64>, Vec<f64>), SteadyError> {
+    let size = basis.ncols();
+    let roots = Mat::from_fn(strained.len(), size, |i, j| strain[strained[i]].sqrt() * basis[(strained[i], j)]);
+    // Right singular vectors by falling strain; those of motions that deform nothing are the last.
+    let svd = roots.svd().map_err(|_| SteadyError::Numbers)?;
+    let order: Vec<usize> = (0..size).rev().collect();
+    let turned = Mat::from_fn(size, size, |i, j| svd.V()[(i, order[j])]);
+    let mut basis: Mat<f64> = basis * turned;
+    let values = svd.S().column_vector();
+    let strain_rates: Vec<f64> = order
+        .iter()
+        .enumerate()
+        .map(|(k, of)| if k < rigid || *of >= values.nrows() { 0.0 } else { values[*of] })
+        .collect();
+    for (k, j) in (0..rigid).flat_map(|j| strained.iter().map(move |k| (*k, j))) {
+        basis[(k, j)] = 0.0;
+    }
+    Ok((basis, strain_rates))
+}
+
 /// Turns the motions that deform no body so that those that strain no spring come first, and gives the rows B N of the springs, in which these have
 /// nothing, where a product would leave them the rounding of the stiffest, and their number.
 fn unstrained_first(
@@ -153,42 +172,4 @@ fn unstrained_first(
     let unsprung = (0..rigid).filter(|k| value(*k) <= UNSTRAINED * value(0)).count();
     (0..unsprung).for_each(|j| strains.col_mut(j).fill(0.0));
     Ok((basis, strains, unsprung))
-}
-
-/// An M-orthonormal basis of the motions that the rows leave.
-fn null_space(system: &System, terms: &Terms) -> Result<Mat<f64>, SteadyError> {
-    let n = system.coordinates();
-    let kept: Vec<usize> = (0..terms.rows.nrows()).filter(|row| !terms.is_implied[*row]).collect();
-    // Turns of point masses, which have none, are held.
-    let points = system.bodies.iter().zip(&system.first).filter(|(body, _)| body.is_point());
-    let held: Vec<usize> = points.flat_map(|(_, first)| first + 3..first + 6).collect();
-    let rows = kept.len() + held.len();
-    // M = Lᵐ Lᵐᵀ of each body; of z = Lᵐᵀ ξ all that is orthogonal to the columns of Lᵐ⁻¹ Gᵀ.
-    let masses = terms.masses.iter().zip(&system.bodies).map(|(mass, body)| {
-        let turns = if body.is_point() { body.mass() } else { 0.0 };
-        Mat::from_fn(mass.nrows(), mass.ncols(), |i, j| mass[(i, j)] + if i == j && i >= 3 { turns } else { 0.0 })
-    });
-    let factors = masses.map(|mass| mass.llt(Side::Lower).map(|llt| llt.L().to_owned()));
-    let factors: Vec<Mat<f64>> = factors.collect::<Result<_, _>>().map_err(|_| SteadyError::Numbers)?;
-    let mut columns = Mat::from_fn(n, rows, |k, j| match kept.get(j) {
-        Some(row) => terms.rows[(*row, k)],
-        None => f64::from(u8::from(held[j - kept.len()] == k)),
-    });
-    for (factor, first) in factors.iter().zip(&system.first) {
-        let block = columns.submatrix_mut(*first, 0, factor.nrows(), rows);
-        faer::linalg::triangular_solve::solve_lower_triangular_in_place(factor.as_ref(), block, faer::Par::Seq);
-    }
-    for j in 0..rows {
-        let norm = columns.col(j).norm_l2();
-        if norm > 0.0 {
-            columns.col_mut(j).iter_mut().for_each(|x| *x /= norm);
-        }
-    }
-    let left = n - rows;
-    let mut basis = if rows == 0 { Mat::identity(n, n) } else { columns.qr().compute_Q().get(.., rows..).to_owned() };
-    for (factor, first) in factors.iter().zip(&system.first) {
-        let block = basis.submatrix_mut(*first, 0, factor.nrows(), left);
-        faer::linalg::triangular_solve::solve_upper_triangular_in_place(factor.transpose(), block, faer::Par::Seq);
-    }
-    Ok(basis)
 }

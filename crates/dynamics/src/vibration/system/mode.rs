@@ -1,8 +1,9 @@
 //! Vibrations of a linearised system: frequencies, damping, shapes, and who has their energy.
 
-use faer::{Mat, c64};
+use faer::{Mat, Side, c64};
 
 use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::graded::graded_modes;
 use crate::vibration::system::linearization::Linearization;
 use crate::vibration::system::scaled::ScaledEquations;
 
@@ -69,6 +70,62 @@ fn null_vectors(forces: &Mat<f64>) -> Result<(Mat<f64>, usize), SteadyError> {
     Ok((svd.V().to_owned(), loose))
 }
 
+/// Coordinates from which on a system is wide: it is asked first if it has a simpler answer, which costs a small part of the general one.
+const WIDE: usize = 100;
+/// Part of a matrix that is its rounding.
+const UNEVEN: f64 = 1e-12;
+
+/// The eigenvectors of the symmetric part of a wide matrix, if all that it does with a weight is to resist: no motion is then without its forces.
+fn resisted(matrix: &Mat<f64>, weight: f64) -> Result<Option<Mat<f64>>, SteadyError> {
+    let size = matrix.nrows();
+    if size < WIDE {
+        return Ok(None);
+    }
+    let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * weight * (matrix[(i, j)] + matrix[(j, i)]));
+    let eigen = symmetric.self_adjoint_eigen(Side::Lower).map_err(|_| SteadyError::Numbers)?;
+    let resists = eigen.S().column_vector().iter().all(|value| *value > ROUNDING);
+    Ok(resists.then(|| eigen.U().to_owned()))
+}
+
+/// K of wide equations that are without damping and gyroscopic forces, and symmetric.
+fn symmetric(stiffness: &Mat<f64>, damping: &Mat<f64>) -> Option<Mat<f64>> {
+    let size = stiffness.nrows();
+    if size < WIDE || damping.norm_max() > 0.0 {
+        return None;
+    }
+    let uneven = (stiffness - stiffness.transpose()).norm_max();
+    let even = || Mat::from_fn(size, size, |i, j| 0.5 * (stiffness[(i, j)] + stiffness[(j, i)]));
+    (uneven <= UNEVEN * stiffness.norm_max()).then(even)
+}
+
+/// Eigenvalues ±√−κ of symmetric equations with their shapes, of states x s and ẋ of unit length; of each pair that swings the one that turns forwards, and of zeros both.
+fn of_symmetric(stiffness: &Mat<f64>, scales: &[f64]) -> Result<Vec<(c64, Vec<c64>)>, SteadyError> {
+    let mut all = Vec::new();
+    for (square, shape) in graded_modes(stiffness)? {
+        let root = square.abs().sqrt();
+        let length = shape.iter().zip(scales).map(|(x, s)| (x * s).powi(2)).sum::<f64>().sqrt().hypot(root);
+        let shape: Vec<c64> = shape.iter().map(|x| c64::new(x / length, 0.0)).collect();
+        let pair = if square > 0.0 {
+            [c64::new(0.0, root), c64::new(0.0, -root)]
+        } else {
+            [c64::new(root, 0.0), c64::new(-root, 0.0)]
+        };
+        all.extend(pair.map(|eigenvalue| (eigenvalue, shape.clone())));
+    }
+    Ok(all)
+}
+
+/// N x of many lists x.
+fn expanded(basis: &Mat<f64>, lists: &[Vec<c64>]) -> Vec<Vec<c64>> {
+    let parts = [|x: &c64| x.re, |x: &c64| x.im].map(|part| {
+        let of = Mat::from_fn(basis.ncols(), lists.len(), |i, k| part(&lists[k][i]));
+        // Shapes of symmetric equations are real.
+        (of.norm_max() > 0.0).then(|| basis * of)
+    });
+    let entry = |part: usize, i: usize, k: usize| parts[part].as_ref().map_or(0.0, |of| of[(i, k)]);
+    (0..lists.len()).map(|k| (0..basis.nrows()).map(|i| c64::new(entry(0, i, k), entry(1, i, k))).collect()).collect()
+}
+
 impl Linearization {
     /// Its vibrations.
     ///
@@ -84,13 +141,19 @@ impl Linearization {
         }
         let scaled = ScaledEquations::new(&stiffness, &damping);
         let ScaledEquations { matrix, scales } = &scaled;
-        let eigen = matrix.eigen().map_err(|_| SteadyError::Numbers)?;
         let largest = scaled.fastest();
         let slow = scales[..self.unsprung.saturating_sub(rigid.ncols())].iter().copied().fold(0.0, f64::max);
         let zero = scaled.zero(slow, 1e-13);
-        let (mut modes, mut zeros) = (Vec::new(), 0);
-        for (k, eigenvalue) in eigen.S().column_vector().iter().enumerate() {
-            let mut eigenvalue = *eigenvalue;
+        let eigen = match symmetric(&stiffness, &damping) {
+            Some(symmetric) => of_symmetric(&symmetric, scales)?,
+            None => {
+                let eigen = matrix.eigen().map_err(|_| SteadyError::Numbers)?;
+                let shape = |k: usize| (0..size).map(|i| eigen.U()[(i, k)] / scales[i]).collect();
+                eigen.S().column_vector().iter().enumerate().map(|(k, value)| (*value, shape(k))).collect()
+            }
+        };
+        let (mut found, mut zeros) = (Vec::new(), 0);
+        for (mut eigenvalue, of_rest) in eigen {
             if eigenvalue.norm() <= zero {
                 zeros += 1;
                 continue;
@@ -106,13 +169,17 @@ impl Linearization {
             if eigenvalue.re.abs() <= zero.max(1e-12 * largest) {
                 eigenvalue.re = 0.0;
             }
-            let state = eigen.U().col(k);
-            let of_rest: Vec<c64> = (0..size).map(|i| state[i] / scales[i]).collect();
-            let mut coordinates: Vec<c64> =
-                (0..self.size()).map(|i| of_rest.iter().enumerate().map(|(j, x)| *x * rest[(i, j)]).sum()).collect();
-            self.let_drift(&drifts, eigenvalue, &mut coordinates);
-            modes.push(self.mode(eigenvalue, coordinates));
+            found.push((eigenvalue, of_rest));
         }
+        let (eigenvalues, of_rest): (Vec<c64>, Vec<Vec<c64>>) = found.into_iter().unzip();
+        let mut coordinates = expanded(&rest, &of_rest);
+        for (eigenvalue, coordinates) in eigenvalues.iter().zip(&mut coordinates) {
+            self.let_drift(&drifts, *eigenvalue, coordinates);
+        }
+        let motions = expanded(&self.basis, &coordinates);
+        let each = eigenvalues.into_iter().zip(coordinates).zip(motions);
+        let mut modes: Vec<SystemMode> =
+            each.map(|((eigenvalue, coordinates), motion)| self.mode(eigenvalue, coordinates, motion)).collect();
         modes.sort_by(|a, b| {
             let (a, b) = (a.eigenvalue, b.eigenvalue);
             a.norm().total_cmp(&b.norm()).then(a.im.total_cmp(&b.im))
@@ -131,6 +198,9 @@ impl Linearization {
                 break;
             }
             let all = [&self.stiffness, &self.damping].map(|matrix| rest.transpose() * (matrix * &rest));
+            if resisted(&all[0].get(..count, ..count).to_owned(), weights[0])?.is_some() {
+                break;
+            }
             let sides = [false, true].map(|of_rows| {
                 let forces = Mat::from_fn(2 * size, count, |row, k| {
                     let (which, i) = (row / size, row % size);
@@ -216,6 +286,14 @@ impl Linearization {
         }
         let all = [&self.stiffness, &self.damping];
         let weights = self.weights();
+        if let Some(v) = resisted(&self.stiffness.get(..count, ..count).to_owned(), weights[0])? {
+            let rest = Mat::from_fn(size, size, |i, j| match (i < count, j < count) {
+                (true, true) => v[(i, j)],
+                (false, false) => f64::from(u8::from(i == j)),
+                _ => 0.0,
+            });
+            return Ok((rest, Mat::zeros(size, 0)));
+        }
         let forces = Mat::from_fn(4 * size, count, |row, k| {
             let (which, i) = (row / (2 * size), row % (2 * size));
             let matrix = all[which];
@@ -247,10 +325,7 @@ impl Linearization {
     }
 
     /// A mode with the energies of its bodies and springs, its largest velocity at unit kinetic energy.
-    fn mode(&self, eigenvalue: c64, coordinates: Vec<c64>) -> SystemMode {
-        let motion: Vec<c64> = (0..self.basis.nrows())
-            .map(|i| coordinates.iter().enumerate().map(|(j, x)| *x * self.basis[(i, j)]).sum())
-            .collect();
+    fn mode(&self, eigenvalue: c64, coordinates: Vec<c64>, motion: Vec<c64>) -> SystemMode {
         let [real, imaginary]: [Vec<f64>; 2] =
             [motion.iter().map(|x| x.re).collect(), motion.iter().map(|x| x.im).collect()];
         let mut kinetic: Vec<f64> = Vec::new();

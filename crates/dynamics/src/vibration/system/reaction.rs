@@ -52,10 +52,11 @@ impl SystemMotion {
 
     /// K, with Λ, and C over the changes of place of all bodies.
     pub fn whole_matrices(&self, at: &SteadyState) -> [Mat<f64>; 2] {
-        let strain = &at.linear.strain;
+        let (terms, strain) = (&at.terms, &at.linear.strain);
         let n = strain.len();
-        let whole = |i: usize, j: usize| at.terms.stiffness[(i, j)] + if i == j { strain[i] } else { 0.0 };
-        [Mat::from_fn(n, n, whole), at.terms.damping.clone()]
+        let mut stiffness = terms.unsprung.whole(n) + terms.springs.transpose() * &terms.springs;
+        strain.iter().enumerate().for_each(|(k, strain)| stiffness[(k, k)] += strain);
+        [stiffness, terms.damping.whole(n)]
     }
 
     /// The first order of a joint's reaction ([`SystemMotion::reaction`]).

@@ -19,7 +19,7 @@ use crate::vibration::system::configuration::{CommonSpin, Configuration};
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::mode::SystemMode;
 use crate::vibration::system::steady::{SteadyState, check_spin};
-use crate::vibration::system::terms::{Terms, springs};
+use crate::vibration::system::terms::{Terms, along, springs};
 
 /// Parts of the radius of gyration and of the inertia that a rotor may be off its axis, and off symmetry.
 const SYMMETRIC: f64 = 1e-3;
@@ -202,19 +202,19 @@ impl SystemMotion {
         }
         let terms = Terms::new(system, at)?;
         let first = system.first[body] + 3;
-        let turn = |row: &dyn Fn(usize) -> f64| (0..3).map(|k| row(first + k) * axis_body[k]).sum::<f64>();
+        let mut turned = vec![0.0; system.coordinates()];
+        put(&mut turned, first, axis_body);
         let name = &system.joints()[joint].name;
         let rows = system.connections.names().zip(system.connections.is_driven()).enumerate();
         for (row, (by, is_driven)) in rows {
-            let size = (0..system.coordinates()).map(|k| terms.rows[(row, k)].abs()).fold(0.0, f64::max);
+            let size =
+                terms.rows[row].iter().flat_map(|end| &end.entries).fold(0.0_f64, |most, entry| most.max(entry.abs()));
             let is_own = is_driven && by == name;
-            if !is_own && turn(&|k| terms.rows[(row, k)]).abs() > ROUNDING * size {
+            if !is_own && along(&terms.rows[row], &turned).abs() > ROUNDING * size {
                 return Err(RotorError::Held { by: by.to_owned() });
             }
         }
-        let mut velocities = vec![0.0; system.coordinates()];
-        put(&mut velocities, first, axis_body);
-        if self.is_sprung(&velocities) { Err(RotorError::Sprung) } else { Ok(()) }
+        if self.is_sprung(&turned) { Err(RotorError::Sprung) } else { Ok(()) }
     }
 
     /// The steady state at rest while a rotor spins at a speed, with its linearised equations: coordinates of the rotor are along axes that

@@ -158,8 +158,9 @@ impl SteadyState {
 
 /// (K + Λ) x over all coordinates.
 fn product(terms: &Terms, linear: &Linearization, x: &[f64]) -> Vec<f64> {
-    let n = x.len();
-    (0..n).map(|i| linear.strain[i] * x[i] + (0..n).map(|j| terms.stiffness[(i, j)] * x[j]).sum::<f64>()).collect()
+    let mut forces = terms.stiffness_times(x);
+    forces.iter_mut().zip(&linear.strain).zip(x).for_each(|((sum, strain), x)| *sum += strain * x);
+    forces
 }
 
 /// The largest turn, displacement or bending of a body, relative to its size.

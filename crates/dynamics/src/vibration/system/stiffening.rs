@@ -70,9 +70,11 @@ impl SteadyState {
     /// The linearised equations at rest if no forces acted.
     fn unloaded(&self) -> Linearization {
         let mut linear = self.linear.clone();
-        let mut stiffness = self.terms.unloaded.clone();
-        linear.strain.iter().enumerate().for_each(|(k, strain)| stiffness[(k, k)] += strain);
-        linear.stiffness = linear.basis.transpose() * (stiffness * &linear.basis);
+        let mut strained = linear.basis.clone();
+        for (row, strain) in strained.row_iter_mut().zip(&linear.strain) {
+            row.iter_mut().for_each(|x| *x *= strain.sqrt());
+        }
+        linear.stiffness = self.terms.unloaded.reduced(&linear.basis) + strained.transpose() * &strained;
         linear.damping.fill(0.0);
         linear
     }

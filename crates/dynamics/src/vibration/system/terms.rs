@@ -3,16 +3,18 @@
 use faer::Mat;
 
 use crate::conservative::ConservativeBody;
-use crate::system::constraints::{Constraints, near};
+use crate::matrix::lists::dot;
+use crate::system::constraints::{Constraints, End, near};
 use crate::system::description::System;
 use crate::system::elimination::inverse::{Inertia, Inverse};
 use crate::system::elimination::joint_matrix::{JointMatrix, Pattern};
 use crate::system::geometry::posture::Posture;
 use crate::system::geometry::rank::Judgement;
+use crate::vibration::system::blocks::Blocks;
 use crate::vibration::system::body::BodyTerms;
 use crate::vibration::system::configuration::{BodyConfiguration, Configuration};
 use crate::vibration::system::error::SteadyError;
-use crate::vibration::system::tie::{Borne, Sums, Tie, add_block};
+use crate::vibration::system::tie::{Borne, Sums, Tie};
 
 /// M ξ̈ + C ξ̇ + K ξ = Gᵀ δλ with G ξ = 0, over the changes of place ξ of all bodies.
 #[derive(Debug, Clone)]
@@ -22,20 +24,18 @@ pub(crate) struct Terms {
     /// L of each body: δv = ξ̇ + L ξ.
     pub convections: Vec<Mat<f64>>,
     /// C.
-    pub damping: Mat<f64>,
-    /// K without Λ.
-    pub stiffness: Mat<f64>,
-    /// The same without what strains springs, and the rows B of that: K = `unsprung` + BᵀB.
-    pub unsprung: Mat<f64>,
+    pub damping: Blocks,
+    /// K without Λ and without what strains springs, and the rows B of that: K = `unsprung` + BᵀB.
+    pub unsprung: Blocks,
     pub springs: Mat<f64>,
     /// The part of K that is M L': what it leaves with the loads that give these accelerations has its rounding.
-    pub accelerated: Mat<f64>,
+    pub accelerated: Blocks,
     /// K without Λ if no forces acted: springs, bushings and their like alone.
-    pub unloaded: Mat<f64>,
+    pub unloaded: Blocks,
     /// Forces of joints and elements on each body; K has their stiffening.
     pub borne: Vec<Borne>,
-    /// G, and g.
-    pub rows: Mat<f64>,
+    /// G, by the ends of its rows, and g.
+    pub rows: Vec<Vec<End>>,
     pub residuals: Vec<f64>,
     /// λ of the motion; zero for rows that others imply.
     pub multipliers: Vec<f64>,
@@ -60,32 +60,25 @@ impl Terms {
             system.bodies.iter().zip(&at.bodies).map(|(body, of)| BodyTerms::new(body, of, at.time)).collect();
         let constraints = constraints_at(system, at);
         let m = system.rows();
-        let mut rows = Mat::zeros(m, n);
-        for (row, ends) in constraints.ends[..m].iter().enumerate() {
-            for end in ends {
-                end.entries.iter().enumerate().for_each(|(k, entry)| rows[(row, end.first + k)] += entry);
-            }
-        }
+        let rows = constraints.ends[..m].to_vec();
         let velocities: Vec<f64> = at
             .bodies
             .iter()
             .flat_map(|body| body.velocity.iter().chain(&body.omega).copied().chain(body.q.iter().map(|_| 0.0)))
             .collect();
-        let row_rates =
-            (0..m).map(|row| velocities.iter().enumerate().map(|(k, v)| rows[(row, k)] * v).sum()).collect();
-        let [mut damping, mut unsprung, mut accelerated] = [(); 3].map(|()| Mat::zeros(n, n));
+        let row_rates = rows.iter().map(|row| along(row, &velocities)).collect();
+        let [mut damping, mut unsprung, mut accelerated] = [(); 3].map(|()| Blocks::default());
         for (terms, first) in bodies.iter().zip(&system.first) {
-            add_block(&mut damping, [*first; 2], &terms.damping);
-            add_block(&mut unsprung, [*first; 2], &terms.stiffness);
-            add_block(&mut accelerated, [*first; 2], &terms.accelerated);
+            damping.add([*first; 2], 1.0, &terms.damping);
+            unsprung.add([*first; 2], 1.0, &terms.stiffness);
+            accelerated.add([*first; 2], 1.0, &terms.accelerated);
         }
         let mut terms = Self {
             damping,
-            stiffness: Mat::zeros(0, 0),
             unsprung,
             springs: Mat::zeros(0, n),
             accelerated,
-            unloaded: Mat::zeros(n, n),
+            unloaded: Blocks::default(),
             borne: system.first.windows(2).map(|range| Borne::nothing(range[1] - range[0] - 6)).collect(),
             rows,
             residuals: constraints.residuals.clone(),
@@ -117,27 +110,32 @@ impl Terms {
         terms.add(system, &held);
         // The forces of the multipliers stay apart.
         terms.forces = forces;
-        terms.stiffness = &terms.unsprung + terms.springs.transpose() * &terms.springs;
         Ok(terms)
     }
 
-    /// Adds ties to the forces, K and C: all at once, since the matrices are as wide as the system.
+    /// K x over all coordinates, without Λ.
+    pub fn stiffness_times(&self, x: &[f64]) -> Vec<f64> {
+        let mut forces = self.unsprung.times_list(x);
+        for spring in self.springs.row_iter() {
+            let strain: f64 = spring.iter().zip(x).map(|(row, x)| row * x).sum();
+            forces.iter_mut().zip(spring.iter()).for_each(|(sum, row)| *sum += row * strain);
+        }
+        forces
+    }
+
+    /// Adds ties to the forces, K and C.
     fn add(&mut self, system: &System, ties: &[Tie]) {
-        let n = system.coordinates();
-        let (mut by_place, mut by_velocity) = (Mat::zeros(n, n), Mat::zeros(n, n));
+        let (mut by_place, mut by_velocity) = (Blocks::default(), Blocks::default());
         for tie in ties {
             tie.add_to(&mut Sums { forces: &mut self.forces, by_place: &mut by_place, by_velocity: &mut by_velocity });
             tie.add_borne(&mut self.borne);
         }
-        self.unsprung -= by_place;
-        for (convection, first) in self.convections.iter().zip(&system.first) {
-            let columns = convection.ncols();
-            let changed = by_velocity.get(.., *first..first + columns) * convection;
-            for (i, j) in (0..columns).flat_map(|j| (0..n).map(move |i| (i, j))) {
-                self.unsprung[(i, first + j)] -= changed[(i, j)];
-            }
+        by_place.iter().for_each(|(at, block)| self.unsprung.add(*at, -1.0, block));
+        for (at, block) in by_velocity.iter() {
+            let body = system.first.partition_point(|first| *first <= at[1]) - 1;
+            self.unsprung.add(*at, -1.0, &(block * &self.convections[body]));
+            self.damping.add(*at, -1.0, block);
         }
-        self.damping -= by_velocity;
     }
 
     /// Finds the factor of G M⁻¹ Gᵀ, the rows that others imply, and how many motions deform nothing.
@@ -184,9 +182,7 @@ impl Terms {
         for (inverse, range) in self.mass_inverses.iter().zip(system.first.windows(2)) {
             inverse.apply(&mut accelerations[range[0]..range[1]]);
         }
-        let mut multipliers = (0..self.rows.nrows())
-            .map(|row| accelerations.iter().enumerate().map(|(k, a)| self.rows[(row, k)] * a).sum::<f64>())
-            .collect::<Vec<f64>>();
+        let mut multipliers: Vec<f64> = self.rows.iter().map(|row| along(row, &accelerations)).collect();
         self.of_mass.solve(&self.pattern, &mut multipliers);
         multipliers
     }
@@ -195,14 +191,24 @@ impl Terms {
     pub fn closing(&self, system: &System, gaps: &[f64]) -> Vec<f64> {
         let mut multipliers: Vec<f64> = gaps.iter().map(|gap| -gap).collect();
         self.of_mass.solve(&self.pattern, &mut multipliers);
-        let mut change: Vec<f64> = (0..system.coordinates())
-            .map(|k| multipliers.iter().enumerate().map(|(row, multiplier)| self.rows[(row, k)] * multiplier).sum())
-            .collect();
+        let mut change = vec![0.0; system.coordinates()];
+        for (end, multiplier) in
+            self.rows.iter().zip(&multipliers).flat_map(|(row, x)| row.iter().map(move |end| (end, x)))
+        {
+            let own = &mut change[end.first..end.first + end.entries.len()];
+            own.iter_mut().zip(&end.entries).for_each(|(sum, entry)| *sum += entry * multiplier);
+        }
         for (inverse, range) in self.mass_inverses.iter().zip(system.first.windows(2)) {
             inverse.apply(&mut change[range[0]..range[1]]);
         }
         change
     }
+}
+
+/// A row times a list over all coordinates.
+pub(crate) fn along(row: &[End], list: &[f64]) -> f64 {
+    let of = |end: &End| dot(&end.entries, &list[end.first..end.first + end.entries.len()]);
+    row.iter().map(of).sum()
 }
 
 /// g and G where the bodies are.

@@ -1,6 +1,6 @@
 //! Joints and force elements in the linearised equations: Eqs. (L3) to (L5) of `docs/method/systems.md`.
 
-use faer::{Mat, Scale};
+use faer::Mat;
 use nalgebra::Vector3;
 
 use crate::conservative::ConservativeBody;
@@ -13,6 +13,7 @@ use crate::system::joint::wrench::RowWrench;
 use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 use crate::system::marker::tangent::MarkerTangent;
 use crate::system::marker::{Marker, MarkerPlace};
+use crate::vibration::system::blocks::Blocks;
 use crate::vibration::system::configuration::Configuration;
 
 /// Part of a change of a wrench that is rounding.
@@ -68,8 +69,8 @@ pub(crate) struct Sums<'a> {
     /// Generalised forces.
     pub forces: &'a mut Vec<f64>,
     /// Their changes by place, at the same velocities, and by velocities.
-    pub by_place: &'a mut Mat<f64>,
-    pub by_velocity: &'a mut Mat<f64>,
+    pub by_place: &'a mut Blocks,
+    pub by_velocity: &'a mut Blocks,
 }
 
 impl Tie {
@@ -309,23 +310,23 @@ impl Tie {
             let [force, moment] = &self.wrenches[k];
             let mut own = Mat::zeros(n, n);
             end.tangent.add_force_change([force, moment], &mut own);
-            add_block(sums.by_place, [end.first; 2], &own);
+            sums.by_place.add([end.first; 2], 1.0, &own);
             for (l, other) in self.on_bodies() {
                 let block = |matrix: &Mat<f64>| motion.transpose() * matrix.get(6 * k..6 * k + 6, 6 * l..6 * l + 6);
                 let (by_motion, by_velocity) = (block(&self.by_motion), block(&self.by_velocity));
                 let by_place = by_motion * &other.tangent.motion + &by_velocity * &other.tangent.velocity;
-                add_block(sums.by_place, [end.first, other.first], &by_place);
-                add_block(sums.by_velocity, [end.first, other.first], &(by_velocity * &other.tangent.motion));
+                sums.by_place.add([end.first, other.first], 1.0, &by_place);
+                sums.by_velocity.add([end.first, other.first], 1.0, &(by_velocity * &other.tangent.motion));
             }
         }
     }
 
     /// Adds the stiffness of its own law, without what its forces do where bodies turn and bend.
-    pub fn add_law(&self, stiffness: &mut Mat<f64>) {
+    pub fn add_law(&self, stiffness: &mut Blocks) {
         for ((k, end), (l, other)) in self.on_bodies().flat_map(|one| self.on_bodies().map(move |other| (one, other))) {
             let by_motion = self.by_motion.get(6 * k..6 * k + 6, 6 * l..6 * l + 6);
-            let block = end.tangent.motion.transpose() * by_motion * &other.tangent.motion * Scale(-1.0);
-            add_block(stiffness, [end.first, other.first], &block);
+            let block = end.tangent.motion.transpose() * by_motion * &other.tangent.motion;
+            stiffness.add([end.first, other.first], -1.0, &block);
         }
     }
 
@@ -384,15 +385,6 @@ impl Tie {
     pub fn twice_energy(&self, changes: &[f64]) -> f64 {
         let z = self.motions(changes);
         -(0..z.len()).map(|j| (0..z.len()).map(|i| z[i] * self.by_motion[(i, j)] * z[j]).sum::<f64>()).sum::<f64>()
-    }
-}
-
-/// Adds a block to a matrix.
-pub(crate) fn add_block(to: &mut Mat<f64>, [row, column]: [usize; 2], block: &Mat<f64>) {
-    for j in 0..block.ncols() {
-        for i in 0..block.nrows() {
-            to[(row + i, column + j)] += block[(i, j)];
-        }
     }
 }
 

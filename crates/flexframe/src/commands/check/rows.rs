@@ -85,7 +85,7 @@ fn spin(of: BodyResults<'_>, row: usize) -> f64 {
 }
 
 /// The modal displacements of a body in a run.
-pub(super) fn course(results: &Results, body: usize) -> Course {
+pub(crate) fn course(results: &Results, body: usize) -> Course {
     let of = results.bodies().nth(body).and_then(|of| of.table("modal/displacement"));
     let Some(of) = of else { return Course::default() };
     let mut largest = 0.0_f64;

@@ -164,6 +164,8 @@ impl<'a> Recorder<'a> {
             bodies: reports.into_iter().map(|report| report.body).collect(),
             system: SystemReport::of(&row),
             check: None,
+            large_choice: None,
+            large_is_chosen: false,
             trust: None,
             warnings,
             times,

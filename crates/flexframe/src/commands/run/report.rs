@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::body_report::BodyRunReport;
 use super::estimate::Estimate;
+use super::large_choice::LargeChoice;
 use super::tied_report::TiedReport;
 use crate::commands::check::report::CheckReport;
 use crate::files::json;
@@ -52,6 +53,11 @@ pub struct RunReport {
     /// The row of each body where its model is most likely to be wrong, against the full body; `None` where that was not asked for, would cost
     /// more than the body did, or could not be done.
     pub check: Option<CheckReport>,
+    /// Large modes that the check has found better: those of this run where `large_is_chosen`, else those that it ought to have.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub large_choice: Option<LargeChoice>,
+    /// True if the run was made once more, with the large modes that the check of the first found better.
+    pub large_is_chosen: bool,
     /// The trust card; `None` where the results are only rows.
     pub trust: Option<TrustCard>,
     /// Assumptions that did not hold, with the name of the body where there are several.

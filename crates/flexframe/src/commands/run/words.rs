@@ -118,7 +118,9 @@ impl BodyRunReport {
                 Some(k) => format!(" ({k} is the static answer to the moments beside the others)"),
                 None => String::new(),
             };
-            writeln!(f, "  large    mode{s} {}{answer}", modes.join(", "))?;
+            let chosen = run.large_choice.as_ref().filter(|_| run.large_is_chosen);
+            let chosen = chosen.map_or_else(String::new, |choice| format!(", {}", choice.reason()));
+            writeln!(f, "  large    mode{s} {}{answer}{chosen}", modes.join(", "))?;
         }
         write!(f, "  motion   {}", self.steps_in_words(run))?;
         match is_single {

@@ -1,5 +1,6 @@
 //! Report of the vibrations of a system.
 
+use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -122,12 +123,13 @@ impl SystemModesReport {
             Spring::Element(element) => motion.elements[element].clone(),
         });
         let names: Vec<String> = bodies.iter().cloned().chain(springs).collect();
+        let [of_bodies, of_all] = [&bodies, &names].map(|names| Names::new(names));
         let mode = |mode: &SystemMode| SystemModeReport {
             frequency: mode.circular_frequency() / TAU,
             damping_ratio: mode.damping_ratio(),
             growth: mode.growth(),
-            moves: shares(&bodies, &mode.kinetic),
-            strained: shares(&names, &mode.elastic),
+            moves: shares(&of_bodies, &mode.kinetic),
+            strained: shares(&of_all, &mode.elastic),
         };
         let rigid_modes = found.rigid.ncols() + found.zeros / 2;
         let time = &scene.units.time;
@@ -246,16 +248,34 @@ pub(crate) fn body_names(system: &System, numbers: &[usize]) -> Vec<String> {
     numbers.iter().map(name).collect()
 }
 
-/// Sums of the parts by names, largest first, without the smallest.
-fn shares(names: &[String], parts: &[f64]) -> Vec<Share> {
-    let mut shares: Vec<Share> = Vec::new();
-    for (name, part) in names.iter().zip(parts) {
-        match shares.iter_mut().find(|share| share.name == *name) {
-            Some(share) => share.part += part,
-            None => shares.push(Share { name: name.clone(), part: *part }),
-        }
+/// Names, some of them of several parts.
+struct Names {
+    each: Vec<String>,
+    /// The name of each part.
+    of_parts: Vec<usize>,
+}
+
+impl Names {
+    fn new(names: &[String]) -> Self {
+        let mut places = HashMap::new();
+        let mut each = Vec::new();
+        let of_name = |name: &String| {
+            *places.entry(name.clone()).or_insert_with(|| {
+                each.push(name.clone());
+                each.len() - 1
+            })
+        };
+        let of_parts = names.iter().map(of_name).collect();
+        Self { each, of_parts }
     }
-    shares.retain(|share| share.part.abs() >= NAMED);
+}
+
+/// Sums of the parts by names, largest first, without the smallest.
+fn shares(names: &Names, parts: &[f64]) -> Vec<Share> {
+    let mut sums = vec![0.0; names.each.len()];
+    names.of_parts.iter().zip(parts).for_each(|(place, part)| sums[*place] += part);
+    let named = names.each.iter().zip(sums).filter(|(_, part)| part.abs() >= NAMED);
+    let mut shares: Vec<Share> = named.map(|(name, part)| Share { name: name.clone(), part }).collect();
     shares.sort_by(|a, b| b.part.abs().total_cmp(&a.part.abs()));
     shares
 }

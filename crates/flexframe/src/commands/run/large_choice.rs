@@ -1,0 +1,162 @@
+//! The choice of large modes by the check, at the rows that a run has reached.
+//!
+//! While a body is built nobody knows how far and how long each of its modes will swing. The check knows what a model is wrong by at the states of a
+//! run: other choices are held against the full body at the worst of them, and the best is told, or taken where the scene leaves it open.
+
+use std::path::Path;
+
+use dynamics::Effect;
+use model::{Builder, Model};
+use results::Results;
+use scene::{Choice, Large, Scene, System, assign};
+use serde::Serialize;
+use toml::Value;
+
+use crate::commands::check::checked_rows::check_run;
+use crate::commands::check::error::CheckError;
+use crate::commands::check::report::{BodyCheck, CheckReport, RowCheck};
+use crate::commands::check::rows::{self, CheckRows};
+use crate::files::json;
+use crate::trust::{model_error, percent};
+
+/// Error of a model below which no other choice is looked for.
+const WORTH: f64 = 1e-2;
+/// A choice is better where its error is below this part.
+const BETTER: f64 = 0.5;
+/// Large modes, and those that follow them, beyond which more are no better.
+const LARGE: usize = 2;
+const FOLLOWING: usize = 3;
+/// Steps of a run beyond which it is not made again.
+const LONG: u64 = 1_000_000;
+
+/// Large modes that the check has found better than those of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LargeChoice {
+    /// The large modes, numbered from 1.
+    pub large: Vec<usize>,
+    /// The most that follow them.
+    pub following: usize,
+    /// The error of the model with them at the worst of the checked states of the run, over the largest displacements.
+    #[serde(serialize_with = "json::number")]
+    pub error: f64,
+    /// The error of the model of the run there.
+    #[serde(serialize_with = "json::number")]
+    pub before: f64,
+}
+
+impl LargeChoice {
+    /// The best other choice of the large modes of a lone body whose model the check found wrong by more than a per cent, if one is better.
+    ///
+    /// # Errors
+    /// [`CheckError`]: the check of a choice.
+    pub(super) fn better(
+        file: &Path,
+        results: &Results,
+        (system, models): (&System, &[Model]),
+        builder: &Builder,
+        check: &CheckReport,
+    ) -> Result<Option<Self>, CheckError> {
+        let ([scene], [model], [BodyCheck { rows, .. }]) = (&system.bodies[..], models, &check.bodies[..]) else {
+            return Ok(None);
+        };
+        let error_of = |row: &RowCheck| model_error(std::slice::from_ref(row));
+        let Some(worst) = rows.iter().max_by(|a, b| error_of(a).total_cmp(&error_of(b))) else { return Ok(None) };
+        let before = error_of(worst);
+        let may_be_large = scene.time.method.abilities.large_deflection
+            && scene.effects.choices[Effect::LargeDeflection] != Choice::Off
+            && model.static_answer().is_none();
+        if !(before >= WORTH && may_be_large) {
+            return Ok(None);
+        }
+        let candidates = candidates(scene, model, &rows::course(results, 0).swings);
+        if candidates.is_empty() {
+            return Ok(None);
+        }
+        let rows = CheckRows::Given(vec![worst.row]);
+        let Ok(assembly) = builder.assemble(scene, |_| ()) else { return Ok(None) };
+        let Ok(mut variants) = assembly.variants() else { return Ok(None) };
+        let mut best: Option<Self> = None;
+        for (large, following) in candidates {
+            let mut other = scene.clone();
+            other.effects.choices[Effect::LargeDeflection] = Choice::On;
+            other.modes.large = Some(Large::List(large.clone()));
+            other.modes.following = following;
+            // A choice that is refused is none.
+            let Ok(built) = variants.build(&other, |_| ()) else { continue };
+            if built.body.circular_frequencies != model.body.circular_frequencies {
+                continue;
+            }
+            let other = System { bodies: vec![other], ..system.clone() };
+            let check = check_run(file, results, &other, &[built], builder, &rows, |_| ())?;
+            let error = check.bodies.first().map_or(f64::INFINITY, |body| model_error(&body.rows));
+            if error < best.as_ref().map_or(BETTER * before, |best| best.error) {
+                best = Some(Self { large, following, error, before });
+            }
+        }
+        Ok(best)
+    }
+
+    /// The system with this choice, if the scene leaves it open and the run may be made again.
+    pub(super) fn taken(&self, system: &System, steps: u64) -> Option<System> {
+        let [scene] = &system.bodies[..] else { return None };
+        if scene.modes.large.is_some() || scene.name.is_some() || steps > LONG {
+            return None;
+        }
+        let number = |number: usize| i64::try_from(number).map_or(Value::Integer(i64::MAX), Value::Integer);
+        let large = self.large.iter().map(|mode| number(*mode)).collect();
+        let values = [
+            ("effects.large_deflection", Value::Boolean(true)),
+            ("modes.large", Value::Array(large)),
+            ("modes.following", number(self.following)),
+        ];
+        let text = assign(scene.file_text(), &values.map(|(key, value)| (key.to_owned(), value))).ok()?;
+        System::parse(&text, &scene.path).ok()
+    }
+
+    /// The keys of the choice, with their values.
+    fn keys(&self) -> String {
+        format!("`large = {:?}` with `following = {}` in [modes]", self.large, self.following)
+    }
+
+    /// The cure of a run without it.
+    pub(crate) fn cure(&self) -> String {
+        format!(
+            "{}: at the worst row the check finds {} for {}",
+            self.keys(),
+            percent(self.error),
+            percent(self.before)
+        )
+    }
+
+    /// The words of a run that has taken it.
+    pub(super) fn reason(&self) -> String {
+        format!(
+            "chosen by the check, by which the model of a first run, without {}, was off by up to {}",
+            self.keys(),
+            percent(self.before)
+        )
+    }
+}
+
+/// Choices that differ from that of a model: large modes numbered from 1, and the most that follow them.
+fn candidates(scene: &Scene, model: &Model, swings: &[f64]) -> Vec<(Vec<usize>, usize)> {
+    let now: Vec<usize> = model.large_modes().iter().map(|k| k + 1).collect();
+    let mut order: Vec<usize> = (0..swings.len().min(model.body.natural_modes)).filter(|k| swings[*k] > 0.0).collect();
+    order.sort_by(|a, b| swings[*b].total_cmp(&swings[*a]));
+    let furthest = |count: usize| {
+        let mut large: Vec<usize> = order.iter().take(count).map(|k| k + 1).collect();
+        large.sort_unstable();
+        large
+    };
+    let following = scene.modes.following;
+    let mut choices = Vec::new();
+    for large in (1..=LARGE).map(furthest).chain([now.clone()]) {
+        for following in [following, following.min(FOLLOWING)] {
+            let choice = (large.clone(), following);
+            if !large.is_empty() && choice != (now.clone(), scene.modes.following) && !choices.contains(&choice) {
+                choices.push(choice);
+            }
+        }
+    }
+    choices
+}
