@@ -187,7 +187,7 @@ impl StressRecovery<'_> {
     }
 }
 
-/// What is known of the place of an element, of all fields.
+/// Properties of an element by its place, the same for all fields.
 enum Place {
     /// The gradients of the barycentric coordinates, per length, and the determinant of the Jacobian, which is the same everywhere.
     Straight { barycentric: [[f64; 3]; 4], determinant: f64 },

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use faer::Mat;
-use fem_tet10::{Material, Materials, StressError, StressRecovery, von_mises};
+use fem_tet10::{Material, Materials, Mesh, StressError, StressRecovery, von_mises};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::fixtures::{ALUMINIUM, aluminium, data_mesh, field, workspace_mesh};
