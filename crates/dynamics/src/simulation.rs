@@ -379,9 +379,10 @@ impl Simulation {
         })
     }
 
-    /// Sum of |work of the loads| + |dissipation| of all steps so far: how much energy has come and gone.
+    /// Sum of |work of the loads| + |dissipation| of all steps so far: how much energy has come and gone; or the energy that a bent rest
+    /// which nothing holds sets free, if that is more.
     pub fn exchanged(&self) -> f64 {
-        self.account.exchanged()
+        self.account.exchanged().max(self.account.least_scale())
     }
 
     /// The state that has been reached, as words; they are equally many for all states of a run.

@@ -169,6 +169,14 @@ impl Motion {
         }
     }
 
+    /// Energy below which a body in joints rests: what its place may be off by, and what the loads do over it. Of one alone, zero.
+    pub fn energy_at_rest(&self, body: usize) -> f64 {
+        match self {
+            Self::Alone(_) => 0.0,
+            Self::Tied(simulation) => simulation.energy_at_rest(body),
+        }
+    }
+
     /// Its state, in as many words as that of any other time.
     ///
     /// # Errors

@@ -13,6 +13,8 @@ import math
 import multiprocessing
 import os
 import re
+import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -27,8 +29,9 @@ import numpy as np
 import generate
 import reference
 
-# A run that takes longer than this is a failure of its own.
+# A run that takes longer than this of the processor is a failure of its own; beside others it may take longer by the clock.
 SECONDS = 5
+BY_THE_CLOCK = 120
 VERDICTS = ["right", "right as the motion magnifies", "impossible, refused", "near a lock, refused", "told", "refused without a true reason",
             "too slow", "wrong in silence", "crash", "reference unsure"]
 
@@ -135,9 +138,13 @@ def judge(program, folder, seed):
         words = ["nice", program, "run", str(path), "-o", work, "--no-check", "--json"]
         begun = time.monotonic()
         try:
-            done = subprocess.run(words, capture_output=True, text=True, timeout=SECONDS, env={**os.environ, "FLEXFRAME_CACHE": "", "RAYON_NUM_THREADS": "1"})
+            environment = {**os.environ, "FLEXFRAME_CACHE": "", "RAYON_NUM_THREADS": "1"}
+            limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
+            done = subprocess.run(words, capture_output=True, text=True, timeout=BY_THE_CLOCK, env=environment, preexec_fn=limit)
         except subprocess.TimeoutExpired:
-            return {**out, "verdict": "too slow", "message": f"more than {SECONDS} s"}
+            return {**out, "verdict": "too slow", "message": f"more than {BY_THE_CLOCK} s by the clock"}
+        if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+            return {**out, "verdict": "too slow", "message": f"more than {SECONDS} s of the processor"}
         out["seconds"] = time.monotonic() - begun
         said = {}
         for line in (done.stdout.strip(), *done.stderr.strip().splitlines()[::-1]):

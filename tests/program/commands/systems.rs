@@ -485,6 +485,51 @@ interval = 0.01
     assert!(!refused.status.success() && said.contains("\"shaft\"") && said.contains("across the axis"), "{said}");
 }
 
+/// Closed form: a second disk on the same stand that spins at s all the while: as before, with a = (Ω J_p + s j_p) / 2J.
+#[test]
+fn a_diagram_has_the_other_rotors_of_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("rotors.toml");
+    let body = |name: &str, mass: f64, [polar, across]: [f64; 2], rest: &str| {
+        format!(
+            "[bodies.{name}]\nmarkers = {{ hub = {{ at = [0, 0, 0] }} }}\nrigid = {{ mass = {mass:?}, center_of_mass = [0, 0, 0], \
+             inertia = [[{polar}, 0, 0], [0, {across}, 0], [0, 0, {across}]] }}\n{rest}"
+        )
+    };
+    let joint = |name: &str, on: &str, rest: &str| {
+        let between = format!("between = [\"stand.hub\", \"{on}.hub\"]");
+        format!("[[joints]]\nname = \"{name}\"\nkind = \"revolute\"\n{between}\naxis = [1, 0, 0]\n{rest}")
+    };
+    let text = [
+        "title = \"Two disks\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n".to_owned(),
+        body("stand", 3.0, [0.2, 0.3], ""),
+        body("disk", 2.0, [0.4, 0.25], ""),
+        body("wheel", 1.0, [0.1, 0.06], "initial = { angular_velocity = [70.0, 0, 0] }\n"),
+        joint("shaft", "disk", "drive = { amplitude = 40.0, history = { kind = \"expression\", formula = \"t\" } }\n"),
+        joint("bearing", "wheel", ""),
+        "[[bushings]]\nname = \"pad\"\nbetween = [\"ground\", \"stand.hub\"]\n\
+         stiffness = { translation = [4e4, 3e4, 3e4], rotation = [90.0, 50.0, 50.0] }\n[time]\nend = 0.1\n\
+         tolerance = 1e-5\n"
+            .to_owned(),
+    ];
+    std::fs::write(&scene, text.concat()).unwrap();
+    let out = folder.path().join("diagram");
+    let given = ["campbell", scene.to_str().unwrap(), "--speeds", "0:40:3", "-o", out.to_str().unwrap()];
+    let report = json(&given);
+    assert_eq!(report["rotor"], "disk");
+    assert_eq!(report["rotors"][0]["joint"], "bearing");
+    let branches = report["branches"].as_array().unwrap();
+    for (i, speed) in [0.0_f64, 20.0, 40.0].into_iter().enumerate() {
+        let (half, still): (f64, f64) = (0.5 * (speed * 0.4 + 70.0 * 0.1) / 0.61, 50.0 / 0.61);
+        let root = (half * half + still).sqrt();
+        for expected in [root - half, root + half] {
+            let off = |branch: &Value| (number(&branch["frequency"][i]) * TAU / expected - 1.0).abs();
+            let least = branches.iter().map(off).fold(f64::INFINITY, f64::min);
+            assert!(least < 1e-8, "{speed}: {expected}: {least}");
+        }
+    }
+}
+
 /// Doubts about one of several bodies name it, once.
 #[test]
 fn doubts_name_their_body() {

@@ -20,6 +20,9 @@ use crate::system::joint::row::Row;
 use crate::system::marker::Marker;
 use crate::system::marker::motion::MarkerMotion;
 
+/// The radius of gyration of a body of hardly any inertia over the size of the largest body.
+const SMALL: f64 = 1e-2;
+
 /// Bodies and what connects them.
 #[derive(Debug, Clone)]
 pub struct System {
@@ -29,10 +32,11 @@ pub struct System {
     pub(crate) connections: Connections,
     /// First coordinate of each body, and the number of coordinates: six and the modes of each.
     pub(crate) first: Vec<usize>,
-    /// Groups of bodies that joints connect with each other and not with the ground.
-    pub(crate) free_groups: Vec<Vec<usize>>,
     /// Groups of bodies that joints or elements connect.
     pub(crate) islands: Vec<Island>,
+    /// True for bodies whose angular momentum is counted about their own origins: rigid ones of hardly any inertia in islands on the ground.
+    /// About the centre of the frame it would be the small difference of the moments of their momenta.
+    pub(crate) spins_apart: Vec<bool>,
     /// The size of each body: its radius of gyration, or the distance of a marker from its origin.
     pub(crate) sizes: Vec<f64>,
     /// The error of places of the ground that hold bodies between them: numbers far from the origin round.
@@ -55,13 +59,10 @@ impl System {
             }
             first.push(first[first.len() - 1] + 6 + body.flexible());
         }
-        let of_joints = islands(bodies.len(), joints.iter().map(|joint| joint.markers.iter().collect()));
-        let free_groups =
-            of_joints.into_iter().filter(|island| !island.is_on_ground).map(|island| island.bodies).collect();
         let connections = Connections { joints, ..Connections::default() };
         connections.markers().try_for_each(|marker| check(marker, &bodies))?;
-        let (islands, sizes) = (Vec::new(), Vec::new());
-        Ok(Self { bodies, names: Vec::new(), connections, first, free_groups, islands, sizes, rounding: 0.0 }
+        let (islands, spins_apart, sizes) = (Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { bodies, names: Vec::new(), connections, first, islands, spins_apart, sizes, rounding: 0.0 }
             .with_islands())
     }
 
@@ -96,6 +97,11 @@ impl System {
         Ok(self.with_islands())
     }
 
+    /// The groups of bodies that nothing ties to the ground.
+    pub(crate) fn free_groups(&self) -> impl Iterator<Item = &[usize]> {
+        self.islands.iter().filter(|island| !island.is_on_ground).map(|island| &island.bodies[..])
+    }
+
     /// Finds the islands and the sizes of the bodies.
     fn with_islands(mut self) -> Self {
         self.islands = islands(self.bodies.len(), self.connections.ties());
@@ -103,6 +109,15 @@ impl System {
         for marker in self.connections.markers() {
             if let Some(size) = marker.body().and_then(|body| self.sizes.get_mut(body)) {
                 *size = size.max(marker.distance());
+            }
+        }
+        self.spins_apart = vec![false; self.bodies.len()];
+        for island in self.islands.iter().filter(|island| island.is_on_ground) {
+            let largest = island.bodies.iter().map(|b| self.sizes[*b]).fold(0.0, f64::max);
+            for b in &island.bodies {
+                let body = &self.bodies[*b];
+                let is_small = body.radius_of_gyration() < SMALL * largest;
+                self.spins_apart[*b] = body.flexible() == 0 && !body.is_point() && is_small;
             }
         }
         self

@@ -1,6 +1,6 @@
 //! Momenta of what flies freely: constants of the motion but for the loads, to rounding at any tolerance.
 //!
-//! The wrenches of a joint cancel, so a group of bodies that no joint ties to the ground has the momenta that the loads give it.
+//! The wrenches of a joint or an element cancel, so a group of bodies that nothing ties to the ground has the momenta that the loads give it.
 //! Newton's method leaves them off by its own error. That is taken back by a small motion of the group as a whole, which no
 //! joint resists.
 
@@ -13,7 +13,7 @@ use crate::system::stage::{Stage, Start, put, vector};
 impl Stage {
     /// Gives each free group the change of momenta since the start of the step that the sums `change` of its rates say.
     pub fn correct_momenta(&mut self, system: &System, change: impl Fn(usize) -> f64) {
-        for group in &system.free_groups {
+        for group in system.free_groups() {
             let (mut missing, mut inertia) = (Vector6::zeros(), Matrix6::zeros());
             for b in group {
                 let first = system.first[*b];
@@ -52,7 +52,7 @@ impl Stage {
     /// Moves each free group to where its momenta take its centre of mass in a step of length h, of which `impulse` is what the forces along a
     /// coordinate have given it on average. Where the frame moves, places that are off have a part in the angular momentum about a place at rest.
     pub fn correct_centers(&mut self, (system, start): (&System, &Start), h: f64, impulse: impl Fn(usize) -> f64) {
-        for group in &system.free_groups {
+        for group in system.free_groups() {
             if group.iter().all(|b| system.bodies[*b].frame.velocity() == Vector3::zeros()) {
                 continue;
             }

@@ -9,7 +9,7 @@
 
 pub(in crate::system) mod bound;
 mod end;
-mod estimate;
+pub(in crate::system) mod estimate;
 mod exchange;
 mod explicit;
 mod law_work;
@@ -525,7 +525,7 @@ impl SystemMotion {
         self.start.bodies.clear();
         for (b, (body, state)) in self.system.bodies.iter().zip(&self.bodies).enumerate() {
             let list = body.list(state);
-            self.start.bodies.push(BodyStart::new(body, state));
+            self.start.bodies.push(BodyStart::new(body, state, self.system.spins_apart[b]));
             let modes = self.system.first[b] + 6..self.system.first[b + 1];
             self.start.q[modes.clone()].copy_from_slice(list.q());
             self.start.p[modes].copy_from_slice(list.p());

@@ -33,6 +33,7 @@ use crate::simulation::plan::{EqualSteps, Plan, Rows, Segment, StepControl};
 use crate::simulation::stats::Stats;
 use crate::system::joint::observation::JointObservation;
 use crate::system::radau::SystemMotion;
+use crate::system::radau::estimate::energy_of_way;
 use crate::system::simulation::last_step::{EXACT, LastStep, of_step};
 use crate::system::simulation::observation::SystemObservation;
 use crate::system::simulation::second_order::Branching;
@@ -45,6 +46,8 @@ const FIRST: f64 = 1e-3;
 const STABLE: f64 = 0.9;
 /// Error of a fixed step over the size of a body that is taken for what it does not see.
 const FIXED_ERROR: f64 = 1e-4;
+/// Way of a body over the size of a body within which it rests in fixed steps.
+const FIXED_REST: f64 = 1e-9;
 /// Speed of what begins to move as t³, over its mean speed since then.
 const BEGINS: f64 = 3.0;
 
@@ -80,6 +83,8 @@ pub struct SystemSimulation {
     account: EnergyAccount,
     /// Energy exchanged of each body, see [`Self::exchanged`].
     exchanged: Vec<f64>,
+    /// Way of each body in its frame since the beginning, as it moves and turns.
+    gone: Vec<f64>,
     events: Events<SystemObservation>,
     /// Where events and observers look at the motion.
     looked_at: SystemObservation,
@@ -149,6 +154,7 @@ impl SystemSimulation {
             ),
             walk: Walk { segment: None, equal: EqualSteps::default(), next: FIRST * end, longest: f64::INFINITY },
             exchanged: vec![0.0; system.bodies().len()],
+            gone: vec![0.0; system.bodies().len()],
             looked_at: SystemObservation::new(system, &points),
             observers: Observers::NONE,
             last_step: is_within.then(|| Box::new(LastStep::new(&motion, &points))),
@@ -256,6 +262,19 @@ impl SystemSimulation {
         self.exchanged[body].max(self.motion.energy_scale())
     }
 
+    /// Energy below which a body rests: that of a motion in which its place changes by no more than it may be off in all of the run, and,
+    /// of a rigid body that has gone no farther, the work of the loads over this way.
+    pub fn energy_at_rest(&self, body: usize) -> f64 {
+        let part = match self.control {
+            StepControl::Fixed(_) => FIXED_REST,
+            StepControl::Tolerance(tolerance) => tolerance,
+        };
+        let way = part * self.motion.size();
+        let of = &self.motion.system().bodies()[body];
+        let pushed = if of.flexible() == 0 && self.gone[body] <= way { self.forces * way } else { 0.0 };
+        energy_of_way(of.mass(), way, self.end) + pushed
+    }
+
     /// The limit that shapes set for the steps, if the scheme is one that they limit and steps have come near to it.
     pub fn met_shape_limit(&self) -> Option<ShapeLimit> {
         self.shape_limit.filter(|of| self.stats.longest > 0.9 * STABLE * of.limit)
@@ -286,9 +305,8 @@ impl SystemSimulation {
             StepControl::Tolerance(tolerance) => tolerance,
         };
         let mass: f64 = self.motion.system().bodies().iter().map(ConservativeBody::mass).sum();
-        let moved = part * self.motion.size();
-        let speed = BEGINS * moved / elapsed;
-        if elapsed > 0.0 { 0.5 * mass * speed * speed + self.forces * moved } else { 0.0 }
+        let way = part * self.motion.size();
+        if elapsed > 0.0 { energy_of_way(mass, BEGINS * way, elapsed) + self.forces * way } else { 0.0 }
     }
 
     /// Fills `out`, one for each body, with the motion at the time that has been reached.
@@ -368,6 +386,7 @@ impl SystemSimulation {
         self.motion = motion;
         self.account = EnergyAccount::default();
         self.exchanged.fill(0.0);
+        self.gone.fill(0.0);
         if let Some(step) = &mut self.last_step {
             step.keep(&self.motion);
         }
@@ -654,6 +673,7 @@ impl SystemSimulation {
             let now = self.motion.work_and_dissipation(body);
             *exchanged = exchanged.max(now[0].abs() + now[1].abs());
             total = [total[0] + now[0], total[1] + now[1]];
+            self.gone[body] += self.motion.way_of_last_step(body);
         }
         self.account.exchange(total);
     }

@@ -47,24 +47,30 @@ impl Start {
 /// The start of one body.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BodyStart {
-    /// Position of the origin in the frame, and its distance from the centre of that.
+    /// Position of the origin in the frame, and from where angular momentum is counted: the centre of the frame, or its own.
     pub position: Vector3<f64>,
     pub arm: Vector3<f64>,
+    pub spins_apart: bool,
     pub body_from_global: Matrix3<f64>,
-    /// Linear momentum in the frame, and angular momentum about its centre, global.
+    /// Linear momentum in the frame, and angular momentum, global.
     pub momentum: Vector3<f64>,
     pub angular_momentum: Vector3<f64>,
 }
 
 impl BodyStart {
-    /// A body with its momenta about the centre of its frame.
-    pub fn new(body: &ConservativeBody, state: &State) -> Self {
+    /// A body with its angular momentum about the centre of its frame, or about its own origin.
+    pub fn new(body: &ConservativeBody, state: &State, spins_apart: bool) -> Self {
         let list = body.list(state);
         let [position, momentum, pi] = [part::POSITION, part::MOMENTUM, part::PI].map(|part| get(list.slow(), part));
         let body_from_global = list.attitude().global_to_body();
-        let arm = position - body.frame.center();
+        let arm = if spins_apart { Vector3::zeros() } else { position - body.frame.center() };
         let angular_momentum = arm.cross(&momentum) + body_from_global.tr_mul(&pi);
-        Self { position, arm, body_from_global, momentum, angular_momentum }
+        Self { position, arm, spins_apart, body_from_global, momentum, angular_momentum }
+    }
+
+    /// The arm of its origin where it has moved.
+    fn arm(&self, moved: Vector3<f64>) -> Vector3<f64> {
+        if self.spins_apart { self.arm } else { self.arm + moved }
     }
 }
 
@@ -73,7 +79,7 @@ impl BodyStart {
 pub(crate) struct Stage {
     /// Δr in the frame (global), the rotation vector (body axes), Δq: of each body.
     pub x: Vec<f64>,
-    /// ΔP, Δh about the centre of the frame (global), Δp.
+    /// ΔP, Δh about the centre of the frame or about the body's own origin (global), Δp.
     pub y: Vec<f64>,
     pub evaluations: Vec<Evaluation>,
     pub constraints: Constraints,
@@ -88,7 +94,7 @@ pub(crate) struct Stage {
     /// Transformation matrices of the bodies and positions of their origins in the frame.
     pub attitudes: Vec<Matrix3<f64>>,
     pub positions: Vec<Vector3<f64>>,
-    /// Positions from the centre of the frame.
+    /// Positions from where angular momentum is counted.
     pub arms: Vec<Vector3<f64>>,
     /// q of all bodies.
     q: Vec<f64>,
@@ -146,7 +152,7 @@ impl Stage {
             let theta = vector(&self.x, first + 3);
             self.attitudes[b] = transformation_matrix(&theta) * body.body_from_global;
             let moved = vector(&self.x, first);
-            (self.positions[b], self.arms[b]) = (body.position + moved, body.arm + moved);
+            (self.positions[b], self.arms[b]) = (body.position + moved, body.arm(moved));
             for k in first + 6..system.first[b + 1] {
                 self.q[k] = start.q[k] + self.x[k];
             }

@@ -54,7 +54,7 @@ fn stand(disk: [f64; 3], before: f64, pad: ([f64; 3], [f64; 3], f64), speed: f64
 }
 
 fn frequencies(motion: &SystemMotion, rotor: &Rotor, speed: f64) -> Vec<SpinMode> {
-    motion.rotor_modes(rotor, speed).unwrap()
+    motion.rotor_modes(rotor, speed, &[]).unwrap()
 }
 
 /// Closed form: a disk at the center of its stand tilts as J φ̈ − i Ω J_p φ̇ + k φ = 0, so ω = √(a² + k/J) ± a, a = Ω J_p / 2J.
@@ -116,7 +116,7 @@ fn a_run_of_a_spinning_disk_rings_down_as_its_mode_says() {
     let (system, mut motion) = stand([0.4, 0.25, 0.25], 0.3, pad, speed);
     motion.assemble().unwrap();
     let rotor = motion.rotor(0).unwrap();
-    let steady = motion.rotor_state(&rotor, speed).unwrap();
+    let steady = motion.rotor_state(&rotor, speed, &[]).unwrap();
     let modes = steady.linear.vibrations().unwrap().modes;
     for mode in &modes {
         let amplitude = 1e-5 / mode.motion.iter().map(|x| x.norm()).fold(0.0, f64::max);
@@ -298,7 +298,7 @@ fn a_disk_that_spins_in_the_motion_is_found_and_a_crank_is_not() {
         let Ok((rotor, speed)) = &turning[0].rotor else { continue };
         let half = 0.5 * 40.0 * 0.4 / 0.55;
         let expected = (half * half + 50.0_f64 / 0.55).sqrt() - half;
-        let modes = motion.rotor_modes(rotor, *speed).unwrap();
+        let modes = motion.rotor_modes(rotor, *speed, &[]).unwrap();
         assert!(modes.iter().any(|mode| (mode.circular_frequency / expected - 1.0).abs() < 1e-9));
     }
 }

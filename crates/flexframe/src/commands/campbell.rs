@@ -184,6 +184,8 @@ pub fn campbell(
     let mut report = CampbellReport {
         bodies: Vec::new(),
         rotor: None,
+        rotors: Vec::new(),
+        warnings: Vec::new(),
         title: scene.title.clone(),
         time_unit: scene.units.time.clone(),
         length_unit: scene.units.length.clone(),

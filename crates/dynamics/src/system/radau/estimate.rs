@@ -102,7 +102,14 @@ impl SystemMotion {
     /// Energy of bodies that move by a part of their size in a span which is rounding: less than that is rest.
     fn still_energy(&self, span: f64) -> f64 {
         let mass: f64 = self.system.bodies.iter().map(ConservativeBody::mass).sum();
-        0.5 * mass * (STILL * self.size / span).powi(2)
+        energy_of_way(mass, STILL * self.size, span)
+    }
+
+    /// Way of a body in its frame in the last step, as it moves and turns.
+    pub(in crate::system) fn way_of_last_step(&self, body: usize) -> f64 {
+        let [.., last] = &self.stages;
+        let [moved, turned] = [0, 3].map(|part| vector(&last.x, self.system.first[body] + part).norm());
+        moved + self.size * turned
     }
 
     /// Finds the estimate of the embedded formula, in the axes of the bodies.
@@ -268,6 +275,11 @@ impl SystemMotion {
         let square: f64 = system.bodies.iter().enumerate().filter(|(b, _)| lasts(b)).map(of_body).sum();
         [place, (square / (2.0 * energy)).sqrt()]
     }
+}
+
+/// Kinetic energy of a mass that goes so far in a time: every floor of an energy, below which there is rest.
+pub(in crate::system) fn energy_of_way(mass: f64, way: f64, time: f64) -> f64 {
+    0.5 * mass * (way / time).powi(2)
 }
 
 /// Place over the size of bodies, or attitude, of a body whose coordinates come first.

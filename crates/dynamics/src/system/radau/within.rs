@@ -1,5 +1,7 @@
 //! The motion within a step that has been done: Eqs. (J17) of `docs/method/systems.md`.
 
+use nalgebra::Vector3;
+
 use crate::body::motion_state::MotionState;
 use crate::conservative::{get, part, set};
 use crate::equations::Equations;
@@ -112,7 +114,8 @@ impl SystemMotion {
             let [impulse, about_center] = [0, 3].map(|part| bend * vector(&after.bend[1], first + part));
             let mut list = body.list_mut(state);
             let mut slow = *list.slow();
-            let arm = get(&slow, part::POSITION) - body.frame.center();
+            let apart = self.system.spins_apart[b];
+            let arm = if apart { Vector3::zeros() } else { get(&slow, part::POSITION) - body.frame.center() };
             let moment = about_center - arm.cross(&impulse);
             for (which, more) in [(part::IMPULSE, impulse), (part::ANGULAR_IMPULSE, moment)] {
                 let sum = get(&slow, which) + more;

@@ -23,6 +23,7 @@ struct Saved {
     due: Due,
     account: EnergyAccount,
     exchanged: Vec<f64>,
+    gone: Vec<f64>,
     stats: Stats,
     #[serde(with = "equal_room")]
     measure: Option<ErrorMeasure>,
@@ -58,6 +59,7 @@ impl SystemSimulation {
             due: self.due,
             account: self.account,
             exchanged: self.exchanged.clone(),
+            gone: self.gone.clone(),
             stats: self.stats,
             measure: self.measure,
             last_step,
@@ -72,22 +74,23 @@ impl SystemSimulation {
     pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, CheckpointError> {
         let saved: Vec<u8> = from_words(checkpoint)?;
         let saved: Saved = decode(&saved)?;
-        let Saved { motion, plan, walk, steps_since_row, due, account, exchanged, stats, measure, last_step } = saved;
+        let Saved { motion, plan, walk, steps_since_row, due, account, exchanged, gone, stats, measure, last_step } = saved;
         counts(&[steps_since_row, due.rows])?;
         stats.check()?;
         match (&self.measure, &measure) {
             (Some(own), Some(saved)) => own.check_saved(saved)?,
             (own, saved) => expect("the kind of step control", own.is_none() && saved.is_none())?,
         }
-        expect("the number of bodies", exchanged.len() == self.exchanged.len())?;
+        expect("the number of bodies", [&exchanged, &gone].iter().all(|list| list.len() == self.exchanged.len()))?;
         finite("the energy exchanged", exchanged.iter())?;
+        finite("the ways of the bodies", gone.iter())?;
         walk.equal.check()?;
         expect("the next step", walk.next > 0.0 && walk.longest > 0.0)?;
         account.check_saved()?;
         self.motion.take_up(motion)?;
         self.plan.set_progress(&plan)?;
         (self.walk, self.account, self.exchanged, self.stats) = (walk, account, exchanged, stats);
-        (self.due, self.steps_since_row, self.measure) = (due, steps_since_row, measure);
+        (self.due, self.steps_since_row, self.measure, self.gone) = (due, steps_since_row, measure, gone);
         self.events.forget();
         self.pending_event = None;
         expect("the last step", last_step.is_some() == self.last_step.is_some())?;

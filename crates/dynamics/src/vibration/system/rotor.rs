@@ -217,13 +217,14 @@ impl SystemMotion {
         if self.is_sprung(&turned) { Err(RotorError::Sprung) } else { Ok(()) }
     }
 
-    /// The steady state at rest while a rotor spins at a speed, with its linearised equations: coordinates of the rotor are along axes that
-    /// do not turn with it.
+    /// The steady state at rest while a rotor spins at a speed, and others at theirs, with its linearised equations: coordinates of the rotor
+    /// are along axes that do not turn with it.
     ///
     /// # Errors
     /// [`SteadyError`].
-    pub fn rotor_state(&self, rotor: &Rotor, speed: f64) -> Result<SteadyState, SteadyError> {
-        self.steady_state_with_rotors(&CommonSpin::REST, [(rotor, speed)])
+    pub fn rotor_state(&self, rotor: &Rotor, speed: f64, others: &[(Rotor, f64)]) -> Result<SteadyState, SteadyError> {
+        let others = others.iter().map(|(rotor, speed)| (rotor, *speed));
+        self.steady_state_with_rotors(&CommonSpin::REST, others.chain([(rotor, speed)]))
     }
 
     /// The steady state in a common spin in which rotors spin against what carries them, at a speed each: along axes that turn with the bodies.
@@ -242,13 +243,18 @@ impl SystemMotion {
         SteadyState::near(self, at, Some(spin))
     }
 
-    /// The vibrations while a rotor spins at a speed in rad per time, slowest first: one for each independent coordinate. Their `whirl` is
-    /// that of the rotor: 1 where it circles about its axis forwards, −1 backwards.
+    /// The vibrations while a rotor spins at a speed in rad per time, and others at theirs, slowest first: one for each independent
+    /// coordinate. Their `whirl` is that of the rotor: 1 where it circles about its axis forwards, −1 backwards.
     ///
     /// # Errors
     /// [`SteadyError`].
-    pub fn rotor_modes(&self, rotor: &Rotor, speed: f64) -> Result<Vec<SpinMode>, SteadyError> {
-        let linear = self.rotor_state(rotor, speed)?.linear;
+    pub fn rotor_modes(
+        &self,
+        rotor: &Rotor,
+        speed: f64,
+        others: &[(Rotor, f64)],
+    ) -> Result<Vec<SpinMode>, SteadyError> {
+        let linear = self.rotor_state(rotor, speed, others)?.linear;
         let whirl = |mode: &SystemMode| if speed == 0.0 { 0.0 } else { self.circling(rotor, &mode.motion) };
         linear.all_modes(|mode| linear.spin_mode(mode, whirl(mode)))
     }

@@ -9,6 +9,7 @@ use crate::vibration::system::configuration::{CommonSpin, Configuration};
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::linearization::Linearization;
 use crate::vibration::system::mode::SystemMode;
+use crate::vibration::system::rotor::Rotor;
 
 impl SystemMotion {
     /// A point and the z axis of the first marker of a joint, global.
@@ -29,7 +30,7 @@ impl SystemMotion {
     }
 
     /// The vibrations in a common spin about a unit vector through a point, at a speed in rad per time, slowest first: one for each
-    /// independent coordinate. The bodies are deformed as the spin asks.
+    /// independent coordinate. The bodies are deformed as the spin asks; rotors spin against what carries them, at a speed each.
     ///
     /// # Errors
     /// [`SteadyError`].
@@ -38,8 +39,11 @@ impl SystemMotion {
         axis_global: &Vector3<f64>,
         point_global: Vector3<f64>,
         speed: f64,
+        rotors: &[(Rotor, f64)],
     ) -> Result<Vec<SpinMode>, SteadyError> {
-        let linear = self.steady_state(&CommonSpin { omega_global: axis_global * speed, point_global })?.linear;
+        let spin = CommonSpin { omega_global: axis_global * speed, point_global };
+        let rotors = rotors.iter().map(|(rotor, speed)| (rotor, *speed));
+        let linear = self.steady_state_with_rotors(&spin, rotors)?.linear;
         linear.all_modes(|mode| linear.spin_mode(mode, linear.whirl(mode, speed)))
     }
 }

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::branches::Branch;
 use super::critical::{Critical, SwingLimit};
+use crate::commands::system_modes::SpinningRotor;
 use crate::files::json;
 use crate::report::MeshReport;
 
@@ -28,6 +29,12 @@ pub struct CampbellReport {
     /// The body of a system that spins, where the others are its support; none where all spin.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotor: Option<String>,
+    /// Rotors beside it that spin as they do at the start of the scene, at the same speed at all speeds of the diagram.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rotors: Vec<SpinningRotor>,
+    /// Turns that are left out.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// The spin axis: unit vector, axes of the mesh; of a system global.
     pub axis: [f64; 3],
     /// The point that the axis goes through, mesh axes; of a system global.

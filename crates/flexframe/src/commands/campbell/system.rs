@@ -14,7 +14,7 @@ use super::limits::Limits;
 use super::report::{CampbellReport, SpinEffects};
 use super::{CampbellProgress, Speeds, checked, files, spinning, unit};
 use crate::commands::modes::frequency_unit;
-use crate::commands::system_modes::{TiedMotion, body_names, build, tied_motions};
+use crate::commands::system_modes::{Rotors, TiedMotion, body_names, build, tied_motions};
 
 /// Settings of the diagram of a system.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,6 +33,7 @@ pub struct SystemCampbellSettings {
 ///
 /// At each speed the bodies are deformed as the spin asks, and drives hold still what they turn. Loads are left out; dampers and the
 /// damping of modes count. Where other joints keep the bodies from that spin, the body beyond the joint spins alone: a rotor on a support.
+/// Other rotors spin as they do at the start of the scene.
 ///
 /// # Errors
 /// [`CampbellError`].
@@ -67,11 +68,18 @@ pub fn campbell_of_system(
         CampbellError::Rotor { scene: scene.path.clone(), joint, source: Box::new(source) }
     })?;
     let rotor = rotor.flatten();
+    // Rotors beside the one that is asked for spin as the scene has them; in a common spin, joints on the ground turn by it.
+    let others = Rotors::of(of_motion, |other| {
+        let of = &of_motion.system().joints()[other];
+        let bodies = of.markers.each_ref().map(|marker| marker.body());
+        let is_meant = rotor.map_or(bodies.contains(&None), |rotor| bodies.contains(&Some(rotor.body)));
+        joint == Some(other) || is_meant
+    });
     let find = |speed: f64| {
         let failed = |source: SteadyError| CampbellError::Steady { scene: scene.path.clone(), speed, source };
         let modes = match &rotor {
-            Some(rotor) => of_motion.rotor_modes(rotor, speed),
-            None => of_motion.spin_modes(&axis, point, speed),
+            Some(rotor) => of_motion.rotor_modes(rotor, speed, &others.spinning),
+            None => of_motion.spin_modes(&axis, point, speed, &others.spinning),
         };
         modes.map_err(failed)
     };
@@ -95,6 +103,8 @@ pub fn campbell_of_system(
         mesh: None,
         bodies: body_names(&system, &motion.bodies),
         rotor: rotor.map(|rotor| body_names(&system, &motion.bodies).swap_remove(rotor.body)),
+        warnings: others.warnings(branches.modes.iter().flatten().map(|mode| mode.circular_frequency)),
+        rotors: others.found,
         axis: axis.into(),
         origin: point.into(),
         effects: rotor.is_none().then(|| SpinEffects {

@@ -30,6 +30,8 @@ impl fmt::Display for CampbellReport {
         if let Some(rotor) = &self.rotor {
             writeln!(f, "  rotor    {rotor} alone spins; the others are its support")?;
         }
+        let others = self.rotors.iter();
+        others.clone().try_for_each(|of| writeln!(f, "  and      {}, at all speeds", of.words(&self.time_unit)))?;
         if let Some(effects) = self.effects {
             writeln!(f, "  effects  {effects}")?;
         }
@@ -59,7 +61,8 @@ impl fmt::Display for CampbellReport {
         self.write_critical_speeds(f)?;
         self.write_swing_limits(f)?;
         write!(f, "\n  wrote     ")?;
-        self.files.iter().try_for_each(|file| write!(f, " {}", file.display()))
+        self.files.iter().try_for_each(|file| write!(f, " {}", file.display()))?;
+        self.warnings.iter().try_for_each(|warning| write!(f, "\n  warning   {warning}"))
     }
 }
 

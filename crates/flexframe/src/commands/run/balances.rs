@@ -106,7 +106,7 @@ impl Monitor {
 
     /// Takes what a body in joints may have in any case: it may turn about a center of mass that rests, under forces that cancel, so that its
     /// momentum is counted over the one of its `mass` with its largest kinetic energy, and its moment over the one at its `radius` of
-    /// gyration; strain pushes nothing. What moves by less than the error of a step in all of the run rests, with this energy at the most.
+    /// gyration; strain pushes nothing. With less than the last energy it rests.
     pub(super) fn in_joints(&mut self, mass: f64, radius: f64, at_rest: f64) {
         let linear_momentum = (2.0 * mass * self.scales.kinetic.max(at_rest)).sqrt();
         let of = Balances { linear_momentum, angular_momentum: radius * linear_momentum, energy: at_rest };

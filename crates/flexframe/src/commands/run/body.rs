@@ -111,14 +111,14 @@ impl<'a> FollowedBody<'a> {
     }
 
     /// Its report when it has come to its end, with the last row, the cost of its motion, the energy that came and
-    /// went, and its scheme; and warnings.
+    /// went, that of rest, and its scheme; and warnings.
     pub fn report(
         mut self,
         last: &BodyRow,
-        (stats, exchanged, scheme): (&Stats, f64, &str),
+        (stats, energies, scheme): (&Stats, [f64; 2], &str),
     ) -> (BodyRunReport, Vec<String>) {
         let Watched { balances, right_unsummed, energy_tells, step_error, turned, warnings } =
-            self.watch.finish(exchanged, stats.longest);
+            self.watch.finish(energies, stats.longest);
         let RunBody { scene, model } = self.of;
         let report = BodyRunReport {
             name: self.of.name().to_owned(),

@@ -1,7 +1,7 @@
 //! Watch of a motion beside its rows: the assumptions of its model, and the quantities that should stay as they are.
 
 use advice::{Refusal, Review, StepEstimate};
-use dynamics::{EffectMap, Initial, Moment, MotionState, Observation, StepControl};
+use dynamics::{EffectMap, Initial, Moment, MotionState, Observation};
 use model::{BuildError, Model};
 use scene::{Load, Scene};
 
@@ -18,9 +18,6 @@ const WRONG: f64 = 1e-2;
 
 /// Largest step times ω_max in which the stages see the work on the modes and their dissipation as they are.
 const RESOLVED: f64 = 0.5;
-
-/// Part of its size by which a body in joints that rests may move in a run with fixed steps.
-const RESTS: f64 = 1e-9;
 
 /// Watches a motion. Every moment goes to [`Self::look`], every row to [`Self::observe`].
 pub struct Watch<'a> {
@@ -123,16 +120,12 @@ impl<'a> Watch<'a> {
         &mut self.monitor
     }
 
-    /// Findings when the motion has come to its end, in which this energy came and went, in steps of at most this length.
-    pub fn finish(&mut self, exchanged: f64, longest_step: f64) -> Watched {
+    /// Findings when the motion has come to its end, in which the first energy came and went and less than the second is rest, in steps of at
+    /// most this length.
+    pub fn finish(&mut self, [exchanged, at_rest]: [f64; 2], longest_step: f64) -> Watched {
         let Self { scene, model, .. } = *self;
         if scene.tied {
-            let part = match scene.time.control {
-                StepControl::Tolerance(tolerance) => tolerance,
-                StepControl::Fixed(_) => RESTS,
-            };
             let radius_squared = model.body.inertia_about_center().trace() / (2.0 * model.body.mass);
-            let at_rest = 0.5 * model.body.mass * radius_squared * (part / scene.time.end).powi(2);
             self.monitor.in_joints(model.body.mass, radius_squared.sqrt(), at_rest);
         }
         self.monitor.exchanged(exchanged);

@@ -143,7 +143,7 @@ impl SystemModesReport {
             degrees_of_freedom: steady.linear.size(),
             mechanisms: steady.linear.rigid,
             rigid_modes,
-            warnings: rotors.warnings(found),
+            warnings: rotors.warnings(found.modes.iter().map(SystemMode::circular_frequency)),
             rotors: rotors.found,
             carried: None,
             modes: found.modes.iter().map(mode).collect(),

@@ -1,8 +1,6 @@
 //! Rotors that spin in the motion of a scene, of which linear answers have the gyroscopic moments.
 
-use dynamics::{
-    CommonSpin, Rotor, RotorError, SteadyError, SteadyState, SystemMode, SystemMotion, TurningJoint, Vibrations,
-};
+use dynamics::{CommonSpin, Rotor, RotorError, SteadyError, SteadyState, SystemMotion, TurningJoint};
 use serde::Serialize;
 
 use crate::report::quantity;
@@ -29,7 +27,7 @@ const TOLD: f64 = 0.03;
 
 /// The rotors of a motion, and joints that turn and spin none.
 pub(crate) struct Rotors {
-    spinning: Vec<(Rotor, f64)>,
+    pub spinning: Vec<(Rotor, f64)>,
     pub found: Vec<SpinningRotor>,
     left_out: Vec<(String, f64, RotorError)>,
 }
@@ -56,9 +54,8 @@ impl Rotors {
         rotors
     }
 
-    /// Sentences about turns that are left out, beside these vibrations.
-    pub fn warnings(&self, vibrations: &Vibrations) -> Vec<String> {
-        let frequencies = vibrations.modes.iter().map(SystemMode::circular_frequency);
+    /// Sentences about turns that are left out, beside vibrations of these circular frequencies.
+    pub fn warnings(&self, frequencies: impl Iterator<Item = f64>) -> Vec<String> {
         let slowest = frequencies.filter(|omega| *omega > 0.0).reduce(f64::min).unwrap_or(0.0);
         let told = self.left_out.iter().filter(|(_, rate, _)| rate.abs() > TOLD * slowest);
         told.map(|(name, rate, error)| {

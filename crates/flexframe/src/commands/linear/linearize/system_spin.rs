@@ -1,6 +1,6 @@
 //! The common spin of bodies in joints: that which is asked for, or that of the drive that turns all of them.
 
-use dynamics::{CommonSpin, SteadyError, SteadyState, SystemMotion};
+use dynamics::{CommonSpin, SteadyError, SteadyState, SystemMode, SystemMotion};
 use nalgebra::Vector3;
 
 use crate::commands::system_modes::{Rotors, SpinningRotor};
@@ -32,7 +32,8 @@ impl SystemSpin {
             let spins = spin.omega_global.norm() > 0.0;
             let rotors = Rotors::of(motion, |joint| spins && is_on_ground(joint));
             let steady = rotors.steady_state(motion, spin)?;
-            let warnings = rotors.warnings(&steady.linear.vibrations()?);
+            let modes = steady.linear.vibrations()?.modes;
+            let warnings = rotors.warnings(modes.iter().map(SystemMode::circular_frequency));
             Ok(Self { omega_global: spin.omega_global, steady, rotors: rotors.found, warnings })
         };
         if let Some(omega_global) = asked {
