@@ -13,6 +13,18 @@ use scene::Scene;
 
 pub use beginning::{BeginError, Beginning, BodyForces, JointForces, MarkerForces, Moving, OwnEquation, begin};
 
+/// Energies of a run that the balances of a body are counted over.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunEnergies {
+    /// Energy that has come and gone: the sum of |work| + |dissipation| of all steps of a body that moves alone, whose loads the stages sum up;
+    /// the largest of both since the beginning of one in joints.
+    pub exchanged: f64,
+    /// Energy below which a body in joints rests; zero of one alone.
+    pub at_rest: f64,
+    /// Largest energy of all bodies in joints together for which works and dissipation do not account.
+    pub open_together: Option<f64>,
+}
+
 /// A motion with steps of its own.
 #[derive(Debug, Clone)]
 pub enum Motion {
@@ -160,20 +172,15 @@ impl Motion {
         either!(self, of => of.event(number).map(|event| event.name()))
     }
 
-    /// Energy that has come and gone, of a body: the sum of |work| + |dissipation| of all steps of one that moves alone, whose loads the
-    /// stages sum up; the largest of both since the beginning of one in joints.
-    pub fn exchanged(&self, body: usize) -> f64 {
+    /// Energies of the run so far that the balances of a body are counted over.
+    pub fn energies(&self, body: usize) -> RunEnergies {
         match self {
-            Self::Alone(simulation) => simulation.exchanged(),
-            Self::Tied(simulation) => simulation.exchanged(body),
-        }
-    }
-
-    /// Energy below which a body in joints rests: what its place may be off by, and what the loads do over it. Of one alone, zero.
-    pub fn energy_at_rest(&self, body: usize) -> f64 {
-        match self {
-            Self::Alone(_) => 0.0,
-            Self::Tied(simulation) => simulation.energy_at_rest(body),
+            Self::Alone(simulation) => RunEnergies { exchanged: simulation.exchanged(), at_rest: 0.0, open_together: None },
+            Self::Tied(simulation) => RunEnergies {
+                exchanged: simulation.exchanged(body),
+                at_rest: simulation.energy_at_rest(body),
+                open_together: Some(simulation.open_energy()),
+            },
         }
     }
 

@@ -134,6 +134,12 @@ impl EnergyAccount {
         self.exchanged.sum()
     }
 
+    /// The energy beyond what the start, work and dissipation leave.
+    pub(crate) fn open(&self, now: &Energies) -> f64 {
+        let balance = |of: &Energies| of.internal + of.translation - of.work + of.dissipation;
+        self.start.map_or(0.0, |start| balance(now) - balance(&start))
+    }
+
     /// Checks the energy at a time; the `rate` is the largest of ω_k and 2 ζ_k ω_k.
     pub(crate) fn check(&mut self, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
         self.check_beyond(0.0, now, rate, step)

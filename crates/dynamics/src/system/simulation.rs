@@ -83,6 +83,8 @@ pub struct SystemSimulation {
     account: EnergyAccount,
     /// Energy exchanged of each body, see [`Self::exchanged`].
     exchanged: Vec<f64>,
+    /// See [`Self::open_energy`].
+    open_energy: f64,
     /// Way of each body in its frame since the beginning, as it moves and turns.
     gone: Vec<f64>,
     events: Events<SystemObservation>,
@@ -154,6 +156,7 @@ impl SystemSimulation {
             ),
             walk: Walk { segment: None, equal: EqualSteps::default(), next: FIRST * end, longest: f64::INFINITY },
             exchanged: vec![0.0; system.bodies().len()],
+            open_energy: 0.0,
             gone: vec![0.0; system.bodies().len()],
             looked_at: SystemObservation::new(system, &points),
             observers: Observers::NONE,
@@ -262,6 +265,12 @@ impl SystemSimulation {
         self.exchanged[body].max(self.motion.energy_scale())
     }
 
+    /// Largest part of the energy of all bodies together for which their works and dissipation do not account, at the times that were observed.
+    /// What joints pass from one to another has no part in it.
+    pub fn open_energy(&self) -> f64 {
+        self.open_energy
+    }
+
     /// Energy below which a body rests: that of a motion in which its place changes by no more than it may be off in all of the run, and,
     /// of a rigid body that has gone no farther, the work of the loads over this way.
     pub fn energy_at_rest(&self, body: usize) -> f64 {
@@ -334,6 +343,7 @@ impl SystemSimulation {
             sum.dissipation += out.work.dissipation;
         }
         self.account.raise_scale(motion.energy_scale());
+        self.open_energy = larger(self.open_energy, self.account.open(&sum).abs());
         self.account.check_beyond(unseen, &sum, 0.0, step)?;
         let Self { points, looked_at, observers, .. } = self;
         observers.observed(&mut StepEnd {
@@ -387,6 +397,7 @@ impl SystemSimulation {
         self.account = EnergyAccount::default();
         self.exchanged.fill(0.0);
         self.gone.fill(0.0);
+        self.open_energy = 0.0;
         if let Some(step) = &mut self.last_step {
             step.keep(&self.motion);
         }

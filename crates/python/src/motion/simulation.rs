@@ -452,8 +452,7 @@ impl Simulation {
                 let warnings = watches.iter_mut().zip(&self.bodies).enumerate().flat_map(|(body, (watch, of))| {
                     let name = of.scene.name.as_ref().filter(|_| self.bodies.len() > 1);
                     let named = move |words: String| name.map_or(words.clone(), |name| format!("body {name}: {words}"));
-                    let energies = [motion.exchanged(body), motion.energy_at_rest(body)];
-                    watch.finish(energies, longest).warnings.into_iter().map(named)
+                    watch.finish(&motion.energies(body), longest).warnings.into_iter().map(named)
                 });
                 let metadata = Metadata { warnings: warnings.collect(), ..(*self.metadata).clone() };
                 rows.into_results(py, &metadata, true, &events)

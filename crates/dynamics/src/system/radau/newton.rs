@@ -92,7 +92,7 @@ impl SystemMotion {
         // With compliant rows, and in taut chains, the first changes fall faster than the later ones, which turn the axes of stiff forces.
         let is_rigid = self.system.connections.is_rigid();
         // Near a singular position what rounds off in a residual moves bodies by more.
-        let weakest = self.judgement.as_ref().map_or(1.0, |known| known.rank.smallest.min(1.0));
+        let weakest = self.weakest_row();
         let rounding = ROUNDING / weakest;
         // Momenta that are guessed by forces without joints may be far off where places are not.
         let guessed = usize::from(self.last_length == 0.0);

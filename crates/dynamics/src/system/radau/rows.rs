@@ -46,6 +46,11 @@ impl SystemMotion {
         self.judgement.as_ref().is_some_and(|known| known.rank.is_undecided)
     }
 
+    /// The smallest part of a row beside others that is kept, at most 1: small near a singular position.
+    pub(super) fn weakest_row(&self) -> f64 {
+        self.judgement.as_ref().map_or(1.0, |known| known.rank.smallest.min(1.0))
+    }
+
     /// The largest residual of all rows at the end of the last step, as a length over the size of the system.
     pub(in crate::system) fn residual_of_last_step(&self) -> f64 {
         let (Some(known), [.., last]) = (&self.judgement, &self.stages) else { return 0.0 };

@@ -15,6 +15,10 @@ const FIRST_GROWTH: f64 = 4.0;
 /// After a step that has forgotten vibration, the next may be longer by this.
 const FORGETTING_GROWTH: f64 = 1.25;
 
+/// Smallest part of a row below which a position is near a singular one: what the row bore in the last step, which grows beyond all bounds there,
+/// says nothing about the next.
+const NEAR_SINGULAR: f64 = 1e-3;
+
 /// Tries of a step to end at a kink of a law, before it goes over one.
 const KINK_TRIES: usize = 3;
 
@@ -102,6 +106,10 @@ impl SystemMotion {
             Err(Failed::Open { joints, gap }) => return Err(StepError::Open { time: to, joints, gap }),
             Err(Failed::Rates(error)) if length < 1e-12 * end => return Err(error.in_step(self.time, length)),
             Err(Failed::Rates(_)) => *h = 0.25 * length,
+        }
+        if taken.is_none() && self.last_length > 0.0 && self.weakest_row() < NEAR_SINGULAR {
+            self.forget_last_step();
+            *h = length;
         }
         if *h < 1e-13 * end {
             return Err(StepError::Tolerance { time: self.time, step: *h, tolerance: measure.tolerance });

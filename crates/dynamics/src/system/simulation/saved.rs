@@ -24,6 +24,7 @@ struct Saved {
     account: EnergyAccount,
     exchanged: Vec<f64>,
     gone: Vec<f64>,
+    open_energy: f64,
     stats: Stats,
     #[serde(with = "equal_room")]
     measure: Option<ErrorMeasure>,
@@ -60,6 +61,7 @@ impl SystemSimulation {
             account: self.account,
             exchanged: self.exchanged.clone(),
             gone: self.gone.clone(),
+            open_energy: self.open_energy,
             stats: self.stats,
             measure: self.measure,
             last_step,
@@ -74,7 +76,8 @@ impl SystemSimulation {
     pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, CheckpointError> {
         let saved: Vec<u8> = from_words(checkpoint)?;
         let saved: Saved = decode(&saved)?;
-        let Saved { motion, plan, walk, steps_since_row, due, account, exchanged, gone, stats, measure, last_step } = saved;
+        let Saved { motion, plan, walk, steps_since_row, due, account, exchanged, gone, open_energy, stats, measure, last_step } =
+            saved;
         counts(&[steps_since_row, due.rows])?;
         stats.check()?;
         match (&self.measure, &measure) {
@@ -83,14 +86,15 @@ impl SystemSimulation {
         }
         expect("the number of bodies", [&exchanged, &gone].iter().all(|list| list.len() == self.exchanged.len()))?;
         finite("the energy exchanged", exchanged.iter())?;
-        finite("the ways of the bodies", gone.iter())?;
+        finite("the ways of the bodies and the energy that is open", gone.iter().chain([&open_energy]))?;
         walk.equal.check()?;
         expect("the next step", walk.next > 0.0 && walk.longest > 0.0)?;
         account.check_saved()?;
         self.motion.take_up(motion)?;
         self.plan.set_progress(&plan)?;
         (self.walk, self.account, self.exchanged, self.stats) = (walk, account, exchanged, stats);
-        (self.due, self.steps_since_row, self.measure, self.gone) = (due, steps_since_row, measure, gone);
+        (self.due, self.steps_since_row, self.measure) = (due, steps_since_row, measure);
+        (self.gone, self.open_energy) = (gone, open_energy);
         self.events.forget();
         self.pending_event = None;
         expect("the last step", last_step.is_some() == self.last_step.is_some())?;

@@ -11,6 +11,7 @@ use super::balances::{Conserved, Monitor};
 use super::body_report::BodyRunReport;
 use super::error::RunError;
 use super::watch::{Watch, Watched};
+use crate::motion::RunEnergies;
 use crate::report::{BodyReport, MeshReport};
 use crate::rows::effects;
 use crate::rows::peak_stress::Largest;
@@ -110,12 +111,12 @@ impl<'a> FollowedBody<'a> {
         Largest::watch(&mut self.peak_stress, self.of.model, now);
     }
 
-    /// Its report when it has come to its end, with the last row, the cost of its motion, the energy that came and
-    /// went, that of rest, and its scheme; and warnings.
+    /// Its report when it has come to its end, with the last row, the cost of its motion, its energies, and its
+    /// scheme; and warnings.
     pub fn report(
         mut self,
         last: &BodyRow,
-        (stats, energies, scheme): (&Stats, [f64; 2], &str),
+        (stats, energies, scheme): (&Stats, &RunEnergies, &str),
     ) -> (BodyRunReport, Vec<String>) {
         let Watched { balances, right_unsummed, energy_tells, step_error, turned, warnings } =
             self.watch.finish(energies, stats.longest);

@@ -46,7 +46,8 @@ pub struct BodyRunReport {
     /// True if the balance of energy is open though the motion is right: modes faster than the steps follow themselves
     /// exactly, but the work on them and their dissipation are summed by the stages.
     pub right_unsummed: bool,
-    /// True if the balance of energy tells of the motion: its steps resolve all modes, so that work and dissipation are summed closely.
+    /// True if the balance of energy tells of the motion: its steps resolve all modes, so that work and dissipation are summed closely, and it is
+    /// not closed for all bodies together where that of one is open.
     pub energy_tells: bool,
     /// Expected error of fixed steps, relative to the largest motion; under step control the sum of the estimates of all steps. `None` where
     /// it was not estimated.

@@ -302,7 +302,7 @@ fn reports<'a>(Mover { motion, mut bodies, .. }: Mover<'a>, last: &Row, count: u
     let report = |(i, body): (usize, FollowedBody<'a>)| {
         let (of, number) = (body.of, body.number);
         let (report, warnings) =
-            body.report(&last.bodies[number], (&stats, [motion.exchanged(i), motion.energy_at_rest(i)], motion.scheme(of.scene)));
+            body.report(&last.bodies[number], (&stats, &motion.energies(i), motion.scheme(of.scene)));
         let named = |text| if count == 1 { text } else { format!("body {}: {text}", of.name()) };
         Finished {
             number,

@@ -8,6 +8,7 @@ use scene::{Load, Scene};
 use super::balances::{Balances, Conserved, Monitor};
 use super::error::RunError;
 use super::turn::Turn;
+use crate::motion::RunEnergies;
 use crate::plausible;
 
 /// Energy balance from which on a run says that it is open.
@@ -120,10 +121,10 @@ impl<'a> Watch<'a> {
         &mut self.monitor
     }
 
-    /// Findings when the motion has come to its end, in which the first energy came and went and less than the second is rest, in steps of at
-    /// most this length.
-    pub fn finish(&mut self, [exchanged, at_rest]: [f64; 2], longest_step: f64) -> Watched {
+    /// Findings when the motion has come to its end, with these energies, in steps of at most this length.
+    pub fn finish(&mut self, energies: &RunEnergies, longest_step: f64) -> Watched {
         let Self { scene, model, .. } = *self;
+        let RunEnergies { exchanged, at_rest, open_together } = *energies;
         if scene.tied {
             let radius_squared = model.body.inertia_about_center().trace() / (2.0 * model.body.mass);
             self.monitor.in_joints(model.body.mass, radius_squared.sqrt(), at_rest);
@@ -132,15 +133,19 @@ impl<'a> Watch<'a> {
         let balances = self.monitor.balances();
         let is_right_unsummed = self.is_right_unsummed(longest_step);
         let right_unsummed = balances.energy > OPEN && is_right_unsummed;
-        let open =
-            (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
+        let together = open_together.map(|open| open / self.monitor.scales().of.energy);
+        let passed = together.filter(|together| balances.energy > OPEN && *together <= OPEN);
+        let open = (balances.energy > OPEN && !right_unsummed).then(|| match passed {
+            Some(together) => passed_between(balances.energy, together),
+            None => open_balance(balances.energy, model.body.flexible()),
+        });
         let moments = right_unsummed.then(|| pointed_moments(scene)).flatten();
         let wrong = self.step.as_ref().filter(|step| step.largest() >= WRONG);
         Watched {
             balances,
             right_unsummed,
             // The equations of the paper do not keep the energy in any steps.
-            energy_tells: scene.time.method.abilities.keeps_energy && !is_right_unsummed,
+            energy_tells: scene.time.method.abilities.keeps_energy && !is_right_unsummed && passed.is_none(),
             step_error: self.step.as_ref().map(StepEstimate::largest),
             turned: self.turn.angle(),
             warnings: (plausible::doubts(scene, model).into_iter())
@@ -177,6 +182,16 @@ fn pointed_moments(scene: &Scene) -> Option<String> {
          mesh. Most of its work goes into shapes that are faster than the steps, and the energy is not summed closely. Give it the \
          radius of the part that takes it, such as that of a shaft or a flange"
     ))
+}
+
+/// The works of joints on two bodies cancel, whatever they are.
+fn passed_between(open: f64, together: f64) -> String {
+    format!(
+        "the energy balance is open by {open:.1e} of the energy that there was or that came and went, though it is closed to \
+         {together:.1e} for all bodies together: the joints have passed more between the bodies than the stages of a step tell, as \
+         where a linkage goes through a singular position, near which its reactions grow beyond all bounds. Do not rely on the \
+         reactions there"
+    )
 }
 
 fn open_balance(open: f64, flexible: usize) -> String {
