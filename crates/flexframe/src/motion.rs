@@ -175,7 +175,9 @@ impl Motion {
     /// Energies of the run so far that the balances of a body are counted over.
     pub fn energies(&self, body: usize) -> RunEnergies {
         match self {
-            Self::Alone(simulation) => RunEnergies { exchanged: simulation.exchanged(), at_rest: 0.0, open_together: None },
+            Self::Alone(simulation) => {
+                RunEnergies { exchanged: simulation.exchanged(), at_rest: 0.0, open_together: None }
+            }
             Self::Tied(simulation) => RunEnergies {
                 exchanged: simulation.exchanged(body),
                 at_rest: simulation.energy_at_rest(body),

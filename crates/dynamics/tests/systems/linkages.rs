@@ -159,7 +159,8 @@ fn a_spring_that_a_joint_balances_has_no_work() {
     let joints = vec![Joint::revolute("hinge", [ground(0.0, 0.0), on(0, -1.0, 0.0)])];
     let spring =
         PointSpring { markers: [ground(0.0, 0.0), on(0, 0.0, 0.0)], stiffness: 50.0, damping: 0.0, free_length: 0.4 };
-    let system = System::new(vec![body(1.0, 1e-2, 0.0)], joints).unwrap().with_elements(vec![Arc::new(spring)]).unwrap();
+    let system =
+        System::new(vec![body(1.0, 1e-2, 0.0)], joints).unwrap().with_elements(vec![Arc::new(spring)]).unwrap();
     let mut simulation = run(system, vec![state(Vector3::x(), Vector3::zeros())], 1e-5, 0.5).unwrap();
     to_end(&mut simulation).unwrap();
     let works = simulation.motion().work_of_element(0);

@@ -94,8 +94,9 @@ impl SystemMotion {
         // Near a singular position what rounds off in a residual moves bodies by more.
         let weakest = self.weakest_row();
         let rounding = ROUNDING / weakest;
-        // Momenta that are guessed by forces without joints may be far off where places are not.
-        let guessed = usize::from(self.last_length == 0.0);
+        // Momenta that are guessed by forces without joints may be far off where places are not. What a motor begins to turn within an instant has
+        // work by what rounds in its times.
+        let guessed = usize::from(self.last_length == 0.0 && !self.law_work.has_work);
         let ([mut last_position, mut last], mut since) = ([f64::INFINITY; 2], 0);
         let mut renewals = if self.system.connections.has_laws() { MAX_RENEWALS } else { 0 };
         let mut asks_laws = true;

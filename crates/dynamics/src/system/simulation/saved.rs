@@ -76,8 +76,20 @@ impl SystemSimulation {
     pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, CheckpointError> {
         let saved: Vec<u8> = from_words(checkpoint)?;
         let saved: Saved = decode(&saved)?;
-        let Saved { motion, plan, walk, steps_since_row, due, account, exchanged, gone, open_energy, stats, measure, last_step } =
-            saved;
+        let Saved {
+            motion,
+            plan,
+            walk,
+            steps_since_row,
+            due,
+            account,
+            exchanged,
+            gone,
+            open_energy,
+            stats,
+            measure,
+            last_step,
+        } = saved;
         counts(&[steps_since_row, due.rows])?;
         stats.check()?;
         match (&self.measure, &measure) {
