@@ -41,8 +41,8 @@ impl Tension {
         Self { frozen: none.clone(), found: none, rates: vec![0.0; bodies], forces }
     }
 
-    /// Finds K at a stage by the multipliers of its rows. True where it is far from what the matrices have.
-    pub fn find(&mut self, system: &System, stage: &Stage, multipliers: &[f64], kappa: f64) -> bool {
+    /// Finds K at a stage by a part of the multipliers of its rows. True where it is far from what the matrices have.
+    pub fn find(&mut self, system: &System, stage: &Stage, (multipliers, part): (&[f64], f64), kappa: f64) -> bool {
         self.found.fill(Matrix3::zeros());
         self.forces.fill((Vector3::zeros(), 0.0));
         let mut first = 0;
@@ -58,7 +58,7 @@ impl Tension {
                 let mut force = Vector3::zeros();
                 for row in own.clone() {
                     let ends = stage.constraints.ends[row].iter().filter(|end| end.body == b);
-                    ends.for_each(|end| force += multipliers[row] * vector(&end.entries, 0));
+                    ends.for_each(|end| force += part * multipliers[row] * vector(&end.entries, 0));
                 }
                 self.forces[b].0 += force;
                 self.forces[b].1 += force.norm();

@@ -10,6 +10,7 @@ use crate::system::description::System;
 use crate::system::elimination::newton::{Frozen, sizes};
 use crate::system::joint::force::FrictionSlope;
 use crate::system::radau::bound::Bound;
+use crate::system::radau::rows::NEAR_SINGULAR;
 use crate::system::radau::{Failed, Room, SystemMotion};
 use crate::system::stage::Stage;
 
@@ -24,6 +25,8 @@ const OF_VELOCITIES: f64 = 1e3;
 /// The rate of convergence above which laws are asked anew, and how many times in a step.
 const SLOW: f64 = 0.2;
 const MAX_RENEWALS: usize = 3;
+/// Rounding of the time over a step that is an instant.
+const INSTANT: f64 = 1e-10;
 /// Passes of Newton's method before a step is given up.
 const MAX_PASSES: usize = 20;
 
@@ -53,6 +56,8 @@ impl SystemMotion {
     /// Factors of the Newton matrix with the geometry of the second stage, where there are none yet, where laws are asked anew, or a
     /// compliant row has changed much. Returns whether they are new.
     fn factor(&mut self, h: f64, of_laws: bool, by: FrictionSlope) -> Result<bool, Failed> {
+        // Forces that grow beyond all bounds near a singular position say nothing of a tension.
+        let bears = if self.weakest_row() < NEAR_SINGULAR { 0.0 } else { 1.0 };
         let Self { matrices, system, stages, scheme, patterns, start, multipliers, .. } = self;
         let kappa = scheme.real / h;
         if !system.connections.is_rigid() {
@@ -76,7 +81,7 @@ impl SystemMotion {
                 (*frozen, is_new) = (largest, true);
             }
         }
-        is_new |= matrices.tension.find(system, &stages[1], &multipliers[1], kappa);
+        is_new |= matrices.tension.find(system, &stages[1], (&multipliers[1], bears), kappa);
         if is_new {
             matrices.tension.freeze();
         }
@@ -94,9 +99,10 @@ impl SystemMotion {
         // Near a singular position what rounds off in a residual moves bodies by more.
         let weakest = self.weakest_row();
         let rounding = ROUNDING / weakest;
-        // Momenta that are guessed by forces without joints may be far off where places are not. What a motor begins to turn within an instant has
-        // work by what rounds in its times.
-        let guessed = usize::from(self.last_length == 0.0 && !self.law_work.has_work);
+        // Momenta that are guessed by forces without joints may be far off where places are not. What a motor begins to turn within an instant
+        // has work by what rounds in its times.
+        let is_instant = f64::EPSILON * self.time.abs() > INSTANT * h;
+        let guessed = usize::from(self.last_length == 0.0 && !is_instant);
         let ([mut last_position, mut last], mut since) = ([f64::INFINITY; 2], 0);
         let mut renewals = if self.system.connections.has_laws() { MAX_RENEWALS } else { 0 };
         let mut asks_laws = true;

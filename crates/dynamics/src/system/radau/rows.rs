@@ -17,6 +17,9 @@ const CLOSED: f64 = 1e-9;
 const LATE: f64 = 1e-7;
 /// The largest residual, over the size of the system, of rows that cannot all be closed: the clearance of joints.
 const CLEARANCE: f64 = 1e-6;
+/// Smallest part of a row below which a position is near a singular one: what the row bore in the last step, which grows beyond all bounds there,
+/// says nothing about the next.
+pub(super) const NEAR_SINGULAR: f64 = 1e-3;
 /// A joint with less than this part of the largest share is not named.
 const SHARE: f64 = 0.01;
 /// Closings from where the last one has left the bodies.

@@ -3,6 +3,7 @@
 use crate::conservative::part;
 use crate::error::{RateError, StepError};
 use crate::system::radau::bound::Bound;
+use crate::system::radau::rows::NEAR_SINGULAR;
 use crate::system::radau::{Failed, SystemMotion, Tried};
 use crate::tolerance::ErrorMeasure;
 
@@ -14,10 +15,6 @@ const GROWTH: f64 = 1.6;
 const FIRST_GROWTH: f64 = 4.0;
 /// After a step that has forgotten vibration, the next may be longer by this.
 const FORGETTING_GROWTH: f64 = 1.25;
-
-/// Smallest part of a row below which a position is near a singular one: what the row bore in the last step, which grows beyond all bounds there,
-/// says nothing about the next.
-const NEAR_SINGULAR: f64 = 1e-3;
 
 /// Tries of a step to end at a kink of a law, before it goes over one.
 const KINK_TRIES: usize = 3;
