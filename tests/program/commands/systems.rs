@@ -503,7 +503,7 @@ fn a_diagram_has_the_other_rotors_of_the_scene() {
     let text = [
         "title = \"Two disks\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n".to_owned(),
         body("stand", 3.0, [0.2, 0.3], ""),
-        body("disk", 2.0, [0.4, 0.25], ""),
+        body("disk", 2.0, [0.4, 0.25], "initial = { angular_velocity = [40.0, 0, 0] }\n"),
         body("wheel", 1.0, [0.1, 0.06], "initial = { angular_velocity = [70.0, 0, 0] }\n"),
         joint("shaft", "disk", "drive = { amplitude = 40.0, history = { kind = \"expression\", formula = \"t\" } }\n"),
         joint("bearing", "wheel", ""),
