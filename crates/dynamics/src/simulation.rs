@@ -349,12 +349,17 @@ impl Simulation {
         self.end
     }
 
+    /// Room for the motion of the body.
+    pub fn room(&self) -> Observation {
+        Observation::new(self.motion.flexible(), self.points.len())
+    }
+
     /// The motion at the time that has been reached. [`Self::observe`] does the same without allocating.
     ///
     /// # Errors
     /// As [`Self::observe`].
     pub fn observation(&mut self) -> Result<Observation, StepError> {
-        let mut out = Observation::new(self.motion.flexible(), self.points.len());
+        let mut out = self.room();
         self.observe(&mut out)?;
         Ok(out)
     }

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use flexframe::advice::Review;
 use flexframe::dynamics::{
-    Coordinate, History, Initial, JointLaw, JointObservation, LoadFrame, PointForce, PointMoment, Reached, Rows,
-    ScaledLoad, SharedLoad, Signal,
+    Coordinate, History, Initial, JointLaw, LoadFrame, PointForce, PointMoment, Reached, RowTimes, Rows, Run,
+    ScaledLoad, SharedLoad, Signal, StepControl, StepError,
 };
 use flexframe::fmu::{FmuBody, FmuModel, Input, InputKind, Source};
 use flexframe::model::Model;
-use flexframe::motion::{Beginning, BodyForces, JointForces, Moving, begin};
+use flexframe::motion::{Beginning, BodyForces, JointForces, begin};
 use flexframe::nalgebra::Vector3;
 use flexframe::row::{BodyRow, Row};
 use self_cell::self_cell;
@@ -54,10 +54,10 @@ impl Reviewed {
 /// Bodies in motion, all at one time.
 pub struct Motion {
     reviewed: Option<Reviewed>,
-    motions: Vec<Moving>,
+    run: Run,
     /// One for each input variable, in their order.
     inputs: Vec<Channel>,
-    /// True of a motion of which an input has been set since the last step.
+    /// True of an island of which an input has been set since the last step.
     changed: Vec<bool>,
     row: Row,
     numbers: Vec<f64>,
@@ -77,7 +77,7 @@ struct Channel {
 /// Contents of a state of an FMU.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    checkpoints: Vec<Vec<u64>>,
+    checkpoint: Vec<u64>,
     inputs: Vec<(f64, [f64; 3])>,
     changed: Vec<bool>,
 }
@@ -86,22 +86,20 @@ impl Motion {
     /// From the beginning of the scene to its end or the `stop` time, if that is later; times in the scene's unit.
     pub fn new(fmu: FmuModel, stop: Option<f64>) -> Result<Self, (Box<FmuModel>, Error)> {
         let initial: Vec<Initial> = fmu.bodies.iter().map(|body| body.model.initial(&body.scene)).collect();
-        let flexframe::scene::System { joints, springs, bushings, .. } = &fmu.system;
-        let ties = joints.len() + springs.len() + bushings.len();
         let inputs: Vec<Channel> = fmu.variables.iter().filter_map(|variable| channel(variable.source)).collect();
-        let motions = match motions(&fmu, &inputs, stop) {
-            Ok(motions) => motions,
+        let run = match run(&fmu, &inputs, stop) {
+            Ok(run) => run,
             Err(error) => return Err((Box::new(fmu), error)),
         };
         Ok(Self {
             row: Row {
                 time: 0.0,
                 bodies: fmu.bodies.iter().map(|body| BodyRow::new(&body.model)).collect(),
-                joints: vec![JointObservation::default(); ties],
+                joints: run.room_of_joints(),
             },
             reviewed: Some(Reviewed::of(Owner { fmu, initial })),
-            changed: vec![false; motions.len()],
-            motions,
+            changed: vec![false; run.islands().len()],
+            run,
             inputs,
             numbers: Vec::new(),
             known: false,
@@ -116,7 +114,7 @@ impl Motion {
 
     /// Time, in the scene's unit.
     pub fn time(&self) -> f64 {
-        self.motions.first().map_or(0.0, |moving| moving.motion.time())
+        if self.run.islands().is_empty() { 0.0 } else { self.run.time() }
     }
 
     /// The value of an input, by its number among the inputs.
@@ -136,7 +134,8 @@ impl Motion {
         channel.value = value;
         self.known = false;
         let body = channel.input.body;
-        let changed = self.motions.iter().zip(&mut self.changed).find(|(moving, _)| moving.bodies.contains(&body));
+        let islands = self.run.islands().iter();
+        let changed = islands.zip(&mut self.changed).find(|(island, _)| island.bodies.contains(&body));
         changed.into_iter().for_each(|(_, changed)| *changed = true);
     }
 
@@ -151,13 +150,10 @@ impl Motion {
     fn observe(&mut self) -> Result<(), Failure> {
         let Some(reviewed) = &self.reviewed else { return Ok(()) };
         let fmu = &reviewed.borrow_owner().fmu;
-        self.row.time = self.time();
-        let Self { motions, row, .. } = self;
-        for Moving { motion, bodies, joints, elements } in motions {
-            let own = row.bodies.iter_mut().enumerate().filter(|(number, _)| bodies.contains(number));
-            motion.observe(None, own.map(|(_, body)| &mut body.motion))?;
-            motion.observe_ties([joints, elements], &mut row.joints);
-        }
+        let Self { run, row, .. } = self;
+        row.time = run
+            .observe(row.bodies.iter_mut().map(|body| &mut body.motion), &mut row.joints)
+            .map_err(StepError::from)?;
         for (number, (row, body)) in row.bodies.iter_mut().zip(&fmu.bodies).enumerate() {
             let own = self.inputs.iter().filter(|channel| channel.input.body == number);
             let factor = |load: usize| {
@@ -173,7 +169,7 @@ impl Motion {
 
     /// Goes on from `point` by `step`, in the scene's unit of time. After an error everything is as it was.
     pub fn go(&mut self, point: f64, step: f64) -> Result<(), Error> {
-        let (time, end) = (self.time(), self.motions.first().map_or(0.0, |moving| moving.motion.end()));
+        let (time, end) = (self.time(), self.run.end());
         let least = SHORTEST * end;
         if !(step >= least && step.is_finite()) {
             return Err(Error::Step { found: step, least, time });
@@ -190,14 +186,14 @@ impl Motion {
         if (target - end).abs() <= slack {
             target = end;
         }
-        let before = (self.motions.clone(), self.changed.clone());
-        for (moving, changed) in self.motions.iter_mut().zip(&mut self.changed) {
+        let before = (self.run.clone(), self.changed.clone());
+        for (island, changed) in self.run.islands_mut().iter_mut().zip(&mut self.changed) {
             if std::mem::take(changed) {
-                moving.motion.loads_have_changed();
+                island.motion.loads_have_changed();
             }
         }
         self.advance_to(target).map_err(|source| {
-            (self.motions, self.changed) = before;
+            (self.run, self.changed) = before;
             self.known = false;
             // What the failed step has shown is not to be held against what comes.
             self.reviewed = self.reviewed.take().map(|reviewed| Reviewed::of(reviewed.into_owner()));
@@ -206,11 +202,9 @@ impl Motion {
     }
 
     fn advance_to(&mut self, target: f64) -> Result<(), Failure> {
-        let Self { motions, reviewed, .. } = self;
+        let Self { run, reviewed, .. } = self;
         let Some(reviewed) = reviewed else { return Ok(()) };
-        reviewed.with_dependent_mut(|Owner { fmu, .. }, reviews| {
-            motions.iter_mut().try_for_each(|moving| advance(moving, reviews, &fmu.bodies, target))
-        })?;
+        reviewed.with_dependent_mut(|Owner { fmu, .. }, reviews| advance(run, reviews, &fmu.bodies, target))?;
         self.observe()?;
         let Self { row, reviewed: Some(reviewed), .. } = self else { return Ok(()) };
         let reviews = |reviews: &mut Reviews<'_>| {
@@ -243,25 +237,17 @@ impl Motion {
     /// The state with the inputs.
     pub fn state(&self) -> Result<State, Error> {
         let inputs = self.inputs.iter().map(|channel| (channel.value, channel.signal.numbers())).collect();
-        let checkpoints = self.motions.iter().map(|moving| moving.motion.checkpoint()).collect::<Result<_, _>>()?;
-        Ok(State { checkpoints, inputs, changed: self.changed.clone() })
+        Ok(State { checkpoint: self.run.checkpoint()?, inputs, changed: self.changed.clone() })
     }
 
     /// Goes on from a state of this FMU. After an error everything is as it was.
     pub fn set_state(&mut self, state: &State) -> Result<(), Error> {
         let finite = |(value, numbers): &(f64, [f64; 3])| value.is_finite() && numbers.iter().all(|n| n.is_finite());
-        let motions = self.motions.len();
-        let fits =
-            state.inputs.len() == self.inputs.len() && [state.checkpoints.len(), state.changed.len()] == [motions; 2];
+        let fits = state.inputs.len() == self.inputs.len() && state.changed.len() == self.changed.len();
         if !(fits && state.inputs.iter().all(finite)) {
             return Err(Error::Bytes);
         }
-        let motions = self.motions.iter().zip(&state.checkpoints);
-        let restored = motions.map(|(moving, checkpoint)| {
-            let Moving { motion, bodies, joints, elements } = moving.clone();
-            Ok(Moving { motion: motion.restored(checkpoint)?, bodies, joints, elements })
-        });
-        self.motions = restored.collect::<Result<_, Error>>()?;
+        self.run = self.run.clone().restored(&state.checkpoint)?;
         for (channel, (value, numbers)) in self.inputs.iter_mut().zip(&state.inputs) {
             channel.value = *value;
             channel.signal.set(*numbers);
@@ -278,19 +264,18 @@ fn channel(source: Source) -> Option<Channel> {
 }
 
 /// Goes on to a time, under the eyes of the reviews of its bodies.
-fn advance(moving: &mut Moving, reviews: &mut [Review<'_>], bodies: &[FmuBody], target: f64) -> Result<(), Failure> {
-    let Moving { motion, bodies: numbers, .. } = moving;
-    motion.set_stop_time(Some(target));
+fn advance(run: &mut Run, reviews: &mut [Review<'_>], bodies: &[FmuBody], target: f64) -> Result<(), Failure> {
+    run.set_stop_time(Some(target));
     loop {
-        let reached = motion.advance(u64::MAX, |body, instant| reviews[numbers[body]].look(instant));
+        let reached = run.advance(u64::MAX, |body, instant| reviews[body].look(instant));
         // A step that fails after the model has come to mean nothing fails for that.
-        let refusing = numbers.iter().filter(|number| bodies[**number].scene.effects.refuse);
-        if let Some((time, refusal)) = refusing.filter_map(|number| reviews[*number].stop()).next() {
+        let refusing = bodies.iter().zip(&*reviews).filter(|(body, _)| body.scene.effects.refuse);
+        if let Some((time, refusal)) = refusing.filter_map(|(_, review)| review.stop()).next() {
             return Err(Failure::Refused { time, words: refusal.to_string() });
         }
-        match reached? {
+        match reached.map_err(StepError::from)? {
             Reached::Stop | Reached::End => return Ok(()),
-            _ if motion.time() >= target => return Ok(()),
+            _ if run.time() >= target => return Ok(()),
             _ => {}
         }
     }
@@ -310,11 +295,14 @@ impl JointLaw for Motor {
     }
 }
 
-/// The motions of the bodies, with the inputs.
-fn motions(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Vec<Moving>, Error> {
+/// The run of the bodies, with the inputs.
+fn run(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Run, Error> {
     let models: Vec<&Model> = fmu.bodies.iter().map(|body| &body.model).collect();
-    let Some(beginning) = Beginning::of(&fmu.system, &models) else { return Ok(Vec::new()) };
-    let mut beginning = beginning.with_rows(Rows::EverySteps(u64::MAX));
+    let rows = Rows::EverySteps(u64::MAX);
+    let Some(beginning) = Beginning::of(&fmu.system, &models) else {
+        return Ok(Run::new(Vec::new(), RowTimes::new(rows, StepControl::Fixed(1.0), 0.0)));
+    };
+    let mut beginning = Beginning { rows, ..beginning };
     beginning.end = stop.unwrap_or(0.0).max(beginning.end);
     for (number, (body, forces)) in fmu.bodies.iter().zip(&mut beginning.bodies).enumerate() {
         connect(body, forces, inputs.iter().filter(|channel| channel.input.body == number));

@@ -52,6 +52,15 @@ impl<O> Event<O> {
         Self { name, crossing, function }
     }
 
+    /// The event of something else, of which `from` makes what the function sees.
+    pub(crate) fn seeing<P>(self, from: impl Fn(&P) -> O + Send + Sync + 'static) -> Event<P>
+    where
+        O: 'static,
+    {
+        let Self { name, crossing, function } = self;
+        Event::of(name, crossing, Arc::new(move |now| function(&from(now))))
+    }
+
     /// Value of its function at a motion.
     fn value(&self, now: &O) -> Result<f64, StepError>
     where

@@ -1,17 +1,15 @@
 //! `flexframe run`: a scene from its meshes to its results file.
 //!
-//! Bodies that joints, springs or bushings tie together are one motion with steps of its own (`motion`); so is each body that
-//! nothing ties, which moves as it would alone. Motions meet at the rows (`row_times`), which are written together.
+//! Bodies that joints, springs or bushings tie together are an island with steps of its own; so is each body that nothing ties. Islands
+//! meet at the rows (`dynamics::Run`), which are written together.
 
 mod balances;
 mod body;
 pub(crate) mod body_report;
-mod checkpoint;
 mod error;
 mod estimate;
 mod large_choice;
 mod metadata;
-mod mover;
 mod recorder;
 mod report;
 mod settings;
@@ -23,7 +21,7 @@ mod words;
 use std::path::Path;
 use std::time::Instant;
 
-use dynamics::Initial;
+use dynamics::{Initial, Run};
 use model::{BuildError, BuildProgress, Builder, Model};
 use results::{Expected, Results, Resumed, Writer, unfinished};
 use scene::{Scene, SceneError, System};
@@ -55,10 +53,8 @@ use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;
 use crate::trust;
 use body::FollowedBody;
-use checkpoint::{checkpoint, restored};
 use estimate::LARGE;
 use metadata::metadata_of_file;
-use mover::Mover;
 use recorder::Recorder;
 
 /// Runs the bodies of a scene and writes their results to `<folder>/<name of the scene file>.h5`; until the end they are in an
@@ -204,16 +200,16 @@ pub fn run_models(
     let path = results_path(&system.bodies, folder).ok_or(RunError::NoBody)?;
     let started = Instant::now();
     let initial = initial(&bodies);
-    let movers = movers(system, &bodies, models, &initial)?;
+    let run = begin_run(system, models)?;
     let identity = identity(system, settings);
-    let checkpoint = checkpoint(identity, movers.iter().map(|mover| &mover.motion), &path)?.len();
+    let checkpoint = checkpoint(identity, &run, &path)?.len();
     let metadata = metadata_of_file(system, &bodies, &settings.builder).ok_or(RunError::NoBody)?;
     let of_shapes = if settings.rows_alone { 0 } else { stored_bytes(&bodies) };
     let estimate = Estimate::of_rows(scene, &metadata, of_shapes);
     if estimate.bytes > LARGE && !settings.large {
         return Err(RunError::Large { scene: scene.path.clone(), estimate });
     }
-    let estimate = estimate.with_seconds(movers.iter().map(|mover| &mover.motion), &settings.stop);
+    let estimate = estimate.with_seconds(&run, &settings.stop);
     progress(RunProgress::Estimate(estimate));
     let rows = usize::try_from(estimate.rows).unwrap_or(usize::MAX);
     let shapes = if settings.rows_alone { Vec::new() } else { stored_shapes(&bodies).map_err(BuildError::from)? };
@@ -221,7 +217,8 @@ pub fn run_models(
     let writer = Writer::create(&path, &metadata, &shapes, &COLUMNS, expected)?;
     drop(shapes);
     progress(RunProgress::Motion(0.0));
-    let mut recorder = Recorder::new(&bodies, movers, writer, estimate, identity);
+    let followed = followed(&bodies, &initial)?;
+    let mut recorder = Recorder::new(run, followed, writer, estimate, identity);
     recorder.begin()?;
     let followed = recorder.follow(started, settings, &mut progress)?;
     conclude(system, models, settings, followed, progress)
@@ -262,21 +259,18 @@ pub fn resume(
         return Err(changed("a joint"));
     }
     let initial = initial(&bodies);
-    let mut movers = movers(&system, &bodies, &models, &initial)?;
+    let mut run = begin_run(&system, &models)?;
     progress(RunProgress::Motion(0.0));
     let identity = identity(&system, settings);
     if let Some(state) = state.as_deref() {
-        let (then, mut states) = state.split_first().ok_or_else(|| changed("the motion at the checkpoint"))?;
-        for mover in &mut movers {
-            mover.motion = restored(mover.motion.clone(), &mut states)
-                .map_err(|source| RunError::Restore { part: part.clone(), source })?;
-        }
+        let (then, state) = state.split_first().ok_or_else(|| changed("the motion at the checkpoint"))?;
+        run = run.restored(state).map_err(|source| RunError::Restore { part: part.clone(), source })?;
         // A changed load is known by its name before.
         if *then != identity {
             return Err(changed("a file that the run reads"));
         }
     }
-    let mut recorder = Recorder::new(&bodies, movers, writer, estimate, identity);
+    let mut recorder = Recorder::new(run, followed(&bodies, &initial)?, writer, estimate, identity);
     match state {
         Some(_) => recorder.take_up(&results)?,
         None => recorder.begin()?,
@@ -304,22 +298,26 @@ pub(crate) fn system_of(results: &Results) -> Result<Option<System>, SceneError>
     Ok(bodies.map(|bodies| System { bodies, ..system.clone() }))
 }
 
-/// The motions of a system with the bodies that they move.
-fn movers<'a>(
-    system: &System,
-    bodies: &[RunBody<'a>],
-    models: &[Model],
-    initial: &'a [Initial],
-) -> Result<Vec<Mover<'a>>, RunError> {
+/// The run of a system from its start.
+fn begin_run(system: &System, models: &[Model]) -> Result<Run, RunError> {
     let models: Vec<&Model> = models.iter().collect();
     let beginning = Beginning::of(system, &models).ok_or(RunError::NoBody)?;
-    let mover = |moving: crate::motion::Moving| {
-        let follow = |number: &usize| FollowedBody::new(bodies[*number], *number, &initial[*number]);
-        let followed = moving.bodies.iter().map(follow).collect::<Result<_, _>>()?;
-        let crate::motion::Moving { motion, joints, elements, .. } = moving;
-        Ok(Mover { motion, bodies: followed, joints, elements })
-    };
-    begin(system, &models, &beginning).map_err(|error| error.at_key(system))?.into_iter().map(mover).collect()
+    Ok(begin(system, &models, &beginning).map_err(|error| error.at_key(system))?)
+}
+
+fn followed<'a>(bodies: &[RunBody<'a>], initial: &'a [Initial]) -> Result<Vec<FollowedBody<'a>>, RunError> {
+    bodies
+        .iter()
+        .zip(initial)
+        .enumerate()
+        .map(|(number, (of, initial))| FollowedBody::new(*of, number, initial))
+        .collect()
+}
+
+/// The number of the files that the run reads ([`identity_of_files`]), and the state of the run: as many words at any time.
+fn checkpoint(identity: u64, run: &Run, part: &Path) -> Result<Vec<u64>, RunError> {
+    let state = run.checkpoint().map_err(|source| RunError::Restore { part: part.to_owned(), source })?;
+    Ok(std::iter::once(identity).chain(state).collect())
 }
 
 fn initial(bodies: &[RunBody<'_>]) -> Vec<Initial> {

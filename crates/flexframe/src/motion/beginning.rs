@@ -3,15 +3,12 @@
 use std::sync::Arc;
 
 use dynamics::{
-    Coordinate, DescribedBody, ForceElement, JointEquation, JointLaw, MarkerForce, MarkerLaw, Method, Physics,
-    PointShapes, Rows, RunOfBody, RunOfSystem, Setup, SetupError, SharedLoad, Simulation, StepControl, SystemScheme,
-    SystemSimulation,
+    Coordinate, DescribedBody, ForceElement, Island, IslandMotion, JointEquation, JointLaw, MarkerForce, MarkerLaw,
+    Method, Physics, PointShapes, RowTimes, Rows, Run, RunOfBody, RunOfSystem, Setup, SetupError, SharedLoad,
+    Simulation, StepControl, SystemScheme, SystemSimulation,
 };
 use model::{BuildError, Model, StartError, Tied, physics_in_system, tie_models};
 use scene::{End, Scene, System};
-
-use super::Motion;
-use super::row_times::RowTimes;
 
 /// Forces on a body, and the damping and effects that they call for.
 #[derive(Debug, Clone)]
@@ -66,10 +63,8 @@ pub struct Beginning {
     pub control: StepControl,
     /// Time of the end.
     pub end: f64,
-    /// Rows of bodies alone.
+    /// Rows.
     pub rows: Rows,
-    /// Rows of tied bodies.
-    pub tied_rows: Rows,
     /// Forces on each body.
     pub bodies: Vec<BodyForces>,
     /// Laws from outside at joints.
@@ -80,19 +75,6 @@ pub struct Beginning {
     pub marker_laws: Vec<MarkerForces>,
     /// True if all bodies are stepped as one system, also those that nothing ties; laws between markers want that, too.
     pub together: bool,
-}
-
-/// A motion and what it moves.
-#[derive(Debug, Clone)]
-pub struct Moving {
-    /// The motion.
-    pub motion: Motion,
-    /// Numbers of its bodies in the scene.
-    pub bodies: Vec<usize>,
-    /// Numbers of its joints in the scene.
-    pub joints: Vec<usize>,
-    /// Numbers of its springs and bushings in rows, which have those of the scene after the joints.
-    pub elements: Vec<usize>,
 }
 
 impl Beginning {
@@ -110,7 +92,6 @@ impl Beginning {
             control: time.control,
             end: time.end,
             rows: output.rows,
-            tied_rows: Rows::Interval(RowTimes::new(&system.bodies[0]).of(1)),
             bodies: models.iter().map(forces).collect(),
             laws: Vec::new(),
             equations: Vec::new(),
@@ -119,26 +100,25 @@ impl Beginning {
         })
     }
 
-    /// The same with rows at an interval.
-    #[must_use]
-    pub fn with_rows(self, rows: Rows) -> Self {
-        Self { rows, tied_rows: rows, ..self }
+    /// Times of the rows of all bodies.
+    pub fn row_times(&self) -> RowTimes {
+        RowTimes::new(self.rows, self.control, self.end)
     }
 }
 
-/// The motions of a scene: first of bodies alone, then of bodies that are tied. There is a model of each body.
+/// The run of a scene: its islands are first bodies that nothing ties, then those that are tied. There is a model of each body.
 ///
 /// # Errors
 /// [`BuildError`], or the scene of a body whose motion cannot start, and why.
-pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Vec<Moving>, BeginError> {
-    let mut all = Vec::new();
+pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Run, BeginError> {
+    let mut islands = Vec::new();
     let tied = tied(system, models, beginning)?;
     for (number, (scene, model)) in system.bodies.iter().zip(models).enumerate() {
         if tied.iter().all(|tied| !tied.bodies.contains(&number)) {
             let alone = alone(scene, model, &beginning.bodies[number], beginning);
             let simulation = alone.map_err(|source| BeginError::start(number, scene, source))?;
-            let motion = Motion::Alone(Box::new(simulation));
-            all.push(Moving { motion, bodies: vec![number], joints: Vec::new(), elements: Vec::new() });
+            let motion = IslandMotion::Body(Box::new(simulation));
+            islands.push(Island { motion, bodies: vec![number], joints: Vec::new(), elements: Vec::new() });
         }
     }
     for tied in tied {
@@ -149,9 +129,9 @@ pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Resul
             let number = source.body_of_system().map_or(bodies[0], |number| bodies[number]);
             BeginError::start(number, &system.bodies[number], source)
         })?;
-        all.push(Moving { motion: Motion::Tied(Box::new(simulation)), bodies, joints, elements });
+        islands.push(Island { motion: IslandMotion::System(Box::new(simulation)), bodies, joints, elements });
     }
-    Ok(all)
+    Ok(Run::new(islands, beginning.row_times()))
 }
 
 /// Numbers in rows of the springs and bushings of a system, in its order; laws from outside come after them.
@@ -303,6 +283,6 @@ pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: 
         scheme: of.system_scheme,
         control: of.control,
         end: of.end,
-        rows: of.tied_rows,
+        rows: of.row_times().of_systems(),
     }
 }

@@ -4,11 +4,11 @@ use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use flexframe::columns::part;
 use flexframe::dynamics::{
-    self, Crossing, EffectMap, Event, JointObservation, Observation, StepError, SystemObservation,
+    self, Crossing, EffectMap, Event, Island, IslandMotion, JointObservation, Observation, StepError, SystemObservation,
 };
 use flexframe::failure::{Details, Kind};
 use flexframe::model::{Model, StartError};
-use flexframe::motion::{Beginning, BodyForces, Motion, Moving, begin};
+use flexframe::motion::{Beginning, BodyForces, begin};
 use flexframe::results::Metadata;
 use flexframe::row::BodyRow;
 use flexframe::run::{RunBody, RunError, Watch};
@@ -102,9 +102,8 @@ struct Moved {
 }
 
 struct Running {
-    motion: Motion,
-    /// Numbers of its joints, and of its springs and bushings, in rows.
-    ties: [Vec<usize>; 2],
+    /// All bodies are in one.
+    island: Island,
     /// True if the row at the start has been given, or a step been tried.
     begun: bool,
     /// True if the state has been set since the last try of a step, and no run has given its row.
@@ -115,11 +114,9 @@ struct Running {
 impl Running {
     /// Observes the motion at the time that it has come to.
     fn observe(&mut self) -> Result<(), StepError> {
-        let Self { motion, ties, row, .. } = self;
-        motion.observe(None, row.bodies.iter_mut().map(|body| &mut body.motion))?;
-        row.time = motion.time();
-        motion.observe_ties(ties.each_ref().map(|ties| &ties[..]), &mut row.joints);
-        Ok(())
+        let Self { island, row, .. } = self;
+        row.time = island.motion.time();
+        island.observe(None, row.bodies.iter_mut().map(|body| &mut body.motion), &mut row.joints)
     }
 }
 
@@ -151,7 +148,7 @@ impl Simulation {
             py.check_signals()?;
             (running.begun, running.is_set) = (true, false);
             let steps = left.min(STEPS_PER_LOOK);
-            let motion = &mut running.motion;
+            let motion = &mut running.island.motion;
             let reached = detached(py, || match &mut watches {
                 Some(watches) => motion.advance(steps, |body, moment| watches[body].look(moment)),
                 None => motion.advance(steps, |_, _| ()),
@@ -187,7 +184,7 @@ impl Simulation {
     }
 
     fn reached(&self, running: &Running, reached: dynamics::Reached) -> Reached {
-        let motion = &running.motion;
+        let motion = &running.island.motion;
         let (kind, event) = match reached {
             dynamics::Reached::Event(number) => ("event", motion.event_name(number).map(str::to_owned)),
             dynamics::Reached::Stop => ("stop", None),
@@ -200,12 +197,12 @@ impl Simulation {
 
     /// Refuses to go on from the end.
     fn refuse_at_end(&self, py: Python<'_>, running: &Running) -> PyResult<()> {
-        if !running.motion.is_over() {
+        if !running.island.motion.is_over() {
             return Ok(());
         }
         let message = format!(
             "the run is at its end, time {}; take a scene with a later `time.end`, or set the state to an earlier time",
-            running.motion.end()
+            running.island.motion.end()
         );
         Err(exception_of(py, Kind::Run, &message, &Details::default()))
     }
@@ -234,7 +231,7 @@ impl Simulation {
             record(running, watches)?;
             (running.begun, running.is_set) = (true, false);
         }
-        while !running.motion.is_over() {
+        while !running.island.motion.is_over() {
             let reached = self.go_on(py, running, u64::MAX, Some(watches));
             // A step that fails after the model has come to mean nothing fails for that.
             if let Some((time, refusal)) = watches.iter().find_map(Watch::refusal) {
@@ -244,8 +241,8 @@ impl Simulation {
             match reached? {
                 dynamics::Reached::Row => record(running, watches)?,
                 dynamics::Reached::Event(number) => {
-                    let name = running.motion.event_name(number).unwrap_or_default().to_owned();
-                    events.push((name, running.motion.time()));
+                    let name = running.island.motion.event_name(number).unwrap_or_default().to_owned();
+                    events.push((name, running.island.motion.time()));
                 }
                 dynamics::Reached::End => break,
                 _ => {}
@@ -375,10 +372,10 @@ impl Simulation {
             return Err(fault);
         }
         let begun = begun.map_err(|error| exception(py, &RunError::from(error)))?;
-        let Some(Moving { mut motion, joints, elements, .. }) = begun.into_iter().next() else {
+        let Some(mut island) = begun.islands().first().cloned() else {
             return Err(exception(py, &RunError::NoBody));
         };
-        if let Motion::Alone(simulation) = &mut motion {
+        if let IslandMotion::Body(simulation) = &mut island.motion {
             simulation.watch(Arc::new(Mutex::new(EndAtFault(faults.clone()))));
         }
         let row = flexframe::row::Row {
@@ -393,7 +390,7 @@ impl Simulation {
             effects: forces.physics.effects,
         });
         let bodies = bodies.collect();
-        let running = Mutex::new(Running { motion, ties: [joints, elements], begun: false, is_set: false, row });
+        let running = Mutex::new(Running { island, begun: false, is_set: false, row });
         Ok(Self { of: body.unbind(), bodies, models, metadata, faults, running })
     }
 
@@ -406,25 +403,25 @@ impl Simulation {
     /// Time that has been reached.
     #[getter]
     fn time(&self) -> PyResult<f64> {
-        Ok(self.running()?.motion.time())
+        Ok(self.running()?.island.motion.time())
     }
 
     /// Time at the end.
     #[getter]
     fn end(&self) -> PyResult<f64> {
-        Ok(self.running()?.motion.end())
+        Ok(self.running()?.island.motion.end())
     }
 
     /// True if there is nothing more to come, neither a step nor a row.
     #[getter]
     fn done(&self) -> PyResult<bool> {
-        Ok(self.running()?.motion.is_over())
+        Ok(self.running()?.island.motion.is_over())
     }
 
     /// Counts of its work: "steps", "rejected_steps", "evaluations".
     #[getter]
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let stats = self.running()?.motion.stats();
+        let stats = self.running()?.island.motion.stats();
         let out = PyDict::new(py);
         out.set_item("steps", stats.accepted)?;
         out.set_item("rejected_steps", stats.rejected)?;
@@ -447,7 +444,7 @@ impl Simulation {
         let followed = self.follow(py, &mut running, &mut watches, &mut rows, &mut events);
         match followed {
             Ok(()) => {
-                let motion = &running.motion;
+                let motion = &running.island.motion;
                 let longest = motion.stats().longest;
                 let warnings = watches.iter_mut().zip(&self.bodies).enumerate().flat_map(|(body, (watch, of))| {
                     let name = of.scene.name.as_ref().filter(|_| self.bodies.len() > 1);
@@ -484,14 +481,14 @@ impl Simulation {
     fn advance_to(&self, py: Python<'_>, time: f64) -> PyResult<Reached> {
         let mut running = self.running()?;
         self.refuse_at_end(py, &running)?;
-        let (now, end) = (running.motion.time(), running.motion.end());
+        let (now, end) = (running.island.motion.time(), running.island.motion.end());
         // The run knows no time between that it could stop at.
         if !(time - now > SAME * end && time <= end) {
             let expected = format!("a time after {now}, up to the end at {end}");
             let help = "name a time within the run; a later end is `time.end` of the scene";
             return Err(wrong_input(py, "time", &time.to_string(), &expected, help));
         }
-        running.motion.set_stop_time(Some(time));
+        running.island.motion.set_stop_time(Some(time));
         let reached = loop {
             match self.go_on(py, &mut running, u64::MAX, None) {
                 Ok(dynamics::Reached::Row) => {}
@@ -499,7 +496,7 @@ impl Simulation {
             }
         };
         if !matches!(reached, Ok(dynamics::Reached::Stop)) {
-            running.motion.set_stop_time(None);
+            running.island.motion.set_stop_time(None);
         }
         Ok(self.reached(&running, reached?))
     }
@@ -524,33 +521,20 @@ impl Simulation {
         let mut running = self.running()?;
         let seen = self.seen(name.clone(), function);
         let joints = running.row.joints.len();
-        let added = match &mut running.motion {
-            Motion::Alone(simulation) => {
-                let models = self.models.clone();
-                let event = Event::new(name, crossing, move |now: &Observation| {
-                    let mut body = BodyRow::new(&models[0]);
-                    body.motion.clone_from(now);
-                    let joints = vec![JointObservation::default(); joints];
-                    seen(flexframe::row::Row { time: now.time, bodies: vec![body], joints })
-                });
-                detached(py, || simulation.add_event(event))?
-            }
-            Motion::Tied(simulation) => {
-                let models = self.models.clone();
-                let event = Event::of_system(name, crossing, move |now: &SystemObservation| {
-                    let body = |(motion, model): (&Observation, &Arc<Model>)| {
-                        let mut body = BodyRow::new(model);
-                        body.motion.clone_from(motion);
-                        body
-                    };
-                    let bodies = now.bodies.iter().zip(&models).map(body).collect();
-                    // Laws from outside come last.
-                    let joints = now.joints.iter().chain(&now.elements).take(joints).copied().collect();
-                    seen(flexframe::row::Row { time: now.time, bodies, joints })
-                });
-                detached(py, || simulation.add_event(event))?
-            }
-        };
+        let models = self.models.clone();
+        let event = Event::of_system(name, crossing, move |now: &SystemObservation| {
+            let body = |(motion, model): (&Observation, &Arc<Model>)| {
+                let mut body = BodyRow::new(model);
+                body.motion.clone_from(motion);
+                body
+            };
+            let bodies = now.bodies.iter().zip(&models).map(body).collect();
+            // Laws from outside come last.
+            let joints = now.joints.iter().chain(&now.elements).take(joints).copied().collect();
+            seen(flexframe::row::Row { time: now.time, bodies, joints })
+        });
+        let motion = &mut running.island.motion;
+        let added = detached(py, || motion.add_event(event))?;
         self.or_fault(py, added).map(|_| ())
     }
 
@@ -562,7 +546,7 @@ impl Simulation {
     /// The state that has been reached: time, attitude (quaternion), origin, velocity of the origin, angular_velocity
     /// (body axes), modal_displacement, modal_velocity.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let states = self.running()?.motion.states().map_err(|error| step_error(py, &error))?;
+        let states = self.running()?.island.motion.states().map_err(|error| step_error(py, &error))?;
         if let ([state], false) = (&states[..], self.is_system(py)) {
             return to_dict(py, state);
         }
@@ -578,7 +562,7 @@ impl Simulation {
     /// these close.
     fn set_state(&self, py: Python<'_>, state: &Bound<'_, PyDict>) -> PyResult<()> {
         let mut running = self.running()?;
-        let mut states = running.motion.states().map_err(|error| step_error(py, &error))?;
+        let mut states = running.island.motion.states().map_err(|error| step_error(py, &error))?;
         if self.is_system(py) {
             let before = states.first().map_or(0.0, |state| state.time);
             for (name, state) in state {
@@ -597,13 +581,13 @@ impl Simulation {
         } else if let Some(first) = states.first_mut() {
             *first = changed(first.clone(), state)?;
         }
-        let (end, time) = (running.motion.end(), states.first().map_or(0.0, |state| state.time));
+        let (end, time) = (running.island.motion.end(), states.first().map_or(0.0, |state| state.time));
         if !(0.0..=end).contains(&time) {
             let help = "take a scene with a later `time.end`";
             let expected = format!("a time from 0 to the end at {end}");
             return Err(wrong_input(py, "state[\"time\"]", &time.to_string(), &expected, help));
         }
-        let motion = &mut running.motion;
+        let motion = &mut running.island.motion;
         let set = detached(py, || motion.set_states(&states))?;
         if let Some(fault) = self.faults.take() {
             return Err(fault);
@@ -611,7 +595,7 @@ impl Simulation {
         set.map_err(|error| exception(py, &StartError::from(error)))?;
         // An iteration goes on to the next row: it may set the state at every one.
         // A row that is due here shows the new state.
-        running.is_set = !running.motion.row_is_due();
+        running.is_set = !running.island.motion.row_is_due();
         Ok(())
     }
 
@@ -625,7 +609,7 @@ impl Simulation {
             running.begun = true;
             return self.row(py, &mut running).map(Some);
         }
-        while !running.motion.is_over() {
+        while !running.island.motion.is_over() {
             if self.go_on(py, &mut running, u64::MAX, None)? == dynamics::Reached::Row {
                 return self.row(py, &mut running).map(Some);
             }
@@ -636,7 +620,7 @@ impl Simulation {
     fn __repr__(&self) -> String {
         match self.running() {
             Ok(running) => {
-                let (now, end) = (running.motion.time(), running.motion.end());
+                let (now, end) = (running.island.motion.time(), running.island.motion.end());
                 format!("Simulation({:?}: time {now} of {end} {})", self.metadata.title, self.metadata.units.time)
             }
             Err(_) => "Simulation(in the midst of a step)".to_owned(),

@@ -81,4 +81,14 @@ impl Event<SystemObservation> {
     ) -> Self {
         Self::of(name.into(), crossing, Arc::new(function))
     }
+
+    /// The same event of a body alone, which is a system of one.
+    pub(crate) fn of_body(self) -> Event<Observation> {
+        self.seeing(|body: &Observation| SystemObservation {
+            time: body.time,
+            bodies: vec![body.clone()],
+            joints: Vec::new(),
+            elements: Vec::new(),
+        })
+    }
 }

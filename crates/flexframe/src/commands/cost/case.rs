@@ -1,13 +1,13 @@
 //! A scene with its models, ready to be run in any way.
 
-use dynamics::{Rows, SetupError, StepControl};
+use dynamics::{RowTimes, Rows, Run, SetupError, StepControl};
 use model::{Model, StartError};
 use scene::{Scene, System};
 
 use super::run::Scales;
 use super::way::Way;
 use crate::commands::run::{RunBody, RunFailure};
-use crate::motion::{BeginError, Beginning, Moving, begin};
+use crate::motion::{BeginError, Beginning, begin};
 
 /// Times at which runs are compared; runs with longer steps are compared at a divisor of this.
 const COMPARED: u64 = 100;
@@ -45,15 +45,17 @@ impl<'a> PreparedScene<'a> {
         &self.scales
     }
 
-    /// The motions from their beginning, with rows at the times of comparison.
-    pub(super) fn begin(&self, way: Way, control: StepControl) -> Result<Vec<Moving>, RunFailure> {
+    /// The run from its start, with rows at the times of comparison.
+    pub(super) fn begin(&self, way: Way, control: StepControl) -> Result<Run, RunFailure> {
         Ok(self.try_begin(way, control)?)
     }
 
-    fn try_begin(&self, way: Way, control: StepControl) -> Result<Vec<Moving>, BeginError> {
-        let Some(beginning) = Beginning::of(&self.system, &self.models) else { return Ok(Vec::new()) };
-        let mut beginning = Beginning { method: way.method(), control, ..beginning }
-            .with_rows(Rows::Interval(self.end() / self.intervals(control) as f64));
+    fn try_begin(&self, way: Way, control: StepControl) -> Result<Run, BeginError> {
+        let rows = Rows::Interval(self.end() / self.intervals(control) as f64);
+        let Some(beginning) = Beginning::of(&self.system, &self.models) else {
+            return Ok(Run::new(Vec::new(), RowTimes::new(rows, control, self.end())));
+        };
+        let mut beginning = Beginning { method: way.method(), control, rows, ..beginning };
         if let Way::Tied(scheme) = way {
             beginning.system_scheme = scheme;
         }

@@ -170,9 +170,9 @@ impl Evaluator<'_> {
     }
 
     fn try_measure(&self, case: &PreparedScene<'_>, way: Way, control: StepControl) -> Result<Measured, RunFailure> {
-        let motions = case.begin(way, control)?;
-        let run = Trajectory::follow(motions.clone(), self.settings.patience)?;
-        let timing = Timing::of(&motions, self.settings.timed_for, self.settings.patience)?;
+        let begun = case.begin(way, control)?;
+        let run = Trajectory::follow(begun.clone(), self.settings.patience)?;
+        let timing = Timing::of(&begun, self.settings.timed_for, self.settings.patience)?;
         let errors = Errors::between(&run, &self.reference.trajectory, case.scales());
         let least = RANKED_ABOVE * self.reference.error.largest();
         let limit = self.limit(way).map(|limit| &limit.trajectory);

@@ -62,9 +62,9 @@ pub(super) fn compare(
     let control = StepControl::Fixed(most.step);
     let row = |model: &Model| -> Result<ModesRow, RunFailure> {
         let case = PreparedScene::alone(scene, model);
-        let motions = case.begin(way, control)?;
-        let seconds_per_step = seconds_per_step(&motions, settings.timed_for)?;
-        let run = Trajectory::follow(motions, budget.time)?;
+        let begun = case.begin(way, control)?;
+        let seconds_per_step = seconds_per_step(&begun, settings.timed_for)?;
+        let run = Trajectory::follow(begun, budget.time)?;
         let flexible = model.body.flexible();
         let is_most = flexible == richest.body.flexible();
         Ok(ModesRow {

@@ -100,6 +100,6 @@ pub(super) fn converge(
 }
 
 fn follow(case: &PreparedScene<'_>, way: Way, steps: u64, patience: Duration) -> Result<Trajectory, RunFailure> {
-    let motions = case.begin(way, StepControl::Fixed(case.end() / steps as f64))?;
-    Trajectory::follow(motions, patience)
+    let run = case.begin(way, StepControl::Fixed(case.end() / steps as f64))?;
+    Trajectory::follow(run, patience)
 }

@@ -2,14 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use dynamics::{Observation, PointMotion, Reached};
+use dynamics::{Island, Observation, PointMotion, Reached, Run};
 use model::Model;
 use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::commands::run::{Monitor, RunFailure};
 use crate::files::json;
-use crate::motion::{Motion, Moving};
 
 /// Motion smaller than this fraction of the body is rounding.
 const STILL: f64 = 1e-12;
@@ -17,51 +16,27 @@ const STILL: f64 = 1e-12;
 /// Steps between two looks at the clock. Shorter runs come to their end whatever the patience is.
 const STEPS_PER_LOOK: u64 = 1000;
 
-/// Leads motions to their end, one after the other, until its patience is used up.
-struct Watch {
-    started: Instant,
+/// Leads a run to its end, calling at each row, until its patience is used up.
+fn lead(
+    run: &mut Run,
     patience: Duration,
-    motions: usize,
-    /// Motions that have come to their end.
-    ended: usize,
-    /// Steps of the present motion tried at the last look.
-    looked: u64,
-}
-
-impl Watch {
-    fn new(patience: Duration, motions: usize) -> Self {
-        Self { started: Instant::now(), patience, motions, ended: 0, looked: 0 }
-    }
-
-    /// Leads a motion to its end.
-    fn lead(
-        &mut self,
-        motion: &mut Motion,
-        mut at_row: impl FnMut(&mut Motion) -> Result<(), RunFailure>,
-    ) -> Result<(), RunFailure> {
-        while self.advance(motion)? != Reached::End {
-            at_row(motion)?;
+    mut at_row: impl FnMut(&mut Run) -> Result<(), RunFailure>,
+) -> Result<(), RunFailure> {
+    let started = Instant::now();
+    let mut looked = 0;
+    loop {
+        let reached = run.advance(STEPS_PER_LOOK, |_, _| ())?;
+        match reached {
+            Reached::End => return Ok(()),
+            Reached::Between => {}
+            _ => at_row(run)?,
         }
-        self.ended += 1;
-        self.looked = 0;
-        Ok(())
-    }
-
-    /// Goes on to the next row, or to the end.
-    fn advance(&mut self, motion: &mut Motion) -> Result<Reached, RunFailure> {
-        loop {
-            let reached = motion.advance(STEPS_PER_LOOK, |_, _| ())?;
-            let tried = motion.tried();
-            // What has come to its end need not be stopped.
-            if motion.time() < motion.end() && tried - self.looked >= STEPS_PER_LOOK {
-                self.looked = tried;
-                if self.started.elapsed() >= self.patience {
-                    let reached = (self.ended as f64 + motion.time() / motion.end()) / self.motions as f64;
-                    return Err(RunFailure::OutOfPatience { patience: self.patience.as_secs_f64(), reached });
-                }
-            }
-            if reached != Reached::Between {
-                return Ok(reached);
+        // What has come to its end need not be stopped.
+        if run.time() < run.end() && run.tried() - looked >= STEPS_PER_LOOK {
+            looked = run.tried();
+            if started.elapsed() >= patience {
+                let reached = run.time() / run.end();
+                return Err(RunFailure::OutOfPatience { patience: patience.as_secs_f64(), reached });
             }
         }
     }
@@ -87,46 +62,44 @@ pub(super) struct Trajectory {
 }
 
 impl Trajectory {
-    /// Leads motions to their end, if that takes no longer than the patience.
-    pub(super) fn follow(motions: Vec<Moving>, patience: Duration) -> Result<Self, RunFailure> {
-        let mut watch = Watch::new(patience, motions.len());
-        let count = motions.iter().map(|moving| moving.bodies.len()).sum();
+    /// Leads a run to its end, if that takes no longer than the patience.
+    pub(super) fn follow(mut run: Run, patience: Duration) -> Result<Self, RunFailure> {
+        let started = Instant::now();
+        let mut row = run.room();
+        let mut joints = run.room_of_joints();
+        let mut bodies = vec![Vec::new(); row.len()];
+        let mut monitors = vec![Monitor::default(); row.len()];
+        let mut observe = |run: &mut Run| -> Result<(), RunFailure> {
+            run.observe(&mut row, &mut joints)?;
+            for ((now, monitor), of) in row.iter().zip(&mut monitors).zip(&mut bodies) {
+                monitor.watch(now);
+                of.push(now.clone());
+            }
+            Ok(())
+        };
+        observe(&mut run)?;
+        lead(&mut run, patience, observe)?;
         let mut all = Self {
-            bodies: vec![Vec::new(); count],
-            steps: 0,
-            rejected: 0,
-            evaluations: 0,
+            bodies,
+            steps: run.steps(),
+            rejected: run.tried() - run.steps(),
+            evaluations: run.islands().iter().map(|island| island.motion.stats().evaluations).sum(),
             energy: 0.0,
             angular_momentum: 0.0,
-            time: Duration::ZERO,
+            time: started.elapsed(),
         };
-        for Moving { mut motion, bodies, .. } in motions {
-            let mut monitors = vec![Monitor::default(); bodies.len()];
-            let mut row = rooms(&motion)?;
-            let mut observe = |motion: &mut Motion| -> Result<(), RunFailure> {
-                motion.observe(None, &mut row)?;
-                for ((now, monitor), number) in row.iter().zip(&mut monitors).zip(&bodies) {
-                    monitor.watch(now);
-                    all.bodies[*number].push(now.clone());
-                }
-                Ok(())
-            };
-            observe(&mut motion)?;
-            watch.lead(&mut motion, observe)?;
+        for Island { bodies, .. } in run.islands() {
             // Tied bodies pass momentum and energy to each other.
-            let scales = monitors.iter().map(Monitor::scales).reduce(|most, scales| most.or_larger(&scales));
-            for mut monitor in monitors {
+            let scales = bodies.iter().map(|body| monitors[*body].scales());
+            let scales = scales.reduce(|most, scales| most.or_larger(&scales));
+            for body in bodies {
+                let monitor = &mut monitors[*body];
                 scales.iter().for_each(|scales| monitor.widen(scales));
                 let balances = monitor.balances();
                 all.energy = all.energy.max(balances.energy);
                 all.angular_momentum = all.angular_momentum.max(balances.angular_momentum);
             }
-            let stats = motion.stats();
-            all.steps += stats.accepted;
-            all.rejected += stats.rejected;
-            all.evaluations += stats.evaluations;
         }
-        all.time = watch.started.elapsed();
         Ok(all)
     }
 
@@ -140,16 +113,6 @@ impl Trajectory {
     }
 }
 
-/// Room for the bodies of a motion.
-fn rooms(motion: &Motion) -> Result<Vec<Observation>, RunFailure> {
-    Ok(match motion {
-        Motion::Alone(simulation) => vec![simulation.clone().observation()?],
-        Motion::Tied(simulation) => {
-            (0..simulation.motion().system().bodies().len()).map(|body| simulation.room(body)).collect()
-        }
-    })
-}
-
 /// Time that the loop of a run takes, without the observations.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Timing {
@@ -161,22 +124,22 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// Leads the motions from their beginning at least three times, and so often that it takes `at_least` in all. A run that
+    /// Leads the run from its start at least three times, and so often that it takes `at_least` in all. A run that
     /// takes longer than the patience is the last, and does not count.
     ///
     /// # Errors
     /// The error of the first run.
-    pub(super) fn of(motions: &[Moving], at_least: Duration, patience: Duration) -> Result<Self, RunFailure> {
+    pub(super) fn of(run: &Run, at_least: Duration, patience: Duration) -> Result<Self, RunFailure> {
         let mut timing = Self { shortest: Duration::MAX, longest: Duration::ZERO, repeats: 0 };
         let mut sum = Duration::ZERO;
         while timing.repeats < 3 || (sum < at_least && timing.repeats < 1000) {
-            let mut motions = motions.to_vec();
-            let mut watch = Watch::new(patience, motions.len());
-            match motions.iter_mut().try_for_each(|moving| watch.lead(&mut moving.motion, |_| Ok(()))) {
+            let mut run = run.clone();
+            let started = Instant::now();
+            match lead(&mut run, patience, |_| Ok(())) {
                 Err(RunFailure::OutOfPatience { .. }) if timing.repeats > 0 => break,
                 ended => ended?,
             }
-            let time = watch.started.elapsed();
+            let time = started.elapsed();
             timing.shortest = timing.shortest.min(time);
             timing.longest = timing.longest.max(time);
             timing.repeats += 1;
@@ -188,17 +151,16 @@ impl Timing {
 
 /// Time of a step, seconds: the shortest of the means over three stretches from the beginning of the run, each of which
 /// takes `at_least` or the whole run.
-pub(super) fn seconds_per_step(motions: &[Moving], at_least: Duration) -> Result<f64, RunFailure> {
+pub(super) fn seconds_per_step(run: &Run, at_least: Duration) -> Result<f64, RunFailure> {
     let mut shortest = f64::INFINITY;
     for _ in 0..3 {
-        let mut motions = motions.to_vec();
-        let mut watch = Watch::new(at_least, motions.len());
-        match motions.iter_mut().try_for_each(|moving| watch.lead(&mut moving.motion, |_| Ok(()))) {
+        let mut run = run.clone();
+        let started = Instant::now();
+        match lead(&mut run, at_least, |_| Ok(())) {
             Ok(()) | Err(RunFailure::OutOfPatience { .. }) => {}
             Err(failure) => return Err(failure),
         }
-        let steps: u64 = motions.iter().map(|moving| moving.motion.stats().accepted).sum();
-        shortest = shortest.min(watch.started.elapsed().as_secs_f64() / steps.max(1) as f64);
+        shortest = shortest.min(started.elapsed().as_secs_f64() / run.steps().max(1) as f64);
     }
     Ok(shortest)
 }

@@ -1,6 +1,6 @@
 //! One body of a run: what is seen of it on its way, whatever moves it.
 
-use dynamics::{Initial, Moment, MotionState, Stats};
+use dynamics::{Initial, Moment, MotionState, RunEnergies, Stats};
 use model::Model;
 use nalgebra::Vector3;
 use results::BodyResults;
@@ -11,7 +11,6 @@ use super::balances::{Conserved, Monitor};
 use super::body_report::BodyRunReport;
 use super::error::RunError;
 use super::watch::{Watch, Watched};
-use crate::motion::RunEnergies;
 use crate::report::{BodyReport, MeshReport};
 use crate::rows::effects;
 use crate::rows::peak_stress::Largest;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use advice::Refusal;
-use dynamics::{CheckpointError, StepError};
+use dynamics::{CheckpointError, IslandError, StepError};
 use model::{BuildError, StartError};
 use results::FileError;
 use scene::SceneError;
@@ -125,5 +125,11 @@ impl From<BeginError> for RunFailure {
             BeginError::Build(source) => Self::Tie(source.to_string()),
             BeginError::Start { source, .. } => Self::Start(*source),
         }
+    }
+}
+
+impl From<IslandError> for RunFailure {
+    fn from(failed: IslandError) -> Self {
+        Self::Step(failed.source)
     }
 }

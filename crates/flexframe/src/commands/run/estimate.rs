@@ -4,14 +4,12 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use dynamics::Reached;
+use dynamics::{IslandMotion, Reached, RowTimes, Run};
 use memory::Bytes;
 use results::{Metadata, bytes_per_row};
 use scene::Scene;
 use serde::Serialize;
 
-use crate::motion::Motion;
-use crate::motion::row_times::RowTimes;
 use crate::rows::columns::COLUMNS;
 
 /// A larger file is only written for who has asked for it.
@@ -37,24 +35,21 @@ pub struct Estimate {
 impl Estimate {
     /// Estimate of the rows of a scene, without a look at its steps; `shapes` are the bytes of what is drawn.
     pub(super) fn of_rows(scene: &Scene, metadata: &Metadata, shapes: u64) -> Self {
-        let rows = RowTimes::new(scene).count();
+        let rows = RowTimes::new(scene.output.rows, scene.time.control, scene.time.end).count();
         let bytes = rows.saturating_mul(bytes_per_row(&COLUMNS, metadata)).saturating_add(shapes);
         Self { rows, bytes, seconds: None }
     }
 
-    /// With the time of all motions together, by trials that leave them as they are.
-    pub(super) fn with_seconds<'m>(
-        self,
-        motions: impl ExactSizeIterator<Item = &'m Motion>,
-        stop: &AtomicBool,
-    ) -> Self {
-        let trial = TRIAL / motions.len().max(1) as f64;
-        Self { seconds: motions.map(|motion| seconds(motion.clone(), trial, stop)).sum(), ..self }
+    /// With the time of all islands together, by trials that leave the run as it is.
+    pub(super) fn with_seconds(self, run: &Run, stop: &AtomicBool) -> Self {
+        let trial = TRIAL / run.islands().len().max(1) as f64;
+        let islands = run.islands().iter();
+        Self { seconds: islands.map(|island| seconds(island.motion.clone(), trial, stop)).sum(), ..self }
     }
 }
 
 /// The time of the later half of some steps, which under step control have found their length by then, for the whole motion.
-fn seconds(mut motion: Motion, trial: f64, stop: &AtomicBool) -> Option<f64> {
+fn seconds(mut motion: IslandMotion, trial: f64, stop: &AtomicBool) -> Option<f64> {
     let (started, end) = (Instant::now(), motion.end());
     let mut before = (0.0, 0.0);
     loop {

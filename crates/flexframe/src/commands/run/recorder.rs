@@ -3,36 +3,36 @@
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use dynamics::{JointObservation, Reached, StepError};
+use dynamics::{Island, IslandError, Reached, Run};
 use results::{BodyResults, Results, Writer};
 use scene::{Scene, StepControl};
 
-use super::body::{FollowedBody, RunBody};
+use super::body::FollowedBody;
 use super::body_report::BodyRunReport;
-use super::checkpoint::checkpoint;
+use super::checkpoint;
 use super::error::RunError;
 use super::estimate::Estimate;
-use super::mover::{Mover, Next};
 use super::report::{RunReport, SystemReport};
 use super::settings::{RunProgress, RunSettings};
+use super::tied_report::TiedReport;
 use crate::drawn::not_stored;
-use crate::motion::Motion;
-use crate::motion::row_times::RowTimes;
 use crate::report::Times;
 use crate::rows::columns::COLUMNS;
 use crate::rows::row::{BodyRow, Row};
 
+/// Steps between two reports of progress, where no row comes first.
+const STEPS_PER_REPORT: u64 = 4096;
 /// Steps from one row with a report of progress and a look at the clock to the next: a row may cost less than these.
 const STEPS_PER_LOOK: u64 = 64;
 
 /// Follows a run, and turns its observations into rows of the results file.
 pub(super) struct Recorder<'a> {
-    movers: Vec<Mover<'a>>,
+    run: Run,
+    /// The bodies in the order of the scene.
+    bodies: Vec<FollowedBody<'a>>,
     row: Row,
     writer: Writer<Row>,
     rows: u64,
-    /// Times of the rows of several bodies and of tied ones; a single free one has its rows where it takes them.
-    times: Option<RowTimes>,
     estimate: Estimate,
     /// The number of what the run reads.
     identity: u64,
@@ -40,24 +40,18 @@ pub(super) struct Recorder<'a> {
 
 impl<'a> Recorder<'a> {
     pub fn new(
-        bodies: &[RunBody<'_>],
-        mut movers: Vec<Mover<'a>>,
+        run: Run,
+        bodies: Vec<FollowedBody<'a>>,
         writer: Writer<Row>,
         estimate: Estimate,
         identity: u64,
     ) -> Self {
-        let is_alone = matches!(&movers[..], [Mover { motion: Motion::Alone(_), .. }]);
-        let times = bodies.first().filter(|_| !is_alone).map(|body| RowTimes::new(body.scene));
-        if times.is_some_and(|times| times.may_be_between_steps()) {
-            movers.iter_mut().for_each(|mover| mover.motion.keep_last_step());
-        }
-        let joints = movers.iter().map(|mover| mover.joints.len() + mover.elements.len()).sum();
         let row = Row {
             time: 0.0,
-            bodies: bodies.iter().map(|body| BodyRow::new(body.model)).collect(),
-            joints: vec![JointObservation::default(); joints],
+            bodies: bodies.iter().map(|body| BodyRow::new(body.of.model)).collect(),
+            joints: run.room_of_joints(),
         };
-        Self { movers, row, writer, rows: 0, times, estimate, identity }
+        Self { run, bodies, row, writer, rows: 0, estimate, identity }
     }
 
     /// The first row, and a first checkpoint.
@@ -73,7 +67,7 @@ impl<'a> Recorder<'a> {
         let times = results.numbers("time").unwrap_or_default();
         for (row, time) in times.iter().enumerate() {
             let results: Vec<BodyResults<'_>> = results.bodies().collect();
-            for body in self.movers.iter_mut().flat_map(|mover| &mut mover.bodies) {
+            for body in &mut self.bodies {
                 let number = body.number;
                 let of = results.get(number).ok_or_else(|| changed("the list of bodies"))?;
                 let out = &mut self.row.bodies[number];
@@ -83,10 +77,10 @@ impl<'a> Recorder<'a> {
         self.rows = results.rows() as u64;
         let Some(last) = self.rows.checked_sub(1) else { return Err(changed("the motion at the checkpoint")) };
         // A body that was between two steps at the row is beyond it.
-        if self.movers.iter().any(|mover| self.row_within_step(mover, last).is_some()) {
+        if self.run.is_between_steps() {
             return Ok(());
         }
-        self.observe(last)?;
+        self.observe()?;
         match results.is_row(last as usize, &COLUMNS, &self.row) {
             true => Ok(()),
             false => Err(changed("the motion at the checkpoint")),
@@ -100,7 +94,7 @@ impl<'a> Recorder<'a> {
         settings: &RunSettings,
         mut progress: impl FnMut(RunProgress),
     ) -> Result<(RunReport, Writer<Row>), RunError> {
-        let before = self.steps();
+        let before = self.run.steps();
         let mut looked_at = 0;
         loop {
             let reached = self.go()?;
@@ -108,8 +102,8 @@ impl<'a> Recorder<'a> {
             match reached {
                 Reached::Row => {
                     self.record()?;
-                    let stop = asked && self.time() < self.end();
-                    let tried = self.tried();
+                    let stop = asked && self.run.time() < self.run.end();
+                    let tried = self.run.tried();
                     if !stop && tried < looked_at + STEPS_PER_LOOK {
                         continue;
                     }
@@ -126,17 +120,15 @@ impl<'a> Recorder<'a> {
                 Reached::End => break,
                 _ => {}
             }
-            progress(RunProgress::Motion(self.time() / self.end()));
+            progress(RunProgress::Motion(self.run.time() / self.run.end()));
         }
         // Should there be no room for the results file, they can still be had from here.
         self.flush()?;
         let time = started.elapsed();
-        let steps = self.steps();
-        let tied: Vec<_> = self.movers.iter().filter_map(Mover::tied_report).collect();
-        let Self { movers, row, writer, rows, estimate, .. } = self;
-        let count = row.bodies.len();
-        let mut reports: Vec<_> = movers.into_iter().flat_map(|mover| reports(mover, &row, count)).collect();
-        reports.sort_by_key(|report| report.number);
+        let steps = self.run.steps();
+        let tied: Vec<_> = self.run.islands().iter().filter_map(|island| self.tied_report(island)).collect();
+        let Self { run, bodies, row, writer, rows, estimate, .. } = self;
+        let reports = reports(&run, bodies, &row);
         let Some(scene) = reports.first().map(|report| report.scene) else { return Err(RunError::NoBody) };
         let mut schemes: Vec<&str> = reports.iter().map(|report| report.body.scheme.as_str()).collect();
         schemes.sort_unstable();
@@ -176,96 +168,68 @@ impl<'a> Recorder<'a> {
 
     /// Goes on to the next row of all bodies, or less far.
     fn go(&mut self) -> Result<Reached, RunError> {
-        let next = match &self.times {
-            Some(times) if self.rows >= times.count() => return Ok(Reached::End),
-            Some(times) => Next::Time(times.of(self.rows)),
-            None => Next::Row,
-        };
-        let mut last = Reached::Row;
-        for i in 0..self.movers.len() {
-            let mover = &mut self.movers[i];
-            let reached = mover.go(next, self.times.as_ref());
-            if reached.is_err() {
-                mover.look_ahead();
-            }
-            // A step that fails after the model has come to mean nothing fails for that.
-            let refused = mover.bodies.iter().find_map(|body| Some((body.number, body.refusal()?)));
-            if let Some((body, (time, refusal))) = refused {
-                let results = self.writer.unfinished().to_path_buf();
-                return Err(RunError::Refused { results, body: self.name_of(body), time, refusal });
-            }
-            last = reached.map_err(|source| self.failed(i, source))?;
-            if last == Reached::Between {
-                break;
-            }
+        let Self { run, bodies, .. } = self;
+        let reached = run.advance(STEPS_PER_REPORT, |body, moment| bodies[body].look(moment));
+        if let Err(failed) = &reached {
+            self.look_ahead(&failed.bodies);
         }
-        Ok(last)
+        // A step that fails after the model has come to mean nothing fails for that.
+        let refused = self.bodies.iter().find_map(|body| Some((body.number, body.refusal()?)));
+        if let Some((body, (time, refusal))) = refused {
+            let results = self.writer.unfinished().to_path_buf();
+            return Err(RunError::Refused { results, body: self.name_of(body), time, refusal });
+        }
+        reached.map_err(|failed| self.failed(failed))
     }
 
-    /// Time that all bodies have come to.
-    fn time(&self) -> f64 {
-        self.movers.iter().map(|mover| mover.motion.time()).fold(f64::INFINITY, f64::min)
+    /// Shows bodies how far they would have bent at the end of the step that has failed: a body may be thrown out of its model within one
+    /// step.
+    fn look_ahead(&mut self, failed: &[usize]) {
+        let Some((island, _)) = failed.first().and_then(|body| self.run.island_of(*body)) else { return };
+        let Ok(states) = island.motion.states() else { return };
+        let step = island.motion.stats().longest;
+        for (state, body) in states.iter().zip(failed) {
+            self.bodies[*body].look_ahead(state, step);
+        }
     }
 
-    fn end(&self) -> f64 {
-        self.movers.first().map_or(0.0, |mover| mover.motion.end())
-    }
-
-    /// Steps of all motions.
-    fn steps(&self) -> u64 {
-        self.movers.iter().map(|mover| mover.motion.stats().accepted).sum()
-    }
-
-    /// The same, with those that were tried in vain.
-    fn tried(&self) -> u64 {
-        self.movers.iter().map(|mover| mover.motion.tried()).sum()
+    /// The report of an island of tied bodies.
+    fn tied_report(&self, island: &Island) -> Option<TiedReport> {
+        let names = island.bodies.iter().map(|body| self.bodies[*body].of.name().to_owned());
+        Some(TiedReport::new(island.motion.system()?, names.collect()))
     }
 
     /// Name of a body among several, for messages.
     fn name_of(&self, body: usize) -> Option<String> {
-        let mut bodies = self.movers.iter().flat_map(|mover| &mover.bodies).filter(|_| self.row.bodies.len() > 1);
-        bodies.find(|of| of.number == body).map(|of| of.of.name().to_owned())
+        (self.bodies.len() > 1).then(|| self.bodies[body].of.name().to_owned())
     }
 
     fn stopped(&self, settings: &RunSettings) -> RunError {
         let replaces = settings.overwrite && self.writer.path().exists();
-        RunError::Stopped { part: self.writer.unfinished().to_path_buf(), time: self.time(), replaces }
+        RunError::Stopped { part: self.writer.unfinished().to_path_buf(), time: self.run.time(), replaces }
     }
 
-    /// The error of a step of a motion, with the name of its body where it has one.
-    fn failed(&self, mover: usize, source: StepError) -> RunError {
-        let body = match &self.movers[mover].bodies[..] {
-            [body] => self.name_of(body.number),
-            _ => None,
-        };
+    /// The error of a step, with the name of the body where it moves alone.
+    fn failed(&self, IslandError { bodies, source }: IslandError) -> RunError {
+        let body = if let [body] = bodies[..] { self.name_of(body) } else { None };
         RunError::Step { results: self.writer.unfinished().to_path_buf(), body, source }
     }
 
-    /// Time of a row, where it is within the last step of a motion.
-    fn row_within_step(&self, mover: &Mover<'_>, row: u64) -> Option<f64> {
-        let times = self.times.as_ref()?;
-        let time = times.of(row);
-        (!times.are_same(mover.motion.time(), time)).then_some(time)
-    }
-
-    /// Observes the motion at a row.
-    fn observe(&mut self, row: u64) -> Result<(), RunError> {
-        for i in 0..self.movers.len() {
-            let within = self.row_within_step(&self.movers[i], row);
-            let observed = self.movers[i].observe(within, &mut self.row);
-            observed.map_err(|source| self.failed(i, source))?;
-        }
-        self.row.time = self.times.as_ref().map_or_else(|| self.time(), |times| times.of(row));
+    /// Observes the motion at the row that has been reached.
+    fn observe(&mut self) -> Result<(), RunError> {
+        let Self { run, row, .. } = self;
+        let observed = run.observe(row.bodies.iter_mut().map(|body| &mut body.motion), &mut row.joints);
+        self.row.time = observed.map_err(|failed| self.failed(failed))?;
+        self.row.bodies.iter_mut().zip(&self.bodies).for_each(|(row, body)| row.complete(body.of.model));
         Ok(())
     }
 
     /// Writes the row of the time that all bodies have reached.
     fn record(&mut self) -> Result<(), RunError> {
-        self.observe(self.rows)?;
+        self.observe()?;
         // It refuses what is not finite.
         self.writer.push(&self.row)?;
-        let mut bodies = self.movers.iter_mut().flat_map(|mover| &mut mover.bodies);
-        bodies.try_for_each(|body| body.record(&self.row.bodies[body.number]))?;
+        self.bodies.iter_mut().zip(&self.row.bodies).try_for_each(|(body, row)| body.record(row))?;
         self.rows += 1;
         Ok(())
     }
@@ -273,44 +237,46 @@ impl<'a> Recorder<'a> {
     /// Hands the rows to the operating system, with the state after the last; but not where a body is beyond the next row
     /// already, which could then not be found again.
     fn flush(&mut self) -> Result<(), RunError> {
-        let next = self.times.as_ref().map_or(f64::INFINITY, |times| times.of(self.rows));
-        if next < self.end() && self.movers.iter().any(|mover| mover.motion.time() > next) {
+        if self.run.is_beyond_next_row() {
             return Ok(());
         }
-        let checkpoint =
-            checkpoint(self.identity, self.movers.iter().map(|mover| &mover.motion), self.writer.unfinished())?;
+        let checkpoint = checkpoint(self.identity, &self.run, self.writer.unfinished())?;
         Ok(self.writer.flush(&checkpoint)?)
     }
 }
 
 /// A body at the end of its run.
 struct Finished<'a> {
-    number: usize,
     scene: &'a Scene,
     body: BodyRunReport,
     warnings: Vec<String>,
     times: Times,
 }
 
-/// Reports of the bodies of a motion that has come to its end, of `count` in all.
-fn reports<'a>(Mover { motion, mut bodies, .. }: Mover<'a>, last: &Row, count: usize) -> Vec<Finished<'a>> {
-    let scales = bodies.iter_mut().map(|body| body.monitor_mut().scales());
-    if let Some(scales) = scales.reduce(|most, scales| most.or_larger(&scales)) {
-        bodies.iter_mut().for_each(|body| body.monitor_mut().widen(&scales));
+/// Reports of all bodies at the end of a run, in the order of the scene.
+fn reports<'a>(run: &Run, mut bodies: Vec<FollowedBody<'a>>, last: &Row) -> Vec<Finished<'a>> {
+    // Tied bodies pass momentum and energy to each other.
+    for Island { bodies: numbers, .. } in run.islands() {
+        let scales = numbers.iter().map(|body| bodies[*body].monitor_mut().scales());
+        if let Some(scales) = scales.reduce(|most, scales| most.or_larger(&scales)) {
+            numbers.iter().for_each(|body| bodies[*body].monitor_mut().widen(&scales));
+        }
     }
-    let stats = motion.stats();
-    let report = |(i, body): (usize, FollowedBody<'a>)| {
+    let count = bodies.len();
+    let report = |body: FollowedBody<'a>| {
         let (of, number) = (body.of, body.number);
+        let (island, own) = run.island_of(number)?;
+        let time = &of.scene.time;
+        let scheme = island.motion.system().map_or(time.method.scheme, |_| time.system_scheme.name());
         let (report, warnings) =
-            body.report(&last.bodies[number], (&stats, &motion.energies(i), motion.scheme(of.scene)));
+            body.report(&last.bodies[number], (&island.motion.stats(), &island.motion.energies(own), scheme));
         let named = |text| if count == 1 { text } else { format!("body {}: {text}", of.name()) };
-        Finished {
-            number,
+        Some(Finished {
             scene: of.scene,
             body: report,
             warnings: warnings.into_iter().chain(not_stored(of, count)).map(named).collect(),
             times: Times::of_model(of.model),
-        }
+        })
     };
-    bodies.into_iter().enumerate().map(report).collect()
+    bodies.into_iter().filter_map(report).collect()
 }

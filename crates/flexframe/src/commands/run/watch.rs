@@ -1,14 +1,13 @@
 //! Watch of a motion beside its rows: the assumptions of its model, and the quantities that should stay as they are.
 
 use advice::{Refusal, Review, StepEstimate};
-use dynamics::{EffectMap, Initial, Moment, MotionState, Observation};
+use dynamics::{EffectMap, Initial, Moment, MotionState, Observation, RunEnergies};
 use model::{BuildError, Model};
 use scene::{Load, Scene};
 
 use super::balances::{Balances, Conserved, Monitor};
 use super::error::RunError;
 use super::turn::Turn;
-use crate::motion::RunEnergies;
 use crate::plausible;
 
 /// Energy balance from which on a run says that it is open.

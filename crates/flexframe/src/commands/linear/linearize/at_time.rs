@@ -1,11 +1,11 @@
 //! The state of a run at a time.
 
-use dynamics::{MotionState, Reached};
+use dynamics::{Island, MotionState, Reached};
 use model::Model;
 use scene::System;
 
 use super::error::LinearizeError;
-use crate::motion::{self, Beginning, Moving};
+use crate::motion::{self, Beginning};
 
 /// Steps that are taken at once.
 const STEPS: u64 = 1000;
@@ -23,15 +23,16 @@ pub(super) fn states_at(system: &System, models: &[Model], time: f64) -> Result<
     let Some(beginning) = Beginning::of(system, &references) else { return Ok(Vec::new()) };
     let mut states: Vec<Option<MotionState>> = vec![None; models.len()];
     let failed = |source| LinearizeError::Run { scene: scene.path.clone(), source: Box::new(source) };
-    for Moving { mut motion, bodies, .. } in motion::begin(system, &references, &beginning).map_err(Box::new)? {
-        motion.set_stop_time(Some(time));
-        while motion.time() < time {
-            if let Reached::Stop | Reached::End = motion.advance(STEPS, |_, _| ()).map_err(failed)? {
-                break;
-            }
+    let mut run = motion::begin(system, &references, &beginning).map_err(Box::new)?;
+    run.set_stop_time(Some(time));
+    while run.time() < time {
+        if let Reached::Stop | Reached::End = run.advance(STEPS, |_, _| ()).map_err(|of| failed(of.source))? {
+            break;
         }
-        for (body, state) in bodies.into_iter().zip(motion.states().map_err(failed)?) {
-            states[body] = Some(state);
+    }
+    for Island { motion, bodies, .. } in run.islands() {
+        for (body, state) in bodies.iter().zip(motion.states().map_err(failed)?) {
+            states[*body] = Some(state);
         }
     }
     Ok(states.into_iter().flatten().collect())

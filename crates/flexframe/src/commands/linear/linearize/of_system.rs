@@ -1,6 +1,6 @@
 //! Small motions of free bodies, and of bodies in joints, about rest or a steady spin.
 
-use dynamics::{Coordinate, Linearization, MotionState, Row, SteadyState, SystemMotion};
+use dynamics::{Coordinate, Island, Linearization, MotionState, Row, SteadyState, SystemMotion};
 use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
@@ -13,7 +13,7 @@ use super::settings::LinearSettings;
 use super::state::{State, damping_in_words};
 use super::system_spin::SystemSpin;
 use crate::commands::linear::names::is_asked;
-use crate::motion::{self, Beginning, Motion, Moving};
+use crate::motion::{self, Beginning};
 use crate::rows::units::UnitLabels;
 
 /// An acceleration beside ω² times the size of the bodies that is more than rounding.
@@ -36,15 +36,14 @@ pub(super) fn of_system(
     let no_body = || refuse("no body", "name a body in the scene");
     let beginning = Beginning::of(system, &references).ok_or_else(no_body)?;
     let beginning = Beginning { together: true, ..beginning };
-    let mut moving = motion::begin(system, &references, &beginning).map_err(Box::new)?;
-    let Some(Moving { motion, joints, bodies, .. }) = moving.first_mut() else { return Err(no_body()) };
+    let mut run = motion::begin(system, &references, &beginning).map_err(Box::new)?;
+    let Some(Island { motion, joints, bodies, .. }) = run.islands_mut().first_mut() else { return Err(no_body()) };
     if let Some(states) = states {
         let states: Vec<MotionState> = bodies.iter().map(|body| states[*body].clone()).collect();
         let scene = scene.path.clone();
         motion.set_states(&states).map_err(|source| LinearizeError::State { scene, source: Box::new(source) })?;
     }
-    let Motion::Tied(simulation) = &*motion else { return Err(no_body()) };
-    let motion = simulation.motion();
+    let motion = motion.system().ok_or_else(no_body)?.motion();
     let failed = |source| LinearizeError::Steady { scene: scene.path.clone(), source: Box::new(source) };
     let SystemSpin { omega_global, steady, rotors, warnings: turning } =
         SystemSpin::new(motion, spin).map_err(failed)?;

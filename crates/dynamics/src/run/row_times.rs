@@ -1,13 +1,13 @@
-//! Times of the rows of several bodies.
+//! Times of the rows of several islands.
 
-use scene::{Rows, Scene, StepControl};
+use crate::simulation::plan::{Rows, StepControl};
 
 /// Times closer than this part of the end are one.
 const SAME: f64 = 1e-13;
 
-/// The times at which several bodies have rows. They follow from the scene alone, not from the steps of a body.
+/// The times at which several islands have rows. They do not follow from the steps of an island.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct RowTimes {
+pub struct RowTimes {
     spacing: Spacing,
     end: f64,
 }
@@ -21,16 +21,15 @@ enum Spacing {
 }
 
 impl RowTimes {
-    /// The times that a scene asks for. Every N-th step is for a body whose loads have no discontinuities.
-    pub fn new(scene: &Scene) -> Self {
-        let end = scene.time.end;
-        let spacing = match (scene.output.rows, scene.time.control) {
+    /// The times of rows up to an end. Every N-th step is for bodies whose loads have no discontinuities.
+    pub fn new(rows: Rows, control: StepControl, end: f64) -> Self {
+        let spacing = match (rows, control) {
             (Rows::Interval(interval), _) => Spacing::Interval(interval),
             (Rows::EverySteps(every), StepControl::Fixed(step)) => {
                 let count = (end / step * (1.0 - 1e-12)).ceil().max(1.0);
                 Spacing::Steps(every, end / count)
             }
-            // No scene has that.
+            // One row, at the end.
             (Rows::EverySteps(_), StepControl::Tolerance(_)) => Spacing::Interval(end),
         };
         Self { spacing, end }
@@ -54,13 +53,19 @@ impl RowTimes {
         ((self.end / spacing * (1.0 - 1e-12)).ceil() as u64).saturating_add(1)
     }
 
+    /// The rows of bodies in joints, whose steps do not end at them.
+    pub fn of_systems(&self) -> Rows {
+        let first = self.of(1);
+        if first < self.end { Rows::Interval(first) } else { Rows::EverySteps(u64::MAX) }
+    }
+
     /// True if a body may be between two steps where there is a row.
-    pub fn may_be_between_steps(&self) -> bool {
+    pub(crate) fn may_be_between_steps(&self) -> bool {
         matches!(self.spacing, Spacing::Steps(..))
     }
 
     /// True if two times are one but for rounding.
-    pub fn are_same(&self, a: f64, b: f64) -> bool {
+    pub(crate) fn are_same(&self, a: f64, b: f64) -> bool {
         (a - b).abs() <= SAME * self.end
     }
 }
