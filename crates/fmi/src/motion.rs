@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use flexframe::advice::Review;
 use flexframe::dynamics::{
-    Coordinate, History, Initial, JointLaw, LoadFrame, PointForce, PointMoment, Reached, RowTimes, Rows, Run,
+    History, Initial, JointLaw, LoadFrame, PointForce, PointMoment, Reached, RowTimes, Rows, Run,
     ScaledLoad, SharedLoad, Signal, StepControl, StepError,
 };
 use flexframe::fmu::{FmuBody, FmuModel, Input, InputKind, Source};
@@ -309,10 +309,6 @@ fn run(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Run, Err
     }
     for Channel { input, signal, .. } in inputs {
         if let InputKind::Motor(joint, along) = input.kind {
-            let along = match along {
-                flexframe::scene::Coordinate::Turn => Coordinate::Turn,
-                flexframe::scene::Coordinate::Slide => Coordinate::Slide,
-            };
             beginning.laws.push(JointForces { joint, along, law: Arc::new(Motor(signal.clone())) });
         }
     }

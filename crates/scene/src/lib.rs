@@ -68,7 +68,6 @@ pub use text::points::{PointsError, points_of};
 pub use text::shorten::shorten;
 pub use text::suggest::one_of;
 pub use tie::joint::{
-    AlongAndAbout, Bushing, Coordinate, Coupling, CouplingKind, End, Friction, Joint, JointDrive, JointKind,
-    JointSpring, Locked, Spring, Stops,
+    AlongAndAbout, Bushing, Coupling, CouplingKind, End, Joint, JointDrive, JointKind, JointSpring, Locked, Spring,
 };
 pub use tie::marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace, Tie};

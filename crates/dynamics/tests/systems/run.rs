@@ -4,9 +4,10 @@ use std::sync::{Arc, Mutex};
 
 use crate::mechanism::at_rest;
 use dynamics::{
-    ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MarkerForce, MarkerLaw, MotionState,
-    Observation, Observer, Physics, PointForce, PointShapes, Reached, RelativeMotion, Rows, SetupError, SharedLoad,
-    StepControl, StepEnd, StepError, System, SystemObservation, SystemScheme, SystemSetup, SystemSimulation, Table,
+    ConservativeBody, Coordinate, History, Initial, Island, IslandMotion, Joint, JointDrive, JointForce, Marker,
+    MarkerForce, MarkerLaw, MotionState, Observation, Observer, Physics, PointForce, PointShapes, Reached,
+    RelativeMotion, RowTimes, Rows, Run, SetupError, SharedLoad, Simulation, StepControl, StepEnd, StepError, System,
+    SystemObservation, SystemScheme, SystemSetup, SystemSimulation, Table,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -310,4 +311,62 @@ fn the_balance_of_a_long_vibration_is_the_part_that_it_has_lost() {
     println!("lost {lost:e}, open {:e}", open.abs() / simulation.exchanged(0));
     assert!(lost > 1e-3, "{lost}");
     assert!((open.abs() / simulation.exchanged(0) / lost - 1.0).abs() < 0.1);
+}
+
+/// Second implementation: the islands of a run move as each does by itself; a run from a checkpoint gives the same bits; a stop is between rows.
+#[test]
+fn islands_of_a_run_meet_at_rows_and_stops_and_move_as_each_by_itself() {
+    let control = StepControl::Tolerance(1e-6);
+    let reduced = ReducedBody::rigid(
+        2.0,
+        Vector3::zeros(),
+        Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.5)),
+        RigidMotion::free(),
+    )
+    .unwrap();
+    let initial = Initial { omega: Vector3::new(0.1, 3.0, 0.2), ..Initial::default() };
+    let alone =
+        Simulation::builder(&reduced, control, 2.0).initial(initial).rows(Rows::Interval(0.25)).build().unwrap();
+    let tied = SystemSimulation::new(pendulum(control, None)).unwrap();
+    let island = |motion, bodies| Island { motion, bodies, joints: Vec::new(), elements: Vec::new() };
+    let islands = vec![
+        island(IslandMotion::Body(Box::new(alone.clone())), vec![1]),
+        island(IslandMotion::System(Box::new(tied.clone())), vec![0, 2]),
+    ];
+    let begun = Run::new(islands, RowTimes::new(Rows::Interval(0.25), control, 2.0));
+    let lead = |mut run: Run| -> Vec<Vec<Observation>> {
+        let (mut out, mut row) = (Vec::new(), run.room());
+        loop {
+            assert_eq!(run.observe(&mut row, &mut []).unwrap(), 0.25 * out.len() as f64);
+            out.push(row.clone());
+            while match run.advance(5, |_, _| ()).unwrap() {
+                Reached::End => return out,
+                reached => reached == Reached::Between,
+            } {}
+        }
+    };
+    let together = lead(begun.clone());
+    assert_eq!(together.len(), 9);
+    for (row, now) in together.iter().zip(alone) {
+        assert_eq!(row[1], now.unwrap());
+    }
+    for (row, now) in together.iter().zip(rows(tied)) {
+        assert_eq!([&row[0], &row[2]], [&now[0], &now[1]]);
+    }
+    let mut part = begun.clone();
+    while part.advance(100, |_, _| ()).unwrap() != Reached::Row {}
+    let words = part.checkpoint().unwrap();
+    assert_eq!(words.len(), begun.checkpoint().unwrap().len());
+    let mut again = begun.clone().restored(&words).unwrap();
+    let (mut row, mut same) = (again.room(), again.room());
+    for run in [&mut part, &mut again] {
+        run.set_stop_time(Some(0.3));
+        while run.advance(100, |_, _| ()).unwrap() != Reached::Stop {}
+        assert_eq!(run.time(), 0.3);
+        while run.advance(100, |_, _| ()).unwrap() != Reached::Row {}
+    }
+    assert_eq!(part.observe(&mut row, &mut []).unwrap(), 0.5);
+    again.observe(&mut same, &mut []).unwrap();
+    assert_eq!(row, same);
+    assert!(begun.restored(&words[..words.len() - 1]).is_err());
 }

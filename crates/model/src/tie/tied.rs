@@ -189,7 +189,7 @@ impl<'a> Island<'a> {
     fn joint(&self, key: &str, joint: &Joint) -> Result<dynamics::Joint, BuildError> {
         let Joint { name, kind, between, axis, drive, spring, motor } = joint;
         let turns = [drive.as_ref().map(|drive| drive.along), spring.map(|spring| spring.along)];
-        let acts_on_turn = turns.contains(&Some(scene::Coordinate::Turn));
+        let acts_on_turn = turns.contains(&Some(Coordinate::Turn));
         self.knows_turns(key, joint, acts_on_turn)?;
         let ends = self.ends(*between);
         let axes = axes(&ends, axis.map(Vector3::from));
@@ -207,8 +207,8 @@ impl<'a> Island<'a> {
         if let Some(drive) = drive {
             let given = self.continuous_drive(&format!("{key}.drive"), drive)?;
             made = match drive.along {
-                scene::Coordinate::Turn => made.turned_by(given),
-                scene::Coordinate::Slide => made.moved_by(given),
+                Coordinate::Turn => made.turned_by(given),
+                Coordinate::Slide => made.moved_by(given),
             };
         }
         for along in kind.coordinates() {
@@ -219,11 +219,7 @@ impl<'a> Island<'a> {
             }
             let motor = motor.map(|motor| self.drive(&format!("{key}.motor"), motor)).transpose()?;
             let force = JointForce { motor, ..spring.map(force).unwrap_or_default() };
-            let along = match along {
-                scene::Coordinate::Turn => Coordinate::Turn,
-                scene::Coordinate::Slide => Coordinate::Slide,
-            };
-            made = made.with_force(along, force);
+            made = made.with_force(*along, force);
         }
         Ok(made)
     }
@@ -390,12 +386,8 @@ fn force(spring: &JointSpring) -> JointForce {
         damping,
         free,
         preload,
-        stops: stops.map(|stops| dynamics::Stops {
-            limits: [stops.low, stops.high],
-            stiffness: stops.stiffness,
-            damping: stops.damping,
-        }),
-        friction: friction.map(|friction| dynamics::Friction { force: friction.force, rate_scale: friction.rate }),
+        stops,
+        friction,
         ..JointForce::default()
     }
 }

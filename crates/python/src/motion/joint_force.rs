@@ -21,7 +21,7 @@ use crate::values::numbers::number_that;
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct JointForce {
     joint: String,
-    along: Option<scene::Coordinate>,
+    along: Option<Coordinate>,
     law: OwnLaw,
 }
 
@@ -39,8 +39,8 @@ impl JointForce {
     ) -> PyResult<Self> {
         let along = match along {
             None => None,
-            Some("turn") => Some(scene::Coordinate::Turn),
-            Some("slide") => Some(scene::Coordinate::Slide),
+            Some("turn") => Some(Coordinate::Turn),
+            Some("slide") => Some(Coordinate::Slide),
             Some(other) => {
                 let help = "name the coordinate of the joint that the law acts along";
                 return Err(wrong_input(law.py(), "along", &format!("`{other}`"), "`turn` or `slide`", help));
@@ -65,17 +65,13 @@ impl JointForce {
             (found, _) => {
                 let found = match found {
                     None => "no coordinate",
-                    Some(scene::Coordinate::Turn) => "`turn`",
-                    Some(scene::Coordinate::Slide) => "`slide`",
+                    Some(Coordinate::Turn) => "`turn`",
+                    Some(Coordinate::Slide) => "`slide`",
                 };
                 let kind = system.joints[number].kind.name();
                 let help = "a hinge turns, a slide slides, a cylindrical joint does both";
                 return Err(wrong_input(py, "along", found, &format!("a coordinate of a {kind} joint"), help));
             }
-        };
-        let along = match along {
-            scene::Coordinate::Turn => Coordinate::Turn,
-            scene::Coordinate::Slide => Coordinate::Slide,
         };
         Ok(JointForces { joint: number, along, law: Arc::new(self.law.in_run(py, faults)) })
     }

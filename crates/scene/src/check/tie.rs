@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use dynamics::Effect;
+use dynamics::{Coordinate, Effect, Friction, Stops};
 
 use super::Check;
 use crate::body::effects::Choice;
@@ -12,8 +12,7 @@ use crate::scene::Scene;
 use crate::text::name::{GROUND, ONLY_BODY, is_part_of_path};
 use crate::text::suggest::{nearest, one_of};
 use crate::tie::joint::{
-    AlongAndAbout, Bushing, Coordinate, Coupling, CouplingKind, End, Friction, Joint, JointDrive, JointKind,
-    JointSpring, Locked, Spring, Stops,
+    AlongAndAbout, Bushing, Coupling, CouplingKind, End, Joint, JointDrive, JointKind, JointSpring, Locked, Spring,
 };
 use crate::tie::marker::GroundMarker;
 use crate::tie::section::{
@@ -318,7 +317,7 @@ impl Check<'_> {
         let along = self.along(key, kind, along)?;
         self.not_negative(&join(key, "stiffness"), stiffness)?;
         self.not_negative(&join(key, "damping"), damping)?;
-        if let Some(Friction { force, rate }) = friction {
+        if let Some(Friction { force, rate_scale: rate }) = friction {
             let key = join(key, "friction");
             self.not_negative(&join(&key, "force"), force)?;
             let help =
@@ -337,7 +336,7 @@ impl Check<'_> {
         self.require(low < high, &join(key, "high"), "a number above `low`", help)?;
         self.positive(&join(key, "stiffness"), stiffness, "give the moment or force beyond an end")?;
         self.not_negative(&join(key, "damping"), damping)?;
-        Ok(Stops { low, high, stiffness, damping })
+        Ok(Stops { limits: [low, high], stiffness, damping })
     }
 
     /// The coordinate that is meant, of those that the joint leaves free.

@@ -1,5 +1,6 @@
 //! Joints, springs and bushings between the bodies of a scene.
 
+use dynamics::{Coordinate, Friction, Stops};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -65,16 +66,6 @@ pub struct Locked {
     pub turns: [bool; 3],
 }
 
-/// A coordinate that a joint leaves free.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Coordinate {
-    /// The angle about the z axis of the first end, from its x axis to that of the second, rad.
-    Turn,
-    /// The distance along the z axis of the first end.
-    Slide,
-}
-
 impl JointKind {
     /// The name in a scene.
     pub fn name(self) -> &'static str {
@@ -119,16 +110,6 @@ impl JointKind {
     /// True if its z axis is to be named.
     pub fn needs_axis(self) -> bool {
         !matches!(self, Self::Fixed | Self::Spherical)
-    }
-}
-
-impl Coordinate {
-    /// The name in a scene.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Turn => "turn",
-            Self::Slide => "slide",
-        }
     }
 }
 
@@ -179,29 +160,6 @@ pub struct JointSpring {
     pub stops: Option<Stops>,
     /// Dry friction.
     pub friction: Option<Friction>,
-}
-
-/// Ends of a coordinate: stiff springs on one side, which push and do not pull.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stops {
-    /// Lowest coordinate; −∞ without one.
-    pub low: f64,
-    /// Highest coordinate, above the lowest; ∞ without one.
-    pub high: f64,
-    /// Moment per rad, or force per length, beyond them, > 0.
-    pub stiffness: f64,
-    /// Moment per angular velocity, or force per velocity, while they are touched, ≥ 0.
-    pub damping: f64,
-}
-
-/// Dry friction: −force · tanh(rate of the coordinate / rate).
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Friction {
-    /// Moment or force, ≥ 0.
-    pub force: f64,
-    /// Rate of the coordinate below which it is smaller, > 0.
-    pub rate: f64,
 }
 
 /// A spring and a damper along the line between two markers: one `[[springs]]` entry.

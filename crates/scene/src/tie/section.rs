@@ -3,12 +3,13 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+use dynamics::{Coordinate, Friction};
 use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use crate::loads::history::History;
-use crate::tie::joint::{AlongAndAbout, Coordinate, Friction, JointKind};
+use crate::tie::joint::{AlongAndAbout, JointKind};
 
 /// The tables that tie bodies together.
 #[derive(Default, Deserialize, JsonSchema)]

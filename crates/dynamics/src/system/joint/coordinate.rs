@@ -9,13 +9,25 @@ use serde::{Deserialize, Serialize};
 use crate::system::joint::wrench::RowWrench;
 use crate::system::marker::MarkerPlace;
 
-/// A scalar that tells where the second marker of a joint is against the first.
+/// A coordinate that a joint leaves free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
 pub enum Coordinate {
-    /// The angle about the z axis of i, from its x axis to that of j, rad. Full turns are counted.
+    /// The angle about the z axis of the first end, from its x axis to that of the second, rad. Full turns are counted.
     Turn,
-    /// The distance along the z axis of i.
+    /// The distance along the z axis of the first end.
     Slide,
+}
+
+impl Coordinate {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Turn => "turn",
+            Self::Slide => "slide",
+        }
+    }
 }
 
 /// The coordinates of a joint and their rates.

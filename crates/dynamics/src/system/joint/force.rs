@@ -33,22 +33,25 @@ pub struct JointForce {
 }
 
 /// Ends of a coordinate: stiff springs on one side, which push and do not pull.
-#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Stops {
-    /// Lowest and highest coordinate.
+    /// Lowest and highest coordinate; −∞ and ∞ without them.
     pub limits: [f64; 2],
-    /// Force per length, or moment per angle, beyond them.
+    /// Moment per rad, or force per length, beyond them, > 0.
     pub stiffness: f64,
-    /// Force per velocity, or moment per angular velocity, while they are touched.
+    /// Moment per angular velocity, or force per velocity, while they are touched, ≥ 0.
     pub damping: f64,
 }
 
-/// Dry friction, of one size in either direction but near rest: −force·tanh(rate/rate_scale).
-#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
+/// Dry friction: −force · tanh(rate of the coordinate / rate).
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
 pub struct Friction {
-    /// Force or moment.
+    /// Moment or force, ≥ 0.
     pub force: f64,
-    /// Rate below which it is smaller.
+    /// Rate of the coordinate below which it is smaller, > 0.
+    #[serde(rename = "rate")]
     pub rate_scale: f64,
 }
 

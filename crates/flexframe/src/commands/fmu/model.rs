@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use dynamics::RotationShapes;
+use dynamics::{Coordinate, RotationShapes};
 use model::{BuildProgress, Builder, Model};
 use results::{Metadata, histories};
-use scene::{Coordinate, Scene, System};
+use scene::{Scene, System};
 
 use super::error::FmuError;
 use super::manifest::Manifest;

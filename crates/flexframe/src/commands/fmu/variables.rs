@@ -1,9 +1,9 @@
 //! The variables of an FMU: inputs, and the columns of a results file as outputs.
 
-use dynamics::{DrivenMotion, Effect};
+use dynamics::{Coordinate, DrivenMotion, Effect};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use results::{Components, Dimension, History, JointMetadata, Metadata, Role, histories};
-use scene::{Coordinate, End, Load, System};
+use scene::{End, Load, System};
 
 use crate::commands::run::RunBody;
 use crate::rows::columns::COLUMNS;

@@ -1,9 +1,9 @@
 //! The metadata of a results file.
 
-use dynamics::DrivenMotion;
+use dynamics::{Coordinate, DrivenMotion};
 use model::Builder;
 use results::{BodyMetadata, BodyProperties, JointMetadata, Metadata, Units};
-use scene::{Coordinate, End, Scene, StepControl, System};
+use scene::{End, Scene, StepControl, System};
 
 use super::body::RunBody;
 use crate::drawn::mesh_properties;

@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use dynamics::Coordinate;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
 use nalgebra::Vector3;
@@ -145,13 +144,9 @@ impl Here<'_> {
         for (number, joint) in self.motion.joints.iter().enumerate() {
             let of = &self.system.joints[*joint];
             for coordinate in of.kind.coordinates() {
-                let (coordinate, quantity) = match coordinate {
-                    scene::Coordinate::Turn => (Coordinate::Turn, "turn"),
-                    scene::Coordinate::Slide => (Coordinate::Slide, "slide"),
-                };
-                let row = motion.coordinate_row(&self.steady, number, coordinate);
+                let row = motion.coordinate_row(&self.steady, number, *coordinate);
                 for list in [&mut inputs, &mut outputs] {
-                    list.push(Port { name: format!("{}.{quantity}", of.name), row: row.clone(), of: Of::Joint });
+                    list.push(Port { name: format!("{}.{}", of.name, coordinate.name()), row: row.clone(), of: Of::Joint });
                 }
             }
         }

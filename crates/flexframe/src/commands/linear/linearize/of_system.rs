@@ -114,11 +114,12 @@ pub(super) fn of_system(
     for (number, joint) in joints.iter().enumerate() {
         let of = &system.joints[*joint];
         for coordinate in of.kind.coordinates() {
-            let (coordinate, quantity, [force, unit]) = match coordinate {
-                scene::Coordinate::Turn => (Coordinate::Turn, "turn", [units.moment(), "rad".to_owned()]),
-                scene::Coordinate::Slide => (Coordinate::Slide, "slide", [units.force(), units.length.to_owned()]),
+            let quantity = coordinate.name();
+            let [force, unit] = match coordinate {
+                Coordinate::Turn => [units.moment(), "rad".to_owned()],
+                Coordinate::Slide => [units.force(), units.length.to_owned()],
             };
-            let row = motion.coordinate_row(&steady, number, coordinate);
+            let row = motion.coordinate_row(&steady, number, *coordinate);
             let of_coordinates = over(&row);
             inputs.push(Channel::new(format!("{}.{quantity}", of.name), force));
             columns.push(row);
