@@ -102,15 +102,24 @@ fn with_meshlane() -> bool {
     std::env::var_os(MESHLANE).is_some_and(|python| std::env::var_os(PYTHON) == Some(python))
 }
 
-/// meshlane is the fork of meshio that is kept up: all tests of this file once more with it, in a process of their own.
+/// meshlane is the fork of meshio that is kept up: the tests of this file that use it once more, in a process of their own.
 #[test]
 fn meshlane_reads_the_same() {
     if with_meshlane() {
         return;
     }
     let python = std::env::var_os(MESHLANE).expect("FLEXFRAME_MESHLANE names no Python with meshlane; use ./dev test");
-    let output = Command::new(std::env::current_exe().unwrap()).env(PYTHON, python).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    let output = Command::new(std::env::current_exe().unwrap())
+        .args([
+            "every_format_gives_the_same_elements_and_its_groups",
+            "elements_that_are_all_the_other_way_round_are_turned_and_told",
+            "what_cannot_be_read_is_said_with_its_help",
+        ])
+        .env(PYTHON, python)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && said.contains("3 passed"), "{said}");
 }
 
 fn volume(mesh: &Mesh) -> f64 {
@@ -156,6 +165,9 @@ fn every_format_gives_the_same_elements_and_its_groups() {
         ("bar.inp", RAISED, Reader::OwnDeck, &["Volume1", "bar"], &both, &[]),
     ];
     for (name, settings, reader, volumes, faces, nodes) in table {
+        if with_meshlane() && reader != Reader::Meshio {
+            continue;
+        }
         assert_eq!(reader_of(&formats.path(name), &settings), reader, "{name}");
         let Imported { mesh, notes, .. } =
             formats.read(name, settings).unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -359,8 +371,8 @@ fn geometry_is_meshed_as_fine_as_asked_and_what_it_follows_from_is_known() {
 }
 
 /// Closed form: the volume of a tube of STEP with two elements across its wall and few around it: their curved edges
-/// run through their other faces. Each size was refused before gmsh's optimisation came by itself; the two fine
-/// meshes need none, and are not touched.
+/// run through their other faces. Both were refused before gmsh's optimisation came by itself; the fine mesh needs none, and
+/// is not touched.
 #[test]
 fn curved_elements_that_would_be_inverted_are_optimized() {
     let formats = formats();
@@ -369,9 +381,10 @@ fn curved_elements_that_would_be_inverted_are_optimized() {
     fs::write(formats.path("tube.geo"), tube).unwrap();
     formats.gmsh(&["tube.geo", "-0", "-o", "tube.step", "-format", "step"]);
     let exact = std::f64::consts::PI * (20.0_f64.powi(2) - 17.0_f64.powi(2)) * 200.0;
-    for (size, tolerance, is_inverted) in
-        [(40.0, 2e-2, true), (20.0, 2e-2, true), (12.0, 5e-3, true), (6.0, 5e-4, false)]
-    {
+    for (size, tolerance, is_inverted) in [(40.0, 2e-2, true), (20.0, 2e-2, true), (6.0, 5e-4, false)] {
+        if std::env::var_os(LAZY).is_some() && !is_inverted {
+            continue;
+        }
         fs::write(formats.path("tube_size.geo"), format!("Mesh.MeshSizeMax = {size:?};\n")).unwrap();
         formats.gmsh(&["tube.step", "tube_size.geo", "-3", "-order", "2", "-format", "msh41", "-o", "tube.msh"]);
         let plain = formats.read("tube.msh", AS_IT_IS);
@@ -379,8 +392,10 @@ fn curved_elements_that_would_be_inverted_are_optimized() {
         let settings = ImportSettings { mesh_size: Some(size), ..AS_IT_IS };
         let Imported { mesh, notes, .. } =
             formats.read("tube.step", settings).unwrap_or_else(|error| panic!("{size}: {error}"));
-        // Else a run of it could not be resumed.
-        assert_eq!(formats.read("tube.step", settings).unwrap().mesh.positions(), mesh.positions(), "{size}");
+        if is_inverted {
+            // Else a run of it could not be resumed.
+            assert_eq!(formats.read("tube.step", settings).unwrap().mesh.positions(), mesh.positions(), "{size}");
+        }
         assert!(notes.is_empty() && mesh.least_scaled_jacobian() > 0.1, "{size}: {}", mesh.least_scaled_jacobian());
         let error = volume(&mesh) / exact - 1.0;
         println!("size {size}: {} elements, volume off by {error:.1e}", mesh.elements().len());
@@ -415,8 +430,8 @@ fn an_optimization_that_fails_is_tried_with_higher_thresholds() {
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
-    // Two meshes of each of the three sizes that need it.
-    assert_eq!(fs::read_to_string(&log).unwrap().lines().count(), 6);
+    // Two meshes of each of the two sizes that need it.
+    assert_eq!(fs::read_to_string(&log).unwrap().lines().count(), 4);
 }
 
 /// As gmsh 4.15 does: an error in words, and 0 for success.
