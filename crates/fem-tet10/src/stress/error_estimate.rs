@@ -210,10 +210,13 @@ impl Place {
     }
 }
 
+/// A displacement field by node.
+type NodalField<'a> = &'a [[Lanes; 3]];
+
 /// Displacement fields u, and a and b of a product, by node.
 struct Fields<'a> {
-    u: &'a [[Lanes; 3]],
-    bent: Option<(&'a [[Lanes; 3]], &'a [[Lanes; 3]])>,
+    u: NodalField<'a>,
+    bent: Option<(NodalField<'a>, NodalField<'a>)>,
 }
 
 /// The gradients of [`Fields`] somewhere.

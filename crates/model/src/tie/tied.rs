@@ -381,13 +381,5 @@ fn coupling(name: &str, kind: CouplingKind, joints: [usize; 2]) -> dynamics::Cou
 /// The force of a spring along a coordinate.
 fn force(spring: &JointSpring) -> JointForce {
     let JointSpring { along: _, stiffness, damping, free, preload, stops, friction } = *spring;
-    JointForce {
-        stiffness,
-        damping,
-        free,
-        preload,
-        stops,
-        friction,
-        ..JointForce::default()
-    }
+    JointForce { stiffness, damping, free, preload, stops, friction, ..JointForce::default() }
 }

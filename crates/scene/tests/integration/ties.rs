@@ -1,7 +1,8 @@
 //! Markers, joints, springs and bushings: what is read, and what is refused at which place.
 
+use dynamics::Coordinate;
 use scene::{
-    Coordinate, CouplingKind, End, JointKind, Locked, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError,
+    CouplingKind, End, JointKind, Locked, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError,
     System, Tie,
 };
 
@@ -62,9 +63,9 @@ fn all_keys_are_read() {
     assert_eq!((spring.along, spring.stiffness, spring.damping), (Coordinate::Slide, 10.0, 0.0));
     assert_eq!((spring.free, spring.preload), (0.1, -1.0));
     let stops = spring.stops.unwrap();
-    assert_eq!((stops.low, stops.high, stops.stiffness, stops.damping), (f64::NEG_INFINITY, 0.2, 1e4, 1.0));
+    assert_eq!((stops.limits, stops.stiffness, stops.damping), ([f64::NEG_INFINITY, 0.2], 1e4, 1.0));
     let friction = spring.friction.unwrap();
-    assert_eq!((friction.force, friction.rate), (0.5, 1e-3));
+    assert_eq!((friction.force, friction.rate_scale), (0.5, 1e-3));
 
     let spring = &system.springs[0];
     assert_eq!((&*spring.name, spring.stiffness, spring.free_length), ("spring1", 100.0, None));

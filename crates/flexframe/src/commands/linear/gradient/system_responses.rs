@@ -146,7 +146,11 @@ impl Here<'_> {
             for coordinate in of.kind.coordinates() {
                 let row = motion.coordinate_row(&self.steady, number, *coordinate);
                 for list in [&mut inputs, &mut outputs] {
-                    list.push(Port { name: format!("{}.{}", of.name, coordinate.name()), row: row.clone(), of: Of::Joint });
+                    list.push(Port {
+                        name: format!("{}.{}", of.name, coordinate.name()),
+                        row: row.clone(),
+                        of: Of::Joint,
+                    });
                 }
             }
         }
