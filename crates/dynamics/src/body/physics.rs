@@ -116,7 +116,7 @@ pub struct Physics {
     pub large_deflection: Option<Manifold>,
     /// Forces that hold the bent body that the modes are about, where that is not the undeformed one.
     pub reference: Option<ReferenceForces>,
-    /// Stiffness between coordinates that are coupled, as [`modal::Modes::with_answer`] has them, beside that of each (nf×nf, symmetric).
+    /// Stiffness between coordinates that are coupled, as `modal::Modes::with_answer` has them, beside that of each (nf×nf, symmetric).
     #[serde(with = "reduced_body::as_data")]
     pub coupling: Option<Mat<f64>>,
 }

@@ -355,8 +355,9 @@ fn complementary_form<const N: usize>(material: &Material, products: &[[f64; N];
     };
     let nu = material.poisson_ratio;
     let mut whole = Lanes::default();
-    for component in 0..6 {
-        let times = if component < 3 { 1.0 + nu } else { 2.0 * (1.0 + nu) };
+    // Shear strains count twice.
+    let factors = [1.0, 1.0, 1.0, 2.0, 2.0, 2.0].map(|factor| factor * (1.0 + nu));
+    for (component, times) in factors.into_iter().enumerate() {
         let of = form(&std::array::from_fn(|a| at[a][component]));
         whole.iter_mut().zip(of).for_each(|(sum, of)| *sum += times * of);
     }

@@ -18,7 +18,7 @@ const POSITIONS: &str = "positions";
 /// the same where M acts alike on all axes.
 ///
 /// A body that spins at ω about the origin meets the centrifugal force `Σ ω_iω_j f_ij` over all nine ij, so each of the
-/// last three columns counts twice. `Ψ_fᵀ f_ij` is [`crate::Constants::inertia_first`].
+/// last three columns counts twice. `Ψ_fᵀ f_ij` is [`reduced_body::Constants::inertia_first`].
 ///
 /// # Errors
 /// [`ModalError::Size`] where there are more or fewer positions than nodes.

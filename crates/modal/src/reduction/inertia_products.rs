@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-/// See the fields of [`crate::Constants`] with these names.
+/// See the fields of [`reduced_body::Constants`] with these names.
 pub(crate) struct Products {
     pub rotation_products: [[Mat<f64>; 3]; 3],
     pub position_products: [[Vec<f64>; 3]; 3],

@@ -2,8 +2,7 @@
 
 use dynamics::Coordinate;
 use scene::{
-    CouplingKind, End, JointKind, Locked, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError,
-    System, Tie,
+    CouplingKind, End, JointKind, Locked, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError, System, Tie,
 };
 
 const HEAD: &str = "title = 'three'\nunits = { length = 'm', mass = 'kg', time = 's' }\n";
