@@ -29,6 +29,31 @@ pub struct StateSpace {
     pub outputs: Vec<Channel>,
 }
 
+/// A matrix of the same eigenvalues, whose rows are about as large as their columns: slow ones then have less of the rounding of the fastest
+/// (Parlett and Reinsch 1969). Scales are powers of 2, so that it has no rounding of its own.
+fn balanced(mut a: Mat<f64>) -> Mat<f64> {
+    let n = a.nrows();
+    loop {
+        let mut is_balanced = true;
+        for k in 0..n {
+            let others = |entry: &dyn Fn(usize) -> f64| (0..n).filter(|i| *i != k).map(|i| entry(i).abs()).sum::<f64>();
+            let (column, row) = (others(&|i| a[(i, k)]), others(&|j| a[(k, j)]));
+            if column == 0.0 || row == 0.0 {
+                continue;
+            }
+            let scale = (0.5 * (row / column).log2()).round().exp2();
+            if scale * column + row / scale < 0.95 * (column + row) {
+                is_balanced = false;
+                (0..n).for_each(|i| a[(i, k)] *= scale);
+                (0..n).for_each(|j| a[(k, j)] /= scale);
+            }
+        }
+        if is_balanced {
+            return a;
+        }
+    }
+}
+
 impl StateSpace {
     /// Eigenvalues of A, slowest first. States that nothing couples are apart, so that a motion that nothing resists has poles of zero and no
     /// rounding.
@@ -47,7 +72,7 @@ impl StateSpace {
                 continue;
             }
             let own = Mat::from_fn(size, size, |i, j| self.a[(group[i], group[j])]);
-            poles.extend(own.eigenvalues().map_err(|_| LinearError::Eigen { size })?);
+            poles.extend(balanced(own).eigenvalues().map_err(|_| LinearError::Eigen { size })?);
         }
         poles.sort_by(|a, b| a.norm().total_cmp(&b.norm()).then(a.im.total_cmp(&b.im)));
         Ok(poles)

@@ -125,6 +125,18 @@ fn poles_are_those_of_the_oscillators() {
     }
 }
 
+/// Closed form: the slow root of two coordinates that are coupled, λ² + tr K λ + det K = 0 with λ = −ω², beside a fast one.
+#[test]
+fn slow_poles_have_little_of_the_rounding_of_fast_ones() {
+    let [slow, between, fast] = [2.0, 1e3, 1e12];
+    let mut model = oscillators(&[[1.0, 0.0]; 2], &[&[1.0], &[1.0]], &[(Rate::Place, &[1.0, 1.0])]);
+    model.stiffness = Mat::from_fn(2, 2, |i, j| if i != j { between } else { [slow, fast][i] });
+    let (sum, product) = (slow + fast, slow * fast - between * between);
+    let expected = (2.0 * product / (sum + (sum * sum - 4.0 * product).sqrt())).sqrt();
+    let poles = model.state_space().unwrap().poles().unwrap();
+    assert!(poles[..2].iter().all(|pole| (pole.im.abs() / expected - 1.0).abs() < 1e-9), "{poles:?} {expected}");
+}
+
 /// Closed form: the variance of an oscillator under white noise of one-sided density S is π² S f₀ ... in rad, S/(8 ζ ω³).
 #[test]
 fn white_noise_gives_the_variance_of_its_closed_form() {
