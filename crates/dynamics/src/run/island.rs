@@ -40,9 +40,9 @@ pub struct RunEnergies {
 /// The motion of an island. Numbers of bodies, joints and elements are those of the island.
 #[derive(Debug, Clone)]
 pub enum IslandMotion {
-    /// Of one body, which nothing ties.
+    /// One body, which nothing ties.
     Body(Box<Simulation>),
-    /// Of bodies that joints, springs or bushings tie together or to the ground.
+    /// Bodies that joints, springs or bushings tie together or to the ground.
     System(Box<SystemSimulation>),
 }
 

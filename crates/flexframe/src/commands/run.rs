@@ -55,7 +55,7 @@ use crate::trust;
 use body::FollowedBody;
 use estimate::LARGE;
 use metadata::metadata_of_file;
-use recorder::Recorder;
+use recorder::{Recorder, checkpoint};
 
 /// Runs the bodies of a scene and writes their results to `<folder>/<name of the scene file>.h5`; until the end they are in an
 /// unfinished file beside it ([`results::unfinished`]). `progress` hears how far it is, at every phase and every few
@@ -312,12 +312,6 @@ fn followed<'a>(bodies: &[RunBody<'a>], initial: &'a [Initial]) -> Result<Vec<Fo
         .enumerate()
         .map(|(number, (of, initial))| FollowedBody::new(*of, number, initial))
         .collect()
-}
-
-/// The number of the files that the run reads ([`identity_of_files`]), and the state of the run: as many words at any time.
-fn checkpoint(identity: u64, run: &Run, part: &Path) -> Result<Vec<u64>, RunError> {
-    let state = run.checkpoint().map_err(|source| RunError::Restore { part: part.to_owned(), source })?;
-    Ok(std::iter::once(identity).chain(state).collect())
 }
 
 fn initial(bodies: &[RunBody<'_>]) -> Vec<Initial> {

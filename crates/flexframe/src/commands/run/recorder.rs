@@ -1,5 +1,6 @@
 //! From the motion of the bodies to the rows of the results file.
 
+use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -9,7 +10,6 @@ use scene::{Scene, StepControl};
 
 use super::body::FollowedBody;
 use super::body_report::BodyRunReport;
-use super::checkpoint;
 use super::error::RunError;
 use super::estimate::Estimate;
 use super::report::{RunReport, SystemReport};
@@ -36,6 +36,12 @@ pub(super) struct Recorder<'a> {
     estimate: Estimate,
     /// The number of what the run reads.
     identity: u64,
+}
+
+/// The number of the files that the run reads ([`identity_of_files`](crate::files::identity::identity_of_files)), and the state of the run: as many words at any time.
+pub(super) fn checkpoint(identity: u64, run: &Run, part: &Path) -> Result<Vec<u64>, RunError> {
+    let state = run.checkpoint().map_err(|source| RunError::Restore { part: part.to_owned(), source })?;
+    Ok(std::iter::once(identity).chain(state).collect())
 }
 
 impl<'a> Recorder<'a> {
