@@ -324,7 +324,7 @@ fn islands_of_a_run_meet_at_rows_and_stops_and_move_as_each_by_itself() {
         RigidMotion::free(),
     )
     .unwrap();
-    let initial = Initial { omega: Vector3::new(0.1, 3.0, 0.2), ..Initial::default() };
+    let initial = Initial { omega: Vector3::new(0.1, 3.0, 0.2), ..Initial::at_rest(0) };
     let alone =
         Simulation::builder(&reduced, control, 2.0).initial(initial).rows(Rows::Interval(0.25)).build().unwrap();
     let tied = SystemSimulation::new(pendulum(control, None)).unwrap();
