@@ -137,7 +137,7 @@ fn a_light_body_on_a_stiff_pad_rests() {
     let at = |body: usize| Marker::on_rigid(body, Vector3::zeros(), Matrix3::identity());
     let pad = Bushing {
         markers: [at(0), at(1)],
-        stiffness: [1e9, 1e3].map(|k| Vector3::from_element(k)),
+        stiffness: [1e9, 1e3].map(Vector3::from_element),
         damping: [Vector3::zeros(); 2],
     };
     let bodies = vec![body(1.0, 1e-3, GRAVITY), body(1e-4, 1e-10, GRAVITY)];
