@@ -34,7 +34,7 @@ pub struct Run {
     islands: Vec<Island>,
     /// Times of the rows of all islands; a body that nothing ties, alone in the run, has rows where it takes its steps.
     times: Option<RowTimes>,
-    /// Number of the next row; that of the start is 0.
+    /// Number of the next row; the row of the start has number 0.
     next_row: u64,
     /// Time that all islands have been led to, some of them beyond it by less than a step.
     led_to: f64,
@@ -180,7 +180,7 @@ impl Run {
         next < self.end() && self.islands.iter().any(|island| island.motion.time() > next)
     }
 
-    /// Its state, in as many words as that of any other time.
+    /// State of the run, in equally many words at any time.
     ///
     /// # Errors
     /// [`CheckpointError`].

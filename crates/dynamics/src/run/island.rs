@@ -37,7 +37,7 @@ pub struct RunEnergies {
     pub open_together: Option<f64>,
 }
 
-/// The motion of an island. Numbers of bodies, joints and elements are those of the island.
+/// The motion of an island. Bodies, joints and elements are numbered within the island.
 #[derive(Debug, Clone)]
 pub enum IslandMotion {
     /// One body, which nothing ties.
@@ -231,7 +231,7 @@ impl IslandMotion {
         }
     }
 
-    /// Its state, in as many words as that of any other time.
+    /// State of the motion, in equally many words at any time.
     ///
     /// # Errors
     /// [`CheckpointError`].

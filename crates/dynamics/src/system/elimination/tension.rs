@@ -17,7 +17,7 @@ use crate::system::stage::{Stage, vector};
 const SMALL: f64 = 0.1;
 /// |K|/|J| over κ² from which it turns a body back many times in 1/κ.
 const HELD: f64 = 100.0;
-/// Sum of the forces of joints on a body over that of their sizes, up to which its own mass hardly matters.
+/// Sum of the forces of joints on a body over the sum of their sizes, up to which the mass of the body hardly matters.
 const LIGHT: f64 = 1e-2;
 /// Its change over its size and κ²J above which the matrices are made anew.
 const FAR: f64 = 0.5;

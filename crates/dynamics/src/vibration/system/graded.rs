@@ -44,7 +44,6 @@ mod tests {
         let entry = |i: usize, j: usize| (0..3).map(|k| turn[i][k] * squares[k] * turn[j][k]).sum::<f64>();
         let found: Vec<f64> =
             graded_modes(&Mat::from_fn(3, 3, entry)).unwrap().into_iter().map(|(square, _)| square).collect();
-        println!("{found:?}");
         for (found, expected) in found.iter().zip([1e-6, 3e-6, 1e14]) {
             assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
         }
