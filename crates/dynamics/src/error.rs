@@ -53,7 +53,7 @@ pub enum SetupError {
     LongExpression { found: usize, most: usize },
     /// A history that is not a number at some time.
     #[error(
-        "the history of a load is {found} at time {time}; an expression must be finite through the whole run: write it so that it is, or multiply it by what is zero there in a form without a division by zero"
+        "the history is {found} at time {time}; an expression must be finite through the whole run: write it so that it is, or multiply it by what is zero there in a form without a division by zero"
     )]
     HistoryNotFinite { time: f64, found: f64 },
     /// A formula that changes within the shortest steps that are tried, between two discontinuities or the ends of the run.

@@ -61,6 +61,11 @@ impl Run {
         &mut self.islands
     }
 
+    /// Its islands, to be led one by one.
+    pub fn into_islands(self) -> Vec<Island> {
+        self.islands
+    }
+
     /// The island of a body, and the number of the body there.
     pub fn island_of(&self, body: usize) -> Option<(&Island, usize)> {
         self.islands.iter().find_map(|island| Some((island, island.bodies.iter().position(|of| *of == body)?)))

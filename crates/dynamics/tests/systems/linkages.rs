@@ -167,6 +167,27 @@ fn a_spring_that_a_joint_balances_has_no_work() {
     assert!(works.spring.abs() < 1e-20, "{works:?}");
 }
 
+/// Closed form: a light body on a ball, and a spring that is as long as without force, rest. What rounds in the spring shook it, by less than
+/// anybody sees, and steps followed that.
+#[test]
+fn the_rounding_of_a_spring_moves_nothing() {
+    let turn = Vector3::new(0.3, -0.7, 0.4);
+    let arm = Vector3::new(0.437, -0.418, -0.116);
+    let tip = Attitude::identity().advanced_by(&turn).to_global(&arm);
+    let ball = Joint::spherical("ball", [ground(0.0, 0.0), on(0, 0.0, 0.0)]);
+    let markers = [
+        Marker::on_ground(Vector3::new(0.1, 0.2, 1.3), Matrix3::identity()),
+        Marker::on_rigid(0, arm, Matrix3::identity()),
+    ];
+    let free_length = (tip - Vector3::new(0.1, 0.2, 1.3)).norm();
+    let spring = PointSpring { markers, stiffness: 4.4, damping: 0.011, free_length };
+    let bodies = vec![body(0.016, 5e-5, 0.0)];
+    let system = System::new(bodies, vec![ball]).unwrap().with_elements(vec![Arc::new(spring)]).unwrap();
+    let mut simulation = run(system, vec![state(Vector3::zeros(), turn)], 1e-6, 0.2).unwrap();
+    to_end(&mut simulation).unwrap();
+    assert!(simulation.stats().accepted < 40, "{} steps", simulation.stats().accepted);
+}
+
 /// Three cranks on one coupler, the first one driven.
 fn cranks(lengths: [f64; 3]) -> (System, Vec<MotionState>) {
     let mut joints = Vec::new();

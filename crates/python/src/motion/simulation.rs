@@ -372,7 +372,7 @@ impl Simulation {
             return Err(fault);
         }
         let begun = begun.map_err(|error| exception(py, &RunError::from(error)))?;
-        let Some(mut island) = begun.islands().first().cloned() else {
+        let Some(mut island) = begun.into_islands().into_iter().next() else {
             return Err(exception(py, &RunError::NoBody));
         };
         if let IslandMotion::Body(simulation) = &mut island.motion {

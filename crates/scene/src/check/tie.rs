@@ -56,7 +56,8 @@ impl Check<'_> {
         let joint = |(i, section)| self.joint(&format!("joints[{i}]"), i, section, &ends, &mut names);
         let joints = joints.into_iter().enumerate().map(joint).collect::<Result<Vec<_>, _>>()?;
         let spring = |(i, section)| self.spring(&format!("springs[{i}]"), i, section, &ends, &mut names);
-        let springs = springs.into_iter().enumerate().map(spring).collect::<Result<_, _>>()?;
+        let springs = springs.into_iter().enumerate().map(spring).collect::<Result<Vec<_>, _>>()?;
+        springs.iter().enumerate().try_for_each(|(i, spring)| self.can_be_long(i, spring, &joints, &ends))?;
         let bushing = |(i, section)| self.bushing(&format!("bushings[{i}]"), i, section, &ends, &mut names);
         let bushings = bushings.into_iter().enumerate().map(bushing).collect::<Result<_, _>>()?;
         let coupling = |(i, section)| self.coupling(&format!("couplings[{i}]"), i, section, &joints, &mut names);
@@ -204,6 +205,21 @@ impl Check<'_> {
             self.require(length >= 0.0, &join(key, "free_length"), "a number of 0 or more", help)?;
         }
         Ok(Spring { name, between, stiffness, damping, free_length })
+    }
+
+    /// Refuses a spring between places that a joint holds together: a line without length has no direction.
+    fn can_be_long(&self, number: usize, spring: &Spring, joints: &[Joint], ends: &Ends<'_>) -> Result<(), SceneError> {
+        let [first, second] = spring.between;
+        let holds = |joint: &&Joint| {
+            let [i, j] = joint.between;
+            let joins = |i, j| ends.are_one_place(i, first) && ends.are_one_place(j, second);
+            joint.kind.locked().displacements == [true; 3] && (joins(i, j) || joins(j, i))
+        };
+        let Some(Joint { name, .. }) = joints.iter().find(holds) else { return Ok(()) };
+        let found = format!("a spring between two places that joint {name:?} holds together");
+        let help = "name markers that are apart; a spring about the axis of a joint is its `spring`, and one about three axes a bushing";
+        let place = self.document.place(&format!("springs[{number}].between"));
+        Err(place.refuse(found, "two places that have a line between them", help))
     }
 
     fn bushing(
@@ -403,6 +419,23 @@ impl Ends<'_> {
         };
         let marker = number_of(marker, of_body(), &format!("marker {marker:?} of {table}"), &table)?;
         Ok(End::Body { body: number, marker })
+    }
+
+    /// True if two ends are one place, though it may have two names.
+    fn are_one_place(&self, one: End, other: End) -> bool {
+        let of = |body: usize, marker: usize| {
+            let marker = &self.bodies[body].markers[marker];
+            (&marker.place, marker.tie)
+        };
+        match (one, other) {
+            (End::Body { body, marker }, End::Body { body: same, marker: second }) => {
+                body == same && of(body, marker) == of(body, second)
+            }
+            (End::Ground { marker: Some(one) }, End::Ground { marker: Some(other) }) => {
+                self.ground[one].at == self.ground[other].at
+            }
+            _ => false,
+        }
     }
 
     /// True if the marker at an end has axes of its own.

@@ -24,7 +24,7 @@ const FORGOTTEN: f64 = 3.0;
 const OF_EMBEDDED: [f64; 2] = [1.5, 1.5];
 
 /// A motion in a run over the size of the largest body, below which the run is rest: its velocities are the rounding of forces that balance.
-const STILL: f64 = 1e-15;
+const STILL: f64 = 1e-12;
 
 /// The two estimates e4 and e6 of an oscillation of amplitude a have e6/e4 = ρ and e4 = 5 ρ² a, up to this ρ.
 const OF_AMPLITUDE: f64 = 5.0;

@@ -89,13 +89,9 @@ impl Trajectory {
             time: started.elapsed(),
         };
         for Island { bodies, .. } in run.islands() {
-            // Tied bodies pass momentum and energy to each other.
-            let scales = bodies.iter().map(|body| monitors[*body].scales());
-            let scales = scales.reduce(|most, scales| most.or_larger(&scales));
+            Monitor::widen_together(&mut monitors, bodies, |monitor| monitor);
             for body in bodies {
-                let monitor = &mut monitors[*body];
-                scales.iter().for_each(|scales| monitor.widen(scales));
-                let balances = monitor.balances();
+                let balances = monitors[*body].balances();
                 all.energy = all.energy.max(balances.energy);
                 all.angular_momentum = all.angular_momentum.max(balances.angular_momentum);
             }

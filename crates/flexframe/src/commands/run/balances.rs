@@ -94,13 +94,21 @@ impl Monitor {
     }
 
     /// The largest values so far.
-    pub(crate) fn scales(&self) -> Largest {
+    pub(super) fn scales(&self) -> Largest {
         self.scales
     }
 
-    /// Takes larger values as those that changes are relative to: of bodies that pass momentum and energy to each other, those of
-    /// all of them.
-    pub(crate) fn widen(&mut self, scales: &Largest) {
+    /// Lets the changes of tied bodies, which pass momentum and energy to each other, be relative to the largest values of all of them:
+    /// `of` gives the monitor of a body by its number.
+    pub(crate) fn widen_together<M>(monitors: &mut [M], bodies: &[usize], of: impl Fn(&mut M) -> &mut Self) {
+        let scales = bodies.iter().map(|body| of(&mut monitors[*body]).scales);
+        if let Some(scales) = scales.reduce(|most, scales| most.or_larger(&scales)) {
+            bodies.iter().for_each(|body| of(&mut monitors[*body]).widen(&scales));
+        }
+    }
+
+    /// Takes larger values as those that changes are relative to.
+    fn widen(&mut self, scales: &Largest) {
         self.scales = self.scales.or_larger(scales);
     }
 

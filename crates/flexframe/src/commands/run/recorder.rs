@@ -8,6 +8,7 @@ use dynamics::{Island, IslandError, Reached, Run};
 use results::{BodyResults, Results, Writer};
 use scene::{Scene, StepControl};
 
+use super::balances::Monitor;
 use super::body::FollowedBody;
 use super::body_report::BodyRunReport;
 use super::error::RunError;
@@ -261,12 +262,8 @@ struct Finished<'a> {
 
 /// Reports of all bodies at the end of a run, in the order of the scene.
 fn reports<'a>(run: &Run, mut bodies: Vec<FollowedBody<'a>>, last: &Row) -> Vec<Finished<'a>> {
-    // Tied bodies pass momentum and energy to each other.
-    for Island { bodies: numbers, .. } in run.islands() {
-        let scales = numbers.iter().map(|body| bodies[*body].monitor_mut().scales());
-        if let Some(scales) = scales.reduce(|most, scales| most.or_larger(&scales)) {
-            numbers.iter().for_each(|body| bodies[*body].monitor_mut().widen(&scales));
-        }
+    for island in run.islands() {
+        Monitor::widen_together(&mut bodies, &island.bodies, FollowedBody::monitor_mut);
     }
     let count = bodies.len();
     let report = |body: FollowedBody<'a>| {
