@@ -23,7 +23,9 @@ pub struct Beside {
 pub struct DeckMass {
     /// Kind of element that it is, such as CONM2.
     pub kind: String,
-    /// Position.
+    /// Position of its node.
+    pub node: [f64; 3],
+    /// Its own position.
     pub at: [f64; 3],
     /// Mass.
     pub mass: f64,

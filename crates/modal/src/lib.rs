@@ -40,6 +40,7 @@ pub use matrix::mass::NodalMass;
 pub use matrix::mass_matrix::{GeneralMass, MassMatrix};
 pub use matrix::stiffness::{NodalStiffness, StiffnessMatrix};
 pub use matrix::tall::side_by_side;
+pub use matrix::tied_mass::{TiedPoint, mass_with_points};
 pub use memory_estimate::{Forecast, reserve_of_dense_products};
 pub use multigrid::NoCycles;
 pub use progress::{EnginePhase, Progress};

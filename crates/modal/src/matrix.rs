@@ -13,3 +13,4 @@ pub(crate) mod row_chunks;
 pub(crate) mod stiffness;
 pub(crate) mod symmetry;
 pub(crate) mod tall;
+pub(crate) mod tied_mass;

@@ -15,7 +15,6 @@ use crate::error::ModalError;
 use crate::factor::shifted::{Ordered, Shifted};
 use crate::input::{check_edge_ends, check_finite_positions, check_matrix, check_rows};
 use crate::matrix::columns::Columns;
-use crate::matrix::mass::NodalMass;
 use crate::matrix::mass_matrix::{MassMatrix, dofs};
 use crate::matrix::stiffness::{NodalStiffness, StiffnessMatrix};
 use crate::matrix::symmetry::check_symmetric;
@@ -188,18 +187,19 @@ impl<'a> Solver<'a> {
         Self::of_checked(started, stiffness, mass, of_given, positions, support)
     }
 
-    /// The same of matrices over pairs of nodes, which take a fraction of the memory: `K` of 3×3 blocks, `M = M_s ⊗ I₃`.
+    /// The same of matrices over pairs of nodes, which take a fraction of the memory: `K` of 3×3 blocks, `M = M_s ⊗ I₃`, or this with points
+    /// that move with nodes.
     ///
     /// # Errors
     /// See [`ModalError`].
     pub fn of_nodes(
         stiffness: NodalStiffness<'a>,
-        mass: NodalMass<'a>,
+        mass: impl Into<MassMatrix<'a>>,
         positions: &'a [[f64; 3]],
         support: &Support,
     ) -> Result<Self, ModalError> {
         let started = Instant::now();
-        let (stiffness, mass) = (StiffnessMatrix::Nodal(stiffness), MassMatrix::Nodal(mass));
+        let (stiffness, mass) = (StiffnessMatrix::Nodal(stiffness), mass.into());
         check_rows("stiffness", stiffness.ncols(), 3 * positions.len())?;
         check_rows("mass", mass.ncols(), 3 * positions.len())?;
         check_finite_positions(positions)?;
@@ -215,8 +215,10 @@ impl<'a> Solver<'a> {
         positions: &'a [[f64; 3]],
         support: &Support,
     ) -> Result<Self, ModalError> {
-        // A scalar mass is refused by the Gram matrices of the search.
-        if let MassMatrix::General(mass) = &mass {
+        // A scalar mass is refused by the Gram matrices of the search, and points add to it.
+        if let MassMatrix::General(mass) = &mass
+            && mass.tied.is_none()
+        {
             mass.check_semidefinite()?;
         }
         let constraints = Constraints::new(support, positions, mass.dofs())?;

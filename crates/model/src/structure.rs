@@ -284,8 +284,8 @@ impl Structure<'_> {
     pub fn modes(&self, flexible: usize, progress: &mut dyn FnMut(BuildProgress)) -> Result<Found, BuildError> {
         let AssembledMesh { support, mesh, body, .. } = self.assembled;
         let weights = match body {
-            MadeOf::Elements(_) => [mesh.positions().len(), 1],
-            MadeOf::Files(_) => [self.rows(), 3],
+            MadeOf::Elements(body) if body.tied_masses.is_empty() => [mesh.positions().len(), 1],
+            MadeOf::Elements(_) | MadeOf::Files(_) => [self.rows(), 3],
         };
         let asked = self.of_held_body("modes").with("flexible", &flexible);
         self.ask(asked, (self.rows(), flexible, support.motion, weights), || {
@@ -299,11 +299,11 @@ impl Structure<'_> {
                 other => self.refuse(other),
             })?;
             let weights = match body {
-                MadeOf::Elements(_) => {
+                MadeOf::Elements(body) if body.tied_masses.is_empty() => {
                     let masses = solver.mass().row_sums();
                     MatRef::from_column_major_slice(&masses, masses.len(), 1).to_owned()
                 }
-                MadeOf::Files(_) => acceleration_fields(solver.mass()),
+                MadeOf::Elements(_) | MadeOf::Files(_) => acceleration_fields(solver.mass()),
             };
             let (body, matrix_bytes) = (self.reduced(&modes)?, self.matrices()?.bytes());
             Ok(Found { modes, body, weights, available: solver.available(), matrix_bytes })

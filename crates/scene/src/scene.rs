@@ -12,7 +12,7 @@ use dynamics::{Effect, Method, Rows, StepControl, SystemScheme};
 use fem_tet10::{Materials, PointMass};
 use matrix_import::MatrixFiles;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::body::constraint::Constraint;
 use crate::body::effects::{Choice, Effects};
@@ -92,6 +92,14 @@ impl Body {
     pub fn has_elements(&self) -> bool {
         matches!(self, Self::Meshed(_) | Self::File(_))
     }
+
+    /// True if its elements are all there is of it: then its motion may bend far.
+    pub fn bends_far(&self) -> bool {
+        match self {
+            Self::Meshed(body) => body.tied_masses.is_empty(),
+            _ => self.has_elements(),
+        }
+    }
 }
 
 /// A body of finite elements.
@@ -107,6 +115,21 @@ pub struct MeshedBody {
     pub materials: Materials,
     /// Masses added at points; default none.
     pub point_masses: Vec<PointMass>,
+    /// Masses beside the body that move with some of its nodes; default none.
+    pub tied_masses: Vec<TiedMass>,
+}
+
+/// A mass at a point on the body or beside it, which moves with the rigid motion that fits the displacements of some nodes best, Eq. (M19) of
+/// `docs/method/modes.md`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TiedMass {
+    /// The point, in the frame of the mesh.
+    pub at: [f64; 3],
+    /// The mass.
+    pub mass: f64,
+    /// The nodes: a group of the mesh with three or more that are not on a line, at most 500.
+    pub group: String,
 }
 
 /// A body from a body file. The file says what it was made of, and what the scene says besides must be the same.

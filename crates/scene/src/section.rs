@@ -15,7 +15,7 @@ use crate::body::modes::Rayleigh;
 use crate::loads::history::DrivenSpeed;
 use crate::loads::load::Load;
 use crate::methods::{formulation_names, scheme_names};
-use crate::scene::{Frame, Initial, Units};
+use crate::scene::{Frame, Initial, TiedMass, Units};
 use crate::tie::section::{InOrder, MarkerSection};
 
 /// The whole file.
@@ -71,6 +71,9 @@ pub(crate) struct BodySection {
     /// Masses at points of the body.
     #[serde(default)]
     pub point_masses: Vec<PointMass>,
+    /// Masses on the body or beside it that move with some of its nodes.
+    #[serde(default)]
+    pub tied_masses: Vec<TiedMass>,
     /// Mass properties of a rigid body without a mesh.
     pub rigid: Option<RigidSection>,
     /// Places with axes, by name: the ends of joints, springs and bushings.

@@ -24,6 +24,9 @@ GRAVITY_IN_INCHES = 386.09
 # A mass on the rigid hole of the lug, on the same nodes by their mean.
 HUB = np.array([50.0, 10.0, 4.0])
 HUB_MASS = 2e-5
+# A mass off the flat face at the root, on its nodes.
+OFF = np.array([-12.0, 14.0, 9.0])
+OFF_MASS = 3e-5
 
 # The line under the head of the table.
 RULE = "|---|---|---|---|---|---|---|\n"
@@ -163,6 +166,12 @@ def of_nastran(body, ring, at):
     hub = free("GRID", [count + 1, "", *map(real, HUB)]) + free("CONM2", [9001, count + 1, "", HUB_MASS])
     rigid = hub + free("RBE2", [9002, count + 1, 123456, *hole])
     mean = hub + free("RBE3", [9003, "", count + 1, 123456, "1.", 123, *hole])
+    # The mass has an offset from its node, which is off the face, too.
+    node, offset = OFF - [3.0, 0.0, 1.0], ["3.", "", "1."]
+    root = [node + 1 for node in at["root"]]
+    off = free("GRID", [count + 1, "", *map(real, node)]) + free("CONM2", [9001, count + 1, "", OFF_MASS, *offset])
+    rigid_off = off + free("RBE2", [9002, count + 1, 123456, *root])
+    mean_off = off + free("RBE3", [9003, "", count + 1, 123456, "1.", 123, *root])
     beside = "".join(free(*card) for card in [("CBAR", [9004, 7, 1, 2, "0.", "0.", "1."]), ("PBAR", [7, 5, "2."]), ("CMASS2", [9005, "1.-6", 3, 1])])
     skin = free("CTRIA3", [9006, 8, 1, 2, 3]) + free("PSHELL", [8, 5, ".5", "", "", "", "", "1.-9"])
     return {
@@ -177,6 +186,8 @@ def of_nastran(body, ring, at):
         "nastran_replicated.bdf": cord + repeated + rest + material_cards(free, STEEL),
         "nastran_rbe2.bdf": nastran(body, free, real) + rigid + beside + skin,
         "nastran_rbe3.bdf": nastran(body, free, real) + mean,
+        "nastran_rbe2_off.bdf": nastran(body, free, real) + rigid_off,
+        "nastran_rbe3_off.bdf": nastran(body, free, real) + mean_off,
     }
 
 
@@ -216,13 +227,20 @@ def of_abaqus(body, at):
         f"**\n*NODE,NSET=Nall\n{bare}*ELEMENT,TYPE=C3D10,ELSET=Eall\n{halves}*NSET,NSET=FIX\n{listed(root)}"
         f"{MATERIAL.upper()}*SOLIDSECTION,ELSET=Eall,MATERIAL=STEEL\n*STEP\n*FREQUENCY\n10\n*END STEP\n"
     )
+    x, y, z = OFF
+    off = (
+        f"*NODE, NSET=Nall\n{nodes}{count + 1}, {x}, {y}, {z}\n*ELEMENT, TYPE=C3D10, ELSET=Eall\n{elements}"
+        f"*NSET, NSET=root\n{listed(root)}*SURFACE, NAME=face, TYPE=NODE\nroot,\n"
+        f"*COUPLING, REF NODE={count + 1}, SURFACE=face, CONSTRAINT NAME=c\n*KINEMATIC\n1, 6\n*ELEMENT, TYPE=MASS, ELSET=hub\n90001, {count + 1}\n"
+        f"*MASS, ELSET=hub\n{OFF_MASS}\n{MATERIAL}*SOLID SECTION, ELSET=Eall, MATERIAL=Steel\n"
+    )
     x, y, z = HUB
     rigid = (
         f"*NODE, NSET=Nall\n{nodes}{count + 1}, {x}, {y}, {z}\n*ELEMENT, TYPE=C3D10, ELSET=Eall\n{elements}"
         f"*NSET, NSET=hole\n{listed(tip)}*RIGID BODY, NSET=hole, REF NODE={count + 1}\n*ELEMENT, TYPE=MASS, ELSET=hub\n90001, {count + 1}\n"
         f"*MASS, ELSET=hub\n{HUB_MASS}\n{MATERIAL}*SOLID SECTION, ELSET=Eall, MATERIAL=Steel\n"
     )
-    return {"abaqus_cae.inp": cae, "calculix.inp": calculix, "calculix_rigid.inp": rigid}
+    return {"abaqus_cae.inp": cae, "calculix.inp": calculix, "calculix_rigid.inp": rigid, "abaqus_coupling_off.inp": off}
 
 
 # Universal, MED, Exodus, VTK
@@ -292,18 +310,18 @@ def of_meshio(body, at):
     repack.replace(folder / "salome.med")
 
 
-def by_calculix(body, material, hole=None):
+def by_calculix(body, material, tied=None):
     """The first frequencies of the free body."""
     young, poisson, density = material
     count = len(body.points)
     nodes = lines([node, *(f"{value:.12e}" for value in x)] for node, x in enumerate(body.points, 1))
     elements = lines([number, *(row + 1)] for number, row in enumerate(body.tetrahedra, 1)).replace(",", ", ")
     text = f"*NODE,NSET=N\n{nodes}*ELEMENT,TYPE=C3D10,ELSET=E\n{elements}"
-    if hole:
-        x, y, z = HUB
+    if tied:
+        hole, (x, y, z), mass = tied
         text += f"*NODE\n{count + 1},{x},{y},{z}\n{count + 2},{x},{y},{z}\n*NSET,NSET=H\n{listed([node + 1 for node in hole])}"
         text += f"*RIGID BODY,NSET=H,REF NODE={count + 1},ROT NODE={count + 2}\n"
-        text += f"*ELEMENT,TYPE=MASS,ELSET=M\n{len(body.tetrahedra) + 1},{count + 1}\n*MASS,ELSET=M\n{HUB_MASS}\n"
+        text += f"*ELEMENT,TYPE=MASS,ELSET=M\n{len(body.tetrahedra) + 1},{count + 1}\n*MASS,ELSET=M\n{mass}\n"
     text += f"*MATERIAL,NAME=M\n*ELASTIC\n{young},{poisson}\n*DENSITY\n{density}\n*SOLID SECTION,ELSET=E,MATERIAL=M\n"
     return frequencies_of(text + "*STEP\n*FREQUENCY\n12\n*END STEP\n")
 
@@ -334,7 +352,10 @@ def main():
     plain = (frequencies(body.points, body.tetrahedra, STEEL), by_calculix(body, STEEL))
     in_ring = (frequencies(ring[0].points, ring[0].tetrahedra, STEEL), by_calculix(ring[0], STEEL))
     in_inches = (frequencies(inches.points, inches.tetrahedra, ALUMINIUM_IN_INCHES), by_calculix(inches, ALUMINIUM_IN_INCHES))
-    rigid = (frequencies(body.points, body.tetrahedra, STEEL, rigid=hub), by_calculix(body, STEEL, at["hole"]))
+    rigid = (frequencies(body.points, body.tetrahedra, STEEL, rigid=hub), by_calculix(body, STEEL, hub))
+    off = (at["root"], OFF, OFF_MASS)
+    rigid_off = (frequencies(body.points, body.tetrahedra, STEEL, rigid=off), by_calculix(body, STEEL, off))
+    mean_off = (frequencies(body.points, body.tetrahedra, STEEL, carried=off), None)
     mean = (frequencies(body.points, body.tetrahedra, STEEL, carried=hub), None)
     numbers = {
         "lug.msh": (plain, "gmsh, MSH 4.1"),
@@ -353,6 +374,9 @@ def main():
         "nastran_replicated.bdf": (in_ring, "Nastran: the same by replication and `GRDSET`"),
         "nastran_rbe2.bdf": (rigid, "Nastran: `CONM2` on an `RBE2`, with bars, shells and a scalar mass beside it"),
         "nastran_rbe3.bdf": (mean, "Nastran: `CONM2` on an `RBE3`"),
+        "nastran_rbe2_off.bdf": (rigid_off, "Nastran: `CONM2` with an offset, on the `RBE2` of a flat face with its point off it"),
+        "nastran_rbe3_off.bdf": (mean_off, "Nastran: the same on an `RBE3`"),
+        "abaqus_coupling_off.inp": (rigid_off, "Abaqus: the same by a kinematic `*COUPLING`"),
         "lug.exo": (plain, "Exodus: names of blocks and node sets"),
         "lug.vtu": (plain, "VTU"),
         "lug.xdmf": (plain, "XDMF with its data in HDF5 beside it"),

@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use fem_tet10::{AssemblyError, Material, Materials, Mesh, PointMass, centroid_lumped_inertia};
+use fem_tet10::{AssemblyError, Material, Materials, Mesh, centroid_lumped_inertia};
 pub use mesh_import::ImportSettings;
 use mesh_import::{Beside, DeckMass, DeckTie, ImportError, Imported, MeshFile};
+use modal::TiedPoint;
 use nalgebra::Vector3;
 use whole_file::write_whole;
 
@@ -231,6 +232,7 @@ fn text(read: &mut Imported, settings: &ImportSettings, mesh_path: &Path) -> Res
         }
     };
 
+    let (masses, carriers) = masses(mesh, &read.beside, &mut read.notes);
     let mut text = String::new();
     // Writing to a string does not fail.
     let _ = write!(
@@ -257,7 +259,6 @@ mesh = {mesh_path}
         dz = short(size[2]),
         mass = short(mass),
         import = import_keys(settings),
-        masses = point_masses(mesh, &read.beside, &mut read.notes),
         mesh_path = quoted(&mesh_path.to_string_lossy()),
     );
     if !groups.is_empty() && matches!(materials, Materials::Uniform(_)) {
@@ -317,7 +318,7 @@ tolerance = 1e-4
 [output.points]
 end = {end:?}
 "#,
-        markers = markers(mesh, &read.beside, &mut read.notes),
+        markers = markers(mesh, &read.beside, &carriers, &mut read.notes),
         amplitude = short(0.5 * mass * gravity),
         spin = across.map(|axis| 6.3 * axis),
     );
@@ -383,72 +384,47 @@ fn elastic_materials(mesh: &Mesh, beside: &Beside, steel: &Material) -> Option<G
 const ALUMINIUM: [f64; 2] = [0.3, 0.37];
 const LIGHTER: f64 = 2700.0 / 7850.0;
 
-/// The masses of a mesh file as lines of `[body]`. A note tells of those that nothing of the body carries.
-fn point_masses(mesh: &Mesh, beside: &Beside, notes: &mut Vec<String>) -> String {
-    let (mut lines, mut count) = (String::new(), 0);
-    let (mut is_left, mut others) = (Vec::new(), Vec::new());
-    for DeckMass { at, mass, .. } in &beside.masses {
-        let is_on_body = mesh.locate(*at).is_ok();
-        let tie = beside.ties.iter().find(|tie| tie.at == Some(*at));
-        let spread = tie.filter(|_| !is_on_body).and_then(|tie| spread_of(mesh, tie, *at));
-        if *mass <= 0.0 || !(is_on_body || spread.is_some()) || count == MAX_MASSES {
+/// The masses of a mesh file as lines of `[body]`: those of a tie move with its nodes, others sit on the body. A note tells of those that
+/// nothing carries. Returns the groups of these ties, too.
+fn masses(mesh: &Mesh, beside: &Beside, notes: &mut Vec<String>) -> (String, HashSet<String>) {
+    let (mut on_body, mut tied, mut count) = (String::new(), String::new(), 0);
+    let (mut is_left, mut carriers) = (Vec::new(), HashSet::new());
+    for DeckMass { node, at, mass, .. } in &beside.masses {
+        let carries = |tie: &&DeckTie| {
+            let nodes = mesh.group_nodes(&tie.group).unwrap_or_default();
+            (1..=MAX_CARRIERS).contains(&nodes.len()) && TiedPoint::new(*mass, *at, nodes, mesh.positions()).is_some()
+        };
+        let mut ties = beside.ties.iter().filter(|tie| tie.at == Some(*node));
+        let carrier = ties.find(carries);
+        if *mass <= 0.0 || count == MAX_MASSES || carrier.is_none() && mesh.locate(*at).is_err() {
             is_left.push((*at, *mass));
             continue;
         }
         count += 1;
-        if let (Some(radius), Some(tie)) = (spread, tie)
-            && carriers(mesh, *at, radius) != HashSet::from_iter(mesh.group_nodes(&tie.group).unwrap_or_default())
-        {
-            others.push(format!("{mass:?} at {at:?}, of {}", tie.group));
-        }
-        let spread = spread.map_or_else(String::new, |radius| format!(", spread = {radius:?}"));
         // Writing to a string does not fail.
-        let _ = writeln!(lines, "    {{ at = {at:?}, mass = {mass:?}{spread} }},");
-    }
-    if let Some(first) = others.first() {
-        notes.push(format!(
-            "{} of the masses are carried by other nodes than those of their ties, and the frequencies are not those of the file: {first}{} (exact: a \
-             rigid body in a fixed joint at the marker, docs/reference/systems.md)",
-            others.len(),
-            if others.len() > 1 { ", …" } else { "" },
-        ));
+        let _ = match carrier {
+            Some(tie) => {
+                carriers.insert(tie.group.clone());
+                writeln!(tied, "    {{ at = {at:?}, mass = {mass:?}, group = {} }},", quoted(&tie.group))
+            }
+            None => writeln!(on_body, "    {{ at = {at:?}, mass = {mass:?} }},"),
+        };
     }
     notes.extend(beside.unused_masses(|mass| !is_left.contains(&(mass.at, mass.mass))));
-    if lines.is_empty() {
-        return lines;
-    }
-    format!(
-        "# The masses of the mesh file. Where one is beside the body, the nodes within `spread` carry it.\npoint_masses = [\n{lines}]\n"
-    )
-}
-
-/// Point masses of a scene.
-const MAX_MASSES: usize = 1000;
-
-/// Nodes within a radius.
-fn carriers(mesh: &Mesh, at: [f64; 3], radius: f64) -> HashSet<u32> {
-    let nodes = (0..).zip(mesh.positions());
-    nodes.filter(|(_, x)| distance(x, at) <= radius).map(|(node, _)| node).collect()
-}
-
-fn distance(x: &[f64; 3], at: [f64; 3]) -> f64 {
-    (Vector3::from(*x) - Vector3::from(at)).norm()
-}
-
-/// A radius whose nodes can carry the mass at the point of a tie: up to the farthest node of the tie, or farther into the body.
-fn spread_of(mesh: &Mesh, tie: &DeckTie, at: [f64; 3]) -> Option<f64> {
-    let distance = |node: &u32| distance(&mesh.positions()[*node as usize], at);
-    let farthest = mesh.group_nodes(&tie.group).ok()?.iter().map(distance).fold(0.0, f64::max);
-    let carries = |radius: &f64| {
-        let mass = PointMass { at, mass: 1.0, spread: Some(*radius) };
-        centroid_lumped_inertia(mesh, &Materials::Uniform(METRES.steel), &[mass]).is_ok()
+    let lists = [("point_masses", on_body, ""), ("tied_masses", tied, ", on the ties that carry them")];
+    let list = |(key, lines, where_): &(&str, String, &str)| {
+        format!("# Masses of the mesh file{where_}.\n{key} = [\n{lines}]\n")
     };
-    [1.001, 1.25, 1.5, 2.0, 3.0].map(|factor| rounded(farthest * factor, 4)).into_iter().find(carries)
+    (lists.iter().filter(|(_, lines, _)| !lines.is_empty()).map(list).collect(), carriers)
 }
+
+/// Masses of a scene, and nodes that carry one.
+const MAX_MASSES: usize = 1000;
+const MAX_CARRIERS: usize = 500;
 
 /// The ties of a mesh file as markers. Rigid ones are active, since the body is stiffer with them; means change nothing until a joint or a
-/// spring holds them, and are comments. A note tells of rigid ones that a marker cannot be.
-fn markers(mesh: &Mesh, beside: &Beside, notes: &mut Vec<String>) -> String {
+/// spring holds them, and are comments. A note tells of rigid ones that a marker cannot be, and of means that carry no mass.
+fn markers(mesh: &Mesh, beside: &Beside, carriers: &HashSet<String>, notes: &mut Vec<String>) -> String {
     let mut text = String::new();
     let (mut taken, mut active) = (HashSet::new(), HashSet::new());
     for DeckTie { kind, group, is_rigid, .. } in &beside.ties {
@@ -473,7 +449,9 @@ fn markers(mesh: &Mesh, beside: &Beside, notes: &mut Vec<String>) -> String {
              {mark}[body.markers.{name}]\n{mark}group = {group}\n{mark}tie = \"{tie}\"\n"
         );
     }
-    notes.extend(beside.unused_ties(|tie| active.contains(&tie.group)));
+    notes.extend(
+        beside.unused_ties(|tie| active.contains(&tie.group) || !tie.is_rigid && carriers.contains(&tie.group)),
+    );
     text
 }
 

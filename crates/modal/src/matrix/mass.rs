@@ -142,6 +142,15 @@ impl<'a> NodalMass<'a> {
             .map(|(row, column, value)| Triplet::new(row, column, value))
     }
 
+    /// The same with nodes of these masses after the others, that nothing couples.
+    pub(crate) fn with_nodes(&self, masses: &[f64]) -> NodalMass<'static> {
+        let (first, entries) = (self.node_count() as u32, self.nodes.len());
+        let start = self.start.iter().copied().chain(entries + 1..=entries + masses.len()).collect::<Vec<_>>();
+        let nodes = self.nodes.iter().copied().chain(first..first + masses.len() as u32).collect::<Vec<_>>();
+        let values = self.values.iter().chain(masses).copied().collect::<Vec<_>>();
+        NodalMass { start: start.into(), nodes: nodes.into(), values: values.into() }
+    }
+
     /// True if a node has a mass at all.
     pub(crate) fn is_massive(&self, node: usize) -> bool {
         self.values[self.start[node]..self.start[node + 1]].iter().any(|value| *value != 0.0)

@@ -10,6 +10,7 @@ use crate::matrix::mass::NodalMass;
 use crate::matrix::pattern::Pattern;
 use crate::matrix::products::{Packed, symmetric_product_into};
 use crate::matrix::symmetry::check_symmetric;
+use crate::matrix::tied_mass::{TiedMass, TiedPoint};
 
 /// An eigenvalue of M, scaled to a unit diagonal, that is below zero by less than this is rounding.
 const SEMIDEFINITE: f64 = 1e-10;
@@ -24,11 +25,19 @@ pub enum MassMatrix<'a> {
 }
 
 /// A symmetric mass matrix that need not act alike on the three axes.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct GeneralMass<'a> {
     pub(crate) matrix: SparseColMatRef<'a, usize, f64>,
     /// Degrees of freedom of a node: 3 or 6.
     pub(crate) dofs: usize,
+    /// Its parts, where it is a scalar for each pair of nodes but for masses that move with nodes: it turns as the body does.
+    pub(crate) tied: Option<TiedMass<'a>>,
+}
+
+impl<'a> From<NodalMass<'a>> for MassMatrix<'a> {
+    fn from(mass: NodalMass<'a>) -> Self {
+        Self::Nodal(mass)
+    }
 }
 
 impl<'a> MassMatrix<'a> {
@@ -55,7 +64,17 @@ impl<'a> MassMatrix<'a> {
         }
         let (rows, values) = (mass.symbolic().row_idx(), mass.val());
         check_symmetric("mass", 1, mass.symbolic().col_ptr(), |entry| rows[entry], |entry| values[entry])?;
-        Ok(Self::General(GeneralMass { matrix: mass, dofs }))
+        Ok(Self::General(GeneralMass { matrix: mass, dofs, tied: None }))
+    }
+
+    /// A mass over pairs of nodes with points that move with nodes; `mass` is the matrix of both, by
+    /// [`mass_with_points`](crate::mass_with_points).
+    pub fn with_points(
+        mass: SparseColMatRef<'a, usize, f64>,
+        nodal: NodalMass<'a>,
+        points: &'a [TiedPoint],
+    ) -> MassMatrix<'a> {
+        Self::General(GeneralMass { matrix: mass, dofs: 3, tied: Some(TiedMass::new(nodal, points)) })
     }
 
     /// Number of nodes n.

@@ -7,7 +7,7 @@ use reduced_body::{BodyPoint, Constants, ReducedBody};
 
 use crate::error::ModalError;
 use crate::input::check_finite_entries;
-use crate::matrix::mass_matrix::MassMatrix;
+use crate::matrix::mass_matrix::{GeneralMass, MassMatrix};
 use crate::reduction::general::general_products;
 use crate::reduction::inertia_products::Products;
 use crate::reduction::nodal::nodal_products;
@@ -21,7 +21,8 @@ impl Modes {
     ///
     /// The part of M that a large rotation uses, where M is constant in body axes:
     ///
-    /// * A scalar mass for each pair of nodes ([`crate::NodalMass`]) commutes with rotations: every constant is exact.
+    /// * A scalar mass for each pair of nodes ([`crate::NodalMass`]) commutes with rotations: every constant is exact. So it is with points that
+    ///   move with nodes ([`crate::TiedPoint`]).
     /// * Any other M, with three or six degrees of freedom a node: J₀, b_i and t_i are exact. The deformed body takes the
     ///   velocities of a node for `ω×(X + u) + u̇` and `ω + ω×θ + θ̇` (body axes): c_ij is exact for a rotary inertia that
     ///   sits on a node, and turns with it. Left out is what M gives because it does not commute with rotations: the
@@ -64,6 +65,13 @@ impl Modes {
             rotation_first,
         } = match mass {
             MassMatrix::Nodal(mass) => nodal_products(self, mass, positions)?,
+            MassMatrix::General(GeneralMass { tied: Some(tied), .. }) => {
+                // The points are nodes of their own: their mass commutes with rotations.
+                let mut modes = self.clone();
+                modes.rigid.shapes = tied.with_points(rigid.shapes.as_ref());
+                modes.shapes = tied.with_points(self.shapes.as_ref());
+                nodal_products(&modes, &tied.extended(), &tied.positions(positions))?
+            }
             MassMatrix::General(mass) => general_products(self, mass, positions)?,
         };
         Ok(ReducedBody::from_constants(Constants {

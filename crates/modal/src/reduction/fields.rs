@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use crate::error::ModalError;
 use crate::input::check_rows;
-use crate::matrix::mass_matrix::MassMatrix;
+use crate::matrix::mass_matrix::{GeneralMass, MassMatrix};
 use crate::reduction::turned::turned;
 use crate::support::rigid_fields::rigid_fields;
 use reduced_body::ReducedBody;
@@ -28,6 +28,9 @@ pub fn centrifugal_fields(
     origin: &Vector3<f64>,
 ) -> Result<Mat<f64>, ModalError> {
     check_rows(POSITIONS, positions.len(), mass.nodes())?;
+    if let MassMatrix::General(GeneralMass { tied: Some(tied), .. }) = mass {
+        return Ok(tied.forces(centrifugal_accelerations(&tied.positions(positions), origin).as_ref()));
+    }
     if let MassMatrix::General(general) = mass {
         let fields = rigid_fields(positions, origin, general.dofs);
         let momenta = mass.product(fields.subcols(3, 3));

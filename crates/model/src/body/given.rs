@@ -52,6 +52,7 @@ pub(crate) fn read_body_file(
         raise_order: *raise_order,
         materials: of_file,
         point_masses: origin.elements.point_masses,
+        tied_masses: origin.elements.tied_masses,
     };
     Ok((file, body))
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use fem_tet10::{Material, Materials, PointMass};
-use scene::MeshedBody;
+use scene::{MeshedBody, TiedMass};
 use sealed::{SealedError, SealedFile};
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +38,8 @@ pub(crate) struct ElementKeys {
     /// By group, where there is no one material.
     materials: BTreeMap<String, Material>,
     pub point_masses: Vec<PointMass>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tied_masses: Vec<TiedMass>,
 }
 
 impl Origin {
@@ -62,7 +64,7 @@ impl ElementKeys {
             Materials::Uniform(material) => (Some(*material), BTreeMap::new()),
             Materials::ByGroup(materials) => (None, materials.clone()),
         };
-        Self { material, materials, point_masses: body.point_masses.clone() }
+        Self { material, materials, point_masses: body.point_masses.clone(), tied_masses: body.tied_masses.clone() }
     }
 
     pub fn materials(&self) -> Materials {

@@ -62,6 +62,12 @@ impl Builder {
         mut progress: impl FnMut(BuildProgress),
     ) -> Result<Model, BuildError> {
         match &scene.body {
+            Body::Meshed(body) if !body.tied_masses.is_empty() => {
+                let help =
+                    "run the scene as it is: the cache keeps what is computed of it, so that later runs are quick";
+                let found = "masses beside the body, which a body file does not have";
+                return Err(scene.refuse("body.tied_masses", found, "`point_masses`, or none", help).into());
+            }
             Body::Meshed(_) | Body::File(_) => {}
             Body::Rigid(_) => {
                 let help = "run the scene as it is: a rigid body is reduced already";

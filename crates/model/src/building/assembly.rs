@@ -15,12 +15,12 @@ use crate::body::given::read_body_file;
 use crate::building::builder::Builder;
 use crate::building::progress::{BuildProgress, BuildTimes, timed};
 use crate::cache::store::Store;
-use crate::error::BuildError;
+use crate::error::{BuildError, modal};
 use crate::mesh::doubt::doubts;
 use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{Given, MatrixChecks};
 use crate::mesh::others::{other_masses, other_materials, other_ties};
-use crate::mesh::read::{matrices, mesh_file, mesh_in};
+use crate::mesh::read::{matrices, mesh_file, mesh_in, tied_points};
 use crate::reduction::reference::Reference;
 use crate::reduction::reference::found::Asked;
 use crate::support::support;
@@ -94,8 +94,8 @@ impl Builder {
         };
         let (store, Imported { mesh, notes: mut mesh_notes, materials, beside }) = timed(&mut times.mesh, read)?;
         mesh_notes.extend(other_materials(&mesh, &materials, &body.materials));
-        mesh_notes.extend(other_masses(&mesh, &beside, &body.point_masses));
-        mesh_notes.extend(other_ties(&beside, &scene.markers));
+        mesh_notes.extend(other_masses(&mesh, &beside, &body));
+        mesh_notes.extend(other_ties(&beside, &scene.markers, &body));
         let mesh = Arc::new(mesh);
         doubts(scene, &body, &mesh).into_iter().for_each(|doubt| progress(BuildProgress::Doubt(doubt)));
         let (support, drive) = support(scene, Some((&mesh, 3)))?;
@@ -188,9 +188,12 @@ impl AssembledMesh {
         }
         let mut time = Duration::ZERO;
         let MadeOf::Elements(body) = &self.body else { return Err(self.without_elements()) };
-        let assembled = timed(&mut time, || matrices(&self.scene, body, &self.mesh))?;
+        let assembled = timed(&mut time, || {
+            let points = tied_points(&self.scene, body, &self.mesh)?;
+            FeMatrices::new(matrices(&self.scene, body, &self.mesh)?, points).map_err(modal(&self.scene))
+        })?;
         self.builder.cache.note(|notes| notes.assembled += 1);
-        Ok(&self.matrices.get_or_init(|| (FeMatrices::Assembled(assembled), time)).0)
+        Ok(&self.matrices.get_or_init(|| (assembled, time)).0)
     }
 
     /// The bent body that the modes are about, found at the first call; none of modes about the undeformed one.
@@ -207,9 +210,11 @@ impl AssembledMesh {
 
     /// The rest of the full body in the spin and under the steady loads of the scene; not asked where none is made of such a body.
     pub fn rest_of_body(&self) -> Result<RestOfBody, BuildError> {
-        match self.body {
-            MadeOf::Elements(_) => self.asked()?.rest_of_body(|| self.assembled_matrices()),
-            MadeOf::Files(_) => Ok(RestOfBody::NotAsked),
+        match &self.body {
+            MadeOf::Elements(body) if body.tied_masses.is_empty() => {
+                self.asked()?.rest_of_body(|| self.assembled_matrices())
+            }
+            MadeOf::Elements(_) | MadeOf::Files(_) => Ok(RestOfBody::NotAsked),
         }
     }
 
@@ -253,7 +258,7 @@ impl AssembledMesh {
     fn assembled_matrices(&self) -> Result<&Matrices, BuildError> {
         match self.matrices()? {
             FeMatrices::Assembled(matrices) => Ok(matrices),
-            FeMatrices::Given { .. } => Err(self.without_elements()),
+            FeMatrices::Tied { .. } | FeMatrices::Given { .. } => Err(self.without_elements()),
         }
     }
 

@@ -125,7 +125,8 @@ impl Parameter {
 /// The refusal of another one.
 pub(crate) fn meshed(scene: &Scene) -> Result<&MeshedBody, SceneError> {
     let (key, found) = match &scene.body {
-        Body::Meshed(body) => return Ok(body),
+        Body::Meshed(body) if body.tied_masses.is_empty() => return Ok(body),
+        Body::Meshed(_) => ("body.tied_masses", "masses beside the body, whose rates are not known"),
         Body::File(_) => ("body.file", "a body file, whose numbers stay"),
         Body::Matrices(_) => ("body.matrices", "a body of matrices, whose elements are not known"),
         Body::Rigid(_) => ("body.rigid", "a rigid body, which has no natural frequencies"),

@@ -35,7 +35,7 @@ impl fmt::Display for Doubt {
         match self {
             Self::AddedMass { added, own } => write!(
                 f,
-                "body.point_masses: they sum to {added:.4e}, {:.1e} times the mass of the mesh, {own:.4e}: check them, and the \
+                "body.point_masses, body.tied_masses: they sum to {added:.4e}, {:.1e} times the mass of the mesh, {own:.4e}: check them, and the \
                  density, against the unit of mass of the scene",
                 added / own
             ),
@@ -54,7 +54,8 @@ pub fn doubts(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
 }
 
 fn added_mass(body: &MeshedBody, mesh: &Mesh) -> Option<Doubt> {
-    let added: f64 = body.point_masses.iter().map(|point_mass| point_mass.mass).sum();
+    let on_body = body.point_masses.iter().map(|mass| mass.mass);
+    let added: f64 = on_body.chain(body.tied_masses.iter().map(|mass| mass.mass)).sum();
     if added == 0.0 {
         return None;
     }

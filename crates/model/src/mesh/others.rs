@@ -1,8 +1,8 @@
 //! Materials, masses and ties of a mesh file that are others than those of the scene.
 
-use fem_tet10::{Material, Materials, Mesh, PointMass};
+use fem_tet10::{Material, Materials, Mesh};
 use mesh_import::{Beside, DeckMass, DeckMaterial, DeckTie};
-use scene::{Marker, MarkerPlace, Region, Tie};
+use scene::{Marker, MarkerPlace, MeshedBody, Region, Tie};
 
 /// Numbers that are apart by less, relative to the larger, are the same, written with fewer digits.
 const APART: f64 = 0.01;
@@ -30,13 +30,15 @@ pub(crate) fn other_materials(mesh: &Mesh, of_file: &[DeckMaterial], of_scene: &
 }
 
 /// Says which masses of a mesh file the scene has not.
-pub(crate) fn other_masses(mesh: &Mesh, of_file: &Beside, of_scene: &[PointMass]) -> Option<String> {
+pub(crate) fn other_masses(mesh: &Mesh, of_file: &Beside, of_scene: &MeshedBody) -> Option<String> {
     let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() <= ON * mesh.diagonal());
     // Several masses of the file at one place are one of the scene.
     let at_place =
         |at: [f64; 3]| of_file.masses.iter().filter(|mass| near(mass.at, at)).map(|mass| mass.mass).sum::<f64>();
     let is_used = |deck: &DeckMass| {
-        let of_scene: f64 = of_scene.iter().filter(|mass| near(mass.at, deck.at)).map(|mass| mass.mass).sum();
+        let on_body = of_scene.point_masses.iter().map(|mass| (mass.at, mass.mass));
+        let beside_it = of_scene.tied_masses.iter().map(|mass| (mass.at, mass.mass));
+        let of_scene: f64 = on_body.chain(beside_it).filter(|(at, _)| near(*at, deck.at)).map(|(_, mass)| mass).sum();
         let of_deck = at_place(deck.at);
         (of_scene - of_deck).abs() <= APART * of_deck.abs().max(of_scene.abs())
     };
@@ -44,12 +46,16 @@ pub(crate) fn other_masses(mesh: &Mesh, of_file: &Beside, of_scene: &[PointMass]
 }
 
 /// Says which ties of a mesh file no marker of the scene is.
-pub(crate) fn other_ties(of_file: &Beside, markers: &[Marker]) -> Option<String> {
+pub(crate) fn other_ties(of_file: &Beside, markers: &[Marker], of_scene: &MeshedBody) -> Option<String> {
     let is_used = |deck: &DeckTie| {
-        markers.iter().any(|marker| {
-            let is_there = matches!(&marker.place, MarkerPlace::Region(Region::Group(group)) if *group == deck.group);
-            is_there && (marker.tie == Tie::Rigid) == deck.is_rigid
-        })
+        // The mean of nodes changes nothing but what it carries.
+        let carries = !deck.is_rigid && of_scene.tied_masses.iter().any(|mass| mass.group == deck.group);
+        carries
+            || markers.iter().any(|marker| {
+                let is_there =
+                    matches!(&marker.place, MarkerPlace::Region(Region::Group(group)) if *group == deck.group);
+                is_there && (marker.tie == Tie::Rigid) == deck.is_rigid
+            })
     };
     of_file.unused_ties(is_used)
 }

@@ -4,11 +4,12 @@ use fem_tet10::{AssemblyFault, Matrices, Mesh, MeshError, MeshFault, assemble};
 use std::path::Path;
 
 use mesh_import::{ImportError, ImportSettings, Imported, MeshFile, Reader, reader_of};
-use scene::{MeshedBody, Scene, SceneError, shorten};
+use modal::TiedPoint;
+use scene::{MeshedBody, Scene, SceneError, TiedMass, shorten};
 use whole_file::is_of_temporaries;
 
 use crate::building::builder::Builder;
-use crate::error::{BuildError, refuse};
+use crate::error::{BuildError, refuse, refuse_mesh};
 
 /// How a mesh file is read.
 pub(crate) fn import_settings(builder: &Builder, mesh_size: Option<f64>, raise_order: bool) -> ImportSettings {
@@ -82,3 +83,26 @@ pub(crate) fn matrices(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<
         }
     })
 }
+
+/// The masses of a scene that move with nodes of its mesh.
+pub(crate) fn tied_points(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<Vec<TiedPoint>, BuildError> {
+    let point = |(i, tied): (usize, &TiedMass)| {
+        let key = format!("body.tied_masses[{i}].group");
+        let nodes = mesh.group_nodes(&tied.group).map_err(|error| refuse_mesh(scene, &key, &error))?;
+        let count = nodes.len();
+        if count > MAX_CARRIERS {
+            let help = "name a smaller part, or give the mass a `spread` in `point_masses`";
+            let expected = format!("at most {MAX_CARRIERS}, each of which is coupled to all others");
+            return Err(scene.refuse(&key, format!("{count} nodes that carry one mass"), expected, help).into());
+        }
+        TiedPoint::new(tied.mass, tied.at, nodes, mesh.positions()).ok_or_else(|| {
+            let found = format!("{count} node(s) that do not tell how the point turns with them");
+            let help = "give three nodes or more that are not on a line, or put the mass on the body: `point_masses`";
+            scene.refuse(&key, found, "nodes that a rigid motion is told by", help).into()
+        })
+    };
+    body.tied_masses.iter().enumerate().map(point).collect()
+}
+
+/// Most nodes that carry one mass.
+const MAX_CARRIERS: usize = 500;

@@ -118,7 +118,7 @@ pub(crate) fn bent_modes(scene: &Scene, advice: &Advice, keep: usize, natural: u
     let first = |count: usize| (0..keep.min(count)).collect();
     let large: Vec<usize> = match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
         (Choice::Off, _) => Vec::new(),
-        _ if !scene.body.has_elements() => Vec::new(),
+        _ if !scene.body.bends_far() => Vec::new(),
         (Choice::Auto, _) if !scene.time.method.abilities.large_deflection => Vec::new(),
         (_, Some(Large::Count(count))) => first(*count),
         (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),

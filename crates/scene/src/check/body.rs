@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::Check;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::scene::{Body, FileBody, MeshedBody, RigidBody};
+use crate::scene::{Body, FileBody, MeshedBody, RigidBody, TiedMass};
 use crate::section::{BodySection, MatricesSection, RigidSection};
 
 /// Relative difference of entries of an inertia tensor that should be equal, still taken for rounding.
@@ -31,6 +31,7 @@ impl Check<'_> {
             material,
             materials,
             point_masses,
+            tied_masses,
             rigid,
             markers: _,
         } = section;
@@ -49,8 +50,15 @@ impl Check<'_> {
                 };
                 let materials = self.materials(material, materials)?;
                 self.point_masses(&point_masses)?;
-                return Ok(Body::Meshed(MeshedBody { mesh, mesh_size, raise_order, materials, point_masses }));
+                self.tied_masses(&tied_masses)?;
+                let body = MeshedBody { mesh, mesh_size, raise_order, materials, point_masses, tied_masses };
+                return Ok(Body::Meshed(body));
             };
+            if self.has("body.tied_masses") {
+                let help = "keep `file` without it, or give the body its mesh and materials";
+                let place = self.document.place("body.tied_masses");
+                return Err(place.refuse("both `file` and `tied_masses`", "a body of a mesh", help));
+            }
             let is_given = material.is_some() || materials.is_some();
             return Ok(Body::File(FileBody {
                 file: self.body_file(&file, mesh.is_some())?,
@@ -61,7 +69,8 @@ impl Check<'_> {
                 point_masses: self.has("body.point_masses").then_some(point_masses),
             }));
         };
-        for key in ["mesh", "file", "mesh_size", "raise_order", "material", "materials", "point_masses"] {
+        for key in ["mesh", "file", "mesh_size", "raise_order", "material", "materials", "point_masses", "tied_masses"]
+        {
             if self.has(&join("body", key)) {
                 return Err(self.document.place(&join("body", key)).refuse(
                     format!("both `rigid` and `{key}`"),
@@ -87,11 +96,12 @@ impl Check<'_> {
     /// Matrices say all of a body but its shape.
     fn matrices(&self, section: &MatricesSection) -> Result<MatrixFiles, SceneError> {
         let others = ["mesh", "file", "mesh_size", "raise_order", "material", "materials", "rigid"];
-        for (key, help) in
-            others.map(|key| (key, "keep `matrices`, or the other and what belongs to it")).into_iter().chain([(
-                "point_masses",
-                "put the masses into the mass matrix: in CalculiX and Abaqus by elements of type MASS",
-            )])
+        for (key, help) in others
+            .map(|key| (key, "keep `matrices`, or the other and what belongs to it"))
+            .into_iter()
+            .chain(["point_masses", "tied_masses"].map(|key| {
+                (key, "put the masses into the mass matrix: in CalculiX and Abaqus by elements of type MASS")
+            }))
         {
             if self.has(&join("body", key)) {
                 let found = format!("both `matrices` and `{key}`");
@@ -269,6 +279,19 @@ impl Check<'_> {
                     "give a radius, or remove `spread` to put the mass on one node",
                 )?;
             }
+        }
+        Ok(())
+    }
+}
+
+impl Check<'_> {
+    fn tied_masses(&self, masses: &[TiedMass]) -> Result<(), SceneError> {
+        self.not_too_many("body.tied_masses", masses.len(), "mesh that many masses as a part of the body")?;
+        for (i, tied) in masses.iter().enumerate() {
+            let key = format!("body.tied_masses[{i}]");
+            self.positive(&join(&key, "mass"), tied.mass, "give the mass in your unit of mass, or remove it")?;
+            let is_finite = tied.at.iter().all(|x| x.is_finite());
+            self.require(is_finite, &join(&key, "at"), "three finite numbers", "give the position of the mass")?;
         }
         Ok(())
     }

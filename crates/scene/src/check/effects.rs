@@ -59,10 +59,19 @@ impl Check<'_> {
 
     /// The effects that need the elements of a body.
     pub fn effects_of_elements(&self, effects: &Effects, modes: &Modes, body: &Body) -> Result<(), SceneError> {
-        let Body::Matrices(_) = body else { return Ok(()) };
-        let found = "a body of matrices, whose elements are not known";
-        let help = "give the body a mesh and a material";
-        self.not_on(effects, Effect::GeometricStiffening, true, found, help)?;
+        let (found, help) = match body {
+            Body::Matrices(_) => {
+                let (found, help) =
+                    ("a body of matrices, whose elements are not known", "give the body a mesh and a material");
+                self.not_on(effects, Effect::GeometricStiffening, true, found, help)?;
+                (found, help)
+            }
+            Body::Meshed(_) if !body.bends_far() => {
+                let help = "mesh the masses as parts of the body, or hold rigid bodies of their mass by fixed joints";
+                ("a body with masses beside it (`tied_masses`)", help)
+            }
+            _ => return Ok(()),
+        };
         self.not_on(effects, Effect::LargeDeflection, true, found, help)?;
         if modes.large.is_none() {
             return Ok(());

@@ -63,8 +63,8 @@ impl Check<'_> {
 
     fn about(&self, about: &AboutSection, body: &Body, flexible: Flexible) -> Result<About, SceneError> {
         let place = self.document.place("modes.about");
-        if flexible == Flexible::Count(0) || !body.has_elements() {
-            let found = "modes about a bent body, of one without flexible modes or without elements";
+        if flexible == Flexible::Count(0) || !body.bends_far() {
+            let found = "modes about a bent body, of one without flexible modes, without elements or with masses beside it (`tied_masses`)";
             return Err(place.refuse(found, "a body with a mesh and flexible modes", "remove it"));
         }
         Ok(match about {

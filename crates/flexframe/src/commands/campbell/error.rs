@@ -34,7 +34,7 @@ pub enum CampbellError {
     Rotor { scene: PathBuf, joint: String, source: Box<RotorError> },
     /// A body without elements has no rest in a spin.
     #[error(
-        "{}: found a body without elements or without flexible modes; expected one with a mesh, whose rest at each speed can be found; \
+        "{}: found a body without elements or without flexible modes, or with masses beside it (`tied_masses`); expected one with a mesh, whose rest at each speed can be found; \
          help: leave `--about-rest` out", scene.display()
     )]
     NoFullBody { scene: PathBuf },

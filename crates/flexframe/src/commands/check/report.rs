@@ -63,7 +63,7 @@ impl BodyCheck {
 pub(super) const RIGID: &str = "it is rigid";
 
 /// The reason that a body of matrices is not checked.
-pub(super) const MATRICES: &str = "it has no elements: it is made of matrices";
+pub(super) const MATRICES: &str = "it is made of matrices, or has masses beside it (`tied_masses`)";
 /// The reason that a body is not checked at the end of a run.
 pub(crate) const DEAR: &str = "its full body costs more than its reduction did; `flexframe check` does it on demand";
 

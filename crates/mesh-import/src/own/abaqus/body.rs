@@ -295,7 +295,7 @@ fn masses(texts: &Texts<'_>, world: &mut World<'_>, left: &mut Left) -> Result<V
                     if mass.mass == 0.0 {
                         continue;
                     }
-                    masses.push(DeckMass { kind: "MASS".to_owned(), at, mass: mass.mass });
+                    masses.push(DeckMass { kind: "MASS".to_owned(), node: at, at, mass: mass.mass });
                 }
             }
         }

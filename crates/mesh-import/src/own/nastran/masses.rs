@@ -135,6 +135,7 @@ impl Masses {
                 ));
             };
             let mass = mass * mass_of_weight;
+            let node = at;
             let place = match system {
                 None => Some(*offset),
                 Some(_) if *offset == [0.0; 3] => Some(at),
@@ -145,7 +146,7 @@ impl Masses {
             };
             match place {
                 Some(_) if mass == 0.0 => {}
-                Some(at) => found.push(DeckMass { kind: (*kind).to_owned(), at, mass }),
+                Some(at) => found.push(DeckMass { kind: (*kind).to_owned(), node, at, mass }),
                 None => left.heavy("CONM2 with offsets in systems of angles", Some(mass)),
             }
         }
@@ -186,7 +187,7 @@ impl Masses {
                 ([Some(x), Some(y), Some(z)], Some(at))
                     if x > 0.0 && (y - x).abs() <= SAME * x && (z - x).abs() <= SAME * x =>
                 {
-                    found.push(DeckMass { kind: scalars[0].name.clone(), at, mass: x });
+                    found.push(DeckMass { kind: scalars[0].name.clone(), node: at, at, mass: x });
                 }
                 _ => {
                     for scalar in scalars {

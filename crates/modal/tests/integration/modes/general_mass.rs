@@ -1,8 +1,11 @@
 //! Bodies from matrices of other programs: six degrees of freedom a node, and masses that are not a scalar for each pair of nodes.
 
 use faer::sparse::{SparseColMat, Triplet};
-use modal::{MassMatrix, ModalError, Solver, Support, acceleration_fields, centrifugal_fields};
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use modal::{
+    MassMatrix, ModalError, NodalMass, NodalStiffness, Solver, Support, TiedPoint, acceleration_fields,
+    centrifugal_fields, mass_with_points,
+};
+use nalgebra::{Matrix3, Rotation3, SMatrix, Vector3};
 use reduced_body::{BodyError, ReducedBody, RigidMotion};
 
 use crate::beam::{Beam, Sparse, order};
@@ -229,6 +232,80 @@ fn solid_elements_are_the_same_with_any_storage_of_their_mass() {
             assert!((a - b).norm_max() <= 1e-10 * a.norm_max().max(1.0), "{:e}", (a - b).norm_max());
         }
     }
+}
+
+/// Independent reference: the inertia of the deformed body as the sum over pairs of nodes and over the point, which the rigid motion of a flat face by
+/// the normal equations moves; Kφ = λMφ of a mass that is held by rows.
+#[test]
+fn a_mass_beside_a_face_moves_with_its_rigid_motion() {
+    let body = supports::body();
+    let (matrices, positions) = (&body.matrices, &body.positions);
+    let face = supports::nodes(positions, |x| x.x < -14.9);
+    let (at, m) = ([-23.0, 4.0, 6.0], 0.7 * matrices.mass().val().iter().sum::<f64>() / 3.0);
+    let points = [TiedPoint::new(m, at, face.clone(), positions).unwrap()];
+    let nodal = || NodalMass::of_nodes(matrices.start(), matrices.nodes(), matrices.mass_by_nodes()).unwrap();
+    let stiffness = NodalStiffness::new(matrices.start(), matrices.nodes(), matrices.stiffness_by_nodes()).unwrap();
+    let matrix = mass_with_points(&nodal(), &points).unwrap();
+    let mass = MassMatrix::with_points(matrix.as_ref(), nodal(), &points);
+    let solver = Solver::of_nodes(stiffness, mass, positions, &Support::free()).unwrap();
+    let modes = solver.modes(5, |_| ()).unwrap();
+    let reduced = modes.reduced_by(solver.mass(), positions).unwrap();
+
+    // The point in a field, by the rigid motion that fits the face.
+    let rigid = |node: &u32| {
+        let x = Vector3::from(positions[*node as usize]);
+        SMatrix::<f64, 3, 6>::from_fn(
+            |i, k| if k < 3 { f64::from(i == k) } else { Vector3::ith(k - 3, 1.0).cross(&x)[i] },
+        )
+    };
+    let normal: SMatrix<f64, 6, 6> = face.iter().map(|node| rigid(node).tr_mul(&rigid(node))).sum();
+    let of_point = |u: &dyn Fn(u32) -> Vector3<f64>| {
+        let right: SMatrix<f64, 6, 1> = face.iter().map(|node| rigid(node).tr_mul(&u(*node))).sum();
+        let motion = normal.try_inverse().unwrap() * right;
+        Vector3::new(motion[0], motion[1], motion[2])
+            + Vector3::new(motion[3], motion[4], motion[5]).cross(&Vector3::from(at))
+    };
+    let second = |x: Vector3<f64>, y: Vector3<f64>| Matrix3::identity() * x.dot(&y) - x * y.transpose();
+    let inertia = |mode: usize, q: f64| {
+        let u = |node: u32| Vector3::from_fn(|axis, _| q * modes.shapes[(3 * node as usize + axis, mode)]);
+        let place = |node: usize| Vector3::from(positions[node]) + u(node as u32) - modes.rigid.origin;
+        let of_column = |node: usize| {
+            let range = matrices.start()[node]..matrices.start()[node + 1];
+            let pairs = matrices.nodes()[range.clone()].iter().zip(&matrices.mass_by_nodes()[range]);
+            pairs.map(|(other, m)| second(place(*other as usize), place(node)) * *m).sum::<Matrix3<f64>>()
+        };
+        let p = Vector3::from(at) + of_point(&u) - modes.rigid.origin;
+        (0..positions.len()).map(of_column).sum::<Matrix3<f64>>() + second(p, p) * m
+    };
+    assert!((inertia(0, 0.0) - reduced.inertia).norm() < 1e-12 * reduced.inertia.norm());
+    let fields = centrifugal_fields(solver.mass(), positions, &modes.rigid.origin).unwrap();
+    let on_modes = modes.shapes.transpose() * &fields;
+    for mode in 0..5 {
+        let q = 0.1 / modes.shapes.col(mode).norm_max();
+        let [plus, minus] = [inertia(mode, q), inertia(mode, -q)];
+        for (pair, (i, j)) in ReducedBody::PAIRS.into_iter().enumerate() {
+            let first = (plus - minus)[(i, j)] / (4.0 * q);
+            assert!(
+                (first - reduced.inertia_first[pair][mode]).abs() < 1e-9 * reduced.inertia.norm() / q,
+                "{mode} {i}{j}"
+            );
+            assert!(
+                (on_modes[(mode, pair)] - reduced.inertia_first[pair][mode]).abs() < 1e-9 * reduced.inertia.norm() / q
+            );
+            let curved = ((plus + minus) * 0.5 - inertia(mode, 0.0))[(i, j)] / (q * q);
+            let found = reduced.inertia_second[pair][(mode, mode)];
+            assert!((curved - found).abs() < 1e-8 * (1.0 + found.abs()), "{mode} {i}{j}: {curved} {found}");
+        }
+    }
+    let (k, momenta) = (matrices.stiffness() * &modes.shapes, solver.mass().product(modes.shapes.as_ref()));
+    for (mode, lambda) in modes.eigenvalues.iter().enumerate() {
+        let rest: f64 = (0..k.nrows()).map(|i| (k[(i, mode)] - lambda * momenta[(i, mode)]).powi(2)).sum();
+        assert!(rest.sqrt() < 1e-7 * lambda * momenta.col(mode).norm_l2(), "mode {mode}");
+    }
+    // What moves as a line of nodes does not tell a turn about it.
+    let line = supports::nodes(positions, |x| x.x < -14.9 && x.y < -6.9);
+    assert!(TiedPoint::new(1.0, at, line.clone(), positions).is_none());
+    assert!(TiedPoint::new(1.0, [-15.0, -7.0, 30.0], line, positions).is_some());
 }
 
 #[test]
