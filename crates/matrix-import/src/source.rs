@@ -135,8 +135,12 @@ pub(crate) fn number(text: &str) -> Option<f64> {
     text.parse().ok().or_else(|| text.replace(['d', 'D'], "e").parse().ok())
 }
 
-/// The beginning of a line, in quotes.
+/// The beginning of a line of numbers, in quotes. Other words are not shown, since a scene from elsewhere may name any file of the user's.
 pub(crate) fn shown(line: &str) -> String {
+    let is_of_number = |letter: char| letter.is_ascii_digit() || " \t,;+-.eEdD*".contains(letter);
+    if !line.chars().all(is_of_number) {
+        return "a line with other words than numbers".to_owned();
+    }
     let short: String = line.chars().take(SHOWN).collect();
     if short.len() < line.len() { format!("`{short}…`") } else { format!("`{short}`") }
 }

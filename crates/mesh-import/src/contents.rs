@@ -25,6 +25,8 @@ pub(crate) struct ReadFile {
     pub(crate) bytes: Option<Vec<u8>>,
     /// By the number of a line, from 0, the number of the file that a deck includes there.
     pub(crate) includes: BTreeMap<usize, usize>,
+    /// True if another file has named it: no line of it is shown.
+    pub(crate) is_hidden: bool,
 }
 
 /// Files and their copies, the first one first.

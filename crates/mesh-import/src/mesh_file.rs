@@ -48,9 +48,10 @@ impl MeshFile {
     pub fn read(path: &Path, settings: &ImportSettings) -> Result<Self, ImportError> {
         let reader = reader_of(path, settings);
         let one = |bytes, name| {
-            Held::Files(vec![ReadFile { path: path.to_owned(), name, bytes: Some(bytes), includes: BTreeMap::new() }])
+            let includes = BTreeMap::new();
+            Held::Files(vec![ReadFile { path: path.to_owned(), name, bytes: Some(bytes), includes, is_hidden: false }])
         };
-        let held = match reader {
+        let mut held = match reader {
             Reader::Own => one(msh_bytes(path)?, String::new()),
             Reader::GmshMesher if is_program(path) => match geometry(path) {
                 Err(ImportError::Refused { .. }) if settings.trust_geometry => Held::InPlace,
@@ -63,6 +64,9 @@ impl MeshFile {
                 bytes => one(bytes, format!("source.{}", ending(path))),
             },
         };
+        if let Held::Files(files) = &mut held {
+            files.iter_mut().for_each(|file| file.is_hidden |= settings.hides_lines);
+        }
         Ok(Self { path: path.to_owned(), settings: *settings, reader, held })
     }
 
@@ -74,7 +78,7 @@ impl MeshFile {
             return Some(Hash::of(bytes));
         }
         // Whoever wrote it is trusted or not, the mesh is the same.
-        let ImportSettings { mesh_size, raise_order, trust_geometry: _ } = &self.settings;
+        let ImportSettings { mesh_size, raise_order, trust_geometry: _, hides_lines: _ } = &self.settings;
         let start = Key::new().of("mesh", 2).with("reader", self.reader.name());
         let start = start.with("mesh size", mesh_size).with("raise order", raise_order);
         let with = |key: Key, file: &ReadFile| match &file.bytes {

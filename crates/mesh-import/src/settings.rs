@@ -10,4 +10,6 @@ pub struct ImportSettings {
     /// True if gmsh does all that geometry says. A `.geo` file is a program, which may run others; without this, one with such
     /// commands is refused. No scene file can set it.
     pub trust_geometry: bool,
+    /// True if messages show no line of the file: another file has named it, which may come from elsewhere and name any file of the user's.
+    pub hides_lines: bool,
 }

@@ -18,7 +18,8 @@ const MESHLANE: &str = "FLEXFRAME_MESHLANE";
 /// Names the log of a gmsh whose first optimization does nothing.
 const LAZY: &str = "FLEXFRAME_LAZY";
 
-const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false };
+const AS_IT_IS: ImportSettings =
+    ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false, hides_lines: false };
 const RAISED: ImportSettings = ImportSettings { raise_order: true, ..AS_IT_IS };
 
 /// The bar of 200 x 10 x 10, in every format.

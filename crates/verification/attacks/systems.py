@@ -185,7 +185,7 @@ def not_finite(path):
     return found
 
 
-COMMANDS = [["modes"], ["advise"], ["linearize", "-o", "l.json"], ["campbell", "--speeds", "0:5:3"], ["frf", "--frequencies", "1:10:3"], ["cost", "--quick"],
+COMMANDS = [["modes"], ["advise"], ["linearize", "-o", "l.json"], ["campbell", "--speeds", "0:5:3", "--joint", "j0"], ["frf", "--frequencies", "1:10:3"], ["cost", "--patience", "1"],
             ["gradient"], ["fmu", "-o", "x.fmu"]]
 
 
@@ -208,6 +208,8 @@ def attack(program, trials, first=0):
         count.add({0: "run", 3: "refused as input", 4: "refused as a model", 5: "ended with a reason", None: "too long"}.get(code, "other"), wrong, seed)
         if seed % 3 == 0 and code == 0:
             command = COMMANDS[seed // 3 % len(COMMANDS)]
-            code, _, said = program.run([command[0], "scene.toml", *command[1:], *([] if command[0] in ("modes", "advise", "cost", "gradient") else ["--overwrite"])], folder, 60)
-            count.add(f"{command[0]}", fault(code, said), f"{seed} {command[0]}")
+            code, _, said = program.run([command[0], "scene.toml", *command[1:], *([] if command[0] in ("modes", "advise") else ["--overwrite"])], folder, 60)
+            # Else nothing of the command would be attacked.
+            wrong = "not a command line" if "unexpected argument" in said else fault(code, said)
+            count.add(command[0] if code == 0 else f"{command[0]} refused", wrong, f"{seed} {command[0]}")
     return count

@@ -6,7 +6,8 @@ use flexframe::new_scene::{ImportSettings, NewSceneError, new_scene};
 use flexframe::run::{self, RunSettings};
 use flexframe::scene::{Body, Scene};
 
-const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false };
+const AS_IT_IS: ImportSettings =
+    ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false, hides_lines: false };
 
 /// Closed form: the mass is ρV of a box of steel.
 #[test]

@@ -94,7 +94,7 @@ fn a_deck_without_a_density_keeps_its_elasticity() {
 fn decks_of_all_kinds_have_the_masses_and_frequencies_of_other_programs() {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/decks"));
     let numbers = std::fs::read_to_string(folder.join("numbers.csv")).unwrap();
-    let settings = ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false };
+    let settings = ImportSettings::default();
     for row in numbers.lines().skip(1) {
         let (name, wanted) = row.split_once(',').unwrap();
         let wanted: Vec<f64> = wanted.split(',').map(|number| number.parse().unwrap()).collect();

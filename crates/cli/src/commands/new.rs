@@ -34,8 +34,12 @@ pub struct New {
 impl New {
     pub fn execute(self, session: Session) -> Result<(), Box<dyn Error>> {
         let Self { mesh, output, mesh_size, raise_order, files } = self;
-        let settings =
-            new_scene::ImportSettings { mesh_size, raise_order, trust_geometry: session.builder.trust_geometry };
+        let settings = new_scene::ImportSettings {
+            mesh_size,
+            raise_order,
+            trust_geometry: session.builder.trust_geometry,
+            hides_lines: false,
+        };
         GivenFile::expect(&mesh, &[GivenFile::Mesh], "a mesh or geometry")?;
         if output.as_deref().is_some_and(output::is_standard) {
             let (scene, notes) = new_scene::scene_text(&mesh, &settings)?;

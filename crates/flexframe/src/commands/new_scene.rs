@@ -477,7 +477,7 @@ fn inline(material: &Material) -> String {
 
 /// The keys of how a mesh is read, a line each.
 fn import_keys(settings: &ImportSettings) -> String {
-    let ImportSettings { mesh_size, raise_order, trust_geometry: _ } = settings;
+    let ImportSettings { mesh_size, raise_order, .. } = settings;
     let size = mesh_size.map(|size| format!("mesh_size = {size:?}\n"));
     let raise = raise_order.then(|| "raise_order = true\n".to_owned());
     size.into_iter().chain(raise).collect()

@@ -102,7 +102,8 @@ impl GeometryReader {
             return Err(refused(path, None, &format!("more than {MAX_FILES} files that include each other")));
         }
         let name = format!("{number}.{ending}");
-        self.files.push(ReadFile { path: path.to_owned(), name: name.clone(), bytes: None, includes: BTreeMap::new() });
+        let includes = BTreeMap::new();
+        self.files.push(ReadFile { path: path.to_owned(), name: name.clone(), bytes: None, includes, is_hidden: true });
         Ok((number, name))
     }
 

@@ -1,5 +1,6 @@
 //! The programs that read other formats.
 
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::ffi::OsStr;
 use std::path::Path;
@@ -13,7 +14,7 @@ use whole_file::TemporaryFolder;
 
 use crate::contents::Copies;
 use crate::error::ImportError;
-use crate::foreign::gmsh_errors::error_in;
+use crate::foreign::gmsh_errors::{error_in, without_words};
 use crate::settings::ImportSettings;
 
 /// The program that meshio runs.
@@ -75,7 +76,7 @@ pub(crate) fn meshio(job: &Job<'_>) -> Result<Vec<String>, ImportError> {
             let source_name = source.display().to_string();
             Err(ImportError::Refused { source_name, found: copies.translated(&error), help })
         }
-        _ => Err(said.failed(source, &python, copies, "check the file, or write the mesh as MSH 4.1")),
+        _ => Err(said.failed(source, &python, (copies, false), "check the file, or write the mesh as MSH 4.1")),
     }
 }
 
@@ -139,7 +140,7 @@ pub(crate) fn gmsh(job: &Job<'_>, task: GmshTask) -> Result<(), ImportError> {
                 "try a smaller mesh_size, or open it in gmsh, and see what is wrong with it"
             }
         };
-        return Err(said.failed(source, &gmsh, copies, help));
+        return Err(said.failed(source, &gmsh, (copies, settings.hides_lines), help));
     }
     Ok(())
 }
@@ -202,15 +203,22 @@ impl Said {
         self.lines.iter().rev().find(|(of, _)| *of == stream).map(|(_, line)| line.as_str())
     }
 
-    fn failed(&self, source: &Path, program: &OsStr, copies: &Copies, help: &'static str) -> ImportError {
+    fn failed(
+        &self,
+        source: &Path,
+        program: &OsStr,
+        (copies, hides_lines): (&Copies, bool),
+        help: &'static str,
+    ) -> ImportError {
         let last = || self.last(Stream::Error).or_else(|| self.last(Stream::Output));
         let said =
             self.first_errors.iter().flatten().next().map(String::as_str).or_else(last).unwrap_or("it says nothing");
+        let said = if hides_lines { without_words(said) } else { Cow::Borrowed(said) };
         ImportError::Failed {
             source_name: source.display().to_string(),
             program: program.to_string_lossy().into_owned(),
             status: self.status.to_string(),
-            said: copies.translated(said),
+            said: copies.translated(&said),
             help,
         }
     }

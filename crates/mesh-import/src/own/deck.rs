@@ -51,7 +51,13 @@ impl DeckReader {
     fn file(&mut self, path: &Path, bytes: Vec<u8>) -> Result<usize, ImportError> {
         let number = self.files.len();
         let (name, includes) = (format!("{number}.inp"), BTreeMap::new());
-        self.files.push(ReadFile { path: path.to_owned(), name, bytes: None, includes });
+        self.files.push(ReadFile {
+            path: path.to_owned(),
+            name,
+            bytes: None,
+            includes,
+            is_hidden: !self.files.is_empty(),
+        });
         self.around.push(path.to_owned());
         let mut line = 1;
         let mut includes = BTreeMap::new();

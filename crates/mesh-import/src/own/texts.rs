@@ -96,10 +96,10 @@ impl<'f> Texts<'f> {
         }
     }
 
-    /// A line in quotes; of an included file nothing, since that may be any file.
+    /// A line in quotes; of a file that another file names nothing, since that may be any file.
     pub(crate) fn shown(&self, data: Data<'_>) -> String {
-        match data.place.file {
-            0 => format!("`{}`", data.text.chars().take(80).collect::<String>()),
+        match self.files.get(data.place.file) {
+            Some(file) if !file.is_hidden => format!("`{}`", data.text.chars().take(80).collect::<String>()),
             _ => "a line".to_owned(),
         }
     }

@@ -13,7 +13,7 @@ use crate::error::{BuildError, refuse, refuse_mesh};
 
 /// How a mesh file is read.
 pub(crate) fn import_settings(builder: &Builder, mesh_size: Option<f64>, raise_order: bool) -> ImportSettings {
-    ImportSettings { mesh_size, raise_order, trust_geometry: builder.trust_geometry }
+    ImportSettings { mesh_size, raise_order, trust_geometry: builder.trust_geometry, hides_lines: true }
 }
 
 /// The mesh file of a body, as it is now.
