@@ -98,7 +98,8 @@ fn what_is_not_used_is_counted_and_named() {
     let more = "*ELEMENT, TYPE=MASS, ELSET=m\n9001, 1\n*MASS, ELSET=m\n7.85e-4\n*ELEMENT, TYPE=SPRINGA, ELSET=k\n9002, 1, 2\n\
                 *SPRING, ELSET=k\n\n10.\n*EQUATION\n2\n1, 1, 1., 2, 1, -1.\n*RIGID BODY, REF NODE=1, NSET=root\n*COUPLING, \
                 CONSTRAINT NAME=hub, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 3\n*COUPLING, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 2\n*MODEL CHANGE, TYPE=CONTACT PAIR, ADD\na, b\n\
-                *ELEMENT, TYPE=S3, ELSET=skin\n9005, 1, 2, 3\n*MATERIAL, NAME=lead\n*DENSITY\n70.\n*SHELL SECTION, ELSET=skin, MATERIAL=lead\n.1, 5\n*ELEMENT, TYPE=B31, ELSET=edges\n9003, 1, 2,\n9004, 1, 2,\n*SECRET\n1\n";
+                *ELEMENT, TYPE=S3, ELSET=skin\n9005, 1, 2, 3\n*MATERIAL, NAME=lead\n*DENSITY\n70.\n*SHELL SECTION, ELSET=skin, MATERIAL=lead\n.1, 5\n*ELEMENT, TYPE=S3R, ELSET=layers\n9006, 1, 2, 3\n\
+                *SHELL SECTION, ELSET=layers, COMPOSITE, SYMMETRIC\n.1, 3, lead, 0.\n.2, , LEAD\n*ELEMENT, TYPE=B31, ELSET=edges\n9003, 1, 2,\n9004, 1, 2,\n*SECRET\n1\n";
     let text = format!(
         "*NODE\n{}*ELEMENT, TYPE=C3D10, ELSET=all\n{}*NSET, NSET=root\n{}{more}",
         bar.node_lines(plain),
@@ -117,7 +118,9 @@ fn what_is_not_used_is_counted_and_named() {
     let side = |node: u64| -> [f64; 3] { std::array::from_fn(|i| at(node)[i] - first[i]) };
     let (a, b) = (side(2), side(3));
     let across = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    let shell = format!("1 S3 ({:.4e})", across.iter().map(|c| c * c).sum::<f64>().sqrt() / 2.0 * 0.1 * 70.0);
+    let area = across.iter().map(|c| c * c).sum::<f64>().sqrt() / 2.0;
+    let shell = format!("1 S3 ({:.4e})", area * 0.1 * 70.0);
+    let layers = format!("1 S3R ({:.4e})", area * 0.6 * 70.0);
     for words in [
         "read: ",
         "1 MASS (7.8500e-4",
@@ -125,6 +128,7 @@ fn what_is_not_used_is_counted_and_named() {
         "1 SPRINGA",
         "2 B31 (mass not known)",
         shell.as_str(),
+        layers.as_str(),
         "1 *COUPLING in some directions only",
         "1 *MODEL CHANGE",
         "1 *SPRING",

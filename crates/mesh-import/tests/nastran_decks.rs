@@ -95,6 +95,8 @@ fn coordinates_are_read_in_their_systems() {
         ("$\n=,*(1),=", ["line 2", "repeats no card"]),
         ("GRID,1\n=,*(1.5)", ["line 2", "field 2"]),
         ("GRID,1\n=3", ["line 2", "repeats no card"]),
+        ("GRID,1\nCTETRA,1,1,1,1,1,1,1,1,+\n+,1,1,1,1\n=,*1,==", ["line 4", "repeats no card"]),
+        ("GRID,1\nCTETRA,1,1,1,1,1,1,1,1,+A\n=,*1,==\n+A,1,1,1,1", ["line 3", "repeats no card"]),
         ("GRID,1,,0.,0.,0.,,,,+A\nGRID,2\n+A,1\n+A,2", ["line 4", "second line of this name"]),
         ("GRID,1,,0.,0.,0.,,,,+A\n+B,1", ["line 2", "continues no card"]),
         ("GRID,1\nCTETRA,1,1,1,1,1", ["line 2", "3 nodes"]),
@@ -177,6 +179,81 @@ fn what_is_not_used_is_counted_and_named() {
         assert!(notes[0].contains(words), "{words}: {notes:?}");
     }
     assert!(!notes[0].contains("SECRET"));
+}
+
+/// Independent reference: the sums of the masses that pyNastran 1.4 gives to these bars and beams.
+#[test]
+fn bars_and_beams_of_all_sections_have_their_masses() {
+    let bar = Bar::new();
+    let kinds = [
+        "ROD,,,,,2.",
+        "TUBE,,,,,3.,2.",
+        "TUBE2,,,,,3.,.5",
+        "I,,,,,9.,4.,5.,.5,.6,.7",
+        "CHAN,,,,,4.,8.,.5,.6",
+        "T,,,,,6.,8.,.7,.5",
+        "BOX,,,,,6.,8.,.7,.5",
+        "BAR,,,,,3.,2.",
+        "CROSS,,,,,5.,1.,8.,2.",
+        "H,,,,,5.,2.,8.,1.",
+        "T1,,,,,6.,5.,1.,.8",
+        "I1,,,,,4.,.5,6.,8.",
+        "CHAN1,,,,,4.,.5,6.,8.",
+        "Z,,,,,4.,.5,6.,8.",
+        "CHAN2,,,,,.5,.6,7.,9.",
+        "T2,,,,,6.,8.,.7,.5",
+        "BOX1,,,,,6.,8.,.4,.5,.6,.7",
+        "HEXA,,,,,1.,6.,4.",
+        "HAT,,,,,5.,.4,6.,2.",
+        "HAT1,,,,,6.,5.,4.,.4,.6",
+        "L,,,,,5.,7.,.5,.6",
+    ];
+    let mut cards = "GRID,9101,,0.,0.,0.\nGRID,9102,,0.,0.,4.\nMAT1,9,2.1+5,,.3,.5\n".to_owned();
+    for (number, kind) in (9200..).zip(kinds) {
+        let fields: Vec<&str> = kind.split(',').chain([".25"]).collect();
+        let (first, more) = fields.split_at(5);
+        let _ = writeln!(cards, "PBARL,{number},9,,{}\n,{}", first.join(","), more.join(","));
+        let _ = writeln!(cards, "CBAR,{number},{number},9101,9102,1.,0.,0.");
+    }
+    for (number, beam) in (9300..).zip([
+        "PBEAM,#,9,6.,1.,1.,,,.2\n,,,,,,,,\n,YES,.5,4.,1.,1.,,,.1\n,,,,,,,,\n,NO,1.,2.,1.,1.,,,.3",
+        "PBEAM,#,9,6.,1.,1.\n,NO,1.,2.,1.,1.",
+        "PBEAM,#,9,6.,1.,1.\n,0.,0.,0.,0.,0.,0.,0.,0.\n,NO,1.0\n,1.,1.",
+        "PBEAML,#,9,,BAR\n,3.,2.,.2,NO,1.,1.,1.,.4",
+        "PBEAML,#,9,,TUBE\n,3.,2.,.2",
+        "PBEAML,#,9,,ROD\n,2.,.1,YES,.4,1.,.2,NO,1.\n,.5,.3",
+        "PBEAM,#,9,6.,1.,1.,,,.2\n,,,,,,,,\n,YES,.25\n,,,,,,,,\n,YES,1.,2.,1.,1.,,,.4",
+    ]) {
+        let _ =
+            writeln!(cards, "{}\nCBEAM,{number},{number},9101,9102,1.,0.,0.", beam.replace('#', &number.to_string()));
+    }
+    let text = format!("{}{}{cards}", grids(&bar, "", |x| x), elements(&bar));
+    let notes = bar.read("beams.bdf", &text).unwrap_or_else(|error| panic!("{error}")).notes;
+    let [of_bars, of_beams] = [
+        [
+            26.132741228718345,
+            32.41592653589793,
+            18.27875959474386,
+            20.5,
+            17.4,
+            16.7,
+            31.0,
+            13.0,
+            37.0,
+            43.0,
+            21.0,
+            25.0,
+            25.0,
+            25.0,
+        ]
+        .into_iter()
+        .chain([24.6, 16.7, 30.259999999999998, 41.0, 16.36, 19.4, 13.8])
+        .sum::<f64>(),
+        [8.7, 8.0, 12.0, 8.2, 32.21592653589793, 9.479379797371926, 9.2].into_iter().sum(),
+    ];
+    for words in [format!("21 CBAR ({of_bars:.4e})"), format!("7 CBEAM ({of_beams:.4e})")] {
+        assert!(notes[0].contains(&words), "{words}: {notes:?}");
+    }
 }
 
 #[test]

@@ -21,7 +21,7 @@ pub struct TiedPoint {
     pub position: [f64; 3],
     /// The nodes.
     pub nodes: Vec<u32>,
-    /// Of each node the W_a with which the displacement of the point is `Σ W_a u_a`.
+    /// A matrix W_a for each node, with which the displacement of the point is `Σ W_a u_a`.
     pub shares: Vec<Matrix3<f64>>,
 }
 

@@ -48,10 +48,16 @@ pub(super) fn imported(
                 if !section.is_solid
                     && let Some(members) = world.set(texts, false, space, &section.set.to_uppercase())?
                 {
-                    let material =
-                        deck.materials.iter().find(|known| known.name.eq_ignore_ascii_case(&section.material));
-                    let density = material.and_then(AbaqusMaterial::density);
-                    let mass = section.thickness.zip(density).map(|(thickness, density)| thickness * density);
+                    let density = |name: &str| {
+                        let material = deck.materials.iter().find(|known| known.name.eq_ignore_ascii_case(name));
+                        material.and_then(AbaqusMaterial::density)
+                    };
+                    let mass = section.layers.as_ref().and_then(|layers| {
+                        layers
+                            .iter()
+                            .map(|(material, thickness)| Some(density(material)? * thickness))
+                            .sum::<Option<f64>>()
+                    });
                     shells.extend(members.iter().map(|element| (*element, mass)));
                 }
             }
@@ -321,6 +327,7 @@ fn materials(
     for space in 0..world.spaces.len() {
         for section in world.spaces[space].scopes.clone().iter().flat_map(|scope| &scope.sections) {
             used.insert(section.material.to_uppercase());
+            used.extend(section.layers.iter().flatten().map(|(material, _)| material.to_uppercase()));
             if !section.is_solid {
                 continue;
             }

@@ -348,11 +348,11 @@ impl Reader<'_, '_> {
         let set = block.parameter("ELSET").unwrap_or_default().to_owned();
         let material = block.parameter("MATERIAL").unwrap_or_default().to_owned();
         let is_solid = block.keyword == "SOLID SECTION";
-        // Of one layer the first number is the thickness.
-        let is_of_one = block.keyword == "SHELL SECTION" && !block.has("COMPOSITE") && !block.has("NODAL THICKNESS");
-        let thickness = block.data.first().filter(|_| is_of_one);
-        let thickness = thickness.and_then(|data| data.words().first().and_then(|word| number(word)));
-        self.scope().sections.push(Section { is_solid, set, material, thickness });
+        let layers = match &*block.keyword {
+            "SHELL SECTION" | "MEMBRANE SECTION" if !block.has("NODAL THICKNESS") => layers(block, &material),
+            _ => None,
+        };
+        self.scope().sections.push(Section { is_solid, set, material, layers });
         Ok(())
     }
 
@@ -374,6 +374,24 @@ impl Reader<'_, '_> {
         self.scope().ties.push(Tie { keyword, is_rigid, region, point, place });
         Ok(())
     }
+}
+
+/// Materials and thicknesses of the layers of a shell.
+fn layers(block: &Block<'_>, material: &str) -> Option<Vec<(String, f64)>> {
+    if !block.has("COMPOSITE") {
+        let thickness = number(block.data.first()?.words().first()?)?;
+        return Some(vec![(material.to_owned(), thickness)]);
+    }
+    // A thickness, a number of points of integration, a material and an angle in each line.
+    let layer = |data: &Data<'_>| {
+        let words: Vec<&str> = data.fields().collect();
+        Some(((*words.get(2)?).trim_matches('"').to_owned(), number(words.first()?)?))
+    };
+    let mut layers = block.data.iter().map(layer).collect::<Option<Vec<_>>>()?;
+    if block.has("SYMMETRIC") {
+        layers.extend(layers.clone());
+    }
+    Some(layers)
 }
 
 /// True if a coupling of this kind ties the three displacements: all, or those from one to another in each line.

@@ -92,9 +92,10 @@ pub(crate) struct Section {
     /// True of a `*SOLID SECTION`.
     pub(crate) is_solid: bool,
     pub(crate) set: String,
+    /// Material of a solid.
     pub(crate) material: String,
-    /// Thickness of a shell of one layer.
-    pub(crate) thickness: Option<f64>,
+    /// Materials and thicknesses of the layers of a shell; none where they are not known.
+    pub(crate) layers: Option<Vec<(String, f64)>>,
 }
 
 /// Masses on each element of a set.

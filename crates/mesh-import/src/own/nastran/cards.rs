@@ -141,7 +141,7 @@ pub(super) fn cards<'t>(texts: &'t Texts<'_>) -> Result<Bulk<'t>, ImportError> {
             let before = bulk.cards.len().checked_sub(1).map(|last| &bulk.cards[last..]);
             let count = times(line.head).ok_or_else(|| expected_card(texts, *data))?;
             let made = match before {
-                Some([card]) => repeated(card, &line.data, count, data.place),
+                Some([card]) if !labels.contains(&card.label) => repeated(card, &line.data, count, data.place),
                 _ => None,
             };
             let Some(made) = made else {

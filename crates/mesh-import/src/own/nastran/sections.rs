@@ -86,7 +86,7 @@ impl Sections {
             other if OTHERS.contains(&other) => {
                 self.elements.push(Heavy { name, corners: Vec::new(), section: Sectional::Unknown });
             }
-            "PSHELL" | "PCOMP" | "PROD" | "PTUBE" | "PBAR" | "PBEAM" | "PBARL" | "PBEAML" => {
+            "PSHELL" | "PCOMP" | "PCOMPG" | "PROD" | "PTUBE" | "PBAR" | "PBEAM" | "PBARL" | "PBEAML" => {
                 // A property that cannot be read is that of a mass that is not known.
                 self.properties.insert(label(1)?, section(texts, card).ok().flatten());
                 return Ok(false);
@@ -133,6 +133,8 @@ fn section(texts: &Texts<'_>, card: &Card<'_>) -> Result<Option<Section>, Import
             (Some(_), Some(thickness)) => one(thickness, number(8)?),
         },
         "PCOMP" => plies(texts, card),
+        // A number of its own stands before each layer, which are eight fields each.
+        "PCOMPG" => global_plies(texts, card),
         "PROD" => one(number(3)?, number(6)?),
         "PTUBE" => {
             let (outer, wall) = (number(3)?, number(4)?);
@@ -140,19 +142,131 @@ fn section(texts: &Texts<'_>, card: &Card<'_>) -> Result<Option<Section>, Import
             one(PI / 4.0 * (outer * outer - inner * inner), number(5)?)
         }
         "PBAR" => one(number(3)?, number(7)?),
-        // Stations along it begin in field 17.
-        "PBEAM" if card.field(17).is_empty() => one(number(3)?, number(8)?),
-        "PBARL" | "PBEAML" => {
-            let [a, b] = [number(9)?, number(10)?];
-            match &*card.field(4).to_uppercase() {
-                "ROD" => one(PI * a * a, b),
-                "BAR" => one(a * b, number(11)?),
-                "TUBE" => one(PI * (a * a - b * b), number(11)?),
-                _ => Ok(None),
-            }
+        "PBEAM" => along(texts, card),
+        "PBARL" => {
+            let kind = card.field(4).to_uppercase();
+            let Some(count) = dimensions(&kind) else { return Ok(None) };
+            let values = (9..9 + count).map(number).collect::<Result<Vec<_>, _>>()?;
+            one(area(&kind, &values), number(9 + count)?)
         }
+        "PBEAML" => along_of_kind(texts, card),
         _ => Ok(None),
     }
+}
+
+/// A station of a beam: its place from 0 to 1, area and mass beside it, none where they follow from other stations.
+type Station = (f64, Option<f64>, Option<f64>);
+
+/// The section of a PBEAM, whose area and mass are linear between its stations.
+fn along(texts: &Texts<'_>, card: &Card<'_>) -> Result<Option<Section>, ImportError> {
+    let is_station = |field: usize| matches!(&*card.field(field).to_uppercase(), "YES" | "YESA" | "NO");
+    let mut stations = vec![(0.0, Some(card.number_or_nought(texts, 3)?), Some(card.number_or_nought(texts, 8)?))];
+    // The places of stresses at the first end may be left out.
+    let mut first = if is_station(9) { 9 } else { 17 };
+    while is_station(first) {
+        let Some(at) = card.number(texts, first + 1)? else { return Ok(None) };
+        stations.push((at, card.number(texts, first + 2)?, card.number(texts, first + 7)?));
+        first += if card.field(first).eq_ignore_ascii_case("YES") { 16 } else { 8 };
+    }
+    Ok(mean(card.label(texts, 2)?, stations))
+}
+
+/// The same of a PBEAML.
+fn along_of_kind(texts: &Texts<'_>, card: &Card<'_>) -> Result<Option<Section>, ImportError> {
+    let kind = card.field(4).to_uppercase();
+    let Some(count) = dimensions(&kind) else { return Ok(None) };
+    let dimensions = |first: usize| -> Result<Vec<Option<f64>>, ImportError> {
+        (first..first + count).map(|field| card.number(texts, field)).collect()
+    };
+    let at_first: Vec<f64> = dimensions(9)?.into_iter().map(Option::unwrap_or_default).collect();
+    let mut stations = vec![(0.0, Some(area(&kind, &at_first)), Some(card.number_or_nought(texts, 9 + count)?))];
+    let mut first = 10 + count;
+    while first <= card.len() {
+        let at = card.number(texts, first + 1)?.unwrap_or(1.0);
+        let given = dimensions(first + 2)?;
+        // Dimensions that are left out are those of the first end; between the ends what they are is not known here.
+        let values: Option<Vec<f64>> = match at < 1.0 {
+            true => given.into_iter().collect(),
+            false => Some(given.iter().zip(&at_first).map(|(given, first)| given.unwrap_or(*first)).collect()),
+        };
+        let Some(values) = values else { return Ok(None) };
+        stations.push((at, Some(area(&kind, &values)), card.number(texts, first + 2 + count)?));
+        first += 3 + count;
+    }
+    Ok(mean(card.label(texts, 2)?, stations))
+}
+
+/// The mean along a beam of its area and of the mass beside it. What the second end lacks is as at the first, what others lack is between the ends.
+fn mean(material: u64, mut stations: Vec<Station>) -> Option<Section> {
+    stations.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (first, last) = (*stations.first()?, *stations.last()?);
+    if stations.len() == 1 {
+        return Some(Section { layers: vec![(material, first.1?)], beside: first.2? });
+    }
+    if first.0 != 0.0 || last.0 != 1.0 {
+        return None;
+    }
+    let of = |value: &dyn Fn(&Station) -> Option<f64>| -> Option<f64> {
+        let start = value(&first)?;
+        let end = value(&last).unwrap_or(start);
+        let at = |station: &Station| match value(station) {
+            Some(value) => value,
+            None => start + (end - start) * station.0,
+        };
+        Some(stations.windows(2).map(|pair| 0.5 * (at(&pair[0]) + at(&pair[1])) * (pair[1].0 - pair[0].0)).sum())
+    };
+    Some(Section { layers: vec![(material, of(&|station| station.1)?)], beside: of(&|station| station.2)? })
+}
+
+/// Number of dimensions of a kind of section.
+fn dimensions(kind: &str) -> Option<usize> {
+    Some(match kind {
+        "ROD" => 1,
+        "TUBE" | "TUBE2" | "BAR" => 2,
+        "HEXA" => 3,
+        "CHAN" | "T" | "BOX" | "CROSS" | "H" | "T1" | "I1" | "CHAN1" | "Z" | "CHAN2" | "T2" | "HAT" | "L" => 4,
+        "HAT1" => 5,
+        "I" | "BOX1" => 6,
+        _ => return None,
+    })
+}
+
+/// The area of a section by its dimensions.
+fn area(kind: &str, values: &[f64]) -> f64 {
+    let d = |number: usize| values.get(number - 1).copied().unwrap_or_default();
+    match kind {
+        "ROD" => PI * d(1) * d(1),
+        "TUBE" => PI * (d(1) * d(1) - d(2) * d(2)),
+        "TUBE2" => PI * d(2) * (2.0 * d(1) - d(2)),
+        "BAR" => d(1) * d(2),
+        "HEXA" => d(3) * (d(2) - d(1)),
+        "CHAN" => 2.0 * d(4) * d(1) + (d(2) - 2.0 * d(4)) * d(3),
+        "T" | "T2" | "L" => d(1) * d(3) + (d(2) - d(3)) * d(4),
+        "BOX" => d(1) * d(2) - (d(1) - 2.0 * d(4)) * (d(2) - 2.0 * d(3)),
+        "CROSS" | "H" => d(2) * d(3) + d(1) * d(4),
+        "T1" => d(1) * d(3) + d(2) * d(4),
+        "I1" => (d(1) + d(2)) * (d(4) - d(3)) + d(2) * d(3),
+        "CHAN1" | "Z" => d(1) * (d(4) - d(3)) + d(2) * d(4),
+        "CHAN2" => 2.0 * d(1) * d(3) + (d(4) - 2.0 * d(1)) * d(2),
+        "HAT" => d(2) * (d(3) + 2.0 * (d(4) + d(2)) + 2.0 * (d(1) - 2.0 * d(2))),
+        "HAT1" => d(1) * (d(4) + d(5)) + 2.0 * d(4) * (d(2) - d(4) - d(5)),
+        "I" => d(2) * d(5) + d(3) * d(6) + (d(1) - d(5) - d(6)) * d(4),
+        // BOX1
+        _ => d(1) * d(2) - (d(1) - d(5) - d(6)) * (d(2) - d(3) - d(4)),
+    }
+}
+
+/// Layers of a PCOMPG.
+fn global_plies(texts: &Texts<'_>, card: &Card<'_>) -> Result<Option<Section>, ImportError> {
+    let mut section = Section { layers: Vec::new(), beside: card.number_or_nought(texts, 3)? };
+    for first in (9..=card.len()).step_by(8) {
+        match (card.whole(texts, first + 1)?, card.number(texts, first + 2)?) {
+            (Some(material), Some(thickness)) => section.layers.push((material, thickness)),
+            (None, None) => {}
+            _ => return Ok(None),
+        }
+    }
+    Ok(Some(section))
 }
 
 /// Layers of a PCOMP; material and thickness are those of the layer before where they are empty.
