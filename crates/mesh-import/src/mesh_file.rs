@@ -149,7 +149,7 @@ impl MeshFile {
                 Err(refused(SURFACE, SURFACE_CURE))
             }
             Err(MeshError { fault: MeshFault::Version { .. }, .. }) if ending(path) != "msh" => {
-                Err(refused(UNKNOWN, UNKNOWN_CURE))
+                Err(refused(UNKNOWN, cure(&self.path)))
             }
             read => Ok(read?),
         }
@@ -213,6 +213,20 @@ const SURFACE_CURE: &str = "give the part as STEP, which gmsh meshes, or fill th
 const UNKNOWN: &str = "no mesh or geometry of a format that is read here";
 const UNKNOWN_CURE: &str =
     "save it as .msh, .inp, .bdf, .med, .vtu, .unv or .step; docs/reference/meshes.md has all formats";
+
+/// Endings of files that are not read, and what to do.
+fn cure(path: &Path) -> &'static str {
+    match ending(path).as_str() {
+        "cdb" => {
+            "a deck of Ansys: save it as VTU with mapdl-archive in Python (docs/reference/meshes.md says how), or as .bdf, .inp or .unv in the \
+             program that wrote it"
+        }
+        "dat" => {
+            "name a deck of Nastran .bdf, one of Abaqus or CalculiX .inp; docs/reference/meshes.md has all formats"
+        }
+        _ => UNKNOWN_CURE,
+    }
+}
 
 /// A smaller scaled Jacobian is what gmsh's optimisation takes for bad (Mesh.HighOrderThresholdMin).
 const BADLY_CURVED: f64 = 0.1;

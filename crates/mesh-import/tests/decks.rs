@@ -97,7 +97,7 @@ fn what_is_not_used_is_counted_and_named() {
     let bar = Bar::new();
     let more = "*ELEMENT, TYPE=MASS, ELSET=m\n9001, 1\n*MASS, ELSET=m\n7.85e-4\n*ELEMENT, TYPE=SPRINGA, ELSET=k\n9002, 1, 2\n\
                 *SPRING, ELSET=k\n\n10.\n*EQUATION\n2\n1, 1, 1., 2, 1, -1.\n*RIGID BODY, REF NODE=1, NSET=root\n*COUPLING, \
-                CONSTRAINT NAME=hub, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 3\n*COUPLING, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 2\n*MODEL CHANGE, TYPE=CONTACT PAIR, ADD\na, b\n\
+                CONSTRAINT NAME=hub, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 3\n*COUPLING, REF NODE=1, SURFACE=face\n*KINEMATIC\n1, 2\n*COUPLING, REF NODE=1, SURFACE=face, INFLUENCE RADIUS=3.\n*DISTRIBUTING, WEIGHTING METHOD=LINEAR\n*MODEL CHANGE, TYPE=CONTACT PAIR, ADD\na, b\n\
                 *ELEMENT, TYPE=S3, ELSET=skin\n9005, 1, 2, 3\n*MATERIAL, NAME=lead\n*DENSITY\n70.\n*SHELL SECTION, ELSET=skin, MATERIAL=lead\n.1, 5\n*ELEMENT, TYPE=S3R, ELSET=layers\n9006, 1, 2, 3\n\
                 *SHELL SECTION, ELSET=layers, COMPOSITE, SYMMETRIC\n.1, 3, lead, 0.\n.2, , LEAD\n*ELEMENT, TYPE=B31, ELSET=edges\n9003, 1, 2,\n9004, 1, 2,\n*SECRET\n1\n";
     let text = format!(
@@ -134,7 +134,9 @@ fn what_is_not_used_is_counted_and_named() {
         "1 *SPRING",
         "1 *EQUATION",
         "1 *RIGID BODY (in a scene: a marker with group = \"root\" and tie = \"rigid\")",
-        "1 *COUPLING of face",
+        "2 *COUPLING of face",
+        "1 INFLUENCE RADIUS of *COUPLING",
+        "1 WEIGHTING METHOD of *DISTRIBUTING",
         "1 keyword(s) that are not known",
     ] {
         assert!(notes[0].contains(words), "{words}: {notes:?}");

@@ -172,7 +172,11 @@ fn every_format_gives_the_same_elements_and_its_groups() {
         assert_eq!(reader_of(&formats.path(name), &settings), reader, "{name}");
         let Imported { mesh, notes, .. } =
             formats.read(name, settings).unwrap_or_else(|error| panic!("{name}: {error}"));
-        assert!(notes.is_empty(), "{name}: {notes:?}");
+        let known: &[&str] = match name {
+            "linear.vtu" => &["the numbers id of the elements are all different, and make no groups"],
+            _ => &[],
+        };
+        assert_eq!(notes, known, "{name}");
         assert_eq!(mesh.elements().len(), direct.elements().len(), "{name}");
         assert_eq!(mesh.positions().len(), direct.positions().len(), "{name}");
         // A wrong order of nodes gives another volume, or elements that are refused. Nastran's short fields have five digits.
@@ -321,9 +325,11 @@ fn what_cannot_be_read_is_said_with_its_help() {
     fs::write(formats.path("empty.xdmf"), "<Xdmf><Domain/></Xdmf>").unwrap();
     fs::write(formats.path("part.stl"), "solid x\nendsolid x\n").unwrap();
     fs::write(formats.path("part.abc"), "a diary\n").unwrap();
+    fs::write(formats.path("part.cdb"), "/PREP7\n").unwrap();
     for (name, words) in [
         ("part.stl", &["a surface of triangles", "give the part as STEP"][..]),
         ("part.abc", &["no mesh or geometry of a format that is read", ".step"]),
+        ("part.cdb", &["no mesh or geometry of a format that is read", "mapdl-archive"]),
         ("linear.vtu", &["768 tetrahedra of first order", "raise_order = true"]),
         ("brick.inp", &["1 C3D8", "ten-node tetrahedra", "`matrices` in [body]"]),
         ("empty.inp", &["it has no nodes"]),

@@ -60,10 +60,14 @@ text = (folder / "text_only.vtu").read_text()
 head, rest = text.split('Name="types"')
 at, end = rest.index(">"), rest.index("</DataArray>")
 rest = rest[:at] + rest[at:end].replace("24", "71").replace("22", "69") + rest[end:]
+# VTK and ParaView write texts, too.
+text_of_vtk = '<FieldData><Array type="String" Name="program" NumberOfTuples="1" format="ascii">80 86 0</Array></FieldData>'
+head = head.replace("<UnstructuredGrid>", "<UnstructuredGrid>" + text_of_vtk)
 (folder / "lagrange.vtu").write_text(head + 'Name="types"' + rest)
 
 # First order, and bricks.
-linear = meshio.Mesh(mesh.points, [("tetra", blocks["tetra10"][:, :4])])
+numbers = [np.arange(len(blocks["tetra10"]))]
+linear = meshio.Mesh(mesh.points, [("tetra", blocks["tetra10"][:, :4])], cell_data={"id": numbers})
 linear.write(folder / "linear.vtu")
 brick = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
 meshio.Mesh(brick, [("hexahedron", [list(range(8))])]).write(folder / "brick.inp")

@@ -5,6 +5,7 @@ Prints a line of JSON: what was left out ("notes"), or what is wrong ("error", w
 """
 
 import contextlib
+import importlib
 import io
 import json
 import struct
@@ -172,6 +173,10 @@ def with_meshio(np, source):
     said = io.StringIO()
     help = "check the file, or write it as VTU, .inp or MSH 4.1"
     try:
+        # VTK and ParaView add texts of their own, which meshio would refuse.
+        with contextlib.suppress(ImportError, AttributeError):
+            vtu = importlib.import_module(f"{meshio.__name__}.vtu._vtu")
+            vtu.vtu_to_numpy_type.setdefault("String", np.dtype("uint8"))
         # meshio prints its reasons.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             mesh = meshio.read(source)
@@ -286,6 +291,10 @@ class Groups:
             self.without.append(name)
 
 
+# More elements that all have numbers of their own are numbered, not grouped.
+NUMBERED = 20
+
+
 def add_labels(np, groups, name, arrays, names, notes):
     """Whole numbers of elements, such as property or material numbers, are groups."""
     arrays = [np.asarray(array) for array in arrays]
@@ -294,6 +303,9 @@ def add_labels(np, groups, name, arrays, names, notes):
     labels = sorted(set().union(*(set(a.tolist()) for a in arrays)))
     if len(labels) > 1000:
         notes.append(f"the numbers {name} of the elements have {len(labels)} values, and make no groups")
+        return
+    if NUMBERED < len(labels) == sum(len(array) for array in arrays):
+        notes.append(f"the numbers {name} of the elements are all different, and make no groups")
         return
     dimension = {"tetra10": 3, "triangle6": 2}
     prefix = name.split(":")[-1]

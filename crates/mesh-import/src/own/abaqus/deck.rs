@@ -91,7 +91,18 @@ impl Reader<'_, '_> {
             "RIGID BODY" => self.tie(block, "RIGID BODY", true)?,
             "COUPLING" => match next {
                 Some(kind) if !ties_all(kind) => self.deck.left.count("*COUPLING in some directions only"),
-                _ => self.tie(block, "COUPLING", next.is_none_or(|kind| kind.keyword != "DISTRIBUTING"))?,
+                _ => {
+                    let mean = next.filter(|kind| kind.keyword == "DISTRIBUTING");
+                    let has_weights = mean
+                        .is_some_and(|kind| kind.has("WEIGHTING METHOD") && !kind.is("WEIGHTING METHOD", "UNIFORM"));
+                    if has_weights {
+                        self.deck.left.count("WEIGHTING METHOD of *DISTRIBUTING (the nodes count alike)");
+                    }
+                    if block.has("INFLUENCE RADIUS") {
+                        self.deck.left.count("INFLUENCE RADIUS of *COUPLING (the whole surface is tied)");
+                    }
+                    self.tie(block, "COUPLING", mean.is_none())?;
+                }
             },
             // They say of what kind the coupling is before them.
             "KINEMATIC" | "DISTRIBUTING" => {}

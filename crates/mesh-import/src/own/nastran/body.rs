@@ -72,6 +72,8 @@ struct Tie {
     nodes: Vec<u64>,
     /// False if it ties in some directions only.
     is_whole: bool,
+    /// False if its nodes have other weights than each other.
+    is_even: bool,
 }
 
 pub(super) fn imported(
@@ -122,6 +124,9 @@ pub(super) fn imported(
         left.heavy(name, mass);
     }
     let ties = deck.ties(texts, &rows, &mut found)?;
+    for tie in deck.ties.iter().filter(|tie| tie.is_whole && !tie.is_even) {
+        notes.push(format!("the weights of {} {} are taken as equal", tie.kind, tie.label));
+    }
     for (property, name) in &bulk.names {
         // A name that several properties have is a group of them all.
         let members = (deck.tetrahedra.iter().zip(0..)).filter(|(element, _)| element.property == *property);
@@ -286,10 +291,20 @@ impl Deck {
             let text = card.field(field);
             !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
         };
+        let refuse_word = |field: usize| {
+            let found =
+                format!("in field {} of {} {label}, found a word, expected the number of a node", field + 1, card.name);
+            texts.refuse(card.place, found, "write the numbers of all its nodes")
+        };
+        let is_word = |field: usize| card.field(field).starts_with(|letter: char| letter.is_ascii_alphabetic());
         // What is tied in some directions only does something else.
         let has_all = |field: usize| ['1', '2', '3'].iter().all(|direction| card.field(field).contains(*direction));
         let (kind, point, mut is_whole);
+        let mut weights = Vec::new();
         if card.name == "RBE2" {
+            if let Some(field) = (4..=card.len()).find(|field| is_word(*field)) {
+                return Err(refuse_word(field));
+            }
             // A number with a point at the end is one of thermal expansion.
             nodes.extend((4..=card.len()).filter(|field| is_label(*field)).map(|field| card.label(texts, field)));
             (kind, point, is_whole) = ("RBE2", card.label(texts, 2)?, has_all(3));
@@ -299,8 +314,12 @@ impl Deck {
             (kind, point, is_whole) = ("RBE3", card.label(texts, 3)?, has_all(4));
             // Weight, directions and nodes, again and again; words begin what is of another kind.
             let mut field = 5;
-            while field <= card.len() && !card.field(field).starts_with(|letter: char| letter.is_ascii_alphabetic()) {
+            while field <= card.len() && !matches!(&*card.field(field).to_uppercase(), "UM" | "ALPHA" | "TREF") {
+                if is_word(field) {
+                    return Err(refuse_word(field));
+                }
                 if card.field(field).contains('.') {
+                    weights.push(card.number_or_nought(texts, field)?);
                     is_whole &= has_all(field + 1);
                     field += 2;
                 } else {
@@ -315,7 +334,8 @@ impl Deck {
             self.left.count(&format!("{kind} in some directions only"));
         }
         let nodes = nodes.into_iter().collect::<Result<_, _>>()?;
-        self.ties.push(Tie { place: card.place, kind, label, point, nodes, is_whole });
+        let is_even = weights.windows(2).all(|pair| pair[0] == pair[1]);
+        self.ties.push(Tie { place: card.place, kind, label, point, nodes, is_whole, is_even });
         Ok(())
     }
 
@@ -327,7 +347,7 @@ impl Deck {
         found: &mut Tetrahedra,
     ) -> Result<Vec<DeckTie>, ImportError> {
         let mut ties = Vec::new();
-        for Tie { place, kind, label, point, nodes, is_whole } in &self.ties {
+        for Tie { place, kind, label, point, nodes, is_whole, is_even: _ } in &self.ties {
             let row = |node: &u64| {
                 rows.get(node).copied().ok_or_else(|| {
                     let found = format!("{kind} {label} has node {node}, which is not there");
@@ -353,6 +373,20 @@ impl Deck {
         notes: &mut Vec<String>,
     ) -> Vec<DeckMaterial> {
         let mut found = Vec::new();
+        let mut without: Vec<_> =
+            with_tetrahedra.iter().filter(|property| !self.properties.contains_key(property)).collect();
+        without.sort();
+        // A mesh alone has neither properties nor materials.
+        let has_none = self.properties.is_empty() && self.isotropic.is_empty() && self.others.is_empty();
+        if let [first, rest @ ..] = &without[..]
+            && !has_none
+        {
+            let more = if rest.is_empty() { String::new() } else { format!(" and of {} more", rest.len()) };
+            notes.push(format!(
+                "the material of {}{more} is not known: there is no PSOLID of that number",
+                group_of(**first)
+            ));
+        }
         for (property, label) in self.properties.iter().filter(|(property, _)| with_tetrahedra.contains(property)) {
             let group = group_of(*property);
             let Some([young, shear, poisson, density, damping]) = self.isotropic.get(label) else {
