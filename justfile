@@ -175,7 +175,7 @@ layouts:
 performance *what: build
     .tools/performance/bin/python crates/verification/performance/performance.py {{what}}
 
-# docs/evidence/systems.md: time against error of three systems, in flexframe and in Exudyn, in turn on one core (Python packages; some minutes).
+# docs/evidence/systems.md: time against error of four systems, in flexframe and in Exudyn, in turn on one core (Python packages; some minutes).
 exudyn: build
     cargo build --quiet --package verification --bin systems
     python3 -m venv --upgrade-deps .tools/exudyn >/dev/null

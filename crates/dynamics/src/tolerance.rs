@@ -140,7 +140,7 @@ impl ErrorMeasure {
 
     /// Vibration that steps may still forget, over the largest deformation: what they do not resolve and damp.
     pub fn forgettable(&self) -> f64 {
-        (FORGETTABLE * self.tolerance).min(LARGEST_FORGETTABLE) - self.stated.forgotten
+        (FORGETTABLE * self.tolerance).min(LARGEST_FORGETTABLE).max(self.tolerance) - self.stated.forgotten
     }
 
     /// A step to `end` was taken, which has forgotten some vibration beside its errors.

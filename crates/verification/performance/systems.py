@@ -4,12 +4,13 @@ Usage: systems.py FLEXFRAME SYSTEMS PAGE
 FLEXFRAME is the program, SYSTEMS the one of crates/verification/src/bin/systems.rs. Exudyn runs in this Python.
 """
 
+import copy
+import itertools
 import json
 import math
 import subprocess
 import sys
 import tempfile
-import tomllib
 from pathlib import Path
 
 import matplotlib
@@ -20,7 +21,7 @@ import numpy as np
 
 HERE = Path(__file__).parent
 ROWS = 20
-TOLERANCES = ["1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10"]
+TOLERANCES = ["0.3", "0.1", "3e-2", "1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10"]
 TARGETS = [1e-3, 1e-5, 1e-7]
 SECONDS = 12.0  # of Exudyn's longest run
 RADIUS = "0.9"
@@ -29,6 +30,7 @@ CASES = {
     "Slider-crank": ("slider_crank", ["rod"], "rod", "middle", 0.45, 100),
     "Double pendulum": ("double_pendulum", ["upper", "lower"], "lower", "end", 400.0, 50),
     "Hinged satellite": ("satellite", ["right", "left"], "right", "end", 440.0, 50),
+    "Chain": ("chain", ["bar0", "bar1", "bar2", "bar3"], "bar3", "end", 800.0, 50),
 }
 
 
@@ -39,20 +41,36 @@ def run(*words):
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
 
-def distance(a, b, size):
-    return float(np.max(np.linalg.norm(np.array(a) - np.array(b), axis=1)) / size)
+class Run:
+    """What a run has found: places and elastic displacements of the point at the rows."""
+
+    def __init__(self, found):
+        self.seconds, self.steps = found["seconds"], found["steps"]
+        self.places, self.bent = (np.array(found[of]) for of in ("positions", "displacements"))
+
+    def errors(self, limit, size):
+        """Errors over the size of the system; and the larger of these and of the errors of the deformation over its largest."""
+        place, bent = (
+            float(np.max(np.linalg.norm(own - right, axis=1)))
+            for own, right in ((self.places, limit.places), (self.bent, limit.bent))
+        )
+        place /= size
+        return place, max(place, bent / float(np.max(np.linalg.norm(limit.bent, axis=1))))
+
+    def against(self, limit, size):
+        return (self.seconds, *self.errors(limit, size), self.steps)
 
 
 def ours(program, case):
-    """(seconds, error) for each tolerance, against the tightest; the positions by the tightest."""
+    """(seconds, errors, steps) for each tolerance, against the tightest; that run."""
     scene, _, body, point, size, _ = case
-    found = run(program, HERE / "systems" / f"{scene}.toml", body, point, ROWS, *TOLERANCES)
-    limit = found[-1]["positions"]
-    return [(one["seconds"], distance(one["positions"], limit, size), one["steps"]) for one in found[:-1]], limit
+    found = [Run(one) for one in run(program, HERE / "systems" / f"{scene}.toml", body, point, ROWS, *TOLERANCES)]
+    *others, limit = found
+    return [one.against(limit, size) for one in others], limit
 
 
 def theirs(flexframe, case):
-    """(seconds, error) for twice as many steps each time, against what the two finest lead to by their order, two."""
+    """The same for twice as many steps each time, against what the two finest lead to by their order, two."""
     scene, bodies, body, point, size, steps = case
     path = HERE / "systems" / f"{scene}.toml"
     with tempfile.TemporaryDirectory() as folder:
@@ -68,15 +86,16 @@ def theirs(flexframe, case):
             peer = HERE / "peers/exudyn_system.py"
             found += run(sys.executable, peer, path, folder, body, point, RADIUS, ROWS, steps)
             steps *= 2
-    found = [one for one in found if one["positions"] is not None]
-    coarse, fine = (np.array(one["positions"]) for one in found[-2:])
-    limit = fine + (fine - coarse) / 3
-    return [(one["seconds"], distance(one["positions"], limit, size), one["steps"]) for one in found[:-1]], limit
+    found = [Run(one) for one in found if one["positions"] is not None]
+    coarse, limit = found[-2], copy.copy(found[-1])
+    limit.places = limit.places + (limit.places - coarse.places) / 3
+    limit.bent = limit.bent + (limit.bent - coarse.bent) / 3
+    return [one.against(limit, size) for one in found[:-1]], limit
 
 
-def seconds_for(pairs, target):
-    """Seconds at an error, by a line between logarithms; beyond the ends, "at most", or by an order of two, marked."""
-    pairs = [(seconds, error) for seconds, error, _ in pairs]
+def seconds_for(runs, kind, target):
+    """Seconds at an error of a kind, by a line between logarithms; beyond the ends, "at most", or by an order of two, marked."""
+    pairs = [(run[0], run[1 + kind]) for run in runs]
     within = [i for i in range(len(pairs)) if all(error <= target for _, error in pairs[i:])]
     if within and within[0] == 0:
         return pairs[0][0], "at most"
@@ -90,24 +109,31 @@ def seconds_for(pairs, target):
 
 def main():
     flexframe, program, page = sys.argv[1:]
-    figure, axes = plt.subplots(1, len(CASES), figsize=(12, 4), sharey=True)
-    rows, limits, ladders = [], [], []
+    figure, axes = plt.subplots(1, len(CASES), figsize=(15, 4), sharey=True)
+    tables, limits, ladders = ([], []), [], []
     for axis, (name, case) in zip(axes, CASES.items()):
         mine, our_limit = ours(program, case)
         others, their_limit = theirs(flexframe, case)
-        apart = distance(our_limit, their_limit, case[4])
-        limits.append(f"| {name} | {apart:.1e} |")
-        for target in TARGETS:
-            (a, how_a), (b, how_b) = seconds_for(mine, target), seconds_for(others, target)
+        place, both = our_limit.errors(their_limit, case[4])
+        limits.append(f"| {name} | {place:.1e} | {both:.1e} |")
+        for (kind, rows), target in itertools.product(enumerate(tables), TARGETS):
+            (a, how_a), (b, how_b) = seconds_for(mine, kind, target), seconds_for(others, kind, target)
             cell = lambda seconds, how: f"{1e3 * seconds:.3g} ms" + (f" ({how})" if how else "")
             rows.append(f"| {name} | {target:.0e} | {cell(a, how_a)} | {cell(b, how_b)} | {b / a:.3g} |")
-        for who, pairs in (("flexframe", mine), ("Exudyn", others)):
-            axis.loglog([s for s, _, _ in pairs], [e for _, e, _ in pairs], "o-", label=who)
-            ladders += [f"| {name} | {who} | {n} | {1e3 * s:.3g} ms | {e:.1e} |" for s, e, n in pairs]
+        for color, who, runs in (("C0", "flexframe", mine), ("C1", "Exudyn", others)):
+            for kind, style in enumerate(("o-", "x--")):
+                axis.loglog(
+                    [one[0] for one in runs],
+                    [one[1 + kind] for one in runs],
+                    style,
+                    color=color,
+                    label=who + (", with deformation" if kind else ""),
+                )
+            ladders += [f"| {name} | {who} | {n} | {1e3 * s:.3g} ms | {e:.1e} | {d:.1e} |" for s, e, d, n in runs]
         axis.set_title(name)
         axis.set_xlabel("processor seconds")
         axis.grid(True, which="major", alpha=0.3)
-    axes[0].set_ylabel("error over the size of the system")
+    axes[0].set_ylabel("error")
     axes[0].legend()
     figure.tight_layout()
     target = Path(page)
@@ -115,7 +141,8 @@ def main():
     picture.parent.mkdir(exist_ok=True)
     figure.savefig(picture, metadata={"Date": None})
     template = (HERE / "systems" / "page.template").read_text()
-    text = template.replace("TABLE", "\n".join(rows)).replace("LIMITS", "\n".join(limits)).replace("LADDERS", "\n".join(ladders))
+    places, both = ("\n".join(rows) for rows in tables)
+    text = template.replace("PLACES", places).replace("BOTH", both).replace("LIMITS", "\n".join(limits)).replace("LADDERS", "\n".join(ladders))
     # What other recipes have measured stays.
     _, mark, rest = target.read_text().partition("\n## Random systems\n") if target.exists() else ("", "", "")
     target.write_text(text + mark + rest)

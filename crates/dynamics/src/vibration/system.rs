@@ -20,6 +20,7 @@ mod mode;
 mod null_space;
 mod participation;
 mod reaction;
+mod refined;
 mod rotor;
 mod scaled;
 mod spin;

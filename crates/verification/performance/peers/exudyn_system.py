@@ -5,8 +5,8 @@ Markers are the means of faces as in flexframe (MarkerSuperElementRigid, weights
 generalized-alpha, Newton, index 3 as Exudyn has it by default.
 
 Usage: exudyn_system.py SCENE FOLDER BODY POINT RADIUS ROWS STEPS...      (prints JSON, a line for each number of steps)
-FOLDER has BODY.body.h5 of each flexible body. RADIUS is the spectral radius of generalized-alpha. The position of POINT of BODY is told
-at ROWS equal times.
+FOLDER has BODY.body.h5 of each flexible body. RADIUS is the spectral radius of generalized-alpha. The position of POINT of BODY and its
+elastic displacement, in the axes of the body, are told at ROWS equal times.
 """
 
 import json
@@ -34,6 +34,7 @@ from exudyn.itemInterface import (
     MarkerSuperElementPosition,
     MarkerSuperElementRigid,
     SensorMarker,
+    SensorSuperElement,
 )
 from exudyn.utilities import InertiaTensor2Inertia6D, RigidBodyInertia
 
@@ -136,8 +137,11 @@ class Flexible:
             )
         )
 
+    def node(self, at):
+        return int(self.find.query(at)[1])
+
     def point(self, system, at):
-        number = int(self.find.query(at)[1])
+        number = self.node(at)
         return system.AddMarker(
             MarkerSuperElementPosition(bodyNumber=self.number, meshNodeNumbers=[number], weightingFactors=[1.0])
         )
@@ -188,12 +192,20 @@ def build():
             storeInternal=True,
         )
     )
+    bent = system.AddSensor(
+        SensorSuperElement(
+            bodyNumber=bodies[tracked].number,
+            meshNodeNumber=bodies[tracked].node(at),
+            outputVariableType=exudyn.OutputVariableType.DisplacementLocal,
+            storeInternal=True,
+        )
+    )
     system.Assemble()
-    return container, system, sensor
+    return container, system, [sensor, bent]
 
 
 for steps in map(int, sys.argv[7:]):
-    container, system, sensor = build()
+    container, system, sensors = build()
     settings = exudyn.SimulationSettings()
     settings.timeIntegration.numberOfSteps = steps
     settings.timeIntegration.endTime = end
@@ -209,5 +221,6 @@ for steps in map(int, sys.argv[7:]):
     except Exception:
         done = False
     seconds = time.process_time() - begin
-    positions = system.GetSensorStoredData(sensor)[:, 1:4].tolist() if done else None
-    print(json.dumps({"steps": steps, "seconds": seconds, "positions": positions}), file=sys.__stdout__, flush=True)
+    positions, displacements = (system.GetSensorStoredData(sensor)[:, 1:4].tolist() if done else None for sensor in sensors)
+    found = {"steps": steps, "seconds": seconds, "positions": positions, "displacements": displacements}
+    print(json.dumps(found), file=sys.__stdout__, flush=True)

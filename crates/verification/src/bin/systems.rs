@@ -1,7 +1,8 @@
 //! A system at several tolerances, timed, for `./dev exudyn` and `./dev schemes`.
 //!
 //! `systems SCENE BODY POINT ROWS TOLERANCE...`, a tolerance also as SCHEME:TOLERANCE, prints a line of JSON for each
-//! tolerance: processor seconds of the motion alone, steps, evaluations, and the position of a point of a body at equal times.
+//! tolerance: processor seconds of the motion alone, steps, and the position and the elastic displacement (body axes) of a point of a
+//! body at equal times.
 
 use std::error::Error;
 use std::path::Path;
@@ -9,6 +10,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use dynamics::{Observation, Reached, StepControl, SystemScheme};
+use nalgebra::Vector3;
 use verification::systems::run::built;
 
 /// Time of all runs of one tolerance together, at least.
@@ -71,35 +73,38 @@ fn ladder(scene: &Path, [body, point]: [&str; 2], rows: &str, tolerances: &[Stri
         let (_, shapes) = &built.models[number].points[seen];
         let place = |row: &[Observation]| {
             let body = &row[of_system];
-            let arm = shapes.position_body() + body.points[seen].elastic_displacement_body;
-            body.origin_global + body.attitude.to_global(&arm)
+            let bent = body.points[seen].elastic_displacement_body;
+            [body.origin_global + body.attitude.to_global(&(shapes.position_body() + bent)), bent]
         };
         // Short runs are repeated: clocks are coarse.
         let (mut seconds, mut runs) = (0.0, 0.0);
-        let (positions, simulation) = loop {
+        let (places, simulation) = loop {
             let mut simulation = built.start_by(scheme, control, end, interval, false)?;
             let mut row: Vec<Observation> = (0..built.models.len()).map(|body| simulation.room(body)).collect();
             let begin = Clock::new();
             simulation.observe(&mut row)?;
-            let mut positions = vec![place(&row)];
-            while positions.len() as f64 * interval < end * (1.0 + 1e-9) {
+            let mut places = vec![place(&row)];
+            while places.len() as f64 * interval < end * (1.0 + 1e-9) {
                 while simulation.advance_watched(1000, |_, _| ())? == Reached::Between {}
                 simulation.observe(&mut row)?;
-                positions.push(place(&row));
+                places.push(place(&row));
             }
             (seconds, runs) = (seconds + begin.seconds(), runs + 1.0);
             if seconds > LEAST_SECONDS {
-                break (positions, simulation);
+                break (places, simulation);
             }
         };
         let seconds = seconds / runs;
         let stats = simulation.stats();
-        let positions: Vec<String> = positions.iter().map(|x| format!("[{:?}, {:?}, {:?}]", x.x, x.y, x.z)).collect();
+        let [positions, displacements] = [0, 1].map(|which| {
+            let of_row = |row: &[Vector3<f64>; 2]| format!("[{:?}, {:?}, {:?}]", row[which].x, row[which].y, row[which].z);
+            places.iter().map(of_row).collect::<Vec<String>>().join(", ")
+        });
         println!(
-            "{{\"scheme\": \"{}\", \"tolerance\": {tolerance}, \"seconds\": {seconds}, \"steps\": {}, \"positions\": [{}]}}",
+            "{{\"scheme\": \"{}\", \"tolerance\": {tolerance}, \"seconds\": {seconds}, \"steps\": {}, \"positions\": [{positions}], \
+             \"displacements\": [{displacements}]}}",
             scheme.name(),
             stats.accepted,
-            positions.join(", ")
         );
     }
     Ok(())

@@ -5,8 +5,12 @@ use faer::{Mat, Side, c64};
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::graded::graded_modes;
 use crate::vibration::system::linearization::Linearization;
+use crate::vibration::system::refined::refined;
 use crate::vibration::system::scaled::ScaledEquations;
 
+/// Growth over the fastest frequency that is its rounding, and eigenvalues over it whose own growth may be less than that.
+const ROUNDING_OF_FASTEST: f64 = 1e-12;
+const SLOW: f64 = 1e-3;
 /// A part of the terms of an equation that is more than their rounding.
 const ROUNDING: f64 = 1e-10;
 
@@ -166,8 +170,11 @@ impl Linearization {
             if is_real {
                 eigenvalue.im = 0.0;
             }
-            if eigenvalue.re.abs() <= zero.max(1e-12 * largest) {
-                eigenvalue.re = 0.0;
+            let rounding = zero.max(ROUNDING_OF_FASTEST * largest);
+            if eigenvalue.re.abs() <= rounding {
+                let is_slow = eigenvalue.norm() < SLOW * largest;
+                let refined = if is_slow { refined([&stiffness, &damping], scales, eigenvalue, rounding) } else { None };
+                eigenvalue = refined.unwrap_or(if is_real { eigenvalue } else { c64::new(0.0, eigenvalue.im) });
             }
             found.push((eigenvalue, of_rest));
         }

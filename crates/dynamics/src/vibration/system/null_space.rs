@@ -1,4 +1,4 @@
-//! An M-orthonormal basis of the motions that the rows of joints leave, Eq. (L5) of `docs/method/systems.md`.
+//! An M-orthonormal basis of the motions that the rows of joints leave, N of Eq. (L8) of `docs/method/systems.md`.
 //!
 //! Bodies are joined to parts, and parts to larger ones, the smallest first, so that few steps are as wide as the system: the cost of a chain grows with
 //! the square of its bodies, which is the size of the basis.
