@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use dynamics::{
-    Bushing, CommonSpin, ConservativeBody, Coordinate, ForceElement, Joint, JointForce, LoadFn, Marker, MotionState, Physics,
-    PointShapes, SharedLoad, System, SystemMode, SystemMotion,
+    Bushing, CommonSpin, ConservativeBody, Coordinate, ForceElement, Joint, JointForce, LoadFn, Marker, MotionState,
+    Physics, PointShapes, SharedLoad, System, SystemMode, SystemMotion,
 };
 use fem_tet10::Material;
 use nalgebra::{Matrix3, Vector3};

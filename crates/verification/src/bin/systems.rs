@@ -97,7 +97,8 @@ fn ladder(scene: &Path, [body, point]: [&str; 2], rows: &str, tolerances: &[Stri
         let seconds = seconds / runs;
         let stats = simulation.stats();
         let [positions, displacements] = [0, 1].map(|which| {
-            let of_row = |row: &[Vector3<f64>; 2]| format!("[{:?}, {:?}, {:?}]", row[which].x, row[which].y, row[which].z);
+            let of_row =
+                |row: &[Vector3<f64>; 2]| format!("[{:?}, {:?}, {:?}]", row[which].x, row[which].y, row[which].z);
             places.iter().map(of_row).collect::<Vec<String>>().join(", ")
         });
         println!(

@@ -173,7 +173,8 @@ impl Linearization {
             let rounding = zero.max(ROUNDING_OF_FASTEST * largest);
             if eigenvalue.re.abs() <= rounding {
                 let is_slow = eigenvalue.norm() < SLOW * largest;
-                let refined = if is_slow { refined([&stiffness, &damping], scales, eigenvalue, rounding) } else { None };
+                let refined =
+                    if is_slow { refined([&stiffness, &damping], scales, eigenvalue, rounding) } else { None };
                 eigenvalue = refined.unwrap_or(if is_real { eigenvalue } else { c64::new(0.0, eigenvalue.im) });
             }
             found.push((eigenvalue, of_rest));

@@ -1,4 +1,5 @@
-//! Slow eigenvalues beside fast ones, by inverse iteration: a solver of all of them knows each to rounding of the fastest only.
+//! Slow eigenvalues beside fast ones, by inverse iteration, Eq. (L15) of `docs/method/systems.md`: a solver of all of them knows each to rounding of the fastest
+//! only.
 
 use faer::prelude::Solve;
 use faer::{Mat, c64};
@@ -20,7 +21,8 @@ pub(super) fn refined([stiffness, damping]: [&Mat<f64>; 2], scales: &[f64], eige
         let dynamic = Mat::from_fn(size, size, |i, j| {
             (found * found * diagonal(i, j) + found * damping[(i, j)] + of(stiffness[(i, j)])) * over(i, j)
         });
-        let slope = Mat::from_fn(size, size, |i, j| (found * (2.0 * diagonal(i, j)) + of(damping[(i, j)])) * over(i, j));
+        let slope =
+            Mat::from_fn(size, size, |i, j| (found * (2.0 * diagonal(i, j)) + of(damping[(i, j)])) * over(i, j));
         // Vectors on both sides of the smallest singular value.
         let vector = |matrix: &Mat<c64>| {
             let factors = matrix.partial_piv_lu();
