@@ -119,6 +119,25 @@ fn decks_of_all_kinds_have_the_masses_and_frequencies_of_other_programs() {
                 assert!((found / wanted - 1.0).abs() < 2e-4, "held: {found} for {wanted}");
             }
         }
+        if name == "nastran_rbe3_off.bdf" {
+            let refused = |from: &str, to: &str| {
+                let scene = Scene::parse(&text.replace(from, to), folder.join("other.toml"));
+                let scene = scene.map_err(|error| error.to_string());
+                scene
+                    .and_then(|scene| Model::build(&scene, |_| ()).map_err(|error| error.to_string()))
+                    .map(|_| ())
+                    .unwrap_err()
+            };
+            for (from, to, words) in [
+                ("flexible = 10", "flexible = 10\nlarge = 1", "a body with masses beside it"),
+                ("flexible = 10", "flexible = 10\nabout = \"auto\"", "masses beside it"),
+                ("group = \"RBE3_9003\" }", "group = \"nowhere\" }", "body.tied_masses[0].group"),
+                ("mass = 3e-5", "mass = 0.0", "body.tied_masses[0].mass"),
+            ] {
+                let said = refused(from, to);
+                assert!(said.contains(words), "{to}: {said}");
+            }
+        }
         let known: &[&str] = match name {
             "salome.med" => &["are turned"],
             "abaqus_cae.inp" => &["node set RP has no nodes", "not used: 1 *STEP"],

@@ -155,7 +155,7 @@ pub fn campbell(
     let may_be_bent = match settings.about_rest {
         AboutRest::Never => false,
         AboutRest::Always => true,
-        AboutRest::Auto => effects.all() && scene.body.has_elements() && bent::bends(&model, &axis, highest),
+        AboutRest::Auto => effects.all() && scene.body.bends_far() && bent::bends(&model, &axis, highest),
     };
     let full = may_be_bent.then(|| bent::full(&scene, builder)).transpose()?;
     let bent = full.as_ref().map(|full| BentSpin::new(&scene, full, &model, &axis)).transpose()?;

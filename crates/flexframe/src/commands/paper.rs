@@ -60,7 +60,7 @@ pub fn reproduce(
     progress: impl FnMut(RunProgress),
 ) -> Result<PaperReport, PaperError> {
     let only_plates = || PaperError::NotThePlate { scene: scene.path.clone() };
-    if !scene.body.has_elements() {
+    if !scene.body.bends_far() {
         return Err(only_plates());
     }
     if !scene.output.points.contains_key(WATCHED_POINT) {

@@ -290,8 +290,6 @@ impl Check<'_> {
         for (i, tied) in masses.iter().enumerate() {
             let key = format!("body.tied_masses[{i}]");
             self.positive(&join(&key, "mass"), tied.mass, "give the mass in your unit of mass, or remove it")?;
-            let is_finite = tied.at.iter().all(|x| x.is_finite());
-            self.require(is_finite, &join(&key, "at"), "three finite numbers", "give the position of the mass")?;
         }
         Ok(())
     }
