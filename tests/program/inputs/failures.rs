@@ -294,6 +294,7 @@ fn a_cure_that_only_the_message_has_is_help() {
     for arguments in [
         &["frf", &scene, "--frequencies", "1:2:2", "-o", &out, "--json"][..],
         &["gradient", &scene, "-o", &out, "--json"],
+        &["frf", &scene, "--frequencies", "1:2:2", "--set", "loads=[]", "-o", &out, "--json"],
     ] {
         let output = flexframe(arguments);
         let object: Value = serde_json::from_slice(&output.stderr).unwrap();

@@ -130,6 +130,7 @@ fn conclude(
                 Ok(better) => report.large_choice = better,
                 Err(error) => report.warnings.push(format!("other large modes could not be checked: {error}")),
             }
+            report.warnings.extend(LargeChoice::not_tried((system, models), checked));
         }
         if settings.check {
             report.times.add("check", started.elapsed());

@@ -35,7 +35,7 @@ pub enum SpectraError {
     Input { path: PathBuf, found: String, count: usize, known: Vec<String> },
     /// The table does not reach over the band.
     #[error(
-        "{}: rows from {} to {}, which leave out {left_out:.3} of the band {} to {} on a linear axis; give rows for all of it, with 0 where \
+        "{}: rows from {} to {}, which leave out {left_out:.3} of the band {} to {} on a linear axis\n = give rows for all of it, with 0 where \
          nothing acts, or a band within the table (--band)",
         path.display(), table[0], table[1], band[0], band[1]
     )]

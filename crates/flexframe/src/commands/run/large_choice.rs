@@ -8,7 +8,7 @@ use std::path::Path;
 use dynamics::Effect;
 use model::{Builder, Model};
 use results::Results;
-use scene::{Choice, Large, Scene, System, assign};
+use scene::{Choice, Large, Scene, System, assign, key_path};
 use serde::Serialize;
 use toml::Value;
 
@@ -62,10 +62,7 @@ impl LargeChoice {
         let error_of = |row: &RowCheck| model_error(std::slice::from_ref(row));
         let Some(worst) = rows.iter().max_by(|a, b| error_of(a).total_cmp(&error_of(b))) else { return Ok(None) };
         let before = error_of(worst);
-        let may_be_large = scene.time.method.abilities.large_deflection
-            && scene.effects.choices[Effect::LargeDeflection] != Choice::Off
-            && model.static_answer().is_none();
-        if !(before >= WORTH && may_be_large) {
+        if !(before >= WORTH && may_be_large(scene, model)) {
             return Ok(None);
         }
         let candidates = candidates(scene, model, &rows::course(results, 0).swings);
@@ -96,12 +93,35 @@ impl LargeChoice {
         Ok(best)
     }
 
+    /// Words on bodies of a run of several whose model the check found wrong by more than a per cent: other large modes were not tried.
+    pub(super) fn not_tried((system, models): (&System, &[Model]), check: &CheckReport) -> Option<String> {
+        if system.bodies.len() < 2 {
+            return None;
+        }
+        let bodies = system.bodies.iter().zip(models).zip(&check.bodies);
+        let wrong = bodies.filter(|((scene, model), body)| {
+            may_be_large(scene, model) && model.body.flexible() > 0 && model_error(&body.rows) >= WORTH
+        });
+        let names: Vec<&str> = wrong.filter_map(|((scene, _), _)| scene.name.as_deref()).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "other large modes were not tried for {}: the check tries them for a body alone; name some in `large` of its \
+                 `modes`, and compare the trust in the model",
+                names.join(", ")
+            )
+        })
+    }
+
     /// The system with this choice, if the scene leaves it open and the run may be made again.
     pub(super) fn taken(&self, system: &System, steps: u64) -> Option<System> {
         let [scene] = &system.bodies[..] else { return None };
-        if scene.modes.large.is_some() || scene.name.is_some() || steps > LONG {
+        if scene.modes.large.is_some() || steps > LONG {
             return None;
         }
+        let key = |key: &str| match &scene.name {
+            Some(name) => format!("{}.{key}", key_path("bodies", name)),
+            None => key.to_owned(),
+        };
         let number = |number: usize| i64::try_from(number).map_or(Value::Integer(i64::MAX), Value::Integer);
         let large = self.large.iter().map(|mode| number(*mode)).collect();
         let values = [
@@ -109,7 +129,7 @@ impl LargeChoice {
             ("modes.large", Value::Array(large)),
             ("modes.following", number(self.following)),
         ];
-        let text = assign(scene.file_text(), &values.map(|(key, value)| (key.to_owned(), value))).ok()?;
+        let text = assign(scene.file_text(), &values.map(|(of, value)| (key(of), value))).ok()?;
         System::parse(&text, &scene.path).ok()
     }
 
@@ -138,6 +158,13 @@ impl LargeChoice {
     }
 }
 
+/// True if large modes may be among those of a body.
+fn may_be_large(scene: &Scene, model: &Model) -> bool {
+    scene.time.method.abilities.large_deflection
+        && scene.effects.choices[Effect::LargeDeflection] != Choice::Off
+        && model.static_answer().is_none()
+}
+
 /// Choices that differ from that of a model: large modes numbered from 1, and the most that follow them.
 fn candidates(scene: &Scene, model: &Model, swings: &[f64]) -> Vec<(Vec<usize>, usize)> {
     let now: Vec<usize> = model.large_modes().iter().map(|k| k + 1).collect();
@@ -159,4 +186,28 @@ fn candidates(scene: &Scene, model: &Model, swings: &[f64]) -> Vec<(Vec<usize>, 
         }
     }
     choices
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_choice_of_a_body_alone_is_taken_with_a_name_or_without() {
+        let choice = LargeChoice { large: vec![1, 3], following: 2, error: 0.01, before: 0.3 };
+        for (body, modes) in [("body", "modes"), ("bodies.'left wing'", "bodies.'left wing'.modes")] {
+            let text = format!(
+                "title = 't'\nunits = {{ length = 'm', mass = 'kg', time = 's' }}\n[{body}]\nmesh = 'wing.msh'\n\
+                 material = {{ young_modulus = 7e10, poisson_ratio = 0.3, density = 2700.0 }}\n[{modes}]\nflexible = 4\n\
+                 [time]\nend = 1.0\ntolerance = 1e-4\n"
+            );
+            let system = System::parse(&text, "wing.toml").unwrap();
+            let taken = choice.taken(&system, 1000).unwrap();
+            let modes = &taken.bodies[0].modes;
+            assert_eq!((&modes.large, modes.following), (&Some(Large::List(vec![1, 3])), 2), "{body}");
+            assert_eq!(taken.bodies[0].effects.choices[Effect::LargeDeflection], Choice::On);
+            // What the scene says stays.
+            assert_eq!(choice.taken(&taken, 1000), None);
+        }
+    }
 }

@@ -31,7 +31,7 @@ pub enum LinearizeError {
     #[error("{}: {source}", scene.display())]
     Linear { scene: PathBuf, source: Box<LinearError> },
     /// A state that is not made linear.
-    #[error("{}: {found}; {help}", scene.display())]
+    #[error("{}: {found}\n = {help}", scene.display())]
     Refused { scene: PathBuf, found: String, help: &'static str },
     /// An input or an output that is not there.
     #[error("{}: no {what} `{found}`; expected one of {}", scene.display(), known.join(", "))]
@@ -46,7 +46,7 @@ pub enum LinearizeError {
     #[error("{}: {source}", scene.display())]
     Run { scene: PathBuf, source: Box<StepError> },
     /// A model without inputs or outputs.
-    #[error("{}: no {what}; {help}", scene.display())]
+    #[error("{}: no {what}\n = {help}", scene.display())]
     Nothing { scene: PathBuf, what: &'static str, help: &'static str },
     /// The file of a linear model has another ending.
     #[error("{}: expected a file that ends in .mat or .json", path.display())]
