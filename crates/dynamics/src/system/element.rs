@@ -7,6 +7,7 @@ pub(crate) mod springs;
 use std::any::Any;
 use std::fmt;
 
+use crate::system::element::differences::DIFFERENCE;
 use crate::system::joint::observation::JointObservation;
 use crate::system::marker::Marker;
 use crate::system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
@@ -107,6 +108,3 @@ pub trait ForceElement: fmt::Debug + Send + Sync + Any {
         }
     }
 }
-
-/// Part of a unit change that central differences take.
-const DIFFERENCE: f64 = 1e-6;

@@ -11,13 +11,18 @@ const OF_MARKER: usize = 6;
 const ALL: usize = MARKERS * OF_MARKER;
 /// Differences of places and velocities, relative to the distance of the markers and to their speed, or to 1; and over places, where
 /// these are far from the origin.
-const DIFFERENCE: f64 = 1e-6;
+pub(super) const DIFFERENCE: f64 = 1e-6;
 const OF_PLACE: f64 = 1e-12;
 /// A stiffness over the largest that is rounding of the differences.
 const ROUNDING: f64 = 1e-9;
 
 type Square = SMatrix<f64, ALL, ALL>;
 type Column = SVector<f64, ALL>;
+
+/// A difference of a quantity of this size, and of an angle or an angular velocity, whose size is zero.
+pub(super) fn difference(size: f64) -> f64 {
+    DIFFERENCE * size.max(1.0)
+}
 
 /// Number of directions of a law at these markers: six for each on a body, none of a law at more than two markers.
 pub(super) fn directions(markers: &[Marker]) -> usize {
@@ -58,7 +63,7 @@ pub(super) fn linearize(
                 (_, true) => (MarkerChange { velocity_global: unit, ..MarkerChange::default() }, speed),
                 (_, false) => (MarkerChange { omega_global: unit, ..MarkerChange::default() }, 0.0),
             };
-            let small = (DIFFERENCE * size.max(1.0)).max(place);
+            let small = difference(size).max(place);
             let mut moved = [*first, *last];
             moved[k] = motions[k].changed(&change, small);
             fall.set_column(k * OF_MARKER + axis, &((here - at(&moved[..count])) / small));

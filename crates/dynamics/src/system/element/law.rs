@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::transformation_matrix;
 
+use crate::system::element::differences::difference;
 use crate::system::element::{ForceElement, SetDirection};
 use crate::system::marker::Marker;
 use crate::system::marker::motion::{MarkerMotion, MarkerWrench};
@@ -53,9 +54,6 @@ pub struct MarkerForce {
     pub law: Arc<dyn MarkerLaw>,
 }
 
-/// Differences of positions and velocities, relative to these or to 1, and of angles and angular velocities.
-const DIFFERENCE: f64 = 1e-6;
-
 impl RelativeMotion {
     fn between([i, j]: [&MarkerMotion; 2]) -> Self {
         let line = j.position_global - i.position_global;
@@ -87,6 +85,8 @@ impl RelativeMotion {
 }
 
 impl MarkerForce {
+    // A law of two markers needs half the calls of one of any kind: its motion is the relative one, and what it does to the first
+    // follows from what it does to the second.
     /// How a force or a moment, by its number, falls from where it is with a change of the motion: the matrix of differences, in the axes of
     /// the first marker.
     fn fall(
@@ -97,7 +97,7 @@ impl MarkerForce {
         size: f64,
         change: impl Fn(RelativeMotion, &Vector3<f64>) -> RelativeMotion,
     ) -> Matrix3<f64> {
-        let small = DIFFERENCE * size.max(1.0);
+        let small = difference(size);
         let column = |k: usize| {
             (here - self.law.force_and_moment(times, &change(*motion, &Vector3::ith(k, small)))[which]) / small
         };
