@@ -8,9 +8,10 @@ use serde::Serialize;
 
 /// |⟨a, b⟩|² of two shapes that are taken for the same without a closer look. Above ½ only one can be.
 const ALIKE: f64 = 0.6;
-/// How often a step between two speeds is halved where shapes change too much to be told apart. Shapes of equal
-/// frequencies stay ambiguous however short it is.
+/// How often a step between two speeds is halved where shapes change too much to be told apart.
 const HALVINGS: u32 = 5;
+/// Frequencies and growths closer than this part of them are equal: their shapes are any mixture, at each speed another one.
+const EQUAL: f64 = 1e-9;
 
 /// A vibration followed through all spin speeds by its shape.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -109,7 +110,8 @@ fn continued<E>(
     continued(find, &halfway, middle, to, halvings - 1)
 }
 
-/// Sorts the vibrations `next` to those of `modes` that they are most alike, and says how alike the worst pair is.
+/// Sorts the vibrations `next` to those of `modes` that they are most alike, and says how alike the worst pair is. Of several with equal
+/// frequencies, all shapes together count.
 fn matched(modes: &[SpinMode], next: Vec<SpinMode>) -> (Vec<SpinMode>, f64) {
     let mut pairs: Vec<(f64, usize, usize)> = Vec::with_capacity(modes.len() * next.len());
     for (i, a) in modes.iter().enumerate() {
@@ -118,17 +120,28 @@ fn matched(modes: &[SpinMode], next: Vec<SpinMode>) -> (Vec<SpinMode>, f64) {
     pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut places = vec![None; modes.len()];
     let mut taken = vec![false; next.len()];
-    let mut least_alike = 1.0;
+    let mut least_alike: f64 = 1.0;
     for (alike, i, j) in pairs {
         if places[i].is_none() && !taken[j] {
-            (places[i], taken[j], least_alike) = (Some(j), true, alike);
+            (places[i], taken[j]) = (Some(j), true);
+            let mixed = next.iter().filter(|of| are_equal(of, &next[j])).map(|of| self::alike(&modes[i], of)).sum();
+            least_alike = alike.max(mixed).min(least_alike);
         }
     }
     (places.into_iter().flatten().map(|j| next[j].clone()).collect(), least_alike)
 }
 
-/// |⟨a, b⟩|²: 1 for the same shape, whatever its phase.
+fn are_equal(a: &SpinMode, b: &SpinMode) -> bool {
+    let apart = (a.circular_frequency - b.circular_frequency).hypot(a.growth - b.growth);
+    apart <= EQUAL * a.circular_frequency.hypot(a.growth)
+}
+
+/// |⟨a, b⟩|²: 1 for the same shape, whatever its phase. Rigid motions, which have no energy, are all the same.
 fn alike(a: &SpinMode, b: &SpinMode) -> f64 {
+    let is_rigid = |of: &SpinMode| of.circular_frequency == 0.0 && of.growth == 0.0;
+    if is_rigid(a) || is_rigid(b) {
+        return f64::from(u8::from(is_rigid(a) && is_rigid(b)));
+    }
     let (re, im) = a.state.iter().zip(&b.state).fold((0.0, 0.0), |(re, im), (x, y)| {
         let product = x.conj() * y;
         (re + product.re, im + product.im)
