@@ -222,7 +222,7 @@ fn static_answers_of_a_run_come_back_from_the_folder_too() {
     };
     let expected = frequencies(&said(run(&[])));
     assert!(expected.len() > 8, "there are no static shapes");
-    assert_eq!(said(run(&["--solver", "slepc", "--ranks", "2", "--write-only", "out put"])).code, Some(0));
+    assert_eq!(said(run(&["--solver", "slepc", "--ranks", "1", "--write-only", "out put"])).code, Some(0));
     let mut jobs = 0;
     let done = loop {
         let said = said(run(&["--solver", "slepc", "--read", "out put"]));
@@ -346,7 +346,7 @@ fn files_of_others_in_the_folder_are_not_run() {
     let mut command = case.modes(&[&SLEPC[..], &["--json"]].concat());
     command.env("PYTHONPATH", ":");
     let found = frequencies(&said(command));
-    let written = said(case.modes(&["--solver", "slepc", "--ranks", "2", "--write-only", "out put"]));
+    let written = said(case.modes(&["--solver", "slepc", "--ranks", "1", "--write-only", "out put"]));
     assert_eq!(written.code, Some(0), "{}", written.error);
     case.do_job();
     let read = frequencies(&said(case.modes(&["--solver", "slepc", "--read", "out put", "--json"])));
@@ -358,7 +358,7 @@ fn files_of_others_in_the_folder_are_not_run() {
 #[test]
 fn pipes_and_devices_in_the_folder_are_refused() {
     let case = Case::new();
-    let written = said(case.modes(&["--solver", "slepc", "--ranks", "2", "--write-only", "out put"]));
+    let written = said(case.modes(&["--solver", "slepc", "--ranks", "1", "--write-only", "out put"]));
     assert_eq!(written.code, Some(0), "{}", written.error);
     case.do_job();
     let read = || case.modes(&["--solver", "slepc", "--read", "out put"]);

@@ -181,7 +181,8 @@ fn the_blade_flaps_at_the_frequency_of_its_hinge() {
     let mut simulation = mechanism("rotor_blade.toml", step);
     let mut times = Vec::new();
     let mut before = turn(&simulation, 1);
-    while to_row(&mut simulation) {
+    // Two periods and a bit.
+    while simulation.time() < 0.3 && to_row(&mut simulation) {
         let now = turn(&simulation, 1);
         if before < 0.0 && now >= 0.0 {
             times.push(simulation.time() - step * now / (now - before));

@@ -131,6 +131,7 @@ fn model_sees_less_than_all(scene: &mut Scene) -> bool {
 #[test]
 fn of_a_load_far_faster_than_the_steps_only_the_beginning_is_compared() {
     let mut scene = example("ring");
+    scene.modes.flexible = scene::Flexible::Count(1);
     (scene.time.end, scene.time.control) = (1000.0, StepControl::Fixed(0.01));
     scene.output.rows = scene::Rows::Interval(1.0);
     let scene::Load::Force(force) = &mut scene.loads[0] else { panic!("no force") };
