@@ -39,6 +39,7 @@ const MIDPOINT: Method = Method {
     limit: StepLimit::Modes,
     estimates_error: true,
     abilities: Abilities::ALL,
+    joints: None,
     begin: |setup| Beginning::conservative(setup, |body| Midpoint(body.evaluation())),
 };
 

@@ -82,6 +82,11 @@ pub enum SetupError {
         "scheme {scheme} of formulation {formulation} has no error estimate for a tolerance; give a step, or take the scheme exponential or rkmk4 of the conservative formulation"
     )]
     NoErrorEstimate { formulation: &'static str, scheme: &'static str },
+    /// A scheme of bodies in joints for a body that nothing ties.
+    #[error(
+        "the scheme {scheme} moves bodies in joints, and nothing ties this body; take the scheme exponential or rkmk4"
+    )]
+    OfJoints { scheme: &'static str },
     /// A drive of a body whose modes are not those of the driven part held still.
     #[error(
         "a drive moves a body whose modes are those of a clamped one; what holds this one leaves it {motion}: hold it altogether, or remove the drive"

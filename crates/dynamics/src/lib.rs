@@ -68,7 +68,7 @@ pub use simulation::checkpoint::{CheckpointError, decode, encode};
 pub use simulation::events::{Crossing, Event};
 pub use simulation::plan::{Rows, StepControl};
 pub use simulation::run_description::error::DescriptionError;
-pub use simulation::run_description::{DescribedBody, RunDescription, RunOfBody, RunOfSystem};
+pub use simulation::run_description::{DescribedBody, RunDescription};
 pub use simulation::setup::{Begin, Beginning, Method, Setup, StepLimit};
 pub use simulation::stats::Stats;
 pub use simulation::{Reached, Simulation};

@@ -190,6 +190,7 @@ pub const LIMIT: Method = Method {
     limit: StepLimit::Modes,
     estimates_error: false,
     abilities: Abilities::NONE,
+    joints: None,
     begin: |setup| {
         let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
         let scheme = PaperLimit::new(setup.body, model, setup.initial)?;

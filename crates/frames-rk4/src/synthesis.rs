@@ -227,6 +227,7 @@ pub const PAPER: Method = Method {
     limit: StepLimit::Modes,
     estimates_error: false,
     abilities: Abilities::NONE,
+    joints: None,
     begin: |setup| Paper { reference_points: [Vector3::zeros(), Vector3::x(), Vector3::y()] }.begin(setup),
 };
 

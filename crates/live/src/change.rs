@@ -107,16 +107,16 @@ impl Change {
         const NO_BODY: LiveError = LiveError::Nothing { what: "such body" };
         match self {
             Self::Load { load, .. } => {
-                let loads = &mut run.bodies_mut().get_mut(body).ok_or(NO_BODY)?.loads;
+                let loads = &mut run.bodies.get_mut(body).ok_or(NO_BODY)?.loads;
                 let load = loads.get_mut(load).ok_or(LiveError::Nothing { what: "such load" })?;
                 *load = Arc::new(ScaledLoad { load: Arc::clone(load), factor: Signal::held(value) });
             }
             Self::Damping { .. } => {
-                let DescribedBody { damping_ratios, .. } = run.bodies_mut().get_mut(body).ok_or(NO_BODY)?;
+                let DescribedBody { damping_ratios, .. } = run.bodies.get_mut(body).ok_or(NO_BODY)?;
                 damping_ratios.iter_mut().for_each(|ratio| *ratio += value);
             }
             Self::Drive { .. } => {
-                let physics = &mut run.bodies_mut().get_mut(body).ok_or(NO_BODY)?.physics;
+                let physics = &mut run.bodies.get_mut(body).ok_or(NO_BODY)?.physics;
                 let drive = physics.drive.as_mut().ok_or(LiveError::Nothing { what: "such drive" })?;
                 drive.speed.amplitude *= value;
             }
@@ -130,8 +130,7 @@ impl Change {
             }),
             Self::Element { element, .. } => {
                 const NONE: LiveError = LiveError::Nothing { what: "such spring or bushing" };
-                let RunDescription::Tied(system) = run else { return Err(NONE) };
-                let element = system.elements.get_mut(element).ok_or(NONE)?;
+                let element = run.elements.get_mut(element).ok_or(NONE)?;
                 *element = stiffened(element, value).ok_or(NONE)?;
             }
         }
@@ -142,8 +141,7 @@ impl Change {
 /// The forces along the coordinates of a joint.
 fn forces(run: &mut RunDescription, joint: usize) -> Result<impl Iterator<Item = &mut JointForce>, LiveError> {
     const NONE: LiveError = LiveError::Nothing { what: "such joint" };
-    let RunDescription::Tied(system) = run else { return Err(NONE) };
-    let Joint { turn_force, slide_force, .. } = system.joints.get_mut(joint).ok_or(NONE)?;
+    let Joint { turn_force, slide_force, .. } = run.joints.get_mut(joint).ok_or(NONE)?;
     Ok(turn_force.iter_mut().chain(slide_force))
 }
 

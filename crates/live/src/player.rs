@@ -3,12 +3,12 @@
 use dynamics::faer::Mat;
 use dynamics::nalgebra::Vector3;
 use dynamics::reduced_body::{BodyPoint, ReducedBody};
-use dynamics::{DescribedBody, Manifold, MotionState, Observation, PointShapes, RunDescription, Work};
+use dynamics::{DescribedBody, Manifold, MotionState, Observation, PointShapes, Work};
 use std::sync::Arc;
 
 use crate::change::Change;
 use crate::error::LiveError;
-use crate::motion::{Motion, end, prolong, show_every};
+use crate::motion::{Motion, prolong, show_every};
 use crate::pull::Pull;
 use crate::run::LiveRun;
 
@@ -152,7 +152,7 @@ impl Player {
         target_global: Vector3<f64>,
     ) -> Result<(), LiveError> {
         let [motion, own] = self.run.place_of(body).ok_or(LiveError::Nothing { what: "such body" })?;
-        let body_of_shapes = body_of_shapes(&self.run.motions[motion].run.bodies()[own]);
+        let body_of_shapes = body_of_shapes(&self.run.motions[motion].run.bodies[own]);
         let (flexible, coordinates) = (body_of_shapes.flexible(), self.coordinates(body));
         if shapes.len() != 3 * coordinates {
             return Err(LiveError::Shapes { found: shapes.len(), expected: 3 * coordinates });
@@ -216,7 +216,7 @@ impl Player {
 
     fn described(&self, body: usize) -> Option<&DescribedBody> {
         let [motion, own] = self.run.place_of(body)?;
-        self.run.motions.get(motion)?.run.bodies().get(own)
+        self.run.motions.get(motion)?.run.bodies.get(own)
     }
 
     /// Number of bodies.
@@ -250,10 +250,8 @@ impl Player {
     /// Begins a motion anew with all changes, from the state that it has come to or another one.
     fn begin_anew(&mut self, motion: usize, states: Option<&[MotionState]>, time: f64) -> Result<(), LiveError> {
         let mut run = self.run.motions[motion].run.clone();
-        if let RunDescription::Tied(run) = &mut run {
-            run.relaxed = false; // it has begun
-        }
-        let longer = until(end(&run), time);
+        run.relaxed = false; // it has begun
+        let longer = until(run.end, time);
         prolong(&mut run, longer);
         let of_page = &self.run.motions[motion].bodies;
         for (change, value) in &self.changes {
@@ -269,7 +267,7 @@ impl Player {
         if let Some((body, pull)) = &self.pull
             && let Some(own) = of_page.iter().position(|of| of == body)
         {
-            let body = &mut run.bodies_mut()[own];
+            let body = &mut run.bodies[own];
             body.loads.push(Arc::new(pull.clone()));
             body.points.push(PointShapes::clone(&pull.point)); // its motion is that of the last point
         }

@@ -8,7 +8,7 @@ use crate::error::LiveError;
 /// The motions of a run, and which bodies of the page they move.
 #[derive(Debug, Clone)]
 pub struct LiveRun {
-    /// The motions: of bodies alone, and of systems.
+    /// The motions: each of an island.
     pub motions: Vec<LiveMotion>,
 }
 
@@ -55,7 +55,7 @@ impl LiveRun {
 
     /// Number of bodies of all motions.
     pub fn bodies(&self) -> usize {
-        self.motions.iter().map(|motion| motion.run.bodies().len()).sum()
+        self.motions.iter().map(|motion| motion.run.bodies.len()).sum()
     }
 
     /// Where a body of the page is: the number of its motion, and its own in that.
@@ -72,7 +72,7 @@ impl LiveRun {
                 return Err(LiveError::Bodies { body, times });
             }
         }
-        match self.motions.iter().find(|motion| motion.bodies.len() != motion.run.bodies().len()) {
+        match self.motions.iter().find(|motion| motion.bodies.len() != motion.run.bodies.len()) {
             Some(motion) => Err(LiveError::Bodies { body: motion.bodies.len(), times: 0 }),
             None => Ok(()),
         }

@@ -7,8 +7,8 @@ use dynamics::nalgebra::{Matrix3, Vector3};
 use dynamics::reduced_body::BodyPoint;
 use dynamics::reduced_body::{Constants, ReducedBody, RigidMotion};
 use dynamics::{
-    Coordinate, DescribedBody, History, Initial, Joint, JointForce, Marker, Method, MotionState, Physics, PointForce,
-    PointShapes, ReferenceForces, Rows, RunDescription, RunOfBody, RunOfSystem, StepControl, SystemScheme,
+    Coordinate, DescribedBody, History, Initial, IslandMotion, Joint, JointForce, Marker, Method, MotionState, Physics,
+    PointForce, PointShapes, ReferenceForces, Rows, RunDescription, StepControl, SystemScheme,
 };
 use live::{BODY_NUMBERS, Change, LiveError, LiveMotion, LiveRun, Player};
 
@@ -45,25 +45,30 @@ fn body() -> ReducedBody {
 
 const SHAPES: [f64; 9] = [0.3, -0.1, 0.2, 0.5, 0.1, -0.4, -0.2, 0.6, 0.1];
 
-fn alone(control: StepControl, loads: usize) -> RunOfBody {
+fn alone(control: StepControl, loads: usize) -> RunDescription {
     let body = body();
     let at =
         BodyPoint { position_body: Vector3::new(0.5, -0.2, 0.4), shapes: Mat::from_fn(3, 3, |i, k| SHAPES[3 * k + i]) };
     let force = PointForce::dead(PointShapes::new(&body, &at), Vector3::new(0.5, 1.0, -0.7), History::Constant);
-    RunOfBody {
-        body: DescribedBody {
+    let initial = Initial {
+        omega: Vector3::new(1.0, -0.6, 0.8),
+        modal_displacement: vec![0.1, -0.2, 0.05],
+        ..Initial::at_rest(3)
+    };
+    RunDescription {
+        states: vec![initial.state(&body)],
+        bodies: vec![DescribedBody {
             damping_ratios: vec![0.0; 3],
             loads: vec![Arc::new(force) as _; loads],
             physics: Physics::default(),
             points: Vec::new(),
             name: None,
             body,
-        },
-        initial: Initial {
-            omega: Vector3::new(1.0, -0.6, 0.8),
-            modal_displacement: vec![0.1, -0.2, 0.05],
-            ..Initial::at_rest(3)
-        },
+        }],
+        joints: Vec::new(),
+        couplings: Vec::new(),
+        elements: Vec::new(),
+        relaxed: false,
         method: Method::EXPONENTIAL,
         control,
         end: END,
@@ -71,12 +76,12 @@ fn alone(control: StepControl, loads: usize) -> RunOfBody {
     }
 }
 
-fn of_body(run: RunOfBody) -> LiveRun {
-    LiveRun { motions: vec![LiveMotion { run: RunDescription::Alone(Box::new(run)), bodies: vec![0] }] }
+fn of_body(run: RunDescription) -> LiveRun {
+    LiveRun { motions: vec![LiveMotion { run, bodies: vec![0] }] }
 }
 
 /// A rod that hangs from the ground by a hinge with a spring, and the flexible body on its end.
-fn of_system() -> (LiveRun, RunOfSystem) {
+fn of_system() -> (LiveRun, RunDescription) {
     let flexible = body();
     let inertia = Matrix3::from_diagonal(&Vector3::new(1e-3, 1.0 / 12.0, 1.0 / 12.0));
     let rod = ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
@@ -103,7 +108,7 @@ fn of_system() -> (LiveRun, RunOfSystem) {
         modal_displacement: vec![0.0; flexible],
         modal_velocity: vec![0.0; flexible],
     };
-    let run = RunOfSystem {
+    let run = RunDescription {
         bodies: vec![described(rod, vec![Arc::new(weight)]), described(flexible, Vec::new())],
         joints: vec![
             Joint::revolute("hinge", hinge).with_force(Coordinate::Turn, spring),
@@ -113,13 +118,13 @@ fn of_system() -> (LiveRun, RunOfSystem) {
         elements: Vec::new(),
         states: vec![state(0.5, 0), state(1.5, 3)],
         relaxed: false,
-        scheme: SystemScheme::Radau,
+        method: Method::of_joints(SystemScheme::Radau),
         control: StepControl::Tolerance(1e-8),
         end: END,
         rows: Rows::Interval(0.1),
     };
     // On the page the bodies are the other way round.
-    let motion = LiveMotion { run: RunDescription::Tied(Box::new(run.clone())), bodies: vec![1, 0] };
+    let motion = LiveMotion { run: run.clone(), bodies: vec![1, 0] };
     (LiveRun { motions: vec![motion] }, run)
 }
 
@@ -139,7 +144,8 @@ fn until_something_is_changed_it_is_the_recorded_run() {
     for control in [StepControl::Fixed(0.01), StepControl::Tolerance(1e-6)] {
         let run = alone(control, 1);
         let mut player = Player::new(of_body(run.clone()), 1.0 / 60.0).unwrap();
-        for row in run.begin().unwrap() {
+        let IslandMotion::Body(simulation) = run.begin().unwrap() else { panic!("a body that nothing ties") };
+        for row in *simulation {
             let row = row.unwrap();
             for frame in 1..4 {
                 player.lead_to(row.time - 0.1 + 0.025 * f64::from(frame)).unwrap();
@@ -156,7 +162,7 @@ fn until_something_is_changed_it_is_the_recorded_run() {
     }
     let (live, run) = of_system();
     let mut player = Player::new(live, 0.017).unwrap();
-    let mut simulation = run.begin().unwrap();
+    let IslandMotion::System(mut simulation) = run.begin().unwrap() else { panic!("bodies in joints") };
     let mut rows = 0;
     while !simulation.is_over() {
         if simulation.advance(1).unwrap() != dynamics::Reached::Row {
@@ -210,13 +216,14 @@ fn a_pulled_body_keeps_its_balances_and_comes_to_the_hand() {
 #[test]
 fn a_body_about_a_bent_rest_has_the_rest_as_a_shape() {
     let mut run = alone(StepControl::Fixed(0.01), 0);
-    run.body.physics.reference = Some(ReferenceForces {
+    run.bodies[0].physics.reference = Some(ReferenceForces {
         force: vec![0.1, -0.2, 0.3],
         stiffness: Mat::from_fn(3, 3, |i, j| 0.1 * (i + j) as f64),
     });
     let bytes = of_body(run.clone()).to_bytes().unwrap();
     let mut player = Player::new(LiveRun::from_bytes(&bytes).unwrap(), 0.02).unwrap();
-    for row in run.begin().unwrap() {
+    let IslandMotion::Body(simulation) = run.begin().unwrap() else { panic!("a body that nothing ties") };
+    for row in *simulation {
         let row = row.unwrap();
         player.lead_to(row.time).unwrap();
         assert_eq!(of(&player, 0)[27..], [&row.modal_displacement[..], &[1.0]].concat());
@@ -236,7 +243,7 @@ fn changes_are_those_of_a_run_that_has_them_from_its_beginning() {
     let control = StepControl::Fixed(0.01);
     let mut twice = Player::new(of_body(alone(control, 1)), 0.02).unwrap();
     twice.set(Change::Load { body: 0, load: 0 }, 2.0).unwrap();
-    let two = RunOfBody { end: 3.0, ..alone(control, 2) };
+    let two = RunDescription { end: 3.0, ..alone(control, 2) };
     let mut two = Player::new(of_body(two), 0.02).unwrap();
     for time in [0.5, 1.0, 1.99, 2.5, 2.9] {
         twice.lead_to(time).unwrap();

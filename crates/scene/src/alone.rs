@@ -5,7 +5,7 @@ use std::sync::Arc;
 use toml_edit::{DocumentMut, Item, Table};
 
 use crate::document::{BODIES, OF_A_BODY, OUTPUT_OF_A_BODY, TIES};
-use crate::methods::is_of_lone_bodies;
+use crate::methods::is_without_joints;
 
 /// The text of a scene of several bodies, in parts.
 pub(crate) struct BodyTexts {
@@ -34,7 +34,7 @@ impl BodyTexts {
         let bodies = shared.as_table_mut().remove(BODIES).and_then(|bodies| bodies.into_table().ok());
         TIES.iter().for_each(|key| _ = shared.as_table_mut().remove(key));
         if let Some(time) = shared.get_mut("time").and_then(Item::as_table_like_mut)
-            && time.get("scheme").and_then(Item::as_str).is_some_and(|name| !is_of_lone_bodies(name))
+            && time.get("scheme").and_then(Item::as_str).is_some_and(|name| !is_without_joints(name))
         {
             time.remove("scheme");
         }

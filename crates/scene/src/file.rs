@@ -7,7 +7,7 @@ use crate::alone::{BodyText, BodyTexts};
 use crate::check::Check;
 use crate::document::{BODIES, Document, Node};
 use crate::error::SceneError;
-use crate::scene::Scene;
+use crate::scene::{Scene, Time};
 use crate::section::Sections;
 use crate::text::name::ONLY_BODY;
 use crate::text::ordinary_file::open_ordinary;
@@ -105,6 +105,7 @@ impl Scene {
         if !tied {
             check.turns(&body)?;
         }
+        let time = if tied { time } else { Time { method: time.method.without_joints(), ..time } };
 
         Ok(Self {
             name: body_text.as_ref().map(|text| text.name.to_owned()),

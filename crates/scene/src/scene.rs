@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use dynamics::{Effect, Method, Rows, StepControl, SystemScheme};
+use dynamics::{Effect, Method, Rows, StepControl};
 use fem_tet10::{Materials, PointMass};
 use matrix_import::MatrixFiles;
 use schemars::JsonSchema;
@@ -211,10 +211,9 @@ pub struct Time {
     pub end: f64,
     /// Control of the length of a step: key `step`, 1e-12 end ≤ step ≤ end, or `tolerance`, above 0 and below 1.
     pub control: StepControl,
-    /// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`.
+    /// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`. Of a body in joints, springs or
+    /// bushings it is one of [`METHODS_OF_JOINTS`](crate::METHODS_OF_JOINTS).
     pub method: Method,
-    /// The scheme of bodies that joints, springs or bushings tie together: key `scheme`.
-    pub system_scheme: SystemScheme,
 }
 
 /// The choice of outputs.

@@ -2,8 +2,10 @@
 
 use keys::{Key, Keyed};
 use nalgebra::Vector3;
+use reduced_body::ReducedBody;
 use rigid_kin::Attitude;
 
+use crate::body::motion_state::MotionState;
 use crate::error::SetupError;
 
 /// State at the beginning.
@@ -36,6 +38,20 @@ impl Initial {
         }
     }
 
+    /// The same as the state of a body at time 0.
+    pub fn state(self, body: &ReducedBody) -> MotionState {
+        let Self { attitude, origin, velocity, omega, modal_displacement, modal_velocity } = self;
+        MotionState {
+            time: 0.0,
+            attitude,
+            origin_global: origin.unwrap_or(body.origin),
+            velocity_global: velocity,
+            omega_body: omega,
+            modal_displacement,
+            modal_velocity,
+        }
+    }
+
     /// Refuses lists of the wrong length and numbers that are not finite.
     ///
     /// # Errors
@@ -59,6 +75,19 @@ impl Initial {
         match numbers.chain(&self.modal_velocity).copied().find(|x| !x.is_finite()) {
             Some(found) => Err(SetupError::Value { what: "an initial value", found, expected: "a finite number" }),
             None => Ok(()),
+        }
+    }
+}
+
+impl From<&MotionState> for Initial {
+    fn from(state: &MotionState) -> Self {
+        Self {
+            attitude: state.attitude,
+            origin: Some(state.origin_global),
+            velocity: state.velocity_global,
+            omega: state.omega_body,
+            modal_displacement: state.modal_displacement.clone(),
+            modal_velocity: state.modal_velocity.clone(),
         }
     }
 }

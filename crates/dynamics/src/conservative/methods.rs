@@ -18,6 +18,7 @@ impl Method {
         limit: StepLimit::Modes,
         estimates_error: true,
         abilities: Abilities::ALL,
+        joints: None,
         begin: |setup| Beginning::conservative(setup, RungeKutta::<_, Classical, 4>::new),
     };
 
@@ -32,6 +33,7 @@ impl Method {
         limit: StepLimit::Turn(std::f64::consts::SQRT_2),
         estimates_error: true,
         abilities: Abilities::ALL,
+        joints: None,
         begin: |setup| Beginning::conservative(setup, Exponential::new),
     };
 }

@@ -13,13 +13,13 @@ use std::sync::Arc;
 use reduced_body::ReducedBody;
 use serde::{Deserialize, Serialize};
 
-use crate::body::initial::Initial;
 use crate::body::motion_state::MotionState;
 use crate::body::physics::Physics;
 use crate::body::shapes::PointShapes;
 use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
 use crate::load::SharedLoad;
+use crate::run::island::IslandMotion;
 use crate::simulation::Simulation;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::simulation::run_description::error::DescriptionError;
@@ -34,16 +34,7 @@ use crate::system::simulation::setup::SystemSetup;
 
 /// Name and version of the data, in front of them.
 const NAME: &str = "flexframe run";
-const VERSION: u32 = 3;
-
-/// A run with all that it begins with.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub enum RunDescription {
-    /// The run of one body.
-    Alone(Box<RunOfBody>),
-    /// The run of bodies with joints.
-    Tied(Box<RunOfSystem>),
-}
+const VERSION: u32 = 4;
 
 /// A body with what acts on it, and the points that are observed.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -64,13 +55,22 @@ pub struct DescribedBody {
     pub name: Option<Box<str>>,
 }
 
-/// The run of a body alone: what [`Setup`] has.
+/// The run of an island with all that it begins with: what [`Setup`] has of one body, and [`SystemSetup`] of bodies in joints.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct RunOfBody {
-    /// The body.
-    pub body: DescribedBody,
-    /// How it begins.
-    pub initial: Initial,
+pub struct RunDescription {
+    /// The bodies: one, unless the method is of bodies in joints.
+    pub bodies: Vec<DescribedBody>,
+    /// The joints.
+    pub joints: Vec<Joint>,
+    /// Couplings of the joints.
+    pub couplings: Vec<Coupling>,
+    /// Forces between markers.
+    #[serde(with = "elements")]
+    pub elements: Vec<Arc<dyn ForceElement>>,
+    /// The motion of each body at the beginning, as far as the joints let it be.
+    pub states: Vec<MotionState>,
+    /// True if bodies in joints begin deformed as their forces ask.
+    pub relaxed: bool,
     /// How it is stepped.
     #[serde(with = "method")]
     pub method: Method,
@@ -82,49 +82,7 @@ pub struct RunOfBody {
     pub rows: Rows,
 }
 
-/// The run of bodies with joints: what [`SystemSetup`] has.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct RunOfSystem {
-    /// The bodies.
-    pub bodies: Vec<DescribedBody>,
-    /// The joints.
-    pub joints: Vec<Joint>,
-    /// Couplings of the joints.
-    pub couplings: Vec<Coupling>,
-    /// Forces between markers.
-    #[serde(with = "elements")]
-    pub elements: Vec<Arc<dyn ForceElement>>,
-    /// The motion of each body at the beginning, as far as the joints let it be.
-    pub states: Vec<MotionState>,
-    /// True if the bodies begin deformed as their forces ask.
-    pub relaxed: bool,
-    /// How it is stepped.
-    pub scheme: SystemScheme,
-    /// How long the steps are.
-    pub control: StepControl,
-    /// When it ends.
-    pub end: f64,
-    /// When it is observed.
-    pub rows: Rows,
-}
-
 impl RunDescription {
-    /// The bodies.
-    pub fn bodies(&self) -> &[DescribedBody] {
-        match self {
-            Self::Alone(run) => std::slice::from_ref(&run.body),
-            Self::Tied(run) => &run.bodies,
-        }
-    }
-
-    /// The bodies, to be changed.
-    pub fn bodies_mut(&mut self) -> &mut [DescribedBody] {
-        match self {
-            Self::Alone(run) => std::slice::from_mut(&mut run.body),
-            Self::Tied(run) => &mut run.bodies,
-        }
-    }
-
     /// As bytes, by serde and postcard, with name and version in front.
     ///
     /// # Errors
@@ -155,7 +113,7 @@ impl RunDescription {
 
     /// Refuses what no data hold.
     fn check(&self) -> Result<(), DescriptionError> {
-        for body in self.bodies() {
+        for body in &self.bodies {
             if let Some(load) = body.loads.iter().find(|load| loads::data(&***load).is_none()) {
                 return Err(DescriptionError::Load { load: format!("{load:?}") });
             }
@@ -163,54 +121,54 @@ impl RunDescription {
                 return Err(DescriptionError::AddedSpeed);
             }
         }
-        match self {
-            Self::Alone(run) => method::check(&run.method),
-            Self::Tied(run) => {
-                if let Some(element) = run.elements.iter().find(|element| elements::data(&***element).is_none()) {
-                    return Err(DescriptionError::Element { element: format!("{element:?}") });
-                }
-                let has_law = |joint: &&Joint| joint.forces().any(|(_, force)| !force.laws.is_empty());
-                if let Some(joint) = run.joints.iter().find(has_law) {
-                    return Err(DescriptionError::Law { joint: joint.name.clone() });
-                }
-                match run.joints.iter().find(|joint| joint.equations().next().is_some()) {
-                    Some(joint) => Err(DescriptionError::Equation { joint: joint.name.clone() }),
-                    None => Ok(()),
-                }
-            }
+        method::check(&self.method)?;
+        if let Some(element) = self.elements.iter().find(|element| elements::data(&***element).is_none()) {
+            return Err(DescriptionError::Element { element: format!("{element:?}") });
+        }
+        let has_law = |joint: &&Joint| joint.forces().any(|(_, force)| !force.laws.is_empty());
+        if let Some(joint) = self.joints.iter().find(has_law) {
+            return Err(DescriptionError::Law { joint: joint.name.clone() });
+        }
+        match self.joints.iter().find(|joint| joint.equations().next().is_some()) {
+            Some(joint) => Err(DescriptionError::Equation { joint: joint.name.clone() }),
+            None => Ok(()),
         }
     }
-}
 
-impl RunOfBody {
     /// Begins the run.
     ///
     /// # Errors
-    /// As [`Simulation::new`].
-    pub fn begin(&self) -> Result<Simulation, SetupError> {
-        let Self { body, initial, method, control, end, rows } = self;
-        let DescribedBody { body, damping_ratios, loads, physics, points, .. } = body;
+    /// As [`Simulation::new`] and [`SystemSimulation::new`]; for several bodies, joints or forces between markers by a method that has
+    /// no joints.
+    pub fn begin(&self) -> Result<IslandMotion, SetupError> {
+        match self.method.joints {
+            Some(scheme) => Ok(IslandMotion::System(Box::new(self.begin_in_joints(scheme)?))),
+            None => Ok(IslandMotion::Body(Box::new(self.begin_without_joints()?))),
+        }
+    }
+
+    fn begin_without_joints(&self) -> Result<Simulation, SetupError> {
+        let ([described], [], [], [state]) = (&self.bodies[..], &self.joints[..], &self.elements[..], &self.states[..])
+        else {
+            let formulation = self.method.formulation;
+            return Err(SetupError::NotInFormulation { formulation, what: "bodies in joints" });
+        };
+        let DescribedBody { body, damping_ratios, loads, physics, points, .. } = described;
         Simulation::new(&Setup {
             body,
             damping_ratios,
             loads,
             physics,
-            initial,
-            method,
-            control: *control,
-            end: *end,
-            rows: *rows,
+            initial: &state.into(),
+            method: &self.method,
+            control: self.control,
+            end: self.end,
+            rows: self.rows,
             points,
         })
     }
-}
 
-impl RunOfSystem {
-    /// Puts the bodies together, and begins the run.
-    ///
-    /// # Errors
-    /// As [`SystemSimulation::new`].
-    pub fn begin(&self) -> Result<SystemSimulation, SetupError> {
+    fn begin_in_joints(&self, scheme: SystemScheme) -> Result<SystemSimulation, SetupError> {
         let of = |body: &DescribedBody| {
             ConservativeBody::new(&body.body, &body.damping_ratios, body.loads.clone(), &body.physics)
         };
@@ -221,7 +179,7 @@ impl RunOfSystem {
             system: system.with_couplings(self.couplings.clone())?.with_elements(self.elements.clone())?,
             states: self.states.clone(),
             relaxed: self.relaxed,
-            scheme: self.scheme,
+            scheme,
             control: self.control,
             end: self.end,
             rows: self.rows,

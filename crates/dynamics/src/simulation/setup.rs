@@ -19,6 +19,7 @@ use crate::scheme::abilities::Abilities;
 use crate::scheme::mode_limit::check_step_of_modes;
 use crate::simulation::account;
 use crate::simulation::plan::{Rows, StepControl};
+use crate::system::collocation::{STAGES, SystemScheme};
 
 /// Everything that a run needs.
 #[derive(Debug, Clone)]
@@ -92,7 +93,9 @@ pub struct Method {
     pub estimates_error: bool,
     /// Abilities of its formulation.
     pub abilities: Abilities,
-    /// Begins a motion.
+    /// Its scheme of bodies in joints; `None` of a method of bodies that nothing ties.
+    pub joints: Option<SystemScheme>,
+    /// Begins the motion of a body that nothing ties.
     pub begin: fn(&Setup) -> Result<Beginning, SetupError>,
 }
 
@@ -219,11 +222,32 @@ impl Method {
     pub fn is_limited_by_modes(&self) -> bool {
         self.limit == StepLimit::Modes
     }
+
+    /// The conservative form of bodies in joints by a scheme. Beside them, bodies that nothing ties move by [`Self::without_joints`].
+    pub const fn of_joints(scheme: SystemScheme) -> Self {
+        let (limit, evaluations_per_step) = match scheme {
+            SystemScheme::Rkmk4 => (StepLimit::Modes, 4),
+            SystemScheme::Radau | SystemScheme::Gauss => (Self::EXPONENTIAL.limit, STAGES as u32),
+        };
+        let (order, joints) = (scheme.order(), Some(scheme));
+        Self { scheme: scheme.name(), order, limit, evaluations_per_step, joints, begin: refuse, ..Self::EXPONENTIAL }
+    }
+
+    /// The method of a body that nothing ties: of one of bodies in joints the default.
+    #[must_use]
+    pub fn without_joints(self) -> Self {
+        if self.joints.is_some() { Self::EXPONENTIAL } else { self }
+    }
+}
+
+fn refuse(setup: &Setup) -> Result<Beginning, SetupError> {
+    Err(SetupError::OfJoints { scheme: setup.method.method().scheme })
 }
 
 impl PartialEq for Method {
     fn eq(&self, other: &Self) -> bool {
-        (self.formulation, self.scheme) == (other.formulation, other.scheme)
+        let of = |method: &Self| (method.formulation, method.scheme, method.joints);
+        of(self) == of(other)
     }
 }
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use dynamics::{
-    DescribedBody, DescriptionError, Drive, DrivenMotion, DrivenSpeed, Expression, History, Initial, LoadFn, Method,
-    Observation, Physics, ReferenceForces, Rows, RunDescription, RunOfBody, ScaledLoad, SharedLoad, Signal,
+    DescribedBody, DescriptionError, Drive, DrivenMotion, DrivenSpeed, Expression, History, Initial, IslandMotion,
+    LoadFn, Method, Observation, Physics, ReferenceForces, Rows, RunDescription, ScaledLoad, SharedLoad, Signal,
     StepControl, Table,
 };
 use faer::Mat;
@@ -31,12 +31,18 @@ fn histories() -> Vec<History> {
     ]
 }
 
-fn run(motion: RigidMotion, loads: Vec<SharedLoad>, physics: Physics) -> RunOfBody {
+fn run(motion: RigidMotion, loads: Vec<SharedLoad>, physics: Physics) -> RunDescription {
     let body = body(motion, &FREQUENCIES);
     let points = vec![point(&body, [0.3, 0.1, -0.2])];
-    RunOfBody {
-        initial: start(body.flexible()),
-        body: DescribedBody { body, damping_ratios: vec![0.01, 0.02, 0.03], loads, physics, points, name: None },
+    let states = vec![start(body.flexible()).state(&body)];
+    let body = DescribedBody { body, damping_ratios: vec![0.01, 0.02, 0.03], loads, physics, points, name: None };
+    RunDescription {
+        bodies: vec![body],
+        joints: Vec::new(),
+        couplings: Vec::new(),
+        elements: Vec::new(),
+        states,
+        relaxed: false,
         method: Method::EXPONENTIAL,
         control: StepControl::Fixed(0.01),
         end: 1.0,
@@ -44,16 +50,13 @@ fn run(motion: RigidMotion, loads: Vec<SharedLoad>, physics: Physics) -> RunOfBo
     }
 }
 
-fn rows(run: &RunOfBody) -> Vec<Observation> {
-    run.begin().unwrap().collect::<Result<_, _>>().unwrap()
+fn rows(run: &RunDescription) -> Vec<Observation> {
+    let IslandMotion::Body(simulation) = run.begin().unwrap() else { panic!("a body that nothing ties") };
+    simulation.collect::<Result<_, _>>().unwrap()
 }
 
-fn through_data(run: RunOfBody) -> RunOfBody {
-    let bytes = RunDescription::Alone(Box::new(run)).to_bytes().unwrap();
-    match RunDescription::from_bytes(&bytes).unwrap() {
-        RunDescription::Alone(run) => *run,
-        RunDescription::Tied(_) => panic!("a run of one body"),
-    }
+fn through_data(run: RunDescription) -> RunDescription {
+    RunDescription::from_bytes(&run.to_bytes().unwrap()).unwrap()
 }
 
 /// Conserved: every number of every row, to the last bit.
@@ -63,20 +66,21 @@ fn a_run_through_its_data_is_the_same_with_every_load_and_history() {
     let at = |history| dead_force(point(&free, [0.5, -0.2, 0.4]), Vector3::new(0.5, 1.0, -0.7), history);
     let loads = every_kind().into_iter().chain(histories().into_iter().map(at)).collect();
     let free = run(RigidMotion::free(), loads, Physics::default());
-    let adaptive = RunOfBody { control: StepControl::Tolerance(1e-6), method: Method::RKMK4, ..free.clone() };
+    let adaptive = RunDescription { control: StepControl::Tolerance(1e-6), method: Method::RKMK4, ..free.clone() };
     let speed = DrivenSpeed { amplitude: 1.2, history: History::Ramp { start: 0.0, duration: 0.5 } };
     let drive = Drive { motion: DrivenMotion::Turn { axis: Vector3::z() }, speed, added: None };
     let drive_stiffness = Some(Mat::from_fn(3, 3, |i, j| 0.1 * (i + j) as f64));
     let physics = Physics { drive: Some(drive), drive_stiffness, ..Physics::default() };
     let mut driven = run(RigidMotion::clamp(Vector3::zeros()), Vec::new(), physics);
-    driven.initial = Initial { modal_displacement: vec![0.1, -0.2, 0.05], ..Initial::at_rest(3) };
+    let bent_start = Initial { modal_displacement: vec![0.1, -0.2, 0.05], ..Initial::at_rest(3) };
+    driven.states = vec![bent_start.state(&driven.bodies[0].body)];
     let reference = ReferenceForces {
         force: vec![0.3, -0.2, 0.1],
         stiffness: Mat::from_fn(3, 3, |i, j| 0.5 * (1 + i.max(j)) as f64 - 0.2 * i.min(j) as f64),
     };
     let physics = Physics { reference: Some(reference), ..Physics::default() };
     let mut bent = run(RigidMotion::clamp(Vector3::zeros()), Vec::new(), physics);
-    bent.initial = driven.initial.clone();
+    bent.states = driven.states.clone();
     for run in [free, adaptive, driven, bent] {
         let rows_before = rows(&run);
         assert!(rows_before[5].modal_velocity.iter().all(|v| *v != 0.0));
@@ -86,13 +90,14 @@ fn a_run_through_its_data_is_the_same_with_every_load_and_history() {
 
 #[test]
 fn what_is_code_is_refused_by_name() {
-    let refused = |run: RunOfBody| RunDescription::Alone(Box::new(run)).to_bytes().unwrap_err();
+    let refused = |run: RunDescription| run.to_bytes().unwrap_err();
     let own: SharedLoad = Arc::new(LoadFn::new("my damper", |_, _| ()));
     let with = |load| run(RigidMotion::free(), vec![load], Physics::default());
     assert!(refused(with(own)).to_string().contains("my damper"));
     let scaled = ScaledLoad { load: every_kind().swap_remove(0), factor: Signal::held(1.0) };
     assert!(matches!(refused(with(Arc::new(scaled))), DescriptionError::Load { .. }));
-    let of_paper = RunOfBody { method: frames_rk4::PAPER, ..run(RigidMotion::free(), Vec::new(), Physics::default()) };
+    let of_paper =
+        RunDescription { method: frames_rk4::PAPER, ..run(RigidMotion::free(), Vec::new(), Physics::default()) };
     assert!(refused(of_paper).to_string().contains("formulation paper"));
     let drive = Drive {
         motion: DrivenMotion::Turn { axis: Vector3::z() },
@@ -107,7 +112,7 @@ fn what_is_code_is_refused_by_name() {
 fn bytes_that_are_no_run_are_refused_and_every_cut_one_too() {
     let of = |bytes: &[u8]| RunDescription::from_bytes(bytes).map(|_| ());
     let run = run(RigidMotion::free(), every_kind(), Physics::default());
-    let bytes = RunDescription::Alone(Box::new(run)).to_bytes().unwrap();
+    let bytes = run.to_bytes().unwrap();
     assert_eq!(of(b"something else"), Err(DescriptionError::Other));
     assert_eq!(of(&[]), Err(DescriptionError::Other));
     let mut other = bytes.clone();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use dynamics::{
     Bushing, Coordinate, Coupling, DescribedBody, DescriptionError, Friction, History, Joint, JointDrive, JointForce,
-    JointLawFn, Marker, MotionState, Physics, PointForce, PointShapes, PointSpring, Rows, RunDescription, RunOfSystem,
+    JointLawFn, Marker, Method, MotionState, Physics, PointForce, PointShapes, PointSpring, Rows, RunDescription,
     StepControl, Stops, SystemObservation, SystemScheme, Table,
 };
 use nalgebra::{Matrix3, Vector3};
@@ -15,7 +15,7 @@ use crate::flexible::rod;
 
 /// A flexible rod on a hinge with a spring, and a rigid rod on a second one, which a gear couples with the first; a spring and a
 /// bushing to the ground.
-pub fn run() -> RunOfSystem {
+pub fn run() -> RunDescription {
     let conrod = rod();
     let inertia = Matrix3::from_diagonal(&Vector3::new(1e-3, 1.0 / 12.0, 1.0 / 12.0));
     let rod = ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
@@ -59,7 +59,7 @@ pub fn run() -> RunOfSystem {
     };
     let states = vec![at(&conrod.body, conrod.body.origin), at(&rod, Vector3::new(5.5, 0.0, 0.0))];
     let free_length = 0.5 * (conrod.body.origin - Vector3::x() * 5.0).norm();
-    RunOfSystem {
+    RunDescription {
         states,
         bodies: vec![
             described(conrod.body.clone(), Vec::new(), vec![conrod.patches[1].0.clone()]),
@@ -76,15 +76,15 @@ pub fn run() -> RunOfSystem {
             }),
         ],
         relaxed: false,
-        scheme: SystemScheme::Radau,
+        method: Method::of_joints(SystemScheme::Radau),
         control: StepControl::Tolerance(1e-5),
         end: 0.2,
         rows: Rows::Interval(0.02),
     }
 }
 
-fn rows(run: &RunOfSystem) -> Vec<SystemObservation> {
-    let mut simulation = run.begin().unwrap();
+fn rows(run: &RunDescription) -> Vec<SystemObservation> {
+    let dynamics::IslandMotion::System(mut simulation) = run.begin().unwrap() else { panic!("bodies in joints") };
     let mut rows = vec![simulation.observation().unwrap()];
     while !simulation.is_over() {
         if simulation.advance(1).unwrap() == dynamics::Reached::Row {
@@ -97,11 +97,14 @@ fn rows(run: &RunOfSystem) -> Vec<SystemObservation> {
 /// Conserved: every number of every row, to the last bit.
 #[test]
 fn a_system_through_its_data_is_the_same() {
-    let gauss = RunOfSystem { scheme: SystemScheme::Gauss, control: StepControl::Fixed(2e-3), relaxed: true, ..run() };
+    let gauss = RunDescription {
+        method: Method::of_joints(SystemScheme::Gauss),
+        control: StepControl::Fixed(2e-3),
+        relaxed: true,
+        ..run()
+    };
     for run in [run(), gauss] {
-        let bytes = RunDescription::Tied(Box::new(run.clone())).to_bytes().unwrap();
-        let RunDescription::Tied(read) = RunDescription::from_bytes(&bytes).unwrap() else { panic!("a system") };
-        let found = rows(&read);
+        let found = rows(&RunDescription::from_bytes(&run.to_bytes().unwrap()).unwrap());
         assert!(found.len() > 9 && found[9].bodies[1].omega_body.norm() > 1e-3);
         assert_eq!(rows(&run), found);
     }
@@ -112,6 +115,6 @@ fn a_law_of_one_s_own_is_refused_with_its_joint() {
     let mut run = run();
     let law = Arc::new(JointLawFn::new("PD", |_, angle, rate| -angle - rate));
     run.joints[1].turn_force = Some(JointForce { laws: vec![law], ..JointForce::default() });
-    let refused = RunDescription::Tied(Box::new(run)).to_bytes().unwrap_err();
+    let refused = run.to_bytes().unwrap_err();
     assert_eq!(refused, DescriptionError::Law { joint: "second".into() });
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use dynamics::{
     CommonSpin, ConservativeBody, Coupling, DescriptionError, EquationValue, History, Joint, JointEquationFn, Marker,
-    MotionState, Physics, PointForce, PointShapes, RelativePlace, Rows, RunDescription, SetupError, StepControl,
-    System, SystemMotion, SystemScheme, SystemSetup, SystemSimulation,
+    MotionState, Physics, PointForce, PointShapes, RelativePlace, Rows, SetupError, StepControl, System, SystemMotion,
+    SystemScheme, SystemSetup, SystemSimulation,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -396,6 +396,6 @@ fn an_equation_that_is_no_number_ends_the_run() {
     assert!((0.3..0.41).contains(&simulation.motion().time()), "{error}");
     let mut run = described::run();
     run.joints[1] = Joint { name: "second".into(), ..joint };
-    let refused = RunDescription::Tied(Box::new(run)).to_bytes().unwrap_err();
+    let refused = run.to_bytes().unwrap_err();
     assert_eq!(refused, DescriptionError::Equation { joint: "second".into() });
 }

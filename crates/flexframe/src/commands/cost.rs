@@ -18,14 +18,13 @@ mod run;
 mod setting;
 mod settings;
 mod short;
-mod way;
 
 use std::path::Path;
 
 use advice::Subject;
-use dynamics::{Method, StepControl, SystemScheme};
+use dynamics::{Method, SystemScheme};
 use model::{BuildError, BuildProgress, Builder, Model};
-use scene::{Flexible, METHODS, Scene, System, Time};
+use scene::{Flexible, METHODS, METHODS_OF_JOINTS, Scene, System, Time};
 
 pub use answer::Answer;
 pub use body::CostBody;
@@ -49,7 +48,6 @@ use answer::refine;
 use case::PreparedScene;
 use ladder::{Evaluator, refine_line};
 use reference::{Reference, converge};
-use way::Way;
 
 /// How far a price list has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,14 +83,11 @@ pub fn price_list(
     let case = PreparedScene::new(system.clone(), built.iter().map(|built| &built.model).collect());
 
     let is_tied = system.has_ties();
-    let ways: Vec<Way> = match is_tied {
-        true => SystemScheme::ALL.map(Way::Tied).to_vec(),
-        false => METHODS.map(Way::Alone).to_vec(),
-    };
-    let ladders: Vec<(Way, bool)> = ways
-        .into_iter()
-        .flat_map(|way| [(way, false), (way, true)])
-        .filter(|(way, controlled)| !controlled || way.estimates_error())
+    let methods: &[Method] = if is_tied { &METHODS_OF_JOINTS } else { &METHODS };
+    let ladders: Vec<(Method, bool)> = methods
+        .iter()
+        .flat_map(|method| [(*method, false), (*method, true)])
+        .filter(|(method, controlled)| !controlled || method.estimates_error)
         .collect();
     let total = (ladders.len() + 2 + built.len()) as u64;
     let mut done = 0;
@@ -101,13 +96,12 @@ pub fn price_list(
         progress(CostProgress::Measuring { done, total });
     };
     step(0);
-    let finest = if is_tied { Way::Tied(SystemScheme::default()) } else { Way::Alone(Method::EXPONENTIAL) };
+    let finest = if is_tied { Method::of_joints(SystemScheme::default()) } else { Method::EXPONENTIAL };
     let reference = converge(&case, finest, settings.budget(20), 0.0)
         .map_err(|(steps, source)| CostError::Reference { scene: scene.path.clone(), steps, source })?;
     step(1);
     // The paper's formulation has a limit of its own, to which its schemes converge.
-    let limit = Way::Alone(frames_rk4::LIMIT);
-    let limit = (!is_tied).then(|| converge(&case, limit, settings.budget(5), 0.0));
+    let limit = (!is_tied).then(|| converge(&case, frames_rk4::LIMIT, settings.budget(5), 0.0));
     let (paper_limit, paper_limit_failure) = match limit {
         Some(Ok(limit)) => (Some(limit), None),
         Some(Err((steps, failure))) => (None, Some(format!("in {steps} steps: {failure}"))),
@@ -115,11 +109,11 @@ pub fn price_list(
     };
     step(1);
     let evaluator = Evaluator { reference: &reference, paper_limit: paper_limit.as_ref(), settings };
-    let tied = system.bodies.iter().find(|scene| scene.tied);
-    let own = own_setting(tied.unwrap_or(scene));
+    let Time { method, control, .. } = system.bodies.iter().find(|scene| scene.tied).unwrap_or(scene).time;
+    let own = (method, control);
     let mut lines = Vec::new();
-    for (way, controlled) in ladders {
-        lines.push(refine_line(&case, &evaluator, way, controlled, own));
+    for (method, controlled) in ladders {
+        lines.push(refine_line(&case, &evaluator, method, controlled, own));
         step(1);
     }
     if let Some(target) = settings.target {
@@ -200,12 +194,6 @@ impl Built {
 
 /// Reason that the modes of a tied body are not compared.
 const TIED_MODES: &str = "the body is tied to others: give it other `modes.flexible` to see what they change";
-
-/// The way and the control that the scene asks for itself.
-fn own_setting(scene: &Scene) -> (Way, StepControl) {
-    let Time { method, system_scheme, control, .. } = scene.time;
-    (if scene.tied { Way::Tied(system_scheme) } else { Way::Alone(method) }, control)
-}
 
 impl Reference {
     fn report(&self) -> ReferenceReport {

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use dynamics::{
     Coordinate, DescribedBody, ForceElement, Island, IslandMotion, JointEquation, JointLaw, MarkerForce, MarkerLaw,
-    Method, Physics, PointShapes, RowTimes, Rows, Run, RunOfBody, RunOfSystem, Setup, SetupError, SharedLoad,
-    Simulation, StepControl, SystemScheme, SystemSimulation,
+    Method, Physics, PointShapes, RowTimes, Rows, Run, RunDescription, Setup, SetupError, SharedLoad, Simulation,
+    StepControl,
 };
 use model::{BuildError, Model, StartError, Tied, physics_in_system, tie_models};
 use scene::{End, Scene, System};
@@ -55,10 +55,9 @@ pub struct OwnEquation {
 /// How the motions of a scene begin: at first as the scene says.
 #[derive(Debug, Clone)]
 pub struct Beginning {
-    /// Formulation and scheme of bodies alone.
+    /// Formulation and scheme. Tied bodies move by its scheme of joints, where it has one, else by the default; bodies that nothing ties by
+    /// [`Method::without_joints`].
     pub method: Method,
-    /// Scheme of tied bodies.
-    pub system_scheme: SystemScheme,
     /// Steps.
     pub control: StepControl,
     /// Time of the end.
@@ -80,7 +79,7 @@ pub struct Beginning {
 impl Beginning {
     /// Beginning of a scene with a model of each body; `None` without bodies.
     pub fn of(system: &System, models: &[&Model]) -> Option<Self> {
-        let Scene { time, output, .. } = system.bodies.first()?;
+        let Scene { time, output, .. } = system.bodies.iter().find(|scene| scene.tied).or(system.bodies.first())?;
         let forces = |model: &&Model| BodyForces {
             loads: model.loads().to_vec(),
             damping_ratios: model.damping_ratios().to_vec(),
@@ -88,7 +87,6 @@ impl Beginning {
         };
         Some(Self {
             method: time.method,
-            system_scheme: time.system_scheme,
             control: time.control,
             end: time.end,
             rows: output.rows,
@@ -123,13 +121,13 @@ pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Resul
     }
     for tied in tied {
         let (bodies, joints, elements) = (tied.bodies.clone(), tied.joints.clone(), elements_in_rows(system, &tied));
-        let simulation = start_tied(system, models, tied, beginning);
-        let simulation = simulation.map_err(|source| {
+        let motion = run_of_system(system, models, tied, beginning).begin().map_err(StartError::from);
+        let motion = motion.map_err(|source| {
             // At the body that is meant, where it is one.
             let number = source.body_of_system().map_or(bodies[0], |number| bodies[number]);
             BeginError::start(number, &system.bodies[number], source)
         })?;
-        islands.push(Island { motion: IslandMotion::System(Box::new(simulation)), bodies, joints, elements });
+        islands.push(Island { motion, bodies, joints, elements });
     }
     Ok(Run::new(islands, beginning.row_times()))
 }
@@ -222,22 +220,18 @@ fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> R
     if let Some(refusal) = model.refusal.filter(|_| scene.effects.refuse) {
         return Err(refusal.into());
     }
-    let (initial, points) = (model.initial(scene), points(model));
+    let (initial, points, method) = (model.initial(scene), points(model), of.method.without_joints());
     Ok(Simulation::new(&Setup {
         damping_ratios: &forces.damping_ratios,
         loads: &forces.loads,
         physics: &forces.physics,
-        method: model.paper.or(&of.method),
+        method: model.paper.or(&method),
         control: of.control,
         end: of.end,
         rows: of.rows,
         points: &points,
         ..model.setup(scene, &initial)
     })?)
-}
-
-fn start_tied(system: &System, models: &[&Model], tied: Tied, of: &Beginning) -> Result<SystemSimulation, StartError> {
-    Ok(run_of_system(system, models, tied, of).begin()?)
 }
 
 /// A body with what acts on it.
@@ -252,12 +246,16 @@ fn described_body(scene: &Scene, model: &Model, forces: &BodyForces) -> Describe
     }
 }
 
-/// The run of a body alone, as data have it: all but the reference points of the paper's formulation.
-pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> RunOfBody {
-    RunOfBody {
-        body: described_body(scene, model, forces),
-        initial: model.initial(scene),
-        method: of.method,
+/// The run of a body that nothing ties, as data have it: all but the reference points of the paper's formulation.
+pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> RunDescription {
+    RunDescription {
+        bodies: vec![described_body(scene, model, forces)],
+        joints: Vec::new(),
+        couplings: Vec::new(),
+        elements: Vec::new(),
+        states: vec![model.initial(scene).state(&model.body)],
+        relaxed: false,
+        method: of.method.without_joints(),
         control: of.control,
         end: of.end,
         rows: of.rows,
@@ -265,8 +263,8 @@ pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of:
 }
 
 /// The run of tied bodies.
-pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: &Beginning) -> RunOfSystem {
-    RunOfSystem {
+pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: &Beginning) -> RunDescription {
+    RunDescription {
         bodies: {
             let described = |number: &usize| {
                 let (scene, forces) = (&system.bodies[*number], &of.bodies[*number]);
@@ -280,7 +278,7 @@ pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: 
         elements: tied.system.elements().to_vec(),
         states: tied.states,
         relaxed: system.relaxed,
-        scheme: of.system_scheme,
+        method: Method::of_joints(of.method.joints.unwrap_or_default()),
         control: of.control,
         end: of.end,
         rows: of.row_times().of_systems(),

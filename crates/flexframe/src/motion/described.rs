@@ -1,6 +1,5 @@
 //! The motions of a scene as data, from which a page makes them again.
 
-use dynamics::RunDescription;
 use live::{LiveMotion, LiveRun};
 use model::{BuildError, Model};
 use scene::System;
@@ -20,14 +19,14 @@ pub(crate) fn describe(system: &System, models: &[&Model], beginning: &Beginning
     let is_alone = |number: &usize| tied.iter().all(|tied| !tied.bodies.contains(number));
     let alone = (0..models.len()).filter(is_alone).map(|number| {
         let run = run_of_body(&system.bodies[number], models[number], &beginning.bodies[number], beginning);
-        LiveMotion { run: RunDescription::Alone(Box::new(run)), bodies: vec![number] }
+        LiveMotion { run, bodies: vec![number] }
     });
     let mut motions: Vec<LiveMotion> = alone.collect();
     let mut elements = vec![Vec::new(); motions.len()];
     for tied in tied {
         elements.push(tied.elements.clone());
         let bodies = tied.bodies.clone();
-        let run = RunDescription::Tied(Box::new(run_of_system(system, models, tied, beginning)));
+        let run = run_of_system(system, models, tied, beginning);
         motions.push(LiveMotion { run, bodies });
     }
     Ok(Described { run: LiveRun { motions }, elements })

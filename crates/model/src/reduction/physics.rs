@@ -50,7 +50,7 @@ pub(crate) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
     match scene.modes.static_correction {
         _ if flexible == 0 => Choice::Off,
         // The shapes are stiff, which only this scheme does not mind.
-        Choice::Auto if scene.time.method != Method::EXPONENTIAL => Choice::Off,
+        Choice::Auto if scene.time.method.without_joints() != Method::EXPONENTIAL => Choice::Off,
         choice => choice,
     }
 }

@@ -116,16 +116,7 @@ impl<'a> Island<'a> {
             if let Some(source) = model.refusal.filter(|_| of_body.effects.refuse) {
                 return Err(BuildError::Refused { scene: of_body.path.clone(), source });
             }
-            let initial = model.initial(of_body);
-            Ok(MotionState {
-                time: 0.0,
-                attitude: initial.attitude,
-                origin_global: initial.origin.unwrap_or(model.body.origin),
-                velocity_global: initial.velocity,
-                omega_body: initial.omega,
-                modal_displacement: initial.modal_displacement,
-                modal_velocity: initial.modal_velocity,
-            })
+            Ok(model.initial(of_body).state(&model.body))
         };
         let states = bodies.iter().map(state).collect::<Result<_, _>>()?;
         Ok(Self { scene, models, bodies, states })

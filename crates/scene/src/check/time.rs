@@ -5,7 +5,7 @@ use dynamics::{Method, Rows, StepControl, SystemScheme};
 use super::Check;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::methods::{METHODS, is_of_lone_bodies, method_named, system_scheme_named};
+use crate::methods::{METHODS, is_without_joints, method_named, method_of_joints_named};
 use crate::scene::{Body, Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 use crate::text::shorten::shorten;
@@ -24,10 +24,8 @@ impl Check<'_> {
         let &TimeSection { end, step, tolerance, formulation, scheme } = section;
         let help = "the run starts at 0 and makes at least one step, e.g. `end = 0.5`";
         self.positive("time.end", end, help)?;
-        let (method, system_scheme) = match is_tied {
-            true => (Method::EXPONENTIAL, self.scheme_of_ties(formulation, scheme)?),
-            false => (self.method(formulation, scheme)?, SystemScheme::default()),
-        };
+        let method =
+            if is_tied { self.method_of_ties(formulation, scheme)? } else { self.method(formulation, scheme)? };
         let expected = "exactly one of them";
         let help = "give `step`, the length of a step, e.g. `step = 1e-4`, or `tolerance`, \
                     a bound of the sum of the estimated relative errors of all steps, e.g. `tolerance = 1e-6`";
@@ -52,15 +50,11 @@ impl Check<'_> {
                 StepControl::Tolerance(tolerance)
             }
         };
-        Ok(Time { end, control, method, system_scheme })
+        Ok(Time { end, control, method })
     }
 
     /// Bodies in joints move by `radau`, which needs no name, by `gauss` or by `rkmk4`.
-    fn scheme_of_ties(
-        &self,
-        formulation: Option<Formulation>,
-        scheme: Option<Scheme>,
-    ) -> Result<SystemScheme, SceneError> {
+    fn method_of_ties(&self, formulation: Option<Formulation>, scheme: Option<Scheme>) -> Result<Method, SceneError> {
         let refuse = |key: &str, found: &str, expected: &str| {
             let found = format!("the {key} `{found}` with joints, springs or bushings");
             let help = format!("remove `{key}`: bodies in joints move by `radau`, the others by `exponential`");
@@ -70,11 +64,11 @@ impl Check<'_> {
             (Some(Formulation(name)), _) if name != Method::EXPONENTIAL.formulation => {
                 refuse("formulation", name, "the conservative form: the paper's scheme has no joints")
             }
-            (_, Some(Scheme(name))) => match system_scheme_named(name) {
-                Some(scheme) => Ok(scheme),
+            (_, Some(Scheme(name))) => match method_of_joints_named(name) {
+                Some(method) => Ok(method),
                 None => refuse("scheme", name, "`radau`, `gauss`, `rkmk4`, or none"),
             },
-            _ => Ok(SystemScheme::default()),
+            _ => Ok(Method::of_joints(SystemScheme::default())),
         }
     }
 
@@ -87,7 +81,7 @@ impl Check<'_> {
                 Method::EXPONENTIAL
             });
         };
-        if !is_of_lone_bodies(name) {
+        if !is_without_joints(name) {
             return Err(self.document.place("time.scheme").refuse(
                 format!("the scheme `{name}` without joints, springs and bushings"),
                 "a scheme of a body alone",

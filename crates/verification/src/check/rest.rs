@@ -20,15 +20,9 @@ pub fn rest(scene: &Scene, model: &Model) -> Option<(ConservativeBody, MotionSta
         return Some((body, model.rest(scene).ok()?));
     }
     let nf = model.body.flexible();
-    let at = |q: &[f64]| MotionState {
-        time: 0.0,
-        attitude: initial.attitude,
-        origin_global: initial.origin.unwrap_or(model.body.origin),
-        velocity_global: initial.velocity,
-        omega_body: initial.omega,
-        modal_displacement: q.to_vec(),
-        modal_velocity: vec![0.0; nf],
-    };
+    let beginning = initial.state(&model.body);
+    let at =
+        |q: &[f64]| MotionState { modal_displacement: q.to_vec(), modal_velocity: vec![0.0; nf], ..beginning.clone() };
     let acceleration = |q: &[f64]| Some(body.observed_at(&at(q), &[]).ok()?.modal_acceleration);
     let omega = &model.body.circular_frequencies;
     let mut q = vec![0.0; nf];

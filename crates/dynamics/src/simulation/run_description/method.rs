@@ -5,8 +5,15 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::simulation::run_description::error::DescriptionError;
 use crate::simulation::setup::Method;
+use crate::system::collocation::SystemScheme;
 
-const KNOWN: [Method; 2] = [Method::EXPONENTIAL, Method::RKMK4];
+const KNOWN: [Method; 5] = [
+    Method::EXPONENTIAL,
+    Method::RKMK4,
+    Method::of_joints(SystemScheme::Radau),
+    Method::of_joints(SystemScheme::Gauss),
+    Method::of_joints(SystemScheme::Rkmk4),
+];
 
 /// Refuses a method from outside.
 pub(super) fn check(method: &Method) -> Result<(), DescriptionError> {
@@ -16,11 +23,11 @@ pub(super) fn check(method: &Method) -> Result<(), DescriptionError> {
 }
 
 pub(super) fn serialize<S: Serializer>(method: &Method, serializer: S) -> Result<S::Ok, S::Error> {
-    (method.formulation, method.scheme).serialize(serializer)
+    (method.formulation, method.scheme, method.joints).serialize(serializer)
 }
 
 pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Method, D::Error> {
-    let (formulation, scheme) = <(&str, &str)>::deserialize(deserializer)?;
-    let is = |method: &Method| (method.formulation, method.scheme) == (formulation, scheme);
+    let found = <(&str, &str, Option<SystemScheme>)>::deserialize(deserializer)?;
+    let is = |method: &Method| (method.formulation, method.scheme, method.joints) == found;
     KNOWN.into_iter().find(is).ok_or_else(|| D::Error::custom("an unknown method"))
 }

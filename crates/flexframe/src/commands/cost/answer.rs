@@ -10,7 +10,6 @@ use super::case::PreparedScene;
 use super::ladder::{Evaluator, LadderRun, Line, Outcome, settings_between};
 use super::setting::Setting;
 use super::short::{duration, setting};
-use super::way::Way;
 use crate::files::json;
 
 /// A setting between two others cannot be faster than the finer of them by more than this.
@@ -49,7 +48,7 @@ pub(super) fn refine(case: &PreparedScene<'_>, evaluator: &Evaluator<'_>, lines:
         while !between.is_empty() {
             let finer = between.split_off(between.len() / 2);
             let control = finer[0];
-            let row = LadderRun::new(control, evaluator.measure(case, line.way, control), false);
+            let row = LadderRun::new(control, evaluator.measure(case, line.method, control), false);
             let good = row.measured().is_some_and(|measured| measured.error <= target);
             line.insert(row);
             if !good {
@@ -78,7 +77,7 @@ impl Answer {
         let time_lines = |line: &Line, row: &LadderRun| {
             let formulation = format!("formulation = \"{}\"", line.formulation);
             // Tied bodies have but one.
-            let formulation = matches!(line.way, Way::Alone(_)).then_some(formulation);
+            let formulation = line.method.joints.is_none().then_some(formulation);
             let others = [format!("scheme = \"{}\"", line.scheme), row.setting.to_string()];
             formulation.into_iter().chain(others).collect()
         };

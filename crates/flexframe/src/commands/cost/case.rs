@@ -1,11 +1,10 @@
-//! A scene with its models, ready to be run in any way.
+//! A scene with its models, ready to be run by any method.
 
-use dynamics::{RowTimes, Rows, Run, SetupError, StepControl};
+use dynamics::{Method, RowTimes, Rows, Run, SetupError, StepControl};
 use model::{Model, StartError};
 use scene::{Scene, System};
 
 use super::run::Scales;
-use super::way::Way;
 use crate::commands::run::{RunBody, RunFailure};
 use crate::motion::{BeginError, Beginning, begin};
 
@@ -46,20 +45,16 @@ impl<'a> PreparedScene<'a> {
     }
 
     /// The run from its start, with rows at the times of comparison.
-    pub(super) fn begin(&self, way: Way, control: StepControl) -> Result<Run, RunFailure> {
-        Ok(self.try_begin(way, control)?)
+    pub(super) fn begin(&self, method: Method, control: StepControl) -> Result<Run, RunFailure> {
+        Ok(self.try_begin(method, control)?)
     }
 
-    fn try_begin(&self, way: Way, control: StepControl) -> Result<Run, BeginError> {
+    fn try_begin(&self, method: Method, control: StepControl) -> Result<Run, BeginError> {
         let rows = Rows::Interval(self.end() / self.intervals(control) as f64);
         let Some(beginning) = Beginning::of(&self.system, &self.models) else {
             return Ok(Run::new(Vec::new(), RowTimes::new(rows, control, self.end())));
         };
-        let mut beginning = Beginning { method: way.method(), control, rows, ..beginning };
-        if let Way::Tied(scheme) = way {
-            beginning.system_scheme = scheme;
-        }
-        begin(&self.system, &self.models, &beginning)
+        begin(&self.system, &self.models, &Beginning { method, control, rows, ..beginning })
     }
 
     /// Equal parts of the run at whose ends it is compared: the most that leave the steps as long as asked.
@@ -74,12 +69,12 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
-    /// The longest fixed step that a way allows for all bodies, at most the whole run.
-    pub(super) fn longest_step(&self, way: Way) -> f64 {
+    /// The longest fixed step that a method allows for all bodies, at most the whole run.
+    pub(super) fn longest_step(&self, method: Method) -> f64 {
         let mut longest = self.end();
         // Each body has a limit of its own, and the first that is met is told.
         for _ in &self.models {
-            match self.try_begin(way, StepControl::Fixed(longest)) {
+            match self.try_begin(method, StepControl::Fixed(longest)) {
                 Err(BeginError::Start { source, .. }) => match *source {
                     StartError::Setup(
                         SetupError::StepBeyondLimit { limit, .. }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Instant;
 
-use dynamics::StepControl;
+use dynamics::{Method, StepControl};
 use serde::Serialize;
 
 use super::case::PreparedScene;
@@ -11,7 +11,6 @@ use super::reference::{ROUNDING, Reference};
 use super::run::{Errors, Timing, Trajectory};
 use super::setting::Setting;
 use super::settings::CostSettings;
-use super::way::Way;
 use crate::commands::run::RunFailure;
 use crate::files::json;
 use crate::report::rounded;
@@ -52,7 +51,7 @@ pub struct Line {
     /// The runs, longest step or largest tolerance first.
     pub rows: Vec<LadderRun>,
     #[serde(skip)]
-    pub(super) way: Way,
+    pub(super) method: Method,
 }
 
 /// A run of a ladder.
@@ -154,13 +153,13 @@ pub(super) struct Evaluator<'a> {
 
 impl Evaluator<'_> {
     /// The limit to which a method converges with short steps.
-    fn limit(&self, way: Way) -> Option<&Reference> {
-        if way.method().abilities.keeps_energy { Some(self.reference) } else { self.paper_limit }
+    fn limit(&self, method: Method) -> Option<&Reference> {
+        if method.abilities.keeps_energy { Some(self.reference) } else { self.paper_limit }
     }
 
     /// Runs the motion once for its errors, warming up, and then again and again for the time.
-    pub(super) fn measure(&self, case: &PreparedScene<'_>, way: Way, control: StepControl) -> Outcome {
-        match self.try_measure(case, way, control) {
+    pub(super) fn measure(&self, case: &PreparedScene<'_>, method: Method, control: StepControl) -> Outcome {
+        match self.try_measure(case, method, control) {
             Ok(measured) => Outcome::Ran(measured.into()),
             Err(RunFailure::OutOfPatience { patience, reached }) => {
                 Outcome::OutOfPatience(Stopped { patience, reached })
@@ -169,13 +168,18 @@ impl Evaluator<'_> {
         }
     }
 
-    fn try_measure(&self, case: &PreparedScene<'_>, way: Way, control: StepControl) -> Result<Measured, RunFailure> {
-        let begun = case.begin(way, control)?;
+    fn try_measure(
+        &self,
+        case: &PreparedScene<'_>,
+        method: Method,
+        control: StepControl,
+    ) -> Result<Measured, RunFailure> {
+        let begun = case.begin(method, control)?;
         let run = Trajectory::follow(begun.clone(), self.settings.patience)?;
         let timing = Timing::of(&begun, self.settings.timed_for, self.settings.patience)?;
         let errors = Errors::between(&run, &self.reference.trajectory, case.scales());
         let least = RANKED_ABOVE * self.reference.error.largest();
-        let limit = self.limit(way).map(|limit| &limit.trajectory);
+        let limit = self.limit(method).map(|limit| &limit.trajectory);
         let spin = |against: &Trajectory| run.spin_against(against);
         Ok(Measured {
             error: errors.largest().max(least),
@@ -197,8 +201,8 @@ impl Evaluator<'_> {
 
     /// True if shorter steps cannot bring a run closer to the reference, as far as can be told: the reference cannot
     /// tell, or the error is that of the formulation, or of rounding.
-    fn is_at_the_end(&self, way: Way, before: Option<&Measured>, now: &Measured) -> bool {
-        let own = self.limit(way).map_or(0.0, |limit| RANKED_ABOVE * limit.error.largest());
+    fn is_at_the_end(&self, method: Method, before: Option<&Measured>, now: &Measured) -> bool {
+        let own = self.limit(method).map_or(0.0, |limit| RANKED_ABOVE * limit.error.largest());
         now.at_reference
             || now.step_errors.is_some_and(|errors| errors.largest() <= own.max(OUTWEIGHED * now.error))
             || before.is_some_and(|before| now.error < ROUNDING && now.error > before.error / 2.0)
@@ -210,22 +214,22 @@ impl Evaluator<'_> {
 pub(super) fn refine_line(
     case: &PreparedScene<'_>,
     evaluator: &Evaluator<'_>,
-    way: Way,
+    method: Method,
     controlled: bool,
-    own: (Way, StepControl),
+    own: (Method, StepControl),
 ) -> Line {
     let mut line = Line {
-        formulation: way.formulation(),
-        scheme: way.scheme(),
+        formulation: method.formulation,
+        scheme: method.scheme,
         controlled,
-        order: way.order(),
+        order: method.order,
         measured_order: None,
         rows: Vec::new(),
-        way,
+        method,
     };
     // The last run, and its work relative to the first setting.
     let mut before: Option<(f64, Measured)> = None;
-    for (control, work) in refinements(case, way, controlled) {
+    for (control, work) in refinements(case, method, controlled) {
         if let Some((work_before, run)) = &before {
             let more = work / work_before;
             let (seconds, steps) = (more * run.seconds, more * run.steps as f64);
@@ -235,9 +239,9 @@ pub(super) fn refine_line(
                 break;
             }
         }
-        let of_scene = own.0 == way && is_same(own.1.into(), control.into());
+        let of_scene = own.0 == method && is_same(own.1.into(), control.into());
         let started = Instant::now();
-        let row = LadderRun::new(control, evaluator.measure(case, way, control), of_scene);
+        let row = LadderRun::new(control, evaluator.measure(case, method, control), of_scene);
         let measured = row.measured().cloned();
         line.rows.push(row);
         let Some(measured) = measured else {
@@ -247,19 +251,19 @@ pub(super) fn refine_line(
             }
             continue;
         };
-        let ends = evaluator.is_at_the_end(way, before.as_ref().map(|(_, run)| run), &measured);
+        let ends = evaluator.is_at_the_end(method, before.as_ref().map(|(_, run)| run), &measured);
         before = Some((work, measured));
         if ends {
             break;
         }
     }
-    let (own_way, own_control) = own;
-    let is_ours = own_way == way && controlled == matches!(own_control, StepControl::Tolerance(_));
+    let (own_method, own_control) = own;
+    let is_ours = own_method == method && controlled == matches!(own_control, StepControl::Tolerance(_));
     if is_ours && !line.rows.iter().any(|row| row.of_scene) {
-        let outcome = evaluator.measure(case, way, own_control);
+        let outcome = evaluator.measure(case, method, own_control);
         line.insert(LadderRun::new(own_control, outcome, true));
     }
-    if !controlled && let Some(limit) = evaluator.limit(way) {
+    if !controlled && let Some(limit) = evaluator.limit(method) {
         line.measured_order = slowest_order(&line.rows, &limit.error);
     }
     line
@@ -290,7 +294,7 @@ impl Line {
 }
 
 /// The settings of a line, coarsest first, and the work of each relative to the first.
-fn refinements(case: &PreparedScene<'_>, way: Way, controlled: bool) -> Vec<(StepControl, f64)> {
+fn refinements(case: &PreparedScene<'_>, method: Method, controlled: bool) -> Vec<(StepControl, f64)> {
     if controlled {
         // The estimate goes with the fourth power of the step.
         return TOLERANCES
@@ -298,8 +302,8 @@ fn refinements(case: &PreparedScene<'_>, way: Way, controlled: bool) -> Vec<(Ste
             .collect();
     }
     let end = case.end();
-    let longest = case.longest_step(way);
-    let factor = if way.is_limited_by_modes() && longest < end { BELOW_LIMIT } else { 1.0 };
+    let longest = case.longest_step(method);
+    let factor = if method.is_limited_by_modes() && longest < end { BELOW_LIMIT } else { 1.0 };
     let fewest = (end / (factor * longest)).max(FEWEST_STEPS) * (1.0 - 1e-12);
     let first = step_counts().find(|count| *count as f64 >= fewest);
     let others = step_counts().filter(|count| is_one_two_five(*count) && Some(*count) > first);
@@ -435,7 +439,7 @@ mod tests {
             order: 4,
             measured_order: None,
             rows,
-            way: Way::Alone(dynamics::Method::EXPONENTIAL),
+            method: Method::EXPONENTIAL,
         };
         let mut lines = vec![line(rows), line(vec![failed])];
         mark_front(&mut lines);

@@ -9,7 +9,6 @@ use super::case::PreparedScene;
 use super::reference::converge;
 use super::run::{Errors, Trajectory, seconds_per_step};
 use super::settings::CostSettings;
-use super::way::Way;
 use crate::commands::run::RunFailure;
 use crate::files::json;
 
@@ -55,14 +54,14 @@ pub(super) fn compare(
     settings: &CostSettings,
 ) -> Result<Vec<ModesRow>, (usize, RunFailure)> {
     let Some(richest) = models.last() else { return Ok(Vec::new()) };
-    let way = Way::Alone(Method::EXPONENTIAL);
+    let method = Method::EXPONENTIAL;
     let budget = settings.budget(5);
-    let most = converge(&PreparedScene::alone(scene, richest), way, budget, CONVERGED)
+    let most = converge(&PreparedScene::alone(scene, richest), method, budget, CONVERGED)
         .map_err(|(_, failure)| (richest.body.flexible(), failure))?;
     let control = StepControl::Fixed(most.step);
     let row = |model: &Model| -> Result<ModesRow, RunFailure> {
         let case = PreparedScene::alone(scene, model);
-        let begun = case.begin(way, control)?;
+        let begun = case.begin(method, control)?;
         let seconds_per_step = seconds_per_step(&begun, settings.timed_for)?;
         let run = Trajectory::follow(begun, budget.time)?;
         let flexible = model.body.flexible();

@@ -2,12 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use dynamics::StepControl;
+use dynamics::{Method, StepControl};
 use serde::Serialize;
 
 use super::case::PreparedScene;
 use super::run::{Errors, Trajectory};
-use super::way::Way;
 use crate::commands::run::RunFailure;
 
 /// Steps of the first run.
@@ -54,7 +53,7 @@ pub(super) struct Budget {
 /// Steps of a try and its failure, where none came to its end: the last one, but for one that ran out of time.
 pub(super) fn converge(
     case: &PreparedScene<'_>,
-    way: Way,
+    method: Method,
     budget: Budget,
     goal: f64,
 ) -> Result<Reference, (u64, RunFailure)> {
@@ -62,7 +61,7 @@ pub(super) fn converge(
     let left = || budget.time.saturating_sub(started.elapsed());
     let (mut steps, mut before) = (FIRST, None);
     let coarse = loop {
-        match follow(case, way, steps, left()) {
+        match follow(case, method, steps, left()) {
             Ok(run) => break run,
             // What longer steps have failed for says more than that there is no time for shorter ones.
             Err(failure @ RunFailure::OutOfPatience { .. }) => return Err(before.unwrap_or((steps, failure))),
@@ -78,7 +77,7 @@ pub(super) fn converge(
     let reference = |trajectory, steps, error| Reference { trajectory, step: case.end() / steps as f64, steps, error };
     // Without a second run nothing is known of the error.
     steps *= 2;
-    let finer = follow(case, way, steps, left()).map_err(|failure| (steps, failure))?;
+    let finer = follow(case, method, steps, left()).map_err(|failure| (steps, failure))?;
     let mut difference = Errors::between(&coarse, &finer, case.scales());
     let mut best = reference(finer, steps, difference);
     while best.error.largest() > goal
@@ -86,7 +85,7 @@ pub(super) fn converge(
         && started.elapsed() + 2 * best.trajectory.time <= budget.time
     {
         steps *= 2;
-        let Ok(finer) = follow(case, way, steps, left()) else { break };
+        let Ok(finer) = follow(case, method, steps, left()) else { break };
         let before = difference.largest();
         difference = Errors::between(&best.trajectory, &finer, case.scales());
         let now = difference.largest();
@@ -99,7 +98,7 @@ pub(super) fn converge(
     Ok(best)
 }
 
-fn follow(case: &PreparedScene<'_>, way: Way, steps: u64, patience: Duration) -> Result<Trajectory, RunFailure> {
-    let run = case.begin(way, StepControl::Fixed(case.end() / steps as f64))?;
+fn follow(case: &PreparedScene<'_>, method: Method, steps: u64, patience: Duration) -> Result<Trajectory, RunFailure> {
+    let run = case.begin(method, StepControl::Fixed(case.end() / steps as f64))?;
     Trajectory::follow(run, patience)
 }

@@ -58,10 +58,7 @@ pub fn metadata(bodies: &[RunBody<'_>]) -> Option<Metadata> {
 
 /// The scheme, or the two of bodies that are tied and bodies that are not.
 fn scheme(bodies: &[RunBody<'_>]) -> String {
-    let of = |RunBody { scene, .. }: &RunBody<'_>| {
-        if scene.tied { scene.time.system_scheme.name() } else { scene.time.method.scheme }
-    };
-    let mut schemes: Vec<&str> = bodies.iter().map(of).collect();
+    let mut schemes: Vec<&str> = bodies.iter().map(|of| of.scene.time.method.scheme).collect();
     schemes.sort_unstable();
     schemes.dedup();
     schemes.join(", ")

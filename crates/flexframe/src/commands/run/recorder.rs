@@ -269,8 +269,7 @@ fn reports<'a>(run: &Run, mut bodies: Vec<FollowedBody<'a>>, last: &Row) -> Vec<
     let report = |body: FollowedBody<'a>| {
         let (of, number) = (body.of, body.number);
         let (island, own) = run.island_of(number)?;
-        let time = &of.scene.time;
-        let scheme = island.motion.system().map_or(time.method.scheme, |_| time.system_scheme.name());
+        let scheme = of.scene.time.method.scheme;
         let (report, warnings) =
             body.report(&last.bodies[number], (&island.motion.stats(), &island.motion.energies(own), scheme));
         let named = |text| if count == 1 { text } else { format!("body {}: {text}", of.name()) };

@@ -51,7 +51,7 @@ impl TiedMotion {
             system: of_bodies,
             states,
             relaxed,
-            scheme: scene.time.system_scheme,
+            scheme: scene.time.method.joints.unwrap_or_default(),
             control,
             end: scene.time.end,
             rows: Rows::Interval(scene.time.end),

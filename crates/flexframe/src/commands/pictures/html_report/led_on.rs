@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use dynamics::{DescribedBody, DrivenMotion, JointForce, RunDescription};
-use live::{Change, LiveMotion};
+use live::Change;
 use model::{BuildProgress, Builder, Model};
 use report::{Control, Live, LiveBody};
 use results::Results;
@@ -49,10 +49,10 @@ pub(super) fn led_on(
     let mut controls = Vec::new();
     for (number, motion) in run.motions.iter().enumerate() {
         for (own, body) in motion.bodies.iter().enumerate() {
-            let described = &motion.run.bodies()[own];
+            let described = &motion.run.bodies[own];
             let group = if names.len() > 1 { names[*body] } else { "" };
             controls.extend(of_body(group, *body, described, &system.bodies[*body].loads));
-            let [spin, end] = beginning_of(motion, own);
+            let (spin, end) = (motion.run.states[own].omega_body.norm(), motion.run.end);
             if turns(described) {
                 let greatest = if spin > 0.0 { GREATEST_FACTOR * spin } else { 8.0 * PI / end };
                 let unit = format!("rad/{}", results.metadata.units.time);
@@ -106,17 +106,8 @@ fn turns(described: &DescribedBody) -> bool {
     !described.body.motion.rotations().is_empty() && !is_turned
 }
 
-/// Angular velocity of a body at the beginning, and the end of its run.
-fn beginning_of(motion: &LiveMotion, own: usize) -> [f64; 2] {
-    match &motion.run {
-        RunDescription::Alone(run) => [run.initial.omega.norm(), run.end],
-        RunDescription::Tied(run) => [run.states[own].omega_body.norm(), run.end],
-    }
-}
-
 /// Controls of the joints, springs and bushings of a system.
 fn of_system(motion: usize, run: &RunDescription, elements: &[String]) -> Vec<Control> {
-    let RunDescription::Tied(run) = run else { return Vec::new() };
     let mut controls = Vec::new();
     for (number, joint) in run.joints.iter().enumerate() {
         let forces = || joint.turn_force.iter().chain(&joint.slide_force);
