@@ -1,5 +1,6 @@
 //! A run: islands of bodies, each with steps of its own, led together from row to row.
 
+pub(crate) mod description;
 pub(crate) mod island;
 pub(crate) mod row_times;
 

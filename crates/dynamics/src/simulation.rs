@@ -8,7 +8,6 @@ pub(crate) mod fingerprint;
 pub(crate) mod last_step;
 pub(crate) mod longest_step;
 pub(crate) mod plan;
-pub(crate) mod run_description;
 pub(crate) mod setup;
 pub(crate) mod stats;
 

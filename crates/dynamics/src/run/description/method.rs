@@ -3,7 +3,7 @@
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::simulation::run_description::error::DescriptionError;
+use crate::run::description::error::DescriptionError;
 use crate::simulation::setup::Method;
 use crate::system::collocation::SystemScheme;
 
