@@ -40,6 +40,9 @@ fn with_entry(text: &str, row: usize, column: usize, value: &str) -> String {
     lines.collect()
 }
 
+/// A scene may name any file: no word of it is shown.
+const HIDDEN: &str = "a line with other words than numbers";
+
 #[test]
 fn files_that_are_no_matrices() {
     refused(&changed("K.mtx", |_| String::new()), "stiffness", &["an empty file in ", "K.mtx"]);
@@ -47,7 +50,7 @@ fn files_that_are_no_matrices() {
     refused(
         &changed("M.mtx", |text| text.replacen("coordinate real general", "coordinate complex general", 1)),
         "mass",
-        &["M.mtx:1", "`%%MatrixMarket matrix coordinate complex general`", "A.real"],
+        &["M.mtx:1", HIDDEN, "A.real"],
     );
     refused(
         &changed("M.mtx", |text| text.replacen("coordinate", "array", 1)),
@@ -59,7 +62,7 @@ fn files_that_are_no_matrices() {
         "mass",
         &["M.mtx:1", "%%MatrixMarket matrix"],
     );
-    refused(&changed("M.mtx", |text| format!("mass\n{text}")), "mass", &["M.mtx:1", "`mass`", "`row column value`"]);
+    refused(&changed("M.mtx", |text| format!("mass\n{text}")), "mass", &["M.mtx:1", HIDDEN, "`row column value`"]);
     let files = cube();
     std::fs::write(files.file("K.mtx"), [0x93, b'N', b'U', b'M', b'P', b'Y', b'\n']).unwrap();
     refused(&files, "stiffness", &["K.mtx:1", "bytes that are no text"]);
@@ -74,7 +77,7 @@ fn entries_that_are_wrong() {
     refused(
         &changed("K.mtx", |text| with_entry(text, 5, 4, "nan")),
         "stiffness",
-        &["`5 4 nan`", "K.mtx:", "expected a finite number"],
+        &[HIDDEN, "K.mtx:", "expected a finite number"],
     );
     refused(
         &changed("K.mtx", |text| with_entry(text, 5, 4, "12,5")),
