@@ -16,6 +16,8 @@ const FAR: f64 = 5.0;
 pub enum Doubt {
     /// The point masses outweigh the mesh by far.
     AddedMass {
+        /// The keys of the scene that have them.
+        keys: &'static str,
         /// Their sum.
         added: f64,
         /// The mass of the mesh.
@@ -33,9 +35,9 @@ pub enum Doubt {
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::AddedMass { added, own } => write!(
+            Self::AddedMass { keys, added, own } => write!(
                 f,
-                "body.point_masses, body.tied_masses: they sum to {added:.4e}, {:.1e} times the mass of the mesh, {own:.4e}: check them, and the \
+                "{keys}: they sum to {added:.4e}, {:.1e} times the mass of the mesh, {own:.4e}: check them, and the \
                  density, against the unit of mass of the scene",
                 added / own
             ),
@@ -54,6 +56,11 @@ pub fn doubts(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
 }
 
 fn added_mass(body: &MeshedBody, mesh: &Mesh) -> Option<Doubt> {
+    let keys = match (body.point_masses.is_empty(), body.tied_masses.is_empty()) {
+        (false, true) => "body.point_masses",
+        (true, _) => "body.tied_masses",
+        (false, false) => "body.point_masses, body.tied_masses",
+    };
     let on_body = body.point_masses.iter().map(|mass| mass.mass);
     let added: f64 = on_body.chain(body.tied_masses.iter().map(|mass| mass.mass)).sum();
     if added == 0.0 {
@@ -61,7 +68,7 @@ fn added_mass(body: &MeshedBody, mesh: &Mesh) -> Option<Doubt> {
     }
     // What is wrong with materials and groups is told by the assembly.
     let own = centroid_lumped_inertia(mesh, &body.materials, &[]).ok()?.mass;
-    (added > HEAVY * own).then_some(Doubt::AddedMass { added, own })
+    (added > HEAVY * own).then_some(Doubt::AddedMass { keys, added, own })
 }
 
 /// Loads of a held body that would bend a solid bar of the size of its mesh far, which is of its stiffest and its lightest
