@@ -179,6 +179,20 @@ fn ran(scene: &str, file: &Path) -> (tempfile::TempDir, RunReport) {
     (folder, report)
 }
 
+/// Independent reference: the rigid bodies of `./dev random-systems` in maximal coordinates. Steps shrank to nothing where the rounding of a
+/// place was above what counts of a radius of gyration.
+#[test]
+fn bodies_of_hardly_any_inertia_are_led_past_a_near_singular_place() {
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/small_inertia.toml"));
+    let (_folder, report) = ran(include_str!("../../small_inertia.toml"), file);
+    let results = Results::open(&report.results, &COLUMNS).unwrap();
+    let last = |body: &str| *results.vectors::<3>(&format!("bodies/{body}/position")).unwrap().last().unwrap();
+    let apart: Vec<f64> = last("b2").iter().zip(last("b1")).map(|(b2, b1)| b2 - b1).collect();
+    for (found, expected) in apart.iter().zip([-0.681_523_93, 0.112_501_37, 0.082_337_28]) {
+        assert!((found - expected).abs() < 1e-5, "{apart:?}");
+    }
+}
+
 /// Closed form: friction F tanh(v / v_f) that holds 95 % of F creeps at v_f artanh(0.95); the arm starts at rest.
 #[test]
 fn a_run_tells_how_friction_that_holds_creeps() {

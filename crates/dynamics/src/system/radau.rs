@@ -319,6 +319,15 @@ impl SystemMotion {
         self.size
     }
 
+    /// The largest rounding of the place of a body over its radius of gyration, by which changes of places are measured.
+    pub(super) fn rounding_over_gyration(&self) -> f64 {
+        let of_body = |(body, state): (&ConservativeBody, &State)| {
+            f64::EPSILON * get(body.list(state).slow(), part::POSITION).norm() / body.radius_of_gyration()
+        };
+        let bodies = self.system.bodies.iter().zip(&self.bodies).filter(|(body, _)| !body.is_point());
+        bodies.map(of_body).fold(0.0, f64::max)
+    }
+
     /// Rounding of the places of bodies in their frames, over the size of the largest.
     pub(super) fn rounding_of_places(&self) -> f64 {
         let place = |(body, state): (&ConservativeBody, &State)| get(body.list(state).slow(), part::POSITION).norm();

@@ -98,7 +98,7 @@ impl SystemMotion {
         let is_rigid = self.system.connections.is_rigid();
         // Near a singular position what rounds off in a residual moves bodies by more.
         let weakest = self.weakest_row();
-        let rounding = ROUNDING / weakest;
+        let rounding = ROUNDING.max(self.rounding_over_gyration()) / weakest;
         // Momenta that are guessed by forces without joints may be far off where places are not. What a motor begins to turn within an instant
         // has work by what rounds in its times.
         let is_instant = f64::EPSILON * self.time.abs() > INSTANT * h;
