@@ -15,6 +15,7 @@ READ_ONLY = {
     "docs/reference/fmu.md": "wants FMPy: ./dev fmu-test",
     "docs/reference/body.md": "wants a body file with matrices: ./dev h5py does it",
     "docs/reference/matrices.md": "matrices of another program",
+    "docs/reference/meshes.md": "wants mapdl-archive, and a mesh of Ansys",
     "docs/reference/results.md": "parts of a program, of a run that was killed",
     "docs/start/first-steps.md": "wants the results of the commands before it",
 }
