@@ -110,7 +110,7 @@ def seconds_for(runs, kind, target):
 def main():
     flexframe, program, page = sys.argv[1:]
     figure, axes = plt.subplots(1, len(CASES), figsize=(15, 4), sharey=True)
-    tables, limits, ladders = ([], []), [], []
+    tables, limits = ([], []), []
     for axis, (name, case) in zip(axes, CASES.items()):
         mine, our_limit = ours(program, case)
         others, their_limit = theirs(flexframe, case)
@@ -129,7 +129,6 @@ def main():
                     color=color,
                     label=who + (", with deformation" if kind else ""),
                 )
-            ladders += [f"| {name} | {who} | {n} | {1e3 * s:.3g} ms | {e:.1e} | {d:.1e} |" for s, e, d, n in runs]
         axis.set_title(name)
         axis.set_xlabel("processor seconds")
         axis.grid(True, which="major", alpha=0.3)
@@ -142,7 +141,7 @@ def main():
     figure.savefig(picture, metadata={"Date": None})
     template = (HERE / "systems" / "page.template").read_text()
     places, both = ("\n".join(rows) for rows in tables)
-    text = template.replace("PLACES", places).replace("BOTH", both).replace("LIMITS", "\n".join(limits)).replace("LADDERS", "\n".join(ladders))
+    text = template.replace("PLACES", places).replace("BOTH", both).replace("LIMITS", "\n".join(limits))
     # What other recipes have measured stays.
     _, mark, rest = target.read_text().partition("\n## Random systems\n") if target.exists() else ("", "", "")
     target.write_text(text + mark + rest)

@@ -25,6 +25,8 @@ import generate
 import reference
 
 SECONDS = 60
+# Of a message in the table.
+LONGEST = 90
 EYE = np.eye(3)
 
 
@@ -128,9 +130,7 @@ class Run:
 
     def card(self):
         lines = [l["error"] for l in self.said.get("trust", {}).get("lines", []) if l["place"] == "steps" and l["error"] is not None]
-        told = f"card {max(lines):.0e}" if lines else ""
-        warnings = self.said.get("warnings", [])
-        return "; ".join([told, *(w[:110] for w in warnings[:2])]).strip("; ")
+        return f"card {max(lines):.0e}" if lines else ""
 
 
 def against_reference(scene, about_center=False):
@@ -307,7 +307,9 @@ def measure_of(scene):
 def cell(program, scene, measure):
     run = Run(program, scene, "modes" if scene in MODES else "run")
     if run.error:
-        return f"error: {run.error[:200]}", None
+        # Without the name of the scene, and no more than the beginning.
+        text = "error: " + run.error.removeprefix(f"/{scene}.toml: ")
+        return text if len(text) <= LONGEST else text[:LONGEST].rstrip() + " …", None
     try:
         error, what = measure(run)
     except (reference.Unsure, KeyError) as missing:
@@ -325,7 +327,7 @@ def main():
         page = Path(words[k + 1])
         del words[k : k + 2]
     programs = words[::-1]
-    lines = ["| case | " + " | ".join(["before", "now"][2 - len(programs):]) + " | measured |", "|---|" + "---|" * (len(programs) + 1)]
+    lines = ["| case | " + " | ".join(["before", "found"][2 - len(programs):]) + " | measured |", "|---|" + "---|" * (len(programs) + 1)]
     for scene in CASES:
         measure, cells, what = measure_of(scene), [], ""
         for program in programs:

@@ -61,15 +61,4 @@ def table_of_case(name, programs):
         "memory ÷ flexframe's",
         "frequencies differ",
     ]
-    fastest = [
-        fastest_phases(program, programs)
-        for program in (modes.OURS, modes.SCIPY, modes.SLEPC)
-        if ran(programs, program)
-    ]
-    words = f"In the fastest run: {'; '.join(fastest)}."
-    return f"**{heading(name, programs).capitalize()}**\n\n{table(head, rows)}\n\n{words}"
-
-
-def fastest_phases(program, programs):
-    run = min(programs[program], key=lambda run: run["seconds"])
-    return f"{program}: " + ", ".join(f"{name} {time:.2f}" for name, time in run["times"].items())
+    return f"**{heading(name, programs).capitalize()}**\n\n{table(head, rows)}"

@@ -69,13 +69,3 @@ def between_series(sizes, cases):
             factor = summary.of(run["seconds"] for run in there)[0] / summary.of(run["seconds"] for run in here)[0]
             factors += [factor, 1 / factor]
     return max(factors)
-
-
-def phase_table(sizes):
-    names = list(dict.fromkeys(name for by_size in sizes.values() for runs in by_size for name in runs[0]["times"]))
-    rows = []
-    for shape, by_size in sizes.items():
-        for runs in by_size:
-            cells = [summary.of(run["times"].get(name, 0.0) for run in runs)[0] for name in names]
-            rows.append([shape, number(runs[0]["mesh"]["unknowns"]), *map(seconds, cells)])
-    return table(["body", "unknowns", *names], rows)

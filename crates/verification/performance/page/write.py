@@ -47,7 +47,6 @@ def write():
         "between": f"{size_tables.between_series(sizes, cases):.2f}",
         "size": size_tables.size_table(sizes),
         "slopes": size_tables.slopes(sizes),
-        "phases": size_tables.phase_table(sizes),
         "static_shapes": of_loop[f"speed, {loop.MODES[0]}, {loop.OURS}, 0"]["coordinates"] - loop.MODES[0],
         "agreement": f"{agreement:.0e}",
         "step": f"{loop.STEP:g}",
@@ -84,10 +83,9 @@ def method(parts):
     return (
         f"**Method.** The programs run in turn, {' or '.join(map(str, sorted(efforts)))} times each, the loop at the same "
         f"step {loop.TURNS} times as often; those that take longer than {once} s once, and those that take longer than "
-        f"{patience} s are stopped. A time is the median; after ± comes "
-        "the difference of the slowest and the fastest run. A ratio is a run of the other program divided by the run of "
-        "flexframe of the same turn: median, and least to largest. Above 1 flexframe is faster, or smaller. Each program "
-        "runs on one thread unless it says otherwise. Memory is the peak of the whole process (of both ranks together). "
+        f"{patience} s are stopped. A time is the median, with ± the range. A ratio is that of two runs of the same turn: median, "
+        "and least to largest; above 1 flexframe is faster, or smaller. Each program runs on one thread unless it says "
+        "otherwise. Memory is the peak of the whole process (of both ranks together). "
         f"The load of the machine, these runs with it, was {min(loads):.1f} to {max(loads):.1f}."
     )
 

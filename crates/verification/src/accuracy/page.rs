@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use flexframe::cost::{
-    self, CostError, CostReport, CostSettings, LadderRun, Line, Measured, Outcome, duration, modes_warning, price_list,
-    setting,
+    self, CostError, CostReport, CostSettings, LadderRun, Line, Measured, duration, modes_warning, price_list, setting,
 };
 use flexframe::model::Builder;
 use flexframe::modes::frequency_unit;
@@ -18,9 +17,7 @@ use whole_file::write_whole;
 use crate::accuracy::spin::{SpinRow, spin_rates};
 
 /// Errors whose price is shown: 10^−k for these k.
-const DECADES: std::ops::RangeInclusive<i32> = 1..=10;
-/// Rows of each method in the longer tables.
-const ROWS_SHOWN: usize = 5;
+const DECADES: [i32; 6] = [1, 2, 4, 6, 8, 10];
 
 /// Measures the scenes and writes a page about them to `path`, with its diagrams in a folder of the same name; the whole
 /// lists go to folders in `lists`. What was there before is only replaced with `overwrite`, and the page stays until everything has been
@@ -110,12 +107,11 @@ fn write_page(
         reports.iter().flat_map(|(_, report)| measured(&report.lines)).map(|(_, _, m)| m.spread).fold(1.0, f64::max);
     writeln!(
         out,
-        "**Error** is the largest, over up to 100 equally spaced times, of the angle to the reference's attitude (rad) \
-         and of the differences in modal coordinates and in displacement, velocity and acceleration of the scene's \
-         points, each relative to its largest value. The **reference** is the exponential scheme on the conservative form with steps \
-         halved until halving no longer changes it; nothing is ranked below three times its own error (≤). **Time** is \
-         that of the loop on one core: the shortest of three runs or more after one that warms up (the slowest run of \
-         a series took up to {worst_spread:.1} times as long). An evaluation is one of the rates of all modes.\n"
+        "The **error** is the largest over up to 100 equally spaced times: the angle to the reference's attitude (rad), and \
+         the differences in modal coordinates and in displacement, velocity and acceleration of the points, each over its \
+         largest value. The **reference** is the exponential scheme with its step halved until this changes nothing more; \
+         \"≤\" is below three times its own error. The **time** is that of the loop on one core: the shortest of at least \
+         three runs (the slowest took up to {worst_spread:.1} times as long).\n"
     )?;
 
     writeln!(out, "## In short: the cheapest run for each error\n")?;
@@ -184,48 +180,10 @@ fn write_scene(out: &mut String, scene: &Scene, report: &CostReport, pictures: &
         writeln!(out, "\nOrders measured (and expected): {}.", orders.join(", "))?;
     }
     writeln!(out, "\n{}\n", paper_in_words(report))?;
-
-    writeln!(out, "Some runs of each scheme, with the balances of energy and angular momentum:\n")?;
-    writeln!(
-        out,
-        "| scheme | step or tolerance | error | attitude | modal | acceleration | energy | angular momentum | steps | \
-         evaluations | time |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|"
-    )?;
-    for line in &lines {
-        for row in shown(&line.rows) {
-            write_row(out, line, row)?;
-        }
-    }
-    writeln!(out)?;
     write_modes(out, report)
 }
 
-fn write_row(out: &mut String, line: &Line, row: &LadderRun) -> std::fmt::Result {
-    write!(out, "| {} | {} |", line.name(), setting(row.setting))?;
-    match &row.outcome {
-        Outcome::Ran(m) => {
-            let optional = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1e}"));
-            let at_reference = if m.at_reference { "≤ " } else { "" };
-            writeln!(
-                out,
-                " {at_reference}{:.1e} | {:.1e} | {} | {} | {:.1e} | {:.1e} | {} | {} | {} |",
-                m.error,
-                m.errors.attitude,
-                optional(m.errors.modal),
-                optional(m.errors.acceleration),
-                m.energy,
-                m.angular_momentum,
-                m.steps,
-                m.evaluations,
-                duration(m.seconds)
-            )
-        }
-        Outcome::Failed(failure) => writeln!(out, " failed: {failure} | | | | | | | | |"),
-        Outcome::OutOfPatience(stopped) => writeln!(out, " {stopped} | | | | | | | | |"),
-    }
-}
-
-/// The price and the worth of the paper's scheme, in words.
+/// The worth of the paper's scheme, in words.
 fn paper_in_words(report: &CostReport) -> String {
     let is_paper = |line: &&Line| line.scheme == "paper";
     let paper: Vec<Line> = report.lines.iter().filter(is_paper).cloned().collect();
@@ -239,29 +197,10 @@ fn paper_in_words(report: &CostReport) -> String {
         );
     }
     if let Some(why) = &report.paper_limit_failure {
-        let _ = write!(words, "The limit of the paper's formulation for short steps was not found, {why}.");
-    }
-    let reached: Vec<(i32, Found, Found)> = DECADES
-        .filter_map(|k| Some((k, cheapest(measured(&paper), k)?, cheapest(measured(&report.lines), k)?)))
-        .collect();
-    for (k, (_, row, m), (line, _, best)) in &reached {
-        if m.seconds <= best.seconds {
-            let _ = write!(
-                words,
-                " For an error of 1e-{k} it is enough: {}, {}.",
-                duration(m.seconds),
-                setting(row.setting)
-            );
-        } else {
-            let _ = write!(
-                words,
-                " For 1e-{k} it takes {} ({}), {:.1} times as long as {}.",
-                duration(m.seconds),
-                setting(row.setting),
-                m.seconds / best.seconds,
-                line.name()
-            );
-        }
+        // After the second colon comes advice.
+        let why: Vec<&str> = why.split(": ").take(2).collect();
+        let _ =
+            write!(words, "The limit of the paper's formulation for short steps was not found, {}.", why.join(": "));
     }
     let closest = measured(&paper).map(|(_, _, m)| m.error).fold(f64::INFINITY, f64::min);
     if closest.is_finite() {
@@ -275,7 +214,7 @@ fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
     let Some(most) = body.modes.last() else { return Ok(()) };
     writeln!(
         out,
-        "What the modes cost: the same motion with fewer and more of them, against {} (steps leave {:.0e}).\n",
+        "What the modes cost: the same motion against {} modes (steps leave {:.0e}).\n",
         most.flexible, most.step_error
     )?;
     writeln!(
@@ -317,10 +256,9 @@ fn write_spin(out: &mut String, report: &CostReport, rows: &[SpinRow]) -> std::f
     writeln!(out, "\n## Spin that the paper's scheme gains or loses\n")?;
     writeln!(
         out,
-        "In steady spin the first-order error of the scheme changes |ω| at the relative rate of about ω²Δt/2: |ω| \
-         falls, or rises if the centrifugal field stretches one of the modes. Measured over the {} {time} of \"{}\", as \
-         ln(|ω|end/|ω|start) per {time}. The limit is that of short steps, where the paper's formulation itself does \
-         not keep the spin of a body that is stretched.\n",
+        "In steady spin the first-order error of the scheme changes |ω| at the relative rate of about ω²Δt/2. Measured over \
+         the {} {time} of \"{}\", as ln(|ω|end/|ω|start) per {time}. The limit is that of short steps, where the paper's \
+         formulation itself does not keep the spin of a body that is stretched.\n",
         report.end, report.title
     )?;
     writeln!(
@@ -361,10 +299,4 @@ fn with_scheme((line, row, m): Found<'_>) -> String {
 
 fn without_scheme((_, row, m): Found<'_>) -> String {
     format!("{} ({})", duration(m.seconds), setting(row.setting))
-}
-
-/// At most this number of rows, evenly spread, with the first and the last.
-fn shown(rows: &[LadderRun]) -> impl Iterator<Item = &LadderRun> {
-    let count = rows.len().min(ROWS_SHOWN);
-    (0..count).map(move |i| if count > 1 { i * (rows.len() - 1) / (count - 1) } else { 0 }).filter_map(|i| rows.get(i))
 }

@@ -113,7 +113,7 @@ pub fn cases() -> Vec<SystemCase> {
         SystemCase {
             name: "arm of two links that is driven beyond its reach",
             why: "stretched, the arm locks: no velocity satisfies the joints",
-            measure: "none: it is to stop",
+            measure: "–",
             run: locked_arm,
             expected: [Refused("the joints lock"), Refused("the joints lock")],
         },
