@@ -17,6 +17,11 @@ plate: build
 test:
     .ci/tests
 
+# The answers of all commands on the examples against those that are kept (tests/golden); `./dev golden --accept` keeps new ones.
+golden *options:
+    cargo build --quiet --package flexframe-cli
+    tests/golden/golden.py target/debug/flexframe {{options}}
+
 # A crate of somebody else, which sees only what is public: an own load, observer, scheme, force between bodies and joint.
 outside:
     cargo test --manifest-path tests/outside/Cargo.toml --target-dir target --locked --quiet

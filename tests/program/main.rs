@@ -4,6 +4,7 @@
 mod commands;
 mod documentation;
 mod examples;
+mod golden;
 mod inputs;
 mod library;
 mod linear;
