@@ -34,7 +34,7 @@ pub enum History<T = Table, E = Expression> {
     },
     /// Zero, then straight up to one within the duration, then one.
     Ramp {
-        /// Beginning; as data 0 if absent.
+        /// Beginning; default 0.
         #[serde(default)]
         start: f64,
         /// Length of the rise.
@@ -42,7 +42,7 @@ pub enum History<T = Table, E = Expression> {
     },
     /// `sin(π (t − start) / duration)` within the duration, zero before and after.
     HalfSine {
-        /// Beginning; as data 0 if absent. A negative one has begun before the run.
+        /// Beginning; default 0. A negative one has begun before the run.
         #[serde(default)]
         start: f64,
         /// Length.
@@ -52,10 +52,10 @@ pub enum History<T = Table, E = Expression> {
     Sine {
         /// f, cycles per time.
         frequency: f64,
-        /// Angle at the start, rad; as data 0 if absent.
+        /// Angle at the start, rad; default 0.
         #[serde(default)]
         phase: f64,
-        /// Beginning; as data 0 if absent.
+        /// Beginning; default 0.
         #[serde(default)]
         start: f64,
         /// Length; none for ever.
@@ -68,7 +68,7 @@ pub enum History<T = Table, E = Expression> {
         from: f64,
         /// Frequency at the end.
         to: f64,
-        /// Beginning; as data 0 if absent.
+        /// Beginning; default 0.
         #[serde(default)]
         start: f64,
         /// Length T.
@@ -80,7 +80,7 @@ pub enum History<T = Table, E = Expression> {
     Expression(E),
     /// The product of several histories.
     Product {
-        /// They.
+        /// The histories that are multiplied.
         factors: Vec<Self>,
     },
 }

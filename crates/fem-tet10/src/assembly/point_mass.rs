@@ -14,9 +14,9 @@ const MAX_CARRIERS: usize = 500;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PointMass {
-    /// Where, in the mesh's frame.
+    /// Its place, mesh axes.
     pub at: [f64; 3],
-    /// How much.
+    /// Its mass.
     pub mass: f64,
     /// Where given, the radius within which all nodes carry the mass together. A mass on one node has a local
     /// compliance that grows without limit as the mesh is refined; spread over a fixed radius it has not.

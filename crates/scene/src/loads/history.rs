@@ -18,8 +18,7 @@ pub struct TablePoints {
     /// Pairs of time and factor, at least two, the times rising: those in the scene, or those read from the file.
     #[serde(default)]
     pub points: Vec<[f64; 2]>,
-    /// The CSV file that the points come from, already resolved against the folder of the scene file;
-    /// `None` if they stand in the scene.
+    /// A CSV file of the points; a path in a scene is relative to the scene file.
     pub file: Option<PathBuf>,
     /// The way from point to point; default straight lines.
     #[serde(default)]
@@ -51,7 +50,7 @@ impl Interpolation {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Formula {
-    /// As it is written; not empty, and not looked at any further here.
+    /// The formula in t.
     pub formula: String,
     /// Rising times at which the formula or its rates jump; default none.
     #[serde(default, alias = "corners")] // scenes of version 0.1 say "corners"

@@ -24,7 +24,7 @@ pub enum Load {
     Traction(Traction),
     /// `kind = "gravity"`: the same acceleration for all of the body.
     Gravity(Gravity),
-    /// `kind = "base-acceleration"`: the acceleration of what holds the body.
+    /// `kind = "base-acceleration"`: the acceleration of the support.
     BaseAcceleration(BaseAcceleration),
 }
 
@@ -48,7 +48,7 @@ impl Load {
 pub struct Force {
     /// Where it acts, length, mesh axes.
     pub at: [f64; 3],
-    /// Unit vector of its direction, in the axes named by [`Force::frame`].
+    /// Its direction, in the axes named by [`Force::frame`]: any vector but zero, which is brought to length one.
     pub direction: [f64; 3],
     /// Force.
     pub amplitude: f64,
@@ -66,7 +66,7 @@ pub struct Force {
 pub struct Moment {
     /// Where it acts, length, mesh axes.
     pub at: [f64; 3],
-    /// Unit vector of its axis, right-handed, in the axes named by [`Moment::frame`].
+    /// Its axis, right-handed, in the axes named by [`Moment::frame`]: any vector but zero, which is brought to length one.
     pub direction: [f64; 3],
     /// Moment.
     pub amplitude: f64,
@@ -76,7 +76,7 @@ pub struct Moment {
     /// Factor on the amplitude over time; default constant.
     #[serde(default)]
     pub history: History,
-    /// Radius > 0, length, of the ball whose nodes take the moment; without it, what is at the point takes it.
+    /// Radius > 0, length, of the ball whose nodes take the moment; without it, the elements at the point take it.
     pub radius: Option<f64>,
 }
 
@@ -99,7 +99,7 @@ pub struct Pressure {
 pub struct Traction {
     /// Name of the physical surface in the mesh.
     pub group: String,
-    /// Unit vector of its direction, in the axes named by [`Traction::frame`].
+    /// Its direction, in the axes named by [`Traction::frame`]: any vector but zero, which is brought to length one.
     pub direction: [f64; 3],
     /// Force per area.
     pub amplitude: f64,
@@ -115,7 +115,7 @@ pub struct Traction {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gravity {
-    /// Unit vector of the direction in which things fall, global axes.
+    /// Direction of the acceleration, global axes: any vector but zero, which is brought to length one.
     pub direction: [f64; 3],
     /// Acceleration.
     pub amplitude: f64,
@@ -124,11 +124,11 @@ pub struct Gravity {
     pub history: History,
 }
 
-/// The acceleration of what holds the body; its motion is then seen from there.
+/// The acceleration of the support; the motion of the body is then seen from there.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BaseAcceleration {
-    /// Unit vector of its direction, global axes.
+    /// Its direction, global axes: any vector but zero, which is brought to length one.
     pub direction: [f64; 3],
     /// Acceleration.
     pub amplitude: f64,
