@@ -327,15 +327,23 @@ def main():
         page = Path(words[k + 1])
         del words[k : k + 2]
     programs = words[::-1]
-    lines = ["| case | " + " | ".join(["before", "found"][2 - len(programs):]) + " | measured |", "|---|" + "---|" * (len(programs) + 1)]
+    head = ["before", "found"][2 - len(programs):]
+    lines = ["| case | " + " | ".join(head) + " | measured |", "|---|" + "---|" * (len(programs) + 1)]
+    ended = []
     for scene in CASES:
         measure, cells, what = measure_of(scene), [], ""
         for program in programs:
             text, found = cell(program, scene, measure)
             cells.append(text.replace("|", "/").replace("\n", " "))
             what = found or what
-        lines.append(f"| `{scene}` | " + " | ".join(cells) + f" | {what or ('an error that names both is right' if CASES[scene] is no_answer else '')} |")
-        print(lines[-1], flush=True)
+        line = f"| `{scene}` | " + " | ".join(cells) + f" | {what} |"
+        print(line, flush=True)
+        if cells[-1].startswith("error: "):
+            ended.append(f"`{scene}`")
+        else:
+            lines.append(line)
+    if ended:
+        lines += ["", f"Refused, or ended with a message that names the joints: {', '.join(ended)}."]
     if page:
         text = page.read_text()
         before, rest_ = text.split("<!-- cases -->\n")

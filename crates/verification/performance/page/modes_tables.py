@@ -2,7 +2,7 @@
 
 import modes
 from page import summary
-from page.markdown import number, ratio, seconds, spread, table
+from page.markdown import number
 
 
 def modes_by_case(results):
@@ -28,37 +28,3 @@ def heading(name, programs):
     mesh = programs[modes.OURS][0]["mesh"]
     shape, gmsh = name.split()
     return f"{shape}, gmsh {gmsh}: {number(mesh['unknowns'])} unknowns"
-
-
-def table_of_case(name, programs):
-    rows = []
-    for program in (modes.OURS, modes.OURS_2, *modes.PEERS):
-        if program not in programs:
-            continue
-        runs = programs[program]
-        if modes.was_stopped(runs[0]):
-            rows.append([program, f"more than {int(runs[0]['seconds'])}", "–", "–", "–", "–", "–"])
-            continue
-        difference = max(modes.difference(run, programs[modes.OURS][0]) for run in runs)
-        is_reference = program == modes.OURS
-        rows.append(
-            [
-                program,
-                spread([run["seconds"] for run in runs]),
-                seconds(summary.of(run["processor"] for run in runs)[0]),
-                "" if is_reference else ratio(against(programs, program, "seconds")),
-                f"{summary.of(run['memory'] for run in runs)[0] / 1e6:.0f}",
-                "" if is_reference else ratio(against(programs, program, "memory")),
-                "" if is_reference else f"{difference:.0e}",
-            ]
-        )
-    head = [
-        "program",
-        "time, s",
-        "processor, s",
-        "time ÷ flexframe's",
-        "memory, MB",
-        "memory ÷ flexframe's",
-        "frequencies differ",
-    ]
-    return f"**{heading(name, programs).capitalize()}**\n\n{table(head, rows)}"

@@ -41,7 +41,6 @@ def write():
         "method": method(parts),
         "short": short(cases, speeds),
         "lost": lost(cases, of_loop, speeds),
-        "modes": "\n\n".join(modes_tables.table_of_case(name, programs) for name, programs in cases.items()),
         "least": number(min(unknowns)),
         "most": number(max(unknowns)),
         "between": f"{size_tables.between_series(sizes, cases):.2f}",
@@ -91,21 +90,33 @@ def method(parts):
 
 
 def short(cases, speeds):
-    head = ["time ÷ flexframe's", *modes.PEERS, "flexframe: one thread ÷ two"]
-    rows = []
-    for name, programs in cases.items():
-        cells = [
-            f"{modes_tables.against(programs, peer, 'seconds')[0]:.2f}" if modes_tables.ran(programs, peer) else "–"
-            for peer in modes.PEERS
-        ]
-        two = summary.ratios(*([run["seconds"] for run in programs[which]] for which in (modes.OURS, modes.OURS_2)))
-        rows.append([modes_tables.heading(name, programs), *cells, f"{two[0]:.2f}"])
-    of_modes = table(head, rows)
+    """Tables of time and memory of the whole processes, and the loop in words."""
+
+    def ratios_of(what, ours, two_threads):
+        head = ["", f"flexframe, {ours[0]}", *modes.PEERS, *([two_threads] if two_threads else [])]
+        rows = []
+        for name, programs in cases.items():
+            cells = [
+                f"{modes_tables.against(programs, peer, what)[0]:.2f}" if modes_tables.ran(programs, peer) else "–"
+                for peer in modes.PEERS
+            ]
+            own = ours[1](summary.of(run[what] for run in programs[modes.OURS])[0])
+            if two_threads:
+                both = ([run[what] for run in programs[which]] for which in (modes.OURS, modes.OURS_2))
+                cells.append(f"{summary.ratios(*both)[0]:.2f}")
+            rows.append([modes_tables.heading(name, programs), own, *cells])
+        return table(head, rows)
+
+    time = ratios_of("seconds", ("s", lambda value: f"{value:.2f}"), "flexframe: one thread ÷ two")
+    memory = ratios_of("memory", ("MB", lambda value: f"{value / 1e6:.0f}"), None)
     of_loop = [
         f"{count} modes: {loop_tables.better(speeds[count]):.1f} times as many steps a second as Exudyn's better scheme"
         for count in loop.MODES
     ]
-    return f"{of_modes}\n\nSLEPc on two ranks is divided by flexframe on two threads. The loop: {'; '.join(of_loop)}."
+    return (
+        f"Time, over flexframe's:\n\n{time}\n\nMemory, over flexframe's:\n\n{memory}\n\n"
+        f"SLEPc on two ranks is divided by flexframe on two threads. The loop: {'; '.join(of_loop)}."
+    )
 
 
 def lost(cases, results, speeds):
