@@ -359,17 +359,18 @@ fuzz seconds="600":
     test -x .tools/bin/cargo-fuzz || cargo install --quiet --locked --root .tools cargo-fuzz@0.13.2
     mkdir -p crates/fuzz/corpus/{mesh,deck,scene,table,expression,results,fmi}
     cd crates/fuzz && export RUSTUP_TOOLCHAIN=nightly && \
-    cargo run --quiet --release --bin results-seeds corpus/results && \
+    ../../.tools/bin/cargo-fuzz build --fuzz-dir . results-seeds && \
+    "${CARGO_TARGET_DIR:-target}/$(rustc -vV | sed -n 's/^host: //p')/release/results-seeds" corpus/results && \
     features="" && \
     fuzz() { ../../.tools/bin/cargo-fuzz run --fuzz-dir . --features "$features" "$1" "corpus/$1" "${@:2}" -- -max_total_time={{seconds}} \
         -max_len=65536 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=512 -print_final_stats=1; } && \
     fuzz mesh ../fem-tet10/tests/data && \
     fuzz deck seeds/deck && \
-    features=fmi && fuzz fmi && features="" && \
     fuzz scene ../../examples ../../examples/mechanisms ../../tests ../scene/src && \
     fuzz table seeds/table && \
     fuzz expression seeds/expression && \
-    fuzz results
+    fuzz results && \
+    features=fmi && fuzz fmi
 
 # Licences, bans and sources of all dependencies (deny.toml).
 deny:
