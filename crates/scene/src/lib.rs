@@ -57,7 +57,7 @@ pub use file::{text_from, text_of};
 pub use loads::history::{DrivenSpeed, Formula, History, Interpolation, TablePoints};
 pub use loads::load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use matrix_import::MatrixFiles;
-pub use methods::{METHODS, METHODS_OF_JOINTS, method_named};
+pub use methods::{METHODS, method_named};
 pub use scene::{Body, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, Scene, TiedMass, Time, Units};
 pub use schema::json_schema;
 pub use system::System;

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use dynamics::{Method, SystemScheme};
+use dynamics::Method;
 
 /// All schemes of bodies that nothing ties, each with its formulation.
 pub const METHODS: [Method; 4] = [frames_rk4::PAPER, frames_rk4::LIMIT, Method::RKMK4, Method::EXPONENTIAL];
@@ -14,16 +14,9 @@ pub fn method_named(formulation: Option<&str>, scheme: &str) -> Option<Method> {
     METHODS.iter().filter(fits).max_by_key(|method| method.formulation == Method::EXPONENTIAL.formulation).copied()
 }
 
-/// All schemes of bodies that joints, springs or bushings tie together.
-pub const METHODS_OF_JOINTS: [Method; 3] = [
-    Method::of_joints(SystemScheme::Radau),
-    Method::of_joints(SystemScheme::Gauss),
-    Method::of_joints(SystemScheme::Rkmk4),
-];
-
 /// The scheme of this name, of bodies that joints, springs or bushings tie together.
 pub(crate) fn method_of_joints_named(name: &str) -> Option<Method> {
-    METHODS_OF_JOINTS.into_iter().find(|method| method.scheme == name)
+    Method::OF_JOINTS.into_iter().find(|method| method.scheme == name)
 }
 
 /// True of the name of a scheme of bodies that nothing ties.
@@ -35,7 +28,7 @@ pub(crate) fn is_without_joints(name: &str) -> bool {
 pub(crate) fn scheme_names() -> &'static [&'static str] {
     static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
         let mut names = once_each(|method| method.scheme);
-        names.extend(METHODS_OF_JOINTS.iter().map(|method| method.scheme).filter(|name| !is_without_joints(name)));
+        names.extend(Method::OF_JOINTS.iter().map(|method| method.scheme).filter(|name| !is_without_joints(name)));
         names
     });
     &NAMES

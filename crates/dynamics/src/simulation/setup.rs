@@ -223,6 +223,13 @@ impl Method {
         self.limit == StepLimit::Modes
     }
 
+    /// All methods of bodies that joints, springs or bushings tie together.
+    pub const OF_JOINTS: [Self; 3] = [
+        Self::of_joints(SystemScheme::Radau),
+        Self::of_joints(SystemScheme::Gauss),
+        Self::of_joints(SystemScheme::Rkmk4),
+    ];
+
     /// The conservative form of bodies in joints by a scheme. Beside them, bodies that nothing ties move by [`Self::without_joints`].
     pub const fn of_joints(scheme: SystemScheme) -> Self {
         let (limit, evaluations_per_step) = match scheme {

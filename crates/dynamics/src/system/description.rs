@@ -37,6 +37,8 @@ pub struct System {
     /// True for bodies whose angular momentum is counted about their own origins: rigid ones of hardly any inertia in islands on the ground.
     /// About the centre of the frame it would be the small difference of the moments of their momenta.
     pub(crate) spins_apart: Vec<bool>,
+    /// The radius of gyration of each body.
+    pub(crate) radii: Vec<f64>,
     /// The size of each body: its radius of gyration, or the distance of a marker from its origin.
     pub(crate) sizes: Vec<f64>,
     /// The error of places of the ground that hold bodies between them: numbers far from the origin round.
@@ -61,9 +63,9 @@ impl System {
         }
         let connections = Connections { joints, ..Connections::default() };
         connections.markers().try_for_each(|marker| check(marker, &bodies))?;
-        let (islands, spins_apart, sizes) = (Vec::new(), Vec::new(), Vec::new());
-        Ok(Self { bodies, names: Vec::new(), connections, first, islands, spins_apart, sizes, rounding: 0.0 }
-            .with_islands())
+        let radii = bodies.iter().map(ConservativeBody::radius_of_gyration).collect();
+        let (names, islands, spins_apart, sizes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { bodies, names, connections, first, islands, spins_apart, radii, sizes, rounding: 0.0 }.with_islands())
     }
 
     /// The same with names of its bodies for messages, in their order.
@@ -105,7 +107,7 @@ impl System {
     /// Finds the islands and the sizes of the bodies.
     fn with_islands(mut self) -> Self {
         self.islands = islands(self.bodies.len(), self.connections.ties());
-        self.sizes = self.bodies.iter().map(ConservativeBody::radius_of_gyration).collect();
+        self.sizes.clone_from(&self.radii);
         for marker in self.connections.markers() {
             if let Some(size) = marker.body().and_then(|body| self.sizes.get_mut(body)) {
                 *size = size.max(marker.distance());
@@ -116,7 +118,7 @@ impl System {
             let largest = island.bodies.iter().map(|b| self.sizes[*b]).fold(0.0, f64::max);
             for b in &island.bodies {
                 let body = &self.bodies[*b];
-                let is_small = body.radius_of_gyration() < SMALL * largest;
+                let is_small = self.radii[*b] < SMALL * largest;
                 self.spins_apart[*b] = body.flexible() == 0 && !body.is_point() && is_small;
             }
         }
@@ -206,7 +208,7 @@ impl System {
 
     /// The radius of gyration of the body of a marker; of the ground, zero.
     pub(crate) fn length_at(&self, marker: &Marker) -> f64 {
-        marker.body().map_or(0.0, |body| self.bodies[body].radius_of_gyration())
+        marker.body().map_or(0.0, |body| self.radii[body])
     }
 
     /// Number of coordinates of all bodies as rigid ones: point masses do not turn.

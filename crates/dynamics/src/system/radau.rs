@@ -321,18 +321,19 @@ impl SystemMotion {
 
     /// The largest rounding of the place of a body over its radius of gyration, by which changes of places are measured.
     pub(super) fn rounding_over_gyration(&self) -> f64 {
-        let of_body = |(body, state): (&ConservativeBody, &State)| {
-            f64::EPSILON * get(body.list(state).slow(), part::POSITION).norm() / body.radius_of_gyration()
-        };
-        let bodies = self.system.bodies.iter().zip(&self.bodies).filter(|(body, _)| !body.is_point());
-        bodies.map(of_body).fold(0.0, f64::max)
+        let bodies = self.distances().zip(&self.system.radii).filter(|(_, radius)| **radius > 0.0);
+        bodies.map(|(distance, radius)| f64::EPSILON * distance / radius).fold(0.0, f64::max)
     }
 
     /// Rounding of the places of bodies in their frames, over the size of the largest.
     pub(super) fn rounding_of_places(&self) -> f64 {
+        f64::EPSILON * self.distances().fold(0.0, f64::max) / self.size
+    }
+
+    /// Distances of the bodies from the origins of their frames.
+    fn distances(&self) -> impl Iterator<Item = f64> {
         let place = |(body, state): (&ConservativeBody, &State)| get(body.list(state).slow(), part::POSITION).norm();
-        let farthest = self.system.bodies.iter().zip(&self.bodies).map(place).fold(0.0, f64::max);
-        f64::EPSILON * farthest / self.size
+        self.system.bodies.iter().zip(&self.bodies).map(place)
     }
 
     /// The turn and the slide of a joint, with their rates. Turns are counted from the beginning on.
@@ -436,7 +437,7 @@ impl SystemMotion {
     /// True if the residual and the rate that are left where the system has been put together are rounding.
     fn is_closed(&self, [residual, rate]: [f64; 2]) -> bool {
         let [.., last] = &self.stages;
-        let largest = self.system.bodies.iter().map(ConservativeBody::radius_of_gyration).fold(0.0, f64::max);
+        let largest = self.system.radii.iter().copied().fold(0.0, f64::max);
         let size = if largest > 0.0 { largest } else { self.size };
         let speed = last.velocities.iter().fold(0.0_f64, |most, velocity| most.max(velocity.abs()));
         let rounding = self.system.rounding;

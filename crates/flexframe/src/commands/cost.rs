@@ -24,7 +24,7 @@ use std::path::Path;
 use advice::Subject;
 use dynamics::{Method, SystemScheme};
 use model::{BuildError, BuildProgress, Builder, Model};
-use scene::{Flexible, METHODS, METHODS_OF_JOINTS, Scene, System, Time};
+use scene::{Flexible, METHODS, Scene, System, Time};
 
 pub use answer::Answer;
 pub use body::CostBody;
@@ -83,7 +83,7 @@ pub fn price_list(
     let case = PreparedScene::new(system.clone(), built.iter().map(|built| &built.model).collect());
 
     let is_tied = system.has_ties();
-    let methods: &[Method] = if is_tied { &METHODS_OF_JOINTS } else { &METHODS };
+    let methods: &[Method] = if is_tied { &Method::OF_JOINTS } else { &METHODS };
     let ladders: Vec<(Method, bool)> = methods
         .iter()
         .flat_map(|method| [(*method, false), (*method, true)])

@@ -207,16 +207,32 @@ impl Check<'_> {
         Ok(Spring { name, between, stiffness, damping, free_length })
     }
 
-    /// Refuses a spring between places that a joint holds together: a line without length has no direction.
+    /// Refuses a spring between places that joints hold together, one or some in series: a line without length has no direction.
     fn can_be_long(&self, number: usize, spring: &Spring, joints: &[Joint], ends: &Ends<'_>) -> Result<(), SceneError> {
         let [first, second] = spring.between;
-        let holds = |joint: &&Joint| {
-            let [i, j] = joint.between;
-            let joins = |i, j| ends.are_one_place(i, first) && ends.are_one_place(j, second);
-            joint.kind.locked().displacements == [true; 3] && (joins(i, j) || joins(j, i))
+        // The places that are held at the first end, each with the place before it and the joint between them.
+        let mut held: Vec<(End, Option<(usize, &str)>)> = vec![(first, None)];
+        let mut at = 0;
+        while at < held.len() && !ends.are_one_place(held[at].0, second) {
+            let here = held[at].0;
+            for joint in joints.iter().filter(|joint| joint.kind.locked().displacements == [true; 3]) {
+                let [i, j] = joint.between;
+                for [one, other] in [[i, j], [j, i]] {
+                    let is_known = held.iter().any(|(place, _)| ends.are_one_place(*place, other));
+                    if ends.are_one_place(one, here) && !is_known {
+                        held.push((other, Some((at, &joint.name))));
+                    }
+                }
+            }
+            at += 1;
+        }
+        let Some((_, last)) = held.get(at) else { return Ok(()) };
+        let of = |(before, _): &(usize, &str)| held[*before].1;
+        let names: Vec<String> = std::iter::successors(*last, of).map(|(_, name)| format!("{name:?}")).collect();
+        let found = match &names[..] {
+            [name] => format!("a spring between two places that joint {name} holds together"),
+            _ => format!("a spring between two places that joints {} hold together", names.join(", ")),
         };
-        let Some(Joint { name, .. }) = joints.iter().find(holds) else { return Ok(()) };
-        let found = format!("a spring between two places that joint {name:?} holds together");
         let help = "name markers that are apart; a spring about the axis of a joint is its `spring`, and one about three axes a bushing";
         let place = self.document.place(&format!("springs[{number}].between"));
         Err(place.refuse(found, "two places that have a line between them", help))

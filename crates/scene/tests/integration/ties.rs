@@ -170,6 +170,13 @@ fn refusals_name_the_place_and_the_way_out() {
         ("'arm.root', 'ground'", "'arm.root'", "joints[0].between", "1 names"),
         ("'ground.wall']\nstiffness", "'ground']\nstiffness", "springs[0].between[1]", "a place on the ground"),
         ("'arm.root', 'ground'", "'ground.wall', 'arm.middle'", "springs[0].between", "a line between them"),
+        (
+            "[[springs]]",
+            "[[joints]]\nname = 'one'\nkind = 'spherical'\nbetween = ['hub.left', 'arm.middle']\n\
+             [[joints]]\nname = 'two'\nkind = 'fixed'\nbetween = ['hub.left', 'ground.wall']\n[[springs]]",
+            "springs[0].between",
+            "that joints \"two\", \"one\" hold together",
+        ),
         // Axes.
         ("axis = [0, 3, 4]", "axis = [0, 0, 0]", "joints[0].axis", "a vector that is not zero"),
         ("axis = [0, 3, 4]\n", "", "joints[0]", "a revolute joint without an axis"),

@@ -168,8 +168,7 @@ pub(crate) fn size_of_system(system: &System, at: &Posture<'_>) -> f64 {
     let places = at.points.iter().chain(&at.positions).map(|place| (place - middle).norm());
     let size = places.fold(0.0, f64::max);
     // One body whose joints are at its origin.
-    let radii = system.bodies.iter().map(|body| body.radius_of_gyration());
-    let size = if size > 0.0 { size } else { radii.fold(0.0, f64::max) };
+    let size = if size > 0.0 { size } else { system.radii.iter().copied().fold(0.0, f64::max) };
     if size > 0.0 { size } else { system.spread_of_points(at.positions.iter().copied()) }
 }
 

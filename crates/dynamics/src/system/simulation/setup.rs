@@ -111,8 +111,7 @@ pub(super) fn size(motion: &SystemMotion, states: &[MotionState]) -> f64 {
     let system = motion.system();
     let first = states.first().map_or_else(Vector3::zeros, |state| state.origin_global);
     let spread = states.iter().map(|state| (state.origin_global - first).norm());
-    let radii = system.bodies().iter().map(|body| body.radius_of_gyration());
-    let size = spread.chain(radii).fold(0.0, f64::max);
+    let size = spread.chain(system.radii.iter().copied()).fold(0.0, f64::max);
     // One point mass.
     if size > 0.0 { size } else { motion.size() }
 }
