@@ -15,7 +15,7 @@ use crate::error::ModalError;
 use crate::factor::shifted::{Ordered, Shifted};
 use crate::input::{check_edge_ends, check_finite_positions, check_matrix, check_rows};
 use crate::matrix::columns::Columns;
-use crate::matrix::mass_matrix::{MassMatrix, dofs};
+use crate::matrix::mass_matrix::{MassMatrix, Turning, dofs};
 use crate::matrix::stiffness::{NodalStiffness, StiffnessMatrix};
 use crate::matrix::symmetry::check_symmetric;
 use crate::memory_estimate::MemoryEstimate;
@@ -216,9 +216,7 @@ impl<'a> Solver<'a> {
         support: &Support,
     ) -> Result<Self, ModalError> {
         // A scalar mass is refused by the Gram matrices of the search, and points add to it.
-        if let MassMatrix::General(mass) = &mass
-            && mass.tied.is_none()
-        {
+        if let Turning::Anisotropic(mass) = mass.turning() {
             mass.check_semidefinite()?;
         }
         let constraints = Constraints::new(support, positions, mass.dofs())?;

@@ -30,8 +30,19 @@ pub struct GeneralMass<'a> {
     pub(crate) matrix: SparseColMatRef<'a, usize, f64>,
     /// Degrees of freedom of a node: 3 or 6.
     pub(crate) dofs: usize,
-    /// Its parts, where it is a scalar for each pair of nodes but for masses that move with nodes: it turns as the body does.
-    pub(crate) tied: Option<TiedMass<'a>>,
+    /// Its parts, where it is a scalar for each pair of nodes but for masses that move with nodes.
+    tied: Option<TiedMass<'a>>,
+}
+
+/// How a mass matrix goes with a rotation of the body.
+#[derive(Debug)]
+pub(crate) enum Turning<'m, 'a> {
+    /// It is a scalar for each pair of nodes, which commutes with rotations.
+    Nodal(&'m NodalMass<'a>),
+    /// It is that with points which turn as the body does: with a node of its own for each point it commutes.
+    Tied(&'m TiedMass<'a>),
+    /// It acts otherwise along other axes.
+    Anisotropic(&'m GeneralMass<'a>),
 }
 
 impl<'a> From<NodalMass<'a>> for MassMatrix<'a> {
@@ -75,6 +86,14 @@ impl<'a> MassMatrix<'a> {
         points: &'a [TiedPoint],
     ) -> MassMatrix<'a> {
         Self::General(GeneralMass { matrix: mass, dofs: 3, tied: Some(TiedMass::new(nodal, points)) })
+    }
+
+    /// How it goes with a rotation of the body.
+    pub(crate) fn turning(&self) -> Turning<'_, 'a> {
+        match self {
+            Self::Nodal(mass) => Turning::Nodal(mass),
+            Self::General(mass) => mass.tied.as_ref().map_or(Turning::Anisotropic(mass), Turning::Tied),
+        }
     }
 
     /// Number of nodes n.

@@ -7,7 +7,7 @@ use reduced_body::{BodyPoint, Constants, ReducedBody};
 
 use crate::error::ModalError;
 use crate::input::check_finite_entries;
-use crate::matrix::mass_matrix::{GeneralMass, MassMatrix};
+use crate::matrix::mass_matrix::{MassMatrix, Turning};
 use crate::reduction::general::general_products;
 use crate::reduction::inertia_products::Products;
 use crate::reduction::nodal::nodal_products;
@@ -63,16 +63,15 @@ impl Modes {
             gyroscopic,
             translation_first,
             rotation_first,
-        } = match mass {
-            MassMatrix::Nodal(mass) => nodal_products(self, mass, positions)?,
-            MassMatrix::General(GeneralMass { tied: Some(tied), .. }) => {
-                // The points are nodes of their own: their mass commutes with rotations.
+        } = match mass.turning() {
+            Turning::Nodal(mass) => nodal_products(self, mass, positions)?,
+            Turning::Tied(tied) => {
                 let mut modes = self.clone();
                 modes.rigid.shapes = tied.with_points(rigid.shapes.as_ref());
                 modes.shapes = tied.with_points(self.shapes.as_ref());
                 nodal_products(&modes, &tied.extended(), &tied.positions(positions))?
             }
-            MassMatrix::General(mass) => general_products(self, mass, positions)?,
+            Turning::Anisotropic(mass) => general_products(self, mass, positions)?,
         };
         Ok(ReducedBody::from_constants(Constants {
             mass: rigid.mass,

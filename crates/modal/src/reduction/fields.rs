@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use crate::error::ModalError;
 use crate::input::check_rows;
-use crate::matrix::mass_matrix::{GeneralMass, MassMatrix};
+use crate::matrix::mass_matrix::{MassMatrix, Turning};
 use crate::reduction::turned::turned;
 use crate::support::rigid_fields::rigid_fields;
 use reduced_body::ReducedBody;
@@ -28,19 +28,19 @@ pub fn centrifugal_fields(
     origin: &Vector3<f64>,
 ) -> Result<Mat<f64>, ModalError> {
     check_rows(POSITIONS, positions.len(), mass.nodes())?;
-    if let MassMatrix::General(GeneralMass { tied: Some(tied), .. }) = mass {
-        return Ok(tied.forces(centrifugal_accelerations(&tied.positions(positions), origin).as_ref()));
-    }
-    if let MassMatrix::General(general) = mass {
-        let fields = rigid_fields(positions, origin, general.dofs);
-        let momenta = mass.product(fields.subcols(3, 3));
-        let forces: [Mat<f64>; 3] = std::array::from_fn(|axis| turned(momenta.as_ref(), axis));
-        return Ok(Mat::from_fn(momenta.nrows(), ReducedBody::PAIRS.len(), |row, pair| {
-            let (i, j) = ReducedBody::PAIRS[pair];
-            -0.5 * (forces[j][(row, i)] + forces[i][(row, j)])
-        }));
-    }
-    Ok(mass.product(centrifugal_accelerations(positions, origin).as_ref()))
+    Ok(match mass.turning() {
+        Turning::Nodal(_) => mass.product(centrifugal_accelerations(positions, origin).as_ref()),
+        Turning::Tied(tied) => tied.forces(centrifugal_accelerations(&tied.positions(positions), origin).as_ref()),
+        Turning::Anisotropic(general) => {
+            let fields = rigid_fields(positions, origin, general.dofs);
+            let momenta = mass.product(fields.subcols(3, 3));
+            let forces: [Mat<f64>; 3] = std::array::from_fn(|axis| turned(momenta.as_ref(), axis));
+            Mat::from_fn(momenta.nrows(), ReducedBody::PAIRS.len(), |row, pair| {
+                let (i, j) = ReducedBody::PAIRS[pair];
+                -0.5 * (forces[j][(row, i)] + forces[i][(row, j)])
+            })
+        }
+    })
 }
 
 /// `−(I⊗sym([e_i×][e_j×])) X` (3n×6), X from `origin`: [`centrifugal_fields`] of a mass that is a scalar for each pair of nodes is M times it.

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use crate::matrix::mass_matrix::{GeneralMass, MassMatrix};
+use crate::matrix::mass_matrix::{MassMatrix, Turning};
 use crate::matrix::products::symmetric_product;
 use crate::matrix::tall::inner;
 use crate::reduction::turned::turned;
@@ -12,7 +12,7 @@ use crate::solve::Modes;
 /// mass, which is 1: the largest entry of the symmetric parts of `Ψᵀ M (I⊗[e_i×]) Ψ` and of
 /// `Eᵀ [M, I⊗[e_i×]] Ψ/√m`, E the unit translations. Zero of a scalar mass for each pair of nodes, also with points that move with nodes.
 pub fn mass_left_out(mass: &MassMatrix<'_>, modes: &Modes) -> f64 {
-    let MassMatrix::General(mass @ GeneralMass { tied: None, .. }) = mass else { return 0.0 };
+    let Turning::Anisotropic(mass) = mass.turning() else { return 0.0 };
     let shapes = modes.shapes.as_ref();
     let translations = mass.translations();
     let momentum = |fields: &Mat<f64>| inner(translations.as_ref(), fields.as_ref());
