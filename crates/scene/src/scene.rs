@@ -95,9 +95,16 @@ impl Body {
 
     /// True if its elements are all there is of it: then its motion may bend far.
     pub fn bends_far(&self) -> bool {
+        self.not_by_elements().is_none()
+    }
+
+    /// The body in words where it is not made of elements alone, so that its motion cannot bend far.
+    pub fn not_by_elements(&self) -> Option<&'static str> {
         match self {
-            Self::Meshed(body) => body.tied_masses.is_empty(),
-            _ => self.has_elements(),
+            Self::Meshed(body) if !body.tied_masses.is_empty() => Some("a body with masses beside it (`tied_masses`)"),
+            Self::Meshed(_) | Self::File(_) => None,
+            Self::Matrices(_) => Some("a body of matrices, whose elements are not known"),
+            Self::Rigid(_) => Some("a rigid body"),
         }
     }
 }
@@ -117,6 +124,12 @@ pub struct MeshedBody {
     pub point_masses: Vec<PointMass>,
     /// Masses beside the body that move with some of its nodes; default none.
     pub tied_masses: Vec<TiedMass>,
+}
+
+impl MeshedBody {
+    /// The way out where masses beside a body cannot be.
+    pub const WITHOUT_TIED_MASSES: &str =
+        "mesh the masses as parts of the body, or hold rigid bodies of their mass by fixed joints";
 }
 
 /// A mass at a point on the body or beside it, which moves with the rigid motion that fits the displacements of some nodes best, Eq. (M19) of
@@ -212,7 +225,7 @@ pub struct Time {
     /// Control of the length of a step: key `step`, 1e-12 end ≤ step ≤ end, or `tolerance`, above 0 and below 1.
     pub control: StepControl,
     /// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`. Of a body in joints, springs or
-    /// bushings it is one of [`METHODS_OF_JOINTS`](crate::METHODS_OF_JOINTS).
+    /// bushings it is one of [`Method::OF_JOINTS`].
     pub method: Method,
 }
 

@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::process::Command;
 
-use flexframe::model::Model;
+use flexframe::campbell::{AboutRest, CampbellSettings, Speeds, campbell};
+use flexframe::fmu::{FmuSettings, pack};
+use flexframe::model::{Builder, Model};
 use flexframe::new_scene::{ImportSettings, scene_text};
 use flexframe::scene::Scene;
 
@@ -137,6 +139,25 @@ fn decks_of_all_kinds_have_the_masses_and_frequencies_of_other_programs() {
                 let said = refused(from, to);
                 assert!(said.contains(words), "{to}: {said}");
             }
+            let folder = tempfile::tempdir().unwrap();
+            let counted = text.replace("flexible = 10", "flexible = 1");
+            let scene = Scene::parse(&counted, path.with_extension("toml")).unwrap();
+            let settings = FmuSettings { library: Some("none".into()) };
+            let packed =
+                pack(&scene.clone().into(), &Builder::default(), &folder.path().join("x.fmu"), &settings, |_| ());
+            let said = packed.unwrap_err().to_string();
+            for words in ["body.tied_masses", "fixed joints: the FMU of bodies in joints"] {
+                assert!(said.contains(words), "{words}: {said}");
+            }
+            let settings = CampbellSettings {
+                axis: [0.0, 0.0, 1.0],
+                speeds: Speeds { start: 0.0, end: 1e-3, count: 2 },
+                orders: Vec::new(),
+                about_rest: AboutRest::Auto,
+            };
+            let report = campbell(&scene, &Builder::default(), folder.path(), &settings, |_| ()).unwrap();
+            let said = "rest     not found of a body with masses beside it (`tied_masses`): vibrations about the undeformed body";
+            assert!(report.to_string().contains(said), "{report}");
         }
         let known: &[&str] = match name {
             "salome.med" => &["are turned"],

@@ -152,11 +152,16 @@ pub fn campbell(
     let done = |done| progress(CampbellProgress::Speeds { done, total });
     let failed = |source| CampbellError::Eigen { scene: scene.path.clone(), source };
     let highest = settings.speeds.end;
+    let deflection = || bent::deflection(&model, &axis, highest);
     let may_be_bent = match settings.about_rest {
         AboutRest::Never => false,
         AboutRest::Always => true,
-        AboutRest::Auto => effects.all() && scene.body.bends_far() && bent::bends(&model, &axis, highest),
+        AboutRest::Auto => effects.all() && scene.body.bends_far() && deflection().is_some(),
     };
+    let no_rest = scene.body.not_by_elements().map(|found| match deflection() {
+        None => format!("not found of {found}"),
+        Some(part) => format!("not found of {found}, which the highest speed bends by about {part:.1e} of its length"),
+    });
     let full = may_be_bent.then(|| bent::full(&scene, builder)).transpose()?;
     let bent = full.as_ref().map(|full| BentSpin::new(&scene, full, &model, &axis)).transpose()?;
     let bent = match bent {
@@ -194,6 +199,7 @@ pub fn campbell(
         axis: axis.into(),
         origin: model.body.origin.into(),
         effects: Some(effects),
+        no_rest,
         stable_below,
         critical_speeds,
         swing_limits: Vec::new(),

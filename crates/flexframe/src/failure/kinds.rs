@@ -506,7 +506,7 @@ impl Fault for CampbellError {
             Self::Eigen { scene, .. } | Self::Steady { scene, .. } => Kind::Run.of(scene),
             Self::Full { scene, .. } | Self::Bent { scene, .. } => Kind::Run.of(scene),
             Self::Rotor { scene, .. } => Kind::Refused.of(scene),
-            Self::NoAxis { scene, .. } | Self::NoFullBody { scene } | Self::WithoutEffect { scene } => {
+            Self::NoAxis { scene, .. } | Self::NoFullBody { scene, .. } | Self::WithoutEffect { scene } => {
                 Kind::Usage.of(scene)
             }
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage.alone(),

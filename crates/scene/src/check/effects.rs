@@ -9,7 +9,7 @@ use crate::body::modes::{Flexible, Modes};
 use crate::document::join;
 use crate::error::SceneError;
 use crate::loads::load::Load;
-use crate::scene::{Body, Initial};
+use crate::scene::{Body, Initial, MeshedBody};
 
 impl Check<'_> {
     pub fn effects(
@@ -59,18 +59,15 @@ impl Check<'_> {
 
     /// The effects that need the elements of a body.
     pub fn effects_of_elements(&self, effects: &Effects, modes: &Modes, body: &Body) -> Result<(), SceneError> {
-        let (found, help) = match body {
+        let Some(found) = body.not_by_elements() else { return Ok(()) };
+        let help = match body {
             Body::Matrices(_) => {
-                let (found, help) =
-                    ("a body of matrices, whose elements are not known", "give the body a mesh and a material");
+                let help = "give the body a mesh and a material";
                 self.not_on(effects, Effect::GeometricStiffening, true, found, help)?;
-                (found, help)
+                help
             }
-            Body::Meshed(_) if !body.bends_far() => {
-                let help = "mesh the masses as parts of the body, or hold rigid bodies of their mass by fixed joints";
-                ("a body with masses beside it (`tied_masses`)", help)
-            }
-            _ => return Ok(()),
+            Body::Meshed(_) => MeshedBody::WITHOUT_TIED_MASSES,
+            Body::File(_) | Body::Rigid(_) => return Ok(()),
         };
         self.not_on(effects, Effect::LargeDeflection, true, found, help)?;
         if modes.large.is_none() {

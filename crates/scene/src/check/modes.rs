@@ -63,8 +63,9 @@ impl Check<'_> {
 
     fn about(&self, about: &AboutSection, body: &Body, flexible: Flexible) -> Result<About, SceneError> {
         let place = self.document.place("modes.about");
-        if flexible == Flexible::Count(0) || !body.bends_far() {
-            let found = "modes about a bent body, of one without flexible modes, without elements or with masses beside it (`tied_masses`)";
+        let is_stiff = flexible == Flexible::Count(0);
+        if let Some(found) = is_stiff.then_some("a body without flexible modes").or(body.not_by_elements()) {
+            let found = format!("modes about the bent state of {found}");
             return Err(place.refuse(found, "a body with a mesh and flexible modes", "remove it"));
         }
         Ok(match about {

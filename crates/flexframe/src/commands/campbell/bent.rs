@@ -33,11 +33,16 @@ pub enum AboutRest {
 /// The full body of a scene, where it has one.
 pub(super) fn full(scene: &Scene, builder: &Builder) -> Result<FullModel, CampbellError> {
     let full = builder.full(scene, |_| ())?;
-    full.ok_or_else(|| CampbellError::NoFullBody { scene: scene.path.clone() })
+    full.ok_or_else(|| no_full_body(scene))
 }
 
-/// True if the linear answer to a spin bends the body.
-pub(super) fn bends(model: &Model, axis: &Vector3<f64>, speed: f64) -> bool {
+fn no_full_body(scene: &Scene) -> CampbellError {
+    let found = scene.body.not_by_elements().unwrap_or("a body without elements");
+    CampbellError::NoFullBody { scene: scene.path.clone(), found }
+}
+
+/// Deflection over the length, by the linear answer to a spin; none where it does not bend the body.
+pub(super) fn deflection(model: &Model, axis: &Vector3<f64>, speed: f64) -> Option<f64> {
     let body = &model.body;
     let weights = ReducedBody::pair_weights([axis, axis]);
     let answer = |(k, omega): (usize, &f64)| {
@@ -45,7 +50,7 @@ pub(super) fn bends(model: &Model, axis: &Vector3<f64>, speed: f64) -> bool {
         force * (speed / omega).powi(2)
     };
     let q: Vec<f64> = body.circular_frequencies.iter().enumerate().map(answer).collect();
-    model.deflection(&q) >= STRAIGHT
+    Some(model.deflection(&q)).filter(|deflection| *deflection >= STRAIGHT)
 }
 
 /// The full body in a spin about an axis.
@@ -78,7 +83,7 @@ impl<'a> BentSpin<'a> {
         model: &'a Model,
         axis: &Vector3<f64>,
     ) -> Result<Self, CampbellError> {
-        let Some(meshed) = &model.meshed else { return Err(CampbellError::NoFullBody { scene: scene.path.clone() }) };
+        let Some(meshed) = &model.meshed else { return Err(no_full_body(scene)) };
         let failed = |source| CampbellError::Full { scene: scene.path.clone(), source: Box::new(source) };
         let body = full.body().map_err(failed)?;
         Ok(Self {

@@ -34,10 +34,9 @@ pub enum CampbellError {
     Rotor { scene: PathBuf, joint: String, source: Box<RotorError> },
     /// A body without elements has no rest in a spin.
     #[error(
-        "{}: found a body without elements or without flexible modes, or with masses beside it (`tied_masses`); expected one with a mesh, whose rest at each speed can be found; \
-         help: leave `--about-rest` out", scene.display()
+        "{}: found {found}; expected one with a mesh, whose rest at each speed can be found; help: leave `--about-rest` out", scene.display()
     )]
-    NoFullBody { scene: PathBuf },
+    NoFullBody { scene: PathBuf, found: &'static str },
     /// The full body has all effects of a spin.
     #[error(
         "{}: found an effect of the spin that is off, `coriolis`, `deformed_inertia` or `geometric_stiffening` in [effects]; expected all of \

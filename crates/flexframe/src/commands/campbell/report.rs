@@ -48,6 +48,9 @@ pub struct CampbellReport {
     /// they are about the undeformed body.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub deflection: Vec<f64>,
+    /// The reason that the rest of the full body cannot be found, and how far the spin bends the body; none where it can, and of a system.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub no_rest: Option<String>,
     /// The lines of the diagram, in the order of their frequencies at the lowest speed.
     pub branches: Vec<Branch>,
     /// The spin speed at which the body loses its stability because K + Ω²(K_σ − N) is no longer positive definite; none

@@ -103,6 +103,7 @@ pub fn campbell_of_system(
         mesh: None,
         bodies: body_names(&system, &motion.bodies),
         rotor: rotor.map(|rotor| body_names(&system, &motion.bodies).swap_remove(rotor.body)),
+        no_rest: None,
         warnings: others.warnings(branches.modes.iter().flatten().map(|mode| mode.circular_frequency)),
         rotors: others.found,
         axis: axis.into(),

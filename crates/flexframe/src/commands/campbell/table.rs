@@ -44,12 +44,14 @@ impl fmt::Display for CampbellReport {
                 self.length_unit
             )?;
         }
+        if let Some(reason) = &self.no_rest {
+            writeln!(f, "  rest     {reason}: vibrations about the undeformed body")?;
+        }
         match self.stable_below {
-            Some(speed) if self.of_undeformed() => writeln!(
-                f,
-                "  stable   below {} rad/{time}, about the undeformed body (`--about-rest always` asks the full body)",
-                quantity(speed)
-            )?,
+            Some(speed) if self.of_undeformed() => {
+                let asks = if self.no_rest.is_none() { " (`--about-rest always` asks the full body)" } else { "" };
+                writeln!(f, "  stable   below {} rad/{time}, about the undeformed body{asks}", quantity(speed))?;
+            }
             Some(speed) if self.speeds.first().is_some_and(|first| *first >= speed) => {
                 writeln!(f, "  stable   not at {} rad/{time}, the lowest speed of this range", quantity(speed))?;
             }

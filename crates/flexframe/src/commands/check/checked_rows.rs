@@ -5,11 +5,11 @@ use std::path::Path;
 use model::{BuildProgress, Builder, Checker, Model};
 use nonlinear::StateErrorSettings;
 use results::Results;
-use scene::System;
+use scene::{Scene, System};
 
 use super::error::CheckError;
 use super::joints::Ties;
-use super::report::{BodyCheck, CheckReport, DEAR, MATRICES, RIGID, RowCheck};
+use super::report::{BodyCheck, CheckReport, DEAR, RIGID, RowCheck};
 use super::rows::{self, CheckRows};
 
 /// How far a check has come.
@@ -24,6 +24,11 @@ pub enum CheckProgress {
         /// All.
         total: usize,
     },
+}
+
+/// The reason that a body which bends is not checked on demand.
+fn without_elements(scene: &Scene) -> String {
+    format!("it is {}", scene.body.not_by_elements().unwrap_or("a body without elements"))
 }
 
 /// Checks the rows of a run whose models are there.
@@ -58,7 +63,7 @@ pub fn check_run(
             continue;
         }
         if model.meshed.as_ref().is_some_and(|meshed| !meshed.mesh.has_elements()) {
-            checked.push(not_checked(MATRICES));
+            checked.push(not_checked(&without_elements(scene)));
             continue;
         }
         if model.meshed.is_some() && rows_of_body.is_empty() {
@@ -67,7 +72,7 @@ pub fn check_run(
         }
         let full = builder.full(scene, |p| progress(CheckProgress::Build(p)))?;
         let Some(full) = full else {
-            checked.push(not_checked(MATRICES));
+            checked.push(not_checked(&without_elements(scene)));
             continue;
         };
         let in_scene = |source| CheckError::Full { scene: scene.path.clone(), source: Box::new(source) };

@@ -62,8 +62,6 @@ impl BodyCheck {
 /// The reason that a rigid body is not checked.
 pub(super) const RIGID: &str = "it is rigid";
 
-/// The reason that a body of matrices is not checked.
-pub(super) const MATRICES: &str = "it is made of matrices, or has masses beside it (`tied_masses`)";
 /// The reason that a body is not checked at the end of a run.
 pub(crate) const DEAR: &str = "its full body costs more than its reduction did; `flexframe check` does it on demand";
 

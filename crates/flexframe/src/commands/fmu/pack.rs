@@ -5,7 +5,7 @@ use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use model::{BuildProgress, Builder, StartError};
-use scene::{Body, Flexible, Scene, System};
+use scene::{Body, Flexible, MeshedBody, Scene, System};
 use sealed::{Format, SealedFile};
 use serde::Serialize;
 use whole_file::{TemporaryFolder, write_whole};
@@ -157,6 +157,13 @@ fn check(scene: &Scene) -> Result<(), FmuError> {
         let (found, expected) =
             ("a body of matrices, which no body file holds yet", "a body with a mesh, or a rigid one");
         return Err(scene.refuse("body.matrices", found, expected, "give the body a mesh to pack it").into());
+    }
+    if let (false, Body::Meshed(body)) = (scene.tied, &scene.body)
+        && !body.tied_masses.is_empty()
+    {
+        let found = "masses beside the body, which the body file in an FMU does not have";
+        let help = format!("{}: the FMU of bodies in joints holds their meshes", MeshedBody::WITHOUT_TIED_MASSES);
+        return Err(scene.refuse("body.tied_masses", found, "`point_masses`, or none", help).into());
     }
     if !matches!(scene.modes.flexible, Flexible::Count(_)) {
         let help = "give the number of modes to keep; `flexframe modes` shows their frequencies";
