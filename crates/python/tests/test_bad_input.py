@@ -181,6 +181,7 @@ def test_load_arguments(rigid, ring):
 
 EVENTS = {
     "raises": (lambda row: row["no such column"], KeyError, "is no column of this run; it has time, attitude"),
+    "a complex number": (lambda row: np.complex128(1.0), InputError, "the event `event`: found a complex128, expected a finite number"),
     "NaN": (lambda row: float("nan"), InputError, "the event `event`: found NaN, expected a finite number"),
     "an array": (lambda row: row["velocity"], InputError, "found an array of shape .3. and type float64"),
 }

@@ -3,8 +3,10 @@
 //! A temporary file is removed when it is dropped. A signal ends a program without dropping anything, so all that are there are
 //! listed here, and [`remove_temporaries`] removes them.
 
+use std::error::Error;
 use std::fs::{self, File, OpenOptions};
 use std::io;
+use std::iter::successors;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
@@ -114,9 +116,12 @@ pub fn is_of_temporaries(error: &io::Error) -> bool {
     is_none || cure_of_temporaries(error, &error.to_string()).is_some()
 }
 
-/// The cure for an error of the system by which a disk is full, where the message names a temporary folder of this program.
-pub fn cure_of_temporaries(error: &io::Error, message: &str) -> Option<&'static str> {
-    let is_full = matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded);
+/// The cure for an error of the system, or one that comes from it, by which a disk is full, where the message names a temporary folder of this program.
+pub fn cure_of_temporaries(error: &(dyn Error + 'static), message: &str) -> Option<&'static str> {
+    let sources =
+        successors(Some(error), |&error| error.source()).filter_map(|error| error.downcast_ref::<io::Error>());
+    let mut kinds = sources.map(io::Error::kind);
+    let is_full = kinds.any(|kind| matches!(kind, io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded));
     let folders = std::path::absolute(std::env::temp_dir()).ok()?.join(FOLDER_PREFIX);
     (is_full && message.contains(&*folders.to_string_lossy())).then_some(TMPDIR_CURE)
 }
@@ -311,6 +316,9 @@ mod tests {
         assert!(cure_of_temporaries(&full(), &here).unwrap().contains("TMPDIR"));
         assert_eq!(cure_of_temporaries(&full(), "/results/a.h5: cannot be written"), None);
         assert_eq!(cure_of_temporaries(&io::Error::from(io::ErrorKind::NotFound), &here), None);
+        // Also where it is the source of another error.
+        let wrapped = NoTemporaryFolder { place: folder.path().to_owned(), source: full() };
+        assert!(cure_of_temporaries(&wrapped, &here).is_some());
         let none = TemporaryFolder::inside(&folder.path().join("none")).unwrap_err();
         assert!(!is_of_temporaries(&none) && is_of_temporaries(&io::Error::new(full().kind(), here)));
     }

@@ -10,6 +10,7 @@ mod table;
 mod text;
 
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,7 +22,7 @@ use model::{Assembly, BuildError, BuildProgress, Builder, Model, Variants};
 use results::{ColumnTable, Results};
 use scene::{Body, Scene, System};
 use serde::Serialize;
-use whole_file::{FileLock, TemporaryFolder};
+use whole_file::{FileLock, TemporaryFolder, cure_of_temporaries};
 
 use crate::commands::run::{self, RunSettings};
 use crate::files::json;
@@ -195,7 +196,7 @@ pub fn sweep(
         let assemblies = match assemblies {
             Ok(assemblies) => assemblies,
             Err(error) => {
-                all_failed(&error.to_string());
+                all_failed(&cured(&error, error.to_string()));
                 continue;
             }
         };
@@ -203,7 +204,7 @@ pub fn sweep(
         let variants = match variants.collect::<Result<Vec<_>, BuildError>>() {
             Ok(variants) => variants,
             Err(error) => {
-                all_failed(&error.to_string());
+                all_failed(&cured(&error, error.to_string()));
                 continue;
             }
         };
@@ -358,7 +359,7 @@ fn run_row(
 ) -> Result<Done, String> {
     let build = |scene: &Scene, variants: &Mutex<Variants<'_>>| -> Result<Model, String> {
         let mut variants = variants.lock().unwrap_or_else(PoisonError::into_inner);
-        variants.build(scene, |_| ()).map_err(|error| error.to_string())
+        variants.build(scene, |_| ()).map_err(|error| cured(&error, error.to_string()))
     };
     let [asks_run, asks_frequencies] = plan.asks();
     let mut done = Done { results: Vec::new(), warnings: Vec::new() };
@@ -373,13 +374,13 @@ fn run_row(
             done.warnings.extend(plausible::doubts(&unloaded, &model));
         }
     }
-    let folder = TemporaryFolder::inside(folder).map_err(|error| error.to_string())?;
+    let folder = TemporaryFolder::inside(folder).map_err(|error| cured(&error, error.to_string()))?;
     let mut results = None;
     if asks_run {
         let models = system.bodies.iter().zip(variants).map(|(scene, variants)| build(scene, variants));
         let models = models.collect::<Result<Vec<_>, _>>()?;
         let run = run::run_models(system, &models, folder.path(), settings, |_| ());
-        let run = run.map_err(|error| error.without_files())?;
+        let run = run.map_err(|error| cured(&error, error.without_files()))?;
         done.warnings = run.warnings;
         results = Some(Results::open(run.results, &COLUMNS).map_err(|error| error.to_string())?);
     }
@@ -396,6 +397,11 @@ fn run_row(
     };
     done.results = plan.results.values().map(value).collect::<Result<_, String>>()?;
     Ok(done)
+}
+
+/// The words of a row's error, with the cure where its temporary folder is full.
+fn cured(error: &(dyn Error + 'static), words: String) -> String {
+    cure_of_temporaries(error, &words).map_or(words.clone(), |cure| format!("{words}\n = {cure}"))
 }
 
 /// Numbers of a column of the results.

@@ -62,17 +62,16 @@ impl FailureReport {
     pub fn of(error: &(dyn Error + 'static)) -> Self {
         let (kind, details) = known(error);
         let message = error.to_string();
-        for source in
-            successors(Some(error), |&error| error.source()).filter_map(|error| error.downcast_ref::<io::Error>())
-        {
-            if let Some(none) = source.get_ref().and_then(|inner| inner.downcast_ref::<NoTemporaryFolder>()) {
-                return Self::new(Kind::Io, none.to_string(), Details::of_file(std::env::temp_dir()));
-            }
-            if let Some(cure) = cure_of_temporaries(source, &message) {
-                return Self::new(Kind::Io, format!("{message}{CURE}{cure}"), details);
-            }
+        let mut sources =
+            successors(Some(error), |&error| error.source()).filter_map(|error| error.downcast_ref::<io::Error>());
+        let none = |source: &io::Error| Some(source.get_ref()?.downcast_ref::<NoTemporaryFolder>()?.to_string());
+        if let Some(none) = sources.find_map(none) {
+            return Self::new(Kind::Io, none, Details::of_file(std::env::temp_dir()));
         }
-        Self::new(kind, message, details)
+        match cure_of_temporaries(error, &message) {
+            Some(cure) => Self::new(Kind::Io, format!("{message}{CURE}{cure}"), details),
+            None => Self::new(kind, message, details),
+        }
     }
 }
 

@@ -30,7 +30,7 @@ use crate::rows::row::Row;
 use crate::scene::Scene;
 use crate::system::System;
 use crate::threads::{detached, in_pool};
-use crate::values::numbers::described;
+use crate::values::numbers::{described, number};
 
 /// Steps between two looks at signals.
 const STEPS_PER_LOOK: u64 = 4096;
@@ -669,7 +669,7 @@ fn value_of_event(function: &Bound<'_, PyAny>, name: &str, row: Row) -> PyResult
         let help = "return a function of the row that passes through zero";
         wrong_input(function.py(), &format!("the event `{name}`"), found, "a finite number", help)
     };
-    let number: f64 = value.extract().map_err(|_| refuse(&described(&value)))?;
+    let number = number(&value).ok_or_else(|| refuse(&described(&value)))?;
     if number.is_finite() { Ok(number) } else { Err(refuse(&number.to_string())) }
 }
 
