@@ -9,7 +9,7 @@ use serde::Serialize;
 /// |⟨a, b⟩|² of two shapes that are taken for the same without a closer look. Above ½ only one can be.
 const ALIKE: f64 = 0.6;
 /// How often a step between two speeds is halved where shapes change too much to be told apart.
-const HALVINGS: u32 = 5;
+pub(super) const CLOSER: u32 = 5;
 /// Frequencies and growths closer than this part of them are equal: their shapes are any mixture, at each speed another one.
 const EQUAL: f64 = 1e-9;
 
@@ -56,7 +56,7 @@ impl Branches {
         let mut modes: Vec<Vec<SpinMode>> = Vec::with_capacity(speeds.len());
         for (i, &speed) in speeds.iter().enumerate().rev() {
             let here = match modes.last() {
-                Some(above) => continued(find, above, speeds[i + 1], speed, HALVINGS)?,
+                Some(above) => continued(find, above, speeds[i + 1], speed, CLOSER)?,
                 None => find(speed)?,
             };
             modes.push(here);
@@ -74,7 +74,7 @@ impl Branches {
     /// The vibrations at a speed between the others, at the same places; `find` finds them.
     pub fn at<E>(&self, find: &impl Fn(f64) -> Result<Vec<SpinMode>, E>, speed: f64) -> Result<Vec<SpinMode>, E> {
         let above = self.speeds.partition_point(|s| *s < speed).min(self.speeds.len() - 1);
-        continued(find, &self.modes[above], self.speeds[above], speed, HALVINGS)
+        continued(find, &self.modes[above], self.speeds[above], speed, CLOSER)
     }
 
     /// The lines of the diagram; the last ones are those of static shapes, which are stiff.
@@ -94,7 +94,7 @@ impl Branches {
 }
 
 /// The vibrations at the speed `to`, each at the place of the one at the speed `from` that it continues.
-fn continued<E>(
+pub(super) fn continued<E>(
     find: &impl Fn(f64) -> Result<Vec<SpinMode>, E>,
     modes: &[SpinMode],
     from: f64,

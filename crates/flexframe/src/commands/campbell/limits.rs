@@ -4,11 +4,15 @@ use std::f64::consts::TAU;
 
 use dynamics::SpinMode;
 
-use super::branches::Branches;
+use super::branches::{Branches, CLOSER, continued};
 use super::critical::{Critical, CriticalKind, SwingLimit};
 
-/// Halvings of a step between two speeds: a limit is found to a part of 1e-12 of it.
-const HALVINGS: usize = 40;
+/// Trials between two speeds. If all halve the step, a limit is found to a part of 1e-12 of it.
+const TRIALS: u32 = 40;
+/// A trial halves the step after so many that follow a line between its ends.
+const ON_A_LINE: u32 = 2;
+/// Part of its frequency to which a vibration meets an order.
+const MET: f64 = 1e-12;
 /// Part of the first step from rest at which a motion is looked at that nothing resists at rest.
 const OFF_REST: f64 = 1e-3;
 /// Part of the eigenvalue, as it is at the ends of the step, by which it may change over the last of the halvings: more is a branch that has taken the place of another one.
@@ -36,6 +40,15 @@ impl Limit {
             Self::Growth => mode.growth > 0.0,
             Self::Swing => mode.circular_frequency > 0.0,
         })
+    }
+
+    /// The number that is zero at the limit, if it is smooth there.
+    fn distance(self, mode: &SpinMode, speed: f64) -> Option<f64> {
+        match self {
+            Self::Order(order) => Some(mode.circular_frequency - order * speed),
+            // They are zero on one side, and like a root on the other.
+            Self::Growth | Self::Swing => None,
+        }
     }
 
     /// Difference of two vibrations in the number that is looked at.
@@ -109,7 +122,7 @@ impl<E, F: Fn(f64) -> Result<Vec<SpinMode>, E>> Search<'_, F> {
             let starts = std::iter::once(low).chain(&off_rest);
             let Some((low, before)) = starts.filter_map(|low| Some((low, side(low)?))).next() else { continue };
             let Some(after) = side(high).filter(|after| *after != before) else { continue };
-            let [below, above] = self.bracket((low, high), |here| side(here) == Some(before))?;
+            let [below, above] = self.bracket([low, high], place, limit)?;
             let [one, other] = [&below, &above].map(|here| &here.modes[place]);
             let size = |here: &Here| here.modes[place].circular_frequency.hypot(here.modes[place].growth);
             if limit.apart(one, other) > STEADY * size(low).max(size(high)) {
@@ -126,12 +139,35 @@ impl<E, F: Fn(f64) -> Result<Vec<SpinMode>, E>> Search<'_, F> {
         Ok(())
     }
 
-    /// Halves the step until both sides of a limit are next to each other.
-    fn bracket(&self, (low, high): (&Here, &Here), is_before: impl Fn(&Here) -> bool) -> Result<[Here; 2], E> {
+    /// Makes the step smaller until both sides of a limit are next to each other: by a line between the distances at its ends, of which
+    /// the end that stays counts half (the Illinois method), and by halves.
+    fn bracket(&self, [low, high]: [&Here; 2], place: usize, limit: Limit) -> Result<[Here; 2], E> {
+        let side = |here: &Here| limit.side(&here.modes[place], here.speed);
+        let distance = |here: &Here| limit.distance(&here.modes[place], here.speed);
+        let before = side(low);
+        let mut distances = distance(low).zip(distance(high));
         let [mut low, mut high] = [low.clone(), high.clone()];
-        for _ in 0..HALVINGS {
-            let middle = self.at(0.5 * (low.speed + high.speed))?;
-            if is_before(&middle) { low = middle } else { high = middle }
+        for trial in 0..TRIALS {
+            let on_line =
+                distances.filter(|_| trial % (ON_A_LINE + 1) < ON_A_LINE).map(|(from, to)| from / (from - to));
+            let share = on_line.filter(|share| *share > 0.0 && *share < 1.0).unwrap_or(0.5);
+            let speed = low.speed + share * (high.speed - low.speed);
+            // Shapes next to each other are alike, so that a branch is followed from there by few steps; the nearer, the fewer.
+            let closer = CLOSER.saturating_sub(trial / (ON_A_LINE + 1));
+            let middle = Here { speed, modes: continued(self.find, &high.modes, high.speed, speed, closer)? };
+            if distance(&middle).is_some_and(|distance| distance.abs() <= MET * middle.modes[place].circular_frequency)
+            {
+                return Ok([middle.clone(), middle]);
+            }
+            let is_before = side(&middle) == before;
+            if let (Some((from, to)), Some(here)) = (&mut distances, distance(&middle)) {
+                if is_before {
+                    (*from, *to) = (here, 0.5 * *to);
+                } else {
+                    (*from, *to) = (0.5 * *from, here);
+                }
+            }
+            if is_before { low = middle } else { high = middle }
         }
         Ok([low, high])
     }
