@@ -9,7 +9,7 @@ use super::critical::{Critical, CriticalKind, SwingLimit};
 
 /// Trials between two speeds. If all halve the step, a limit is found to a part of 1e-12 of it.
 const TRIALS: u32 = 40;
-/// A trial halves the step after so many that follow a line between its ends.
+/// Trials on a line between the ends of the step before one at its middle.
 const ON_A_LINE: u32 = 2;
 /// Part of its frequency to which a vibration meets an order.
 const MET: f64 = 1e-12;
