@@ -46,9 +46,9 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
         match simulation.advance(u64::MAX)? {
             Reached::Event(event) if event == impact => {
                 times[0] = simulation.time();
-                let mut state = simulation.state()?;
+                let mut state = simulation.states()?.remove(0);
                 state.velocity_global = -state.velocity_global;
-                simulation.set_state(&state)?;
+                simulation.set_states(&[state])?;
             }
             Reached::Event(event) if event == top => {
                 times[1] = simulation.time();

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use flexframe::dynamics::{
     ConservativeBody, Coordinate, History, Joint, JointLawFn, Marker, MotionState, Physics, PointForce, PointShapes,
-    Reached, Rows, StepControl, System, SystemScheme, SystemSetup, SystemSimulation,
+    Reached, Rows, StepControl, System, SystemScheme, SystemSetup, Simulation,
 };
 use flexframe::nalgebra::{Matrix3, Vector3};
 use flexframe::reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -101,7 +101,7 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
         modal_displacement: Vec::new(),
         modal_velocity: Vec::new(),
     };
-    let mut simulation = SystemSimulation::new(SystemSetup {
+    let mut simulation = Simulation::of_system(SystemSetup {
         system,
         states: vec![at(0.5), at(1.5)],
         relaxed: false,
@@ -113,7 +113,7 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
     })?;
     let mut rows = Vec::new();
     loop {
-        let now = simulation.observation()?;
+        let now = simulation.system_observation()?;
         let of = |of: fn(&flexframe::dynamics::JointObservation) -> f64| [0, 1].map(|joint| of(&now.joints[joint]));
         rows.push(ArmRow {
             time: now.time,

@@ -287,7 +287,7 @@ fn next_row(simulation: &mut Simulation, out: &mut Observation, max_evaluations:
     while simulation.stats().evaluations < max_evaluations {
         match simulation.advance(STEPS_AT_ONCE)? {
             Reached::Row => {
-                simulation.observe(out)?;
+                simulation.observe([out])?;
                 return Ok(true);
             }
             Reached::End => return Ok(false),

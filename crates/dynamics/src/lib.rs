@@ -47,17 +47,19 @@ pub use load::{
     Applied, BodyField, FieldLoad, InertialMotion, Kinematics, Load, LoadFn, LoadFrame, Pattern, PointForce,
     PointMoment, ScaledLoad, SharedLoad,
 };
-pub use motion::{ErrorEstimate, Motion};
-pub use observation::energies::Energies;
+pub use motion::Motion;
+pub use motion::facts::{Balance, MotionFacts, Stepping};
+pub use observation::energies::{Energies, RunEnergies};
 pub use observation::moment::Moment;
 pub use observation::observer::{Observer, StepEnd};
 pub use observation::reaction::Reaction;
 pub use observation::support_reactions::SupportReactions;
+pub use observation::system::SystemObservation;
 pub use observation::work::Work;
 pub use observation::{Observation, PointMotion};
 pub use run::description::error::DescriptionError;
 pub use run::description::{DescribedBody, RunDescription};
-pub use run::island::{Island, IslandMotion, RunEnergies};
+pub use run::island::Island;
 pub use run::row_times::RowTimes;
 pub use run::{IslandError, Run};
 pub use scheme::abilities::Abilities;
@@ -92,11 +94,11 @@ pub use system::marker::Marker;
 pub use system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 pub use system::radau::{Failed, SystemMotion, Tried};
 pub use system::relaxed::RelaxError;
-pub use system::simulation::SystemSimulation;
-pub use system::simulation::observation::SystemObservation;
-pub use system::simulation::second_order::Branching;
-pub use system::simulation::setup::{Assembled, ShapeLimit, SystemSetup};
-pub use tolerance::{ErrorKinds, StatedError};
+pub use system::run::SystemRun;
+pub use system::run::second_order::Branching;
+pub use system::run::setup::{Assembled, ShapeLimit, SystemSetup};
+pub use tolerance::allowance::ErrorEstimate;
+pub use tolerance::{ErrorKinds, ErrorMeasure, StatedError};
 pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 pub use vibration::system::{

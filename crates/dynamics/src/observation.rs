@@ -6,6 +6,7 @@ pub(crate) mod observer;
 pub(crate) mod observers;
 pub(crate) mod reaction;
 pub(crate) mod support_reactions;
+pub(crate) mod system;
 pub(crate) mod work;
 
 use nalgebra::Vector3;

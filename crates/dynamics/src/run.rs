@@ -7,7 +7,7 @@ pub(crate) mod row_times;
 use crate::error::StepError;
 use crate::observation::Observation;
 use crate::observation::moment::Moment;
-use crate::run::island::{Island, IslandMotion};
+use crate::run::island::Island;
 use crate::run::row_times::RowTimes;
 use crate::simulation::Reached;
 use crate::simulation::checkpoint::{CheckpointError, counts, expect, finite};
@@ -45,9 +45,11 @@ pub struct Run {
 impl Run {
     /// The run of islands that are at the start, with rows at these times.
     pub fn new(mut islands: Vec<Island>, times: RowTimes) -> Self {
-        let is_alone = matches!(&islands[..], [Island { motion: IslandMotion::Body(_), .. }]);
+        let has_rows_at_steps = |island: &Island| !island.motion.is_free();
+        let is_alone = matches!(&islands[..], [island] if has_rows_at_steps(island));
         if !is_alone && times.may_be_between_steps() {
-            islands.iter_mut().for_each(|island| island.motion.keep_last_step());
+            let between = islands.iter_mut().filter(|island| has_rows_at_steps(island));
+            between.for_each(|island| island.motion.keep_last_step());
         }
         Self { islands, times: (!is_alone).then_some(times), next_row: 1, led_to: times.of(0), stop: None }
     }
@@ -118,7 +120,7 @@ impl Run {
     pub fn advance(&mut self, tries: u64, mut watch: impl FnMut(usize, &Moment)) -> Result<Reached, IslandError> {
         let Self { islands, times, next_row, led_to, stop } = self;
         let mut advance = |Island { motion, bodies, .. }: &mut Island, tries| {
-            let reached = motion.advance(tries, |body, moment| watch(bodies[body], moment));
+            let reached = motion.advance_watched(tries, |body, moment| watch(bodies[body], moment));
             reached.map_err(|source| IslandError { bodies: bodies.clone(), source })
         };
         let Some(times) = times else {

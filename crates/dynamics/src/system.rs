@@ -17,6 +17,6 @@ pub(crate) mod marker;
 pub(crate) mod radau;
 mod reactions;
 pub(crate) mod relaxed;
+pub(crate) mod run;
 mod saved;
-pub(crate) mod simulation;
 pub(crate) mod stage;

@@ -102,22 +102,22 @@ const LARGEST_FORGETTABLE: f64 = 1e-2;
 
 /// The measure of the errors of the steps of one run.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
-pub(crate) struct ErrorMeasure {
+pub struct ErrorMeasure {
     /// Bound of the sum.
-    pub tolerance: f64,
+    pub(crate) tolerance: f64,
     /// Time over which the steps share it.
-    pub span: f64,
+    pub(crate) span: f64,
     /// Error of a step that is rounding.
     rounding: f64,
     allowance: Allowance,
     stated: StatedError,
     /// True if the last try was not taken.
-    pub is_refused: bool,
+    pub(crate) is_refused: bool,
 }
 
 impl ErrorMeasure {
     /// Bounds the sum by `tolerance` in a run of this `span`, whose steps err by `rounding` at least.
-    pub fn new(tolerance: f64, span: f64, rounding: f64) -> Self {
+    pub(crate) fn new(tolerance: f64, span: f64, rounding: f64) -> Self {
         Self {
             tolerance,
             span,
@@ -134,12 +134,12 @@ impl ErrorMeasure {
     }
 
     /// Error that Newton's method may leave in such a step.
-    pub fn exactness(&self, h: f64) -> f64 {
+    pub(crate) fn exactness(&self, h: f64) -> f64 {
         (NEWTON * self.allowed(h)).max(NEWTON_ROUNDING)
     }
 
     /// Vibration that steps may still forget, over the largest deformation: what they do not resolve and damp.
-    pub fn forgettable(&self) -> f64 {
+    pub(crate) fn forgettable(&self) -> f64 {
         (FORGETTABLE * self.tolerance).min(LARGEST_FORGETTABLE).max(self.tolerance) - self.stated.forgotten
     }
 
@@ -164,7 +164,7 @@ impl ErrorMeasure {
     }
 
     /// Refuses a measure of another run, and numbers that no run comes to.
-    pub fn check_saved(&self, saved: &Self) -> Result<(), CheckpointError> {
+    pub(crate) fn check_saved(&self, saved: &Self) -> Result<(), CheckpointError> {
         crate::simulation::checkpoint::expect(
             "the tolerance",
             (self.tolerance, self.span, self.rounding) == (saved.tolerance, saved.span, saved.rounding),

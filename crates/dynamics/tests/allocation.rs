@@ -42,7 +42,7 @@ fn allocations(mut simulation: Simulation, warm: usize) -> u64 {
     let mut rows = |count| {
         for _ in 0..count {
             assert_eq!(simulation.advance(u64::MAX).unwrap(), Reached::Row);
-            simulation.observe(&mut out).unwrap();
+            simulation.observe([&mut out]).unwrap();
         }
     };
     rows(warm);

@@ -3,4 +3,5 @@
 mod beginning;
 pub(crate) mod described;
 
+pub(crate) use beginning::begin_tied;
 pub use beginning::{BeginError, Beginning, BodyForces, JointForces, MarkerForces, OwnEquation, begin};

@@ -6,7 +6,9 @@ use std::fmt;
 use dynamics::checkpoint::{CheckpointError, counts, decode, encode, finite};
 use dynamics::reduced_body::ReducedBody;
 use dynamics::rigid_kin::BeyondFullTurn;
-use dynamics::{Energies, Initial, Moment, Motion, MotionState, Observation, PointShapes, SetupError, StepError, Work};
+use dynamics::{
+    Energies, Initial, Moment, Motion, MotionFacts, MotionState, Observation, PointShapes, SetupError, StepError, Work,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::attitude_account::AttitudeAccount;
@@ -111,6 +113,11 @@ impl<S: FrameSteps> TravellingFrame<S> {
 }
 
 impl<S: FrameSteps> Motion for TravellingFrame<S> {
+    fn facts(&self) -> MotionFacts {
+        let FrameMotion { model, state, .. } = &self.body;
+        MotionFacts::of_body(state.modal_displacement.len() - 6, model.fastest_rate())
+    }
+
     fn time(&self) -> f64 {
         self.body.state.time
     }
@@ -135,17 +142,18 @@ impl<S: FrameSteps> Motion for TravellingFrame<S> {
         self.steps.pass_discontinuity();
     }
 
-    fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
+    fn observe(&mut self, _: usize, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
         let FrameMotion { motion, state, work, .. } = &self.body;
         motion.observe(state, work, points, out);
         Ok(())
     }
 
-    fn state(&self) -> Result<MotionState, StepError> {
-        Ok(self.body.motion.state(&self.body.state))
+    fn states(&self) -> Result<Vec<MotionState>, StepError> {
+        Ok(vec![self.body.motion.state(&self.body.state)])
     }
 
-    fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
+    fn set_states(&mut self, states: &[MotionState]) -> Result<(), SetupError> {
+        let state = MotionState::only(states)?;
         self.body.motion.set_state(state, &mut self.body.state)?;
         self.steps.complete_state(&mut self.body, state.time);
         self.steps.pass_discontinuity();
@@ -163,7 +171,7 @@ impl<S: FrameSteps> Motion for TravellingFrame<S> {
         self.longest_step = from.longest_step;
     }
 
-    fn moment(&self) -> Moment<'_> {
+    fn moment(&self, _: usize) -> Moment<'_> {
         let State { time, omega_body, modal_displacement, modal_velocity, .. } = &self.body.state;
         let (q, y) = (&modal_displacement[6..], &modal_velocity[6..]);
         Moment { time: *time, omega_body: *omega_body, modal_displacement: q, modal_velocity: y }
@@ -173,20 +181,12 @@ impl<S: FrameSteps> Motion for TravellingFrame<S> {
         Some(self.body.motion.energies_of(&self.body.state, &self.body.work))
     }
 
-    fn work_and_dissipation(&self) -> [f64; 2] {
+    fn step_is_done(&mut self) -> [f64; 2] {
         [self.body.work.work, self.body.work.dissipation]
-    }
-
-    fn fastest_rate(&self) -> f64 {
-        self.body.model.fastest_rate()
     }
 
     fn evaluations(&self) -> u64 {
         u64::from(EVALUATIONS) * self.steps_done
-    }
-
-    fn flexible(&self) -> usize {
-        self.body.state.modal_displacement.len() - 6
     }
 
     fn save(&self) -> Result<Vec<u8>, CheckpointError> {

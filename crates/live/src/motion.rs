@@ -1,14 +1,14 @@
 //! A motion that is led to a time.
 
 use dynamics::{
-    CustomError, IslandMotion, MotionState, Observation, Reached, Rows, RunDescription, SetupError, StepControl,
+    CustomError, MotionState, Observation, Reached, Rows, RunDescription, SetupError, Simulation, StepControl,
     StepError,
 };
 
 /// A motion with what is seen of its bodies at the time that it has been led to.
 #[derive(Debug)]
 pub(crate) struct Motion {
-    island: IslandMotion,
+    simulation: Simulation,
     /// The time at which it began.
     begun: f64,
     /// The interval of rows of bodies in joints: between them they are not seen.
@@ -30,52 +30,52 @@ impl Motion {
                 return Err(SetupError::Value { what, found: f64::NAN, expected });
             }
         };
-        let mut island = run.begin()?;
+        let mut simulation = run.begin()?;
         if let Some(states) = states {
-            island.set_states(states)?;
+            simulation.set_states(states)?;
         }
-        island.keep_last_step();
-        let begun = island.time();
-        let observations = (0..run.bodies.len()).map(|body| island.room(body)).collect();
-        let mut motion = Self { island, begun, interval, observations };
+        simulation.keep_last_step();
+        let begun = simulation.time();
+        let observations = (0..run.bodies.len()).map(|body| simulation.room(body)).collect();
+        let mut motion = Self { simulation, begun, interval, observations };
         motion.lead_to(begun).map_err(|error| SetupError::Custom(CustomError::new(error)))?;
         Ok(motion)
     }
 
     /// The time at which it ends.
     pub fn end(&self) -> f64 {
-        self.island.end()
+        self.simulation.end()
     }
 
     /// Steps as far as a time: of a body that nothing ties to it, within the last step; of bodies in joints to the last row at or before it.
     pub fn lead_to(&mut self, time: f64) -> Result<(), StepError> {
-        let Self { island, begun, interval, observations } = self;
+        let Self { simulation, begun, interval, observations } = self;
         let Some(interval) = *interval else {
-            while island.time() < time && island.advance(1, |_, _| {})? != Reached::End {}
-            let within = time.clamp(*begun, island.time());
-            return island.observe(Some(within), observations);
+            while simulation.time() < time && simulation.advance(1)? != Reached::End {}
+            let within = time.clamp(*begun, simulation.time());
+            return simulation.interpolate(within, observations);
         };
         let same = ROUNDING * interval;
         let next_row = |now: f64| ((now + same) / interval).floor() * interval + interval;
-        while !island.is_over() && next_row(island.time()).min(island.end()) <= time + same {
-            while island.advance(1, |_, _| {})? == Reached::Between {}
+        while !simulation.is_over() && next_row(simulation.time()).min(simulation.end()) <= time + same {
+            while simulation.advance(1)? == Reached::Between {}
         }
-        island.observe(None, observations)
+        simulation.observe(observations)
     }
 
     /// The state of each body at the time that has been reached: of a body that nothing ties the end of the last step.
     pub fn states(&self) -> Result<Vec<MotionState>, StepError> {
-        self.island.states()
+        self.simulation.states()
     }
 
     /// Steps taken so far.
     pub fn steps(&self) -> u64 {
-        self.island.stats().accepted
+        self.simulation.stats().accepted
     }
 
     /// Says that something that a load reads has been changed.
     pub fn loads_have_changed(&mut self) {
-        self.island.loads_have_changed();
+        self.simulation.loads_have_changed();
     }
 }
 

@@ -7,8 +7,8 @@ use dynamics::nalgebra::{Matrix3, Vector3};
 use dynamics::reduced_body::BodyPoint;
 use dynamics::reduced_body::{Constants, ReducedBody, RigidMotion};
 use dynamics::{
-    Coordinate, DescribedBody, History, Initial, IslandMotion, Joint, JointForce, Marker, Method, MotionState, Physics,
-    PointForce, PointShapes, ReferenceForces, Rows, RunDescription, StepControl, SystemScheme,
+    Coordinate, DescribedBody, History, Initial, Joint, JointForce, Marker, Method, MotionState, Physics, PointForce,
+    PointShapes, ReferenceForces, Rows, RunDescription, StepControl, SystemScheme,
 };
 use live::{BODY_NUMBERS, Change, LiveError, LiveMotion, LiveRun, Player};
 
@@ -144,8 +144,8 @@ fn until_something_is_changed_it_is_the_recorded_run() {
     for control in [StepControl::Fixed(0.01), StepControl::Tolerance(1e-6)] {
         let run = alone(control, 1);
         let mut player = Player::new(of_body(run.clone()), 1.0 / 60.0).unwrap();
-        let IslandMotion::Body(simulation) = run.begin().unwrap() else { panic!("a body that nothing ties") };
-        for row in *simulation {
+        let simulation = run.begin().unwrap();
+        for row in simulation {
             let row = row.unwrap();
             for frame in 1..4 {
                 player.lead_to(row.time - 0.1 + 0.025 * f64::from(frame)).unwrap();
@@ -162,14 +162,14 @@ fn until_something_is_changed_it_is_the_recorded_run() {
     }
     let (live, run) = of_system();
     let mut player = Player::new(live, 0.017).unwrap();
-    let IslandMotion::System(mut simulation) = run.begin().unwrap() else { panic!("bodies in joints") };
+    let mut simulation = run.begin().unwrap();
     let mut rows = 0;
     while !simulation.is_over() {
         if simulation.advance(1).unwrap() != dynamics::Reached::Row {
             continue;
         }
         rows += 1;
-        let row = simulation.observation().unwrap();
+        let row = simulation.system_observation().unwrap();
         player.lead_to(row.time - 0.03).unwrap();
         player.lead_to(row.time).unwrap();
         for (body, seen) in [1, 0].into_iter().zip(&row.bodies) {
@@ -222,8 +222,8 @@ fn a_body_about_a_bent_rest_has_the_rest_as_a_shape() {
     });
     let bytes = of_body(run.clone()).to_bytes().unwrap();
     let mut player = Player::new(LiveRun::from_bytes(&bytes).unwrap(), 0.02).unwrap();
-    let IslandMotion::Body(simulation) = run.begin().unwrap() else { panic!("a body that nothing ties") };
-    for row in *simulation {
+    let simulation = run.begin().unwrap();
+    for row in simulation {
         let row = row.unwrap();
         player.lead_to(row.time).unwrap();
         assert_eq!(of(&player, 0)[27..], [&row.modal_displacement[..], &[1.0]].concat());

@@ -175,7 +175,7 @@ fn run(text: &str) -> (Ended, String) {
     };
     let mut now = Observation::new(model.body.flexible(), model.points.len());
     for _ in 0..5 {
-        if let Err(error) = motion.observe(&mut now) {
+        if let Err(error) = motion.observe([&mut now]) {
             return (Ended::Stopped, message(error));
         }
         assert!(is_finite(&now), "{text}\n{now:?}");

@@ -8,7 +8,7 @@ pub struct Peak(pub f64);
 
 impl Observer for Peak {
     fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
-        self.0 = self.0.max(now.observation()?.velocity_global.norm());
+        self.0 = self.0.max(now.observation()?.bodies[0].velocity_global.norm());
         Ok(())
     }
 }

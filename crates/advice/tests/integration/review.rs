@@ -118,9 +118,9 @@ fn watched(case: &Case, effects: EffectMap<bool>, step: f64, interval: f64) -> V
     let mut review = Review::new(*case, effects, &advise(case, 1e-3).unwrap());
     let mut row = simulation.observation().unwrap();
     loop {
-        simulation.observe(&mut row).unwrap();
+        simulation.observe([&mut row]).unwrap();
         review.observe(&row).unwrap();
-        if simulation.advance_watched(u64::MAX, |moment| review.look(moment)).unwrap() == Reached::End {
+        if simulation.advance_watched(u64::MAX, |_, moment| review.look(moment)).unwrap() == Reached::End {
             return review.broken();
         }
     }

@@ -25,6 +25,17 @@ pub struct MotionState {
 }
 
 impl MotionState {
+    /// The state in a list of one body.
+    ///
+    /// # Errors
+    /// [`SetupError::Length`] for a list of another length.
+    pub fn only(states: &[Self]) -> Result<&Self, SetupError> {
+        match states {
+            [state] => Ok(state),
+            _ => Err(SetupError::Length { what: "the list of states", expected: 1, found: states.len() }),
+        }
+    }
+
     /// Refuses lists of the wrong length and numbers that are not finite.
     ///
     /// # Errors

@@ -1,5 +1,6 @@
 //! A body with its loads, as the conservative form has it.
 
+use keys::{Key, Keyed};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
@@ -96,6 +97,16 @@ pub struct ConservativeBody {
     pub(super) reference: Option<Reference>,
     /// Constants of a body that something holds.
     pub(super) held: Option<Held>,
+}
+
+/// The numbers by which two bodies differ, but for their loads: their rigid inertia, frequencies and damping, and how modes couple.
+impl Keyed for ConservativeBody {
+    fn key(&self, key: Key) -> Key {
+        let Self { mass, inertia, with_highest, damping_ratios, own_coupling, .. } = self;
+        let key = key.of("conservative body", 1).with("mass", mass).with("inertia", inertia);
+        let key = key.with("frequencies", with_highest).with("damping", damping_ratios);
+        key.with("coupling", own_coupling.as_flattened()).with("coordinates", &self.coordinates())
+    }
 }
 
 impl ConservativeBody {

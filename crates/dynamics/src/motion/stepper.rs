@@ -10,13 +10,15 @@ use crate::body::shapes::PointShapes;
 use crate::equations::sizes::Sizes;
 use crate::equations::{Equations, ErrorNorm, Evaluation, Glance, PlainNorm, StepDone};
 use crate::error::{RateError, SetupError, StepError};
-use crate::motion::{ErrorEstimate, Motion};
+use crate::motion::Motion;
+use crate::motion::facts::MotionFacts;
 use crate::observation::Observation;
 use crate::observation::energies::Energies;
 use crate::observation::moment::Moment;
 use crate::scheme::{Scheme, Step};
 use crate::simulation::checkpoint::{CheckpointError, counts, decode, encode, equal_room, expect, finite};
 use crate::state::State;
+use crate::tolerance::allowance::ErrorEstimate;
 
 /// A state on its way through equations by a scheme.
 #[derive(Debug, Clone)]
@@ -59,6 +61,10 @@ struct Saved {
 }
 
 impl<E: Equations, S: Scheme<E>> Motion for Stepper<E, S> {
+    fn facts(&self) -> MotionFacts {
+        MotionFacts::of_body(self.equations.flexible(), self.equations.fastest_rate())
+    }
+
     fn time(&self) -> f64 {
         self.state.time
     }
@@ -92,7 +98,7 @@ impl<E: Equations, S: Scheme<E>> Motion for Stepper<E, S> {
         sizes.energy
     }
 
-    fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
+    fn observe(&mut self, _: usize, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
         let in_first = self.evaluate_for_row().map_err(|error| error.in_step(self.state.time, 0.0))?;
         let Self { equations, state, first, ahead, .. } = self;
         let e = if in_first { first } else { ahead };
@@ -101,11 +107,13 @@ impl<E: Equations, S: Scheme<E>> Motion for Stepper<E, S> {
         Ok(())
     }
 
-    fn state(&self) -> Result<MotionState, StepError> {
-        self.equations.motion_state(&self.state).map_err(|error| error.in_step(self.state.time, 0.0))
+    fn states(&self) -> Result<Vec<MotionState>, StepError> {
+        let state = self.equations.motion_state(&self.state);
+        Ok(vec![state.map_err(|error| error.in_step(self.state.time, 0.0))?])
     }
 
-    fn set_state(&mut self, to: &MotionState) -> Result<(), SetupError> {
+    fn set_states(&mut self, states: &[MotionState]) -> Result<(), SetupError> {
+        let to = MotionState::only(states)?;
         let set = self.equations.state_of(to)?;
         self.equations.layout().check(&set)?;
         self.state.copy_from(&set);
@@ -129,7 +137,7 @@ impl<E: Equations, S: Scheme<E>> Motion for Stepper<E, S> {
     }
 
     /// Where the rates were last found: at the state under step control or after a row, else at the start of the last step.
-    fn moment(&self) -> Moment<'_> {
+    fn moment(&self, _: usize) -> Moment<'_> {
         let Glance { omega_body, modal_displacement, modal_velocity } = self.equations.glance(&self.first);
         // The states have changed places at the end of the step.
         let is_here = self.first_known || self.branch_of_first.is_some();
@@ -137,20 +145,12 @@ impl<E: Equations, S: Scheme<E>> Motion for Stepper<E, S> {
         Moment { time, omega_body, modal_displacement, modal_velocity }
     }
 
-    fn work_and_dissipation(&self) -> [f64; 2] {
+    fn step_is_done(&mut self) -> [f64; 2] {
         self.equations.work_and_dissipation(&self.state)
-    }
-
-    fn fastest_rate(&self) -> f64 {
-        self.equations.fastest_rate()
     }
 
     fn evaluations(&self) -> u64 {
         self.evaluations
-    }
-
-    fn flexible(&self) -> usize {
-        self.equations.flexible()
     }
 
     fn save(&self) -> Result<Vec<u8>, CheckpointError> {

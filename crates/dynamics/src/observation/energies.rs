@@ -19,6 +19,20 @@ pub struct Energies {
     pub dissipation: f64,
 }
 
+/// Energies of a run that the balances of a body are counted over.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunEnergies {
+    /// Energy that has come and gone: the sum of |work| + |dissipation| of all steps of a body that moves alone, whose loads the stages sum up,
+    /// or the energy that a bent rest which nothing holds sets free, if that is more; the largest |work| + |dissipation| since the beginning
+    /// of one in joints, or the largest energy of the motion, if that is more. Not their sum over the steps: what a spring gives and takes in
+    /// each period would hide what is lost in all of them.
+    pub exchanged: f64,
+    /// Energy below which a body in joints rests; zero of one alone.
+    pub at_rest: f64,
+    /// Largest energy of all bodies in joints together for which works and dissipation do not account.
+    pub open_together: Option<f64>,
+}
+
 impl Energies {
     /// All its numbers.
     fn numbers(&self) -> [&f64; 5] {

@@ -3,78 +3,47 @@
 use crate::body::shapes::PointShapes;
 use crate::error::StepError;
 use crate::motion::Motion;
-use crate::observation::Observation;
+use crate::observation::system::SystemObservation;
 
-/// The observation of a kind of run: that of a body, or of a [system](crate::SystemObservation).
-pub trait Observed {
-    /// The motion that is observed.
-    type Motion: ?Sized;
-    /// Points of a body, or of the bodies.
-    type Points;
-
-    /// Its time.
-    fn time(&self) -> f64;
-
-    /// Takes in the motion where it is. `longest_step` is for the error.
-    ///
-    /// # Errors
-    /// [`StepError`] where the motion cannot be observed.
-    fn find(&mut self, motion: &mut Self::Motion, points: &[Self::Points], longest_step: f64) -> Result<(), StepError>;
-}
-
-impl Observed for Observation {
-    type Motion = dyn Motion;
-    type Points = PointShapes;
-
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn find(&mut self, motion: &mut dyn Motion, points: &[PointShapes], _: f64) -> Result<(), StepError> {
-        motion.observe(points, self)
-    }
-}
-
-/// Watches a run step by step: of a body, or with `O` = [`SystemObservation`](crate::SystemObservation) of a system. A
-/// closure of `&O` is one, too.
-pub trait Observer<O: Observed = Observation>: Send {
+/// Watches a run step by step. A closure of `&SystemObservation` is one, too.
+pub trait Observer: Send {
     /// Sees the end of a step.
     ///
     /// # Errors
     /// One ends [`Simulation::advance`](crate::Simulation::advance) there.
-    fn step(&mut self, now: &mut StepEnd<'_, O>) -> Result<(), StepError>;
+    fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError>;
 
     /// Sees the state whose motion [`Simulation::observe`](crate::Simulation::observe) is asked for, as at each row.
     ///
     /// # Errors
     /// One is returned from there.
-    fn observed(&mut self, now: &mut StepEnd<'_, O>) -> Result<(), StepError> {
+    fn observed(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
         let _ = now;
         Ok(())
     }
 }
 
-impl<O: Observed, F: FnMut(&O) + Send> Observer<O> for F {
-    fn step(&mut self, now: &mut StepEnd<'_, O>) -> Result<(), StepError> {
+impl<F: FnMut(&SystemObservation) + Send> Observer for F {
+    fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
         self(now.observation()?);
         Ok(())
     }
 }
 
 /// The end of a step, as an [`Observer`] sees it.
-pub struct StepEnd<'a, O: Observed = Observation> {
-    pub(crate) motion: &'a mut O::Motion,
-    pub(crate) points: &'a [O::Points],
+pub struct StepEnd<'a> {
+    pub(crate) motion: &'a mut dyn Motion,
+    pub(crate) points: &'a [Vec<PointShapes>],
     /// Length of the longest step so far; 0 before the first.
     pub(crate) longest_step: f64,
-    pub(crate) observation: &'a mut O,
+    pub(crate) observation: &'a mut SystemObservation,
     /// True if `observation` is that of the state.
     pub(crate) is_observed: bool,
 }
 
-impl<O: Observed> StepEnd<'_, O> {
+impl StepEnd<'_> {
     /// The motion: quantities that it knows without another evaluation of the rates.
-    pub fn motion(&self) -> &O::Motion {
+    pub fn motion(&self) -> &dyn Motion {
         self.motion
     }
 
@@ -83,13 +52,13 @@ impl<O: Observed> StepEnd<'_, O> {
         self.longest_step
     }
 
-    /// The motion, which is found at the first call: the rates are evaluated for it.
+    /// The motion of all bodies, which is found at the first call: the rates are evaluated for it.
     ///
     /// # Errors
     /// [`StepError`] where the motion cannot be observed.
-    pub fn observation(&mut self) -> Result<&O, StepError> {
+    pub fn observation(&mut self) -> Result<&SystemObservation, StepError> {
         if !self.is_observed {
-            self.observation.find(self.motion, self.points, self.longest_step)?;
+            self.observation.find(self.motion, self.points)?;
             self.is_observed = true;
         }
         Ok(self.observation)

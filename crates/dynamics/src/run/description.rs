@@ -3,7 +3,6 @@
 //! It holds what this crate can make itself. A load, a law, an element or a method of one's own is code, which no data hold: a run
 //! with such a part is refused by name.
 
-mod elements;
 pub(crate) mod error;
 mod loads;
 mod method;
@@ -20,17 +19,15 @@ use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
 use crate::load::SharedLoad;
 use crate::run::description::error::DescriptionError;
-use crate::run::island::IslandMotion;
 use crate::simulation::Simulation;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::simulation::setup::{Method, Setup};
 use crate::system::collocation::SystemScheme;
 use crate::system::description::System;
-use crate::system::element::ForceElement;
+use crate::system::element::{ForceElement, data as elements};
 use crate::system::joint::Joint;
 use crate::system::joint::coupling::Coupling;
-use crate::system::simulation::SystemSimulation;
-use crate::system::simulation::setup::SystemSetup;
+use crate::system::run::setup::SystemSetup;
 
 /// Name and version of the data, in front of them.
 const NAME: &str = "flexframe run";
@@ -138,12 +135,12 @@ impl RunDescription {
     /// Begins the run.
     ///
     /// # Errors
-    /// As [`Simulation::new`] and [`SystemSimulation::new`]; for several bodies, joints or forces between markers by a method that has
+    /// As [`Simulation::new`] and [`Simulation::of_system`]; for several bodies, joints or forces between markers by a method that has
     /// no joints.
-    pub fn begin(&self) -> Result<IslandMotion, SetupError> {
+    pub fn begin(&self) -> Result<Simulation, SetupError> {
         match self.method.joints {
-            Some(scheme) => Ok(IslandMotion::System(Box::new(self.begin_in_joints(scheme)?))),
-            None => Ok(IslandMotion::Body(Box::new(self.begin_without_joints()?))),
+            Some(scheme) => self.begin_in_joints(scheme),
+            None => self.begin_without_joints(),
         }
     }
 
@@ -168,14 +165,14 @@ impl RunDescription {
         })
     }
 
-    fn begin_in_joints(&self, scheme: SystemScheme) -> Result<SystemSimulation, SetupError> {
+    fn begin_in_joints(&self, scheme: SystemScheme) -> Result<Simulation, SetupError> {
         let of = |body: &DescribedBody| {
             ConservativeBody::new(&body.body, &body.damping_ratios, body.loads.clone(), &body.physics)
         };
         let bodies = self.bodies.iter().map(of).collect::<Result<_, _>>()?;
         let names: Option<Vec<_>> = self.bodies.iter().map(|body| body.name.clone()).collect();
         let system = System::new(bodies, self.joints.clone())?.with_names(names.unwrap_or_default());
-        SystemSimulation::new(SystemSetup {
+        Simulation::of_system(SystemSetup {
             system: system.with_couplings(self.couplings.clone())?.with_elements(self.elements.clone())?,
             states: self.states.clone(),
             relaxed: self.relaxed,

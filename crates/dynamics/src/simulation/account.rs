@@ -7,7 +7,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::StepError;
-use crate::motion::Motion;
+use crate::matrix::lists::larger;
+use crate::motion::facts::Balance;
 use crate::observation::energies::Energies;
 use crate::simulation::checkpoint::{CheckpointError, equal_room, finite};
 
@@ -28,6 +29,8 @@ pub(crate) struct EnergyAccount {
     /// Energy scale of the loads: that of modes that follow them within a step, where no stage sees it, and of a load that
     /// sets in.
     of_loads: f64,
+    /// Largest energy at a row for which nothing accounts.
+    largest_open: f64,
 }
 
 /// Energy that has come and gone.
@@ -113,15 +116,10 @@ impl EnergyAccount {
 
     /// Refuses numbers that are not finite.
     pub(crate) fn check_saved(&self) -> Result<(), CheckpointError> {
-        let Self { start, scale, least_scale, largest_exchange, last, exchanged, of_loads } = self;
+        let Self { start, scale, least_scale, largest_exchange, last, exchanged, of_loads, largest_open } = self;
         start.iter().chain(last).try_for_each(Energies::check)?;
         exchanged.check()?;
-        finite("the account of the energy", [scale, least_scale, largest_exchange, of_loads])
-    }
-
-    /// The motion has had this energy at a time.
-    pub(crate) fn raise_scale(&mut self, energy: f64) {
-        self.scale = self.scale.max(energy);
+        finite("the account of the energy", [scale, least_scale, largest_exchange, of_loads, largest_open])
     }
 
     /// Takes a step into account, after which work and dissipation since the beginning are these.
@@ -135,18 +133,33 @@ impl EnergyAccount {
     }
 
     /// The energy beyond what the start, work and dissipation leave.
-    pub(crate) fn open(&self, now: &Energies) -> f64 {
+    fn open(&self, now: &Energies) -> f64 {
         let balance = |of: &Energies| of.internal + of.translation - of.work + of.dissipation;
         self.start.map_or(0.0, |start| balance(now) - balance(&start))
     }
 
-    /// Checks the energy at a time; the `rate` is the largest of ω_k and 2 ζ_k ω_k.
+    /// Largest energy at the rows so far, beyond what the start, work and dissipation leave. What joints pass from one body to another has
+    /// no part in it.
+    pub(crate) fn largest_open(&self) -> f64 {
+        self.largest_open
+    }
+
+    /// Checks the energy at a row; the `rate` is the largest of ω_k and 2 ζ_k ω_k.
+    pub(crate) fn check_row(&mut self, now: &Balance, rate: f64, step: f64) -> Result<(), StepError> {
+        let Balance { energies, scale, unseen } = now;
+        self.scale = self.scale.max(*scale);
+        self.largest_open = larger(self.largest_open, self.open(energies).abs());
+        self.check_beyond(*unseen, energies, rate, step)
+    }
+
+    /// Checks the energy at a time where the scheme has found it: of the conservative form that is the start of the last step or
+    /// the last observation, since it takes an evaluation of the rates.
     pub(crate) fn check(&mut self, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
         self.check_beyond(0.0, now, rate, step)
     }
 
     /// The same where steps may miss or add this energy.
-    pub(crate) fn check_beyond(&mut self, unseen: f64, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
+    fn check_beyond(&mut self, unseen: f64, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
         let Energies { time, internal, .. } = *now;
         let start = *self.start.get_or_insert(*now);
         let put_in = (now.work - start.work) - (now.translation - start.translation);
@@ -169,15 +182,6 @@ impl EnergyAccount {
             excess > OFF_UNRESOLVED * (self.scale + self.of_loads) + unknown
         };
         if is_off { Err(StepError::Energy { time, energy: internal, accounted, step }) } else { Ok(()) }
-    }
-
-    /// Checks the energy where the scheme last found it: of the conservative form that is the start of the last step or
-    /// the last observation, since it takes an evaluation of the rates.
-    pub(crate) fn check_motion(&mut self, motion: &dyn Motion, longest_step: f64) -> Result<(), StepError> {
-        match motion.energies() {
-            Some(energies) => self.check(&energies, motion.fastest_rate(), longest_step),
-            None => Ok(()),
-        }
     }
 }
 

@@ -20,6 +20,12 @@ pub enum CheckpointError {
         "the checkpoint is that of another run: {what} has changed since; put back what was changed, or run the scene again from its beginning"
     )]
     Changed { what: String },
+    /// It was written by another version of the program.
+    #[error(
+        "the checkpoint is in version {found} of its data, and this program reads version {expected}: it was written by another version of \
+         flexframe; run the scene again from its beginning"
+    )]
+    Version { found: u32, expected: u32 },
     /// The bytes are too few, too many, or hold no state.
     #[error("the checkpoint cannot be decoded: {0}; run the scene again from its beginning")]
     Encoding(#[from] postcard::Error),
@@ -62,10 +68,14 @@ pub(crate) fn to_words(bytes: &[u8]) -> Vec<u64> {
     bytes.chunks(8).map(word).collect()
 }
 
-/// The value of the words of encoded bytes.
-pub(crate) fn from_words<T: DeserializeOwned>(words: &[u64]) -> Result<T, CheckpointError> {
+/// The value of the words of encoded bytes, in front of which is the version of the data.
+pub(crate) fn from_words<T: DeserializeOwned>(version: u32, words: &[u64]) -> Result<T, CheckpointError> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    let (value, rest) = postcard::take_from_bytes(&bytes)?;
+    let (found, rest) = postcard::take_from_bytes::<u32>(&bytes)?;
+    if found != version {
+        return Err(CheckpointError::Version { found, expected: version });
+    }
+    let (value, rest) = postcard::take_from_bytes(rest)?;
     match rest.len() < 8 && rest.iter().all(|byte| *byte == 0) {
         true => Ok(value),
         false => Err(postcard::Error::DeserializeBadEncoding.into()),

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use crate::error::StepError;
 use crate::observation::Observation;
-use crate::observation::observer::Observed;
+use crate::observation::system::SystemObservation;
+use crate::simulation::last_step::Inside;
 
 /// Which way an event function passes through zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -19,55 +20,38 @@ pub enum Crossing {
     Any,
 }
 
-/// A function of the motion, of a body or of a [system](crate::SystemObservation); a run stops where it passes through zero.
-pub struct Event<O = Observation> {
+/// A function of the motion; a run stops where it passes through zero.
+#[derive(Clone)]
+pub struct Event {
     name: String,
     crossing: Crossing,
-    function: Arc<dyn Fn(&O) -> f64 + Send + Sync>,
-}
-
-/// A step that has been done, inside of which events are looked for.
-pub(crate) trait Inside<O> {
-    /// Start and end of the step.
-    fn span(&self) -> [f64; 2];
-
-    /// The motion at a time inside the step.
-    fn at(&mut self, time: f64) -> Result<&O, StepError>;
+    function: Arc<dyn Fn(&SystemObservation) -> f64 + Send + Sync>,
 }
 
 impl Event {
-    /// An event with a name for messages. The function sees the motion and that of the points of the run.
+    /// An event with a name for messages. The function sees the first body, and the motion of the points of the run.
     pub fn new(
         name: impl Into<String>,
         crossing: Crossing,
         function: impl Fn(&Observation) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        Self::of(name.into(), crossing, Arc::new(function))
-    }
-}
-
-impl<O> Event<O> {
-    /// An event of anything.
-    pub(crate) fn of(name: String, crossing: Crossing, function: Arc<dyn Fn(&O) -> f64 + Send + Sync>) -> Self {
-        Self { name, crossing, function }
+        // Every run has a body.
+        Self::of_system(name, crossing, move |now| now.bodies.first().map_or(f64::NAN, &function))
     }
 
-    /// The event of something else, of which `from` makes what the function sees.
-    pub(crate) fn seeing<P>(self, from: impl Fn(&P) -> O + Send + Sync + 'static) -> Event<P>
-    where
-        O: 'static,
-    {
-        let Self { name, crossing, function } = self;
-        Event::of(name, crossing, Arc::new(move |now| function(&from(now))))
+    /// The same, where the function sees all bodies, joints and force elements.
+    pub fn of_system(
+        name: impl Into<String>,
+        crossing: Crossing,
+        function: impl Fn(&SystemObservation) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self { name: name.into(), crossing, function: Arc::new(function) }
     }
 
     /// Value of its function at a motion.
-    fn value(&self, now: &O) -> Result<f64, StepError>
-    where
-        O: Observed,
-    {
+    fn value(&self, now: &SystemObservation) -> Result<f64, StepError> {
         let value = (self.function)(now);
-        if value.is_finite() { Ok(value) } else { Err(StepError::EventFunction { time: now.time(), found: value }) }
+        if value.is_finite() { Ok(value) } else { Err(StepError::EventFunction { time: now.time, found: value }) }
     }
 
     /// Its name.
@@ -87,13 +71,7 @@ impl<O> Event<O> {
     }
 }
 
-impl<O> Clone for Event<O> {
-    fn clone(&self) -> Self {
-        Self { name: self.name.clone(), crossing: self.crossing, function: Arc::clone(&self.function) }
-    }
-}
-
-impl<O> fmt::Debug for Event<O> {
+impl fmt::Debug for Event {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Event").field("name", &self.name).field("crossing", &self.crossing).finish_non_exhaustive()
     }
@@ -108,9 +86,9 @@ pub(crate) struct Passed {
 }
 
 /// The events of a run, with their values at the start of the step.
-#[derive(Debug, Clone)]
-pub(crate) struct Events<O = Observation> {
-    list: Vec<Event<O>>,
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Events {
+    list: Vec<Event>,
     values: Vec<f64>,
     after: Vec<f64>,
     /// True if the values are those of another state.
@@ -120,26 +98,20 @@ pub(crate) struct Events<O = Observation> {
 /// Halvings of a step are enough of these to reach rounding, and the secants come sooner.
 const MAX_TRIES: usize = 100;
 
-impl<O> Default for Events<O> {
-    fn default() -> Self {
-        Self { list: Vec::new(), values: Vec::new(), after: Vec::new(), stale: false }
-    }
-}
-
-impl<O: Observed> Events<O> {
+impl Events {
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
     /// Adds an event, and returns its number.
-    pub(crate) fn add(&mut self, event: Event<O>, now: &O) -> Result<usize, StepError> {
+    pub(crate) fn add(&mut self, event: Event, now: &SystemObservation) -> Result<usize, StepError> {
         self.values.push(event.value(now)?);
         self.after.push(0.0);
         self.list.push(event);
         Ok(self.list.len() - 1)
     }
 
-    pub(crate) fn get(&self, number: usize) -> Option<&Event<O>> {
+    pub(crate) fn get(&self, number: usize) -> Option<&Event> {
         self.list.get(number)
     }
 
@@ -154,7 +126,7 @@ impl<O: Observed> Events<O> {
     }
 
     /// Finds the values of the events at a motion.
-    pub(crate) fn reset(&mut self, now: &O) -> Result<(), StepError> {
+    pub(crate) fn reset(&mut self, now: &SystemObservation) -> Result<(), StepError> {
         for (value, event) in self.values.iter_mut().zip(&self.list) {
             *value = event.value(now)?;
         }
@@ -166,8 +138,8 @@ impl<O: Observed> Events<O> {
     /// rounding. Times closer than `same` are one.
     pub(crate) fn first_passed(
         &mut self,
-        step: &mut impl Inside<O>,
-        now: &O,
+        step: &mut Inside<'_>,
+        now: &SystemObservation,
         same: f64,
     ) -> Result<Option<Passed>, StepError> {
         let [start, end] = step.span();
@@ -205,11 +177,11 @@ impl<O: Observed> Events<O> {
 
 /// The time, to rounding, at which an event function has passed through zero between two times: regula falsi in the
 /// Illinois form, which halves the value at an end that stays.
-fn locate<O: Observed>(
-    event: &Event<O>,
+fn locate(
+    event: &Event,
     [mut from, mut to]: [f64; 2],
     [mut before, mut after]: [f64; 2],
-    step: &mut impl Inside<O>,
+    step: &mut Inside<'_>,
 ) -> Result<f64, StepError> {
     // At the start of the step is what has waited for another event there.
     if event.is_passed(before, event.value(step.at(from)?)?) {

@@ -3,44 +3,85 @@
 use keys::{Key, Keyed};
 use serde::{Deserialize, Serialize};
 
-use crate::simulation::checkpoint::CheckpointError;
+use crate::load::SharedLoad;
+use crate::simulation::checkpoint::{CheckpointError, encode, to_words};
 use crate::simulation::setup::Setup;
+use crate::system::element::data::data as element_data;
+use crate::system::run::setup::SystemSetup;
 
-/// Parts of a set-up before its loads.
-const PARTS: [&str; 5] = ["the body", "the damping", "an effect or the drive", "the start", "the scheme or its steps"];
-
-/// The first bytes of the key of each part of a set-up, its loads last.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Fingerprint(Vec<[u8; 8]>);
+/// The first bytes of the key of each part of a set-up.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Fingerprint {
+    keys: Vec<[u8; 8]>,
+    /// Names of the parts, for messages.
+    #[serde(skip)]
+    names: Vec<String>,
+    /// The things whose number may differ.
+    #[serde(skip)]
+    counted: &'static str,
+}
 
 impl Fingerprint {
     pub(crate) fn of(setup: &Setup) -> Self {
         let Setup { body, damping_ratios, loads, physics, initial, method, control, end, rows, points: _ } = setup;
-        let key = Key::new;
-        let parts: [Key; PARTS.len()] = [
-            body.key(key()),
-            damping_ratios.key(key()),
-            physics.key(key()),
-            initial.key(key()),
-            method.key(key()).with("control", control).with("end", end).with("rows", rows),
-        ];
-        let parts = parts.into_iter().chain(loads.iter().map(|load| load.key(key())));
-        let first = |key: Key| {
-            let hash = key.finish();
-            std::array::from_fn(|i| hash.as_bytes()[i])
+        let (mut parts, key) = (Self { counted: "loads", ..Self::default() }, Key::new);
+        parts.add("the body", body.key(key()));
+        parts.add("the damping", damping_ratios.key(key()));
+        parts.add("an effect or the drive", physics.key(key()));
+        parts.add("the start", initial.key(key()));
+        let method = method.key(key());
+        parts.add("the scheme or its steps", method.with("control", control).with("end", end).with("rows", rows));
+        parts.add_loads("", loads);
+        parts
+    }
+
+    /// The parts of bodies in joints. Laws, elements and equations from outside have nothing to compare.
+    pub(crate) fn of_system(setup: &SystemSetup) -> Self {
+        let SystemSetup { system, states, relaxed, scheme, control, end, rows, points: _ } = setup;
+        let (mut parts, key) = (Self { counted: "bodies, loads or joints", ..Self::default() }, Key::new);
+        let data = |what, bytes: Result<Vec<u8>, CheckpointError>| {
+            key().of(what, 1).with("data", &to_words(&bytes.unwrap_or_default()))
         };
-        Self(parts.map(first).collect())
+        let method = key().of("method of systems", 1).with("scheme", scheme.name()).with("relaxed", relaxed);
+        parts.add("the scheme or its steps", method.with("control", control).with("end", end).with("rows", rows));
+        parts.add("the start", data("states", encode(states)));
+        for (number, body) in system.bodies().iter().enumerate() {
+            let name = system.named(number).to_string();
+            parts.add(&name, body.key(key()));
+            parts.add_loads(&format!(" of {name}"), body.loads());
+        }
+        for joint in system.joints() {
+            parts.add(&format!("the joint \"{}\"", joint.name), data("joint", encode(joint)));
+        }
+        for coupling in system.couplings() {
+            parts.add("a coupling", data("coupling", encode(coupling)));
+        }
+        for element in system.elements() {
+            parts.add("a spring or a bushing", data("element", encode(&element_data(&**element))));
+        }
+        parts
+    }
+
+    fn add(&mut self, name: &str, key: Key) {
+        let hash = key.finish();
+        self.keys.push(std::array::from_fn(|i| hash.as_bytes()[i]));
+        self.names.push(name.to_owned());
+    }
+
+    fn add_loads(&mut self, of: &str, loads: &[SharedLoad]) {
+        for (number, load) in loads.iter().enumerate() {
+            self.add(&format!("load {}{of}", number + 1), load.key(Key::new()));
+        }
     }
 
     /// Refuses another one, and says in what it differs.
     pub(crate) fn check(&self, found: &Self) -> Result<(), CheckpointError> {
-        let Some(part) = self.0.iter().zip(&found.0).position(|(a, b)| a != b) else {
-            return match self.0.len() == found.0.len() {
-                true => Ok(()),
-                false => Err(CheckpointError::Changed { what: "the number of loads".to_owned() }),
-            };
+        let mut parts = self.names.iter().zip(self.keys.iter().zip(&found.keys));
+        let what = match parts.find(|(_, (own, found))| own != found) {
+            Some((name, _)) => name.clone(),
+            None if self.keys.len() == found.keys.len() => return Ok(()),
+            None => format!("the number of {}", self.counted),
         };
-        let what = PARTS.get(part).map_or_else(|| format!("load {}", part - PARTS.len() + 1), ToString::to_string);
         Err(CheckpointError::Changed { what })
     }
 }

@@ -1,85 +1,82 @@
-//! The last step of a body alone, kept for events and times between steps.
+//! The last step, kept for events, rows and times within it.
 
 use crate::body::shapes::PointShapes;
 use crate::error::StepError;
 use crate::motion::Motion;
-use crate::observation::Observation;
-use crate::simulation::events::Inside;
+use crate::motion::facts::MotionFacts;
+use crate::observation::system::SystemObservation;
 
-/// The last step: where it began, and how it was taken.
+/// The last step: the motion at its start, and where times within it are tried.
 #[derive(Debug, Clone)]
 pub(crate) struct LastStep {
-    /// The scheme at the start of the step.
-    before: Box<dyn Motion>,
-    /// Where times inside the step are tried.
-    probe: Box<dyn Motion>,
-    observation: Observation,
-    /// Time at its end, to the last bit that of the scheme there.
-    end: f64,
-    /// True if it was taken in two halves, as under step control.
-    halved: bool,
+    pub(crate) before: Box<dyn Motion>,
+    pub(crate) probe: Box<dyn Motion>,
+    observation: SystemObservation,
+}
+
+/// A step that has been done, inside of which events are looked for.
+pub(crate) struct Inside<'a> {
+    pub step: &'a mut LastStep,
+    pub points: &'a [Vec<PointShapes>],
+    pub retaken: Retaken,
+    /// Time at its end, to the last bit that of the motion there.
+    pub end: f64,
+}
+
+/// How a part of a step is taken once more.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Retaken {
+    /// True in two halves, as steps in pairs are.
+    pub in_halves: bool,
+    /// Exactness of iterations.
+    pub exactness: f64,
 }
 
 impl LastStep {
-    pub(crate) fn new(motion: &dyn Motion, points: usize) -> Self {
-        let observation = Observation::new(motion.flexible(), points);
+    pub(crate) fn new(motion: &dyn Motion, facts: &MotionFacts, points: &[Vec<PointShapes>]) -> Self {
         let (before, probe) = (motion.boxed_clone(), motion.boxed_clone());
-        Self { before, probe, observation, end: motion.time(), halved: false }
+        Self { before, probe, observation: SystemObservation::new(facts, points) }
     }
 
-    /// Keeps the state before a step that ends at a time.
-    pub(crate) fn begin(&mut self, motion: &dyn Motion, end: f64, halved: bool) {
+    /// Keeps the motion before a step, or where no step has led to.
+    pub(crate) fn keep(&mut self, motion: &dyn Motion) {
         self.before.copy_state(motion);
-        self.end = end;
-        self.halved = halved;
     }
 
-    /// Start and end of the step.
-    pub(crate) fn span(&self) -> [f64; 2] {
-        [self.before.time(), self.end]
+    /// Takes the probe to a time in the step as the motion at its end knows the way.
+    pub(crate) fn interpolate(&mut self, after: &dyn Motion, time: f64) -> Result<(), StepError> {
+        self.probe.go_within(&*self.before, after, time)
     }
 
-    /// The motion at a time inside the step: by a shorter step from its start, so that it is as accurate as the scheme.
-    pub(crate) fn at(&mut self, time: f64, points: &[PointShapes]) -> Result<&Observation, StepError> {
-        let Self { before, probe, observation, halved, .. } = self;
+    /// Takes the probe to a time in the step by a shorter step from its start, so that it is as accurate as the scheme.
+    pub(crate) fn go_to(&mut self, time: f64, Retaken { in_halves, exactness }: Retaken) -> Result<(), StepError> {
+        let Self { before, probe, .. } = self;
         probe.copy_state(&**before);
         let start = before.time();
         let h = time - start;
-        if h > 0.0 {
-            if *halved {
-                probe.step(0.5 * h, start + 0.5 * h)?;
-                probe.step(0.5 * h, time)?;
-            } else {
-                probe.step(h, time)?;
-            }
+        if h <= 0.0 {
+            return Ok(());
         }
-        probe.observe(points, observation)?;
+        if in_halves {
+            probe.part_of_step(0.5 * h, start + 0.5 * h, exactness)?;
+            probe.part_of_step(0.5 * h, time, exactness)
+        } else {
+            probe.part_of_step(h, time, exactness)
+        }
+    }
+}
+
+impl Inside<'_> {
+    /// Start and end of the step.
+    pub(crate) fn span(&self) -> [f64; 2] {
+        [self.step.before.time(), self.end]
+    }
+
+    /// The motion at a time inside the step.
+    pub(crate) fn at(&mut self, time: f64) -> Result<&SystemObservation, StepError> {
+        self.step.go_to(time, self.retaken)?;
+        let LastStep { probe, observation, .. } = &mut *self.step;
+        observation.find(&mut **probe, self.points)?;
         Ok(observation)
-    }
-
-    /// The step as events look at it, with the motion of points.
-    pub(crate) fn with_points<'a>(&'a mut self, points: &'a [PointShapes]) -> StepWithPoints<'a> {
-        StepWithPoints { step: self, points }
-    }
-
-    /// The scheme at the time that was looked at last.
-    pub(crate) fn probe(&self) -> &dyn Motion {
-        &*self.probe
-    }
-}
-
-/// A step with the points that are observed.
-pub(crate) struct StepWithPoints<'a> {
-    step: &'a mut LastStep,
-    points: &'a [PointShapes],
-}
-
-impl Inside<Observation> for StepWithPoints<'_> {
-    fn span(&self) -> [f64; 2] {
-        self.step.span()
-    }
-
-    fn at(&mut self, time: f64) -> Result<&Observation, StepError> {
-        self.step.at(time, self.points)
     }
 }

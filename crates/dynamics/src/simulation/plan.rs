@@ -39,7 +39,7 @@ pub(crate) struct Segment {
 
 impl Segment {
     /// Refuses numbers that are not finite.
-    fn check(&self) -> Result<(), CheckpointError> {
+    pub(crate) fn check(&self) -> Result<(), CheckpointError> {
         finite("a segment of the run", [&self.start, &self.end, &self.length])
     }
 }

@@ -1,5 +1,6 @@
 //! Forces between markers: laws from outside, and those that are here.
 
+pub(crate) mod data;
 mod differences;
 pub(crate) mod law;
 pub(crate) mod springs;

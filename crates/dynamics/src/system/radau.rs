@@ -19,7 +19,7 @@ pub(in crate::system) mod past;
 pub(in crate::system) mod rows;
 mod springs;
 pub(in crate::system) mod stage_rates;
-mod stepping;
+pub(in crate::system) mod stepping;
 mod within;
 
 use nalgebra::{Complex, Vector3};

@@ -13,16 +13,20 @@ use crate::system::joint::coordinate::JointCoordinates;
 use crate::system::joint::work::JointWork;
 use crate::system::radau::SystemMotion;
 use crate::system::radau::past::Past;
+use crate::system::radau::stage_rates::StageRates;
 use crate::system::stage::vector;
 
 /// A motion in a checkpoint.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct SavedMotion {
+pub(in crate::system) struct SavedMotion {
     time: f64,
     frames: Vec<Frame>,
     bodies: Vec<State>,
     last: Vec<Vec<f64>>,
     last_length: f64,
+    /// Beside the increments, the way within the last step.
+    bend: [Vec<f64>; 2],
+    stage_rates: [StageRates; STAGES],
     past: Past,
     multipliers: Vec<Vec<f64>>,
     joints: Vec<(JointCoordinates, JointWork)>,
@@ -35,7 +39,7 @@ pub(super) struct SavedMotion {
 
 impl SystemMotion {
     /// The motion of a body at the end of the last step.
-    pub(super) fn moment(&self, body: usize) -> Moment<'_> {
+    pub(in crate::system) fn moment(&self, body: usize) -> Moment<'_> {
         let [.., last] = &self.stages;
         let (first, end) = (self.system.first[body], self.system.first[body + 1]);
         Moment {
@@ -47,18 +51,20 @@ impl SystemMotion {
     }
 
     /// Work and dissipation of a body since the beginning.
-    pub(super) fn work_and_dissipation(&self, body: usize) -> [f64; 2] {
+    pub(in crate::system) fn work_and_dissipation(&self, body: usize) -> [f64; 2] {
         self.system.bodies[body].work_and_dissipation_of(&self.bodies[body])
     }
 
     /// All that a later step depends on.
-    pub(super) fn saved(&self) -> SavedMotion {
+    pub(in crate::system) fn saved(&self) -> SavedMotion {
         SavedMotion {
             time: self.time,
             frames: self.system.bodies.iter().map(|body| body.frame).collect(),
             bodies: self.bodies.clone(),
             last: self.last.concat(),
             last_length: self.last_length,
+            bend: self.bend.clone(),
+            stage_rates: self.stage_rates.clone(),
             past: self.past.clone(),
             multipliers: self.multipliers.to_vec(),
             joints: self.start.joints.iter().copied().zip(self.joint_works.iter().copied()).collect(),
@@ -73,13 +79,15 @@ impl SystemMotion {
     ///
     /// # Errors
     /// [`CheckpointError`] for lists of other lengths, and numbers that are not finite.
-    pub(super) fn take_up(&mut self, saved: SavedMotion) -> Result<(), CheckpointError> {
+    pub(in crate::system) fn take_up(&mut self, saved: SavedMotion) -> Result<(), CheckpointError> {
         let SavedMotion {
             time,
             frames,
             bodies,
             last,
             last_length,
+            bend,
+            stage_rates,
             past,
             multipliers,
             joints,
@@ -108,8 +116,11 @@ impl SystemMotion {
         finite("the frames", frames.iter().flat_map(Frame::numbers))?;
         finite("the motion", last.iter().chain(&multipliers).flatten().chain(&sums).chain([&time, &last_length]))?;
         counts(&[evaluations])?;
+        expect("the bend of the last step", bend.iter().all(|list| list.len() == self.system.coordinates()))?;
+        finite("the bend of the last step", bend.iter().flatten())?;
+        stage_rates.iter().zip(&self.stage_rates).try_for_each(|(saved, own)| saved.check(own))?;
         past.check(&self.past)?;
-        self.past = past;
+        (self.past, self.bend, self.stage_rates) = (past, bend, stage_rates);
         self.system.bodies.iter_mut().zip(frames).for_each(|(body, frame)| body.frame = frame);
         (self.time, self.bodies, self.last_length, self.evaluations) = (time, bodies, last_length, evaluations);
         for (own, saved) in

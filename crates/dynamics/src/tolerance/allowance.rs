@@ -6,7 +6,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::motion::ErrorEstimate;
 use crate::simulation::checkpoint::{CheckpointError, counts, finite};
 
 /// Tries in vain at one place after which the motion is taken to jump there.
@@ -16,6 +15,15 @@ const TRIES_AT_JUMP: u64 = 6;
 const PART_OF_JUMP: f64 = 1.0 / 64.0;
 /// Where a step errs by rounding, a longer one would do as well.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// Estimated errors under step control, relative to the motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorEstimate {
+    /// Error of the step that was tried.
+    pub step: f64,
+    /// Error to be expected of a step twice as long.
+    pub doubled: f64,
+}
 
 /// Jumps met so far, and the place that is being tried.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]

@@ -193,7 +193,7 @@ fn rows_change_no_bit_of_the_motion() {
             let mut seen = simulation.observation().unwrap();
             while simulation.advance(u64::MAX).unwrap() != Reached::End {
                 if look {
-                    simulation.observe(&mut seen).unwrap();
+                    simulation.observe([&mut seen]).unwrap();
                 }
             }
             (simulation.observation().unwrap(), simulation.stats())

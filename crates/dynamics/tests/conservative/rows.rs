@@ -62,7 +62,7 @@ fn rows_leave_every_bit_of_a_run_as_it_is() {
                             signal.hold(100.0 * simulation.time());
                         }
                     }
-                    (simulation.state().unwrap(), simulation.stats(), simulation.exchanged().to_bits())
+                    (simulation.states().unwrap(), simulation.stats(), simulation.energies(0).exchanged.to_bits())
                 };
                 assert_eq!(end(true), end(false), "{:?} {method:?} {control:?}", run.loads);
             }

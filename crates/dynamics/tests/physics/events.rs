@@ -195,10 +195,10 @@ fn a_state_that_is_refused_leaves_the_row_that_is_due() {
     let mut simulation = Run::new(&body, 1.0).start(EXPONENTIAL, CONTROLS[0], Rows::Interval(0.25));
     simulation.set_stop_time(Some(0.25));
     assert_eq!(simulation.advance(u64::MAX).unwrap(), Reached::Stop);
-    let mut state = simulation.state().unwrap();
+    let mut state = simulation.states().unwrap().remove(0);
     state.time = 0.1;
     state.modal_velocity.pop();
-    assert!(matches!(simulation.set_state(&state), Err(SetupError::Length { .. })));
+    assert!(matches!(simulation.set_states(&[state]), Err(SetupError::Length { .. })));
     assert_eq!((simulation.advance(u64::MAX).unwrap(), simulation.time()), (Reached::Row, 0.25));
 }
 

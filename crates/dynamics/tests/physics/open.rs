@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use dynamics::{
     Applied, Crossing, CustomError, Event, History, Initial, Kinematics, LoadFn, LoadFrame, Method, Observation,
     Observer, PointForce, PointShapes, Reached, Rows, SetupError, SharedLoad, Simulation, StepControl, StepEnd,
-    StepError,
+    StepError, SystemObservation,
 };
 use faer::Mat;
 use nalgebra::Vector3;
@@ -43,7 +43,7 @@ fn the_state_is_what_was_given_and_can_be_put_back() {
         let spin = motion.rotation_projector() * omega;
         for method in [EXPONENTIAL, RKMK4] {
             let mut simulation = run.start(method, StepControl::Fixed(1e-3), Rows::Interval(0.5));
-            let state = simulation.state().unwrap();
+            let state = simulation.states().unwrap().remove(0);
             let what = format!("{motion:?} {method:?}");
             // Measured: 4e-15.
             assert!((state.omega_body - spin).norm() < 1e-12, "{what}: {} {spin}", state.omega_body);
@@ -52,9 +52,9 @@ fn the_state_is_what_was_given_and_can_be_put_back() {
             assert!(state.attitude.angle_to(&run.initial.attitude) < 1e-15, "{what}");
 
             simulation.advance(300).unwrap();
-            let there = simulation.state().unwrap();
-            simulation.set_state(&there).unwrap();
-            let again = simulation.state().unwrap();
+            let there = simulation.states().unwrap().remove(0);
+            simulation.set_states(std::slice::from_ref(&there)).unwrap();
+            let again = simulation.states().unwrap().remove(0);
             assert!(largest(&again.modal_velocity, &there.modal_velocity) < 1e-12, "{what}");
             assert!((again.omega_body - there.omega_body).norm() < 1e-12, "{what}");
             assert!((again.velocity_global - there.velocity_global).norm() < 1e-12, "{what}");
@@ -71,8 +71,8 @@ fn a_state_put_back_changes_nothing_of_the_motion() {
         let mut simulation = run.start(EXPONENTIAL, StepControl::Fixed(1e-2), Rows::Interval(2.0));
         if interrupted {
             simulation.advance(70).unwrap();
-            let state = simulation.state().unwrap();
-            simulation.set_state(&state).unwrap();
+            let state = simulation.states().unwrap().remove(0);
+            simulation.set_states(&[state]).unwrap();
         }
         simulation.last().unwrap().unwrap()
     };
@@ -198,8 +198,8 @@ fn no_time_after_an_event_is_inside_the_last_step() {
     simulation.add_event(Event::new("clock", Crossing::Any, |now: &Observation| now.time - 0.503)).unwrap();
     assert_eq!(simulation.advance(u64::MAX).unwrap(), Reached::Event(0));
     let mut out = simulation.observation().unwrap();
-    assert!(simulation.interpolate(0.502, &mut out).is_ok());
-    assert!(matches!(simulation.interpolate(0.508, &mut out), Err(StepError::OutsideLastStep { .. })));
+    assert!(simulation.interpolate(0.502, [&mut out]).is_ok());
+    assert!(matches!(simulation.interpolate(0.508, [&mut out]), Err(StepError::OutsideLastStep { .. })));
 }
 
 /// Conserved: order 4.
@@ -211,7 +211,7 @@ fn a_time_inside_a_step_is_as_accurate_as_the_scheme_and_observers_see_every_ste
         let mut simulation = run.start(EXPONENTIAL, StepControl::Fixed(step), Rows::Interval(1.0));
         let seen = Arc::new(Mutex::new(Vec::new()));
         let times = Arc::clone(&seen);
-        simulation.watch(Arc::new(Mutex::new(move |now: &Observation| times.lock().unwrap().push(now.time))));
+        simulation.watch(Arc::new(Mutex::new(move |now: &SystemObservation| times.lock().unwrap().push(now.time))));
         simulation.keep_last_step();
         let mut out = simulation.observation().unwrap();
         while simulation.time() < 0.437 {
@@ -219,9 +219,9 @@ fn a_time_inside_a_step_is_as_accurate_as_the_scheme_and_observers_see_every_ste
         }
         assert_eq!(seen.lock().unwrap().len() as u64, simulation.stats().accepted);
         let reached = simulation.time();
-        simulation.interpolate(0.437, &mut out).unwrap();
+        simulation.interpolate(0.437, [&mut out]).unwrap();
         assert!(out.time == 0.437 && simulation.time() == reached);
-        assert!(simulation.interpolate(0.1, &mut out.clone()).is_err());
+        assert!(simulation.interpolate(0.1, [&mut out.clone()]).is_err());
         out
     };
     let exact = run.start(EXPONENTIAL, StepControl::Fixed(1e-4), Rows::Interval(0.437)).nth(1).unwrap().unwrap();

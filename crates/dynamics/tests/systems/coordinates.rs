@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use dynamics::{
     ConservativeBody, Coordinate, Coupling, Expression, Friction, History, Joint, JointDrive, JointForce, JointLawFn,
-    Marker, MotionState, Observation, Physics, PointSpring, Reached, Rows, StepControl, StepError, Stops, System,
-    SystemMotion, SystemScheme, SystemSetup, SystemSimulation,
+    Marker, MotionState, Observation, Physics, PointSpring, Reached, Rows, Simulation, StepControl, StepError, Stops,
+    System, SystemMotion, SystemScheme, SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{ReducedBody, RigidMotion};
@@ -214,7 +214,7 @@ fn a_fixed_step_longer_than_a_touch_says_so() {
     let joint = Joint::revolute("door", [ground(0.0), on(0, 0.0)]).with_force(Coordinate::Turn, force);
     let system = System::new(bodies(1), vec![joint]).unwrap();
     let run = |step: f64| {
-        let mut simulation = SystemSimulation::new(SystemSetup {
+        let mut simulation = Simulation::of_system(SystemSetup {
             system: system.clone(),
             states: vec![at(0.0, 0.0, 3.0)],
             relaxed: false,

@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use dynamics::{
     Applied, ConservativeBody, Coordinate, Crossing, Event, Friction, History, Joint, JointForce, Kinematics, LoadFn,
-    Marker, MotionState, Observation, Physics, PointForce, PointShapes, Reached, Rows, Signal, Stats, StepControl,
-    StepError, System, SystemObservation, SystemScheme, SystemSetup, SystemSimulation,
+    Marker, MotionState, Observation, Physics, PointForce, PointShapes, Reached, Rows, Signal, Simulation, Stats,
+    StepControl, StepError, System, SystemObservation, SystemScheme, SystemSetup,
 };
 use fem_tet10::Material;
 use nalgebra::{Matrix3, Vector3};
@@ -18,7 +18,7 @@ use crate::flexible::Jointed;
 const END: f64 = 0.02;
 
 /// Two halves of a bar (mm, t, s) that tumble freely, with a hinge and a spring between them.
-fn pair(scheme: SystemScheme, tolerance: f64, rows: Rows) -> SystemSimulation {
+fn pair(scheme: SystemScheme, tolerance: f64, rows: Rows) -> Simulation {
     static HALVES: OnceLock<[Jointed; 2]> = OnceLock::new();
     let aluminium = Material { young_modulus: 70_000.0, poisson_ratio: 0.33, density: 2.7e-9 };
     let [left, right] =
@@ -33,7 +33,7 @@ fn pair(scheme: SystemScheme, tolerance: f64, rows: Rows) -> SystemSimulation {
         omega_body: omega + Vector3::z() * spin,
         ..body.at_rest(Vector3::new(200.0 + x, 0.0, 0.0), Attitude::identity())
     };
-    SystemSimulation::new(SystemSetup {
+    Simulation::of_system(SystemSetup {
         system,
         states: vec![start(-100.0, 60.0, left), start(100.0, -60.0, right)],
         relaxed: true,
@@ -47,8 +47,8 @@ fn pair(scheme: SystemScheme, tolerance: f64, rows: Rows) -> SystemSimulation {
 }
 
 /// The rows of a run, and its cost; with a stop at each row, steps end there.
-fn rows(mut simulation: SystemSimulation, stops: bool) -> (Vec<SystemObservation>, Stats) {
-    let mut rows = vec![simulation.observation().unwrap()];
+fn rows(mut simulation: Simulation, stops: bool) -> (Vec<SystemObservation>, Stats) {
+    let mut rows = vec![simulation.system_observation().unwrap()];
     loop {
         if stops {
             let next = rows.len() as f64 * INTERVAL;
@@ -57,9 +57,9 @@ fn rows(mut simulation: SystemSimulation, stops: bool) -> (Vec<SystemObservation
         match simulation.advance_watched(u64::MAX, |_, _| ()).unwrap() {
             Reached::End => return (rows, simulation.stats()),
             Reached::Row => {
-                let open = simulation.motion().clone().residuals().unwrap().map(largest);
+                let open = simulation.system_motion().unwrap().clone().residuals().unwrap().map(largest);
                 assert!(open[0] < 1e-11 && open[1] < 1e-8, "{open:?}");
-                rows.push(simulation.observation().unwrap());
+                rows.push(simulation.system_observation().unwrap());
             }
             _ => {}
         }
@@ -143,11 +143,11 @@ fn rows_within_steps_are_those_of_steps_that_end_there() {
                 if simulation.advance_watched(u64::MAX, |_, _| ()).unwrap() == Reached::End {
                     break;
                 }
-                let now = simulation.observation().unwrap();
+                let now = simulation.system_observation().unwrap();
                 let mut alone = before;
                 alone.set_stop_time(Some(now.time));
                 while alone.advance_watched(1, |_, _| ()).unwrap() != Reached::Stop {}
-                let apart = distance(&now, &alone.observation().unwrap());
+                let apart = distance(&now, &alone.system_observation().unwrap());
                 worst = [0, 1].map(|k| worst[k].max(apart[k]));
             }
             println!("{} {tolerance:e}: {worst:?}", scheme.name());
@@ -175,7 +175,7 @@ fn a_run_goes_on_from_a_row_within_a_step_bit_for_bit() {
 }
 
 /// A rod of 1 m and 1 kg on a hinge at its end, with a force along the turn of the hinge.
-fn rod(omega: f64, force: JointForce, gravity: f64, rows: Rows, end: f64) -> SystemSimulation {
+fn rod(omega: f64, force: JointForce, gravity: f64, rows: Rows, end: f64) -> Simulation {
     let inertia = Matrix3::from_diagonal(&Vector3::new(1e-3, 1.0 / 12.0, 1.0 / 12.0));
     let rod = ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
     let center = PointShapes::new(&rod, &BodyPoint::rigid(Vector3::zeros()));
@@ -196,7 +196,7 @@ fn rod(omega: f64, force: JointForce, gravity: f64, rows: Rows, end: f64) -> Sys
         modal_displacement: Vec::new(),
         modal_velocity: Vec::new(),
     };
-    SystemSimulation::new(SystemSetup {
+    Simulation::of_system(SystemSetup {
         system,
         states: vec![state],
         relaxed: false,
@@ -213,7 +213,7 @@ fn rod(omega: f64, force: JointForce, gravity: f64, rows: Rows, end: f64) -> Sys
 const INERTIA: f64 = 1.0 / 3.0;
 
 /// The rows and events from here to the end, and their times.
-fn rest(simulation: &mut SystemSimulation) -> Vec<(Reached, f64)> {
+fn rest(simulation: &mut Simulation) -> Vec<(Reached, f64)> {
     let mut reached = Vec::new();
     while reached.last().is_none_or(|(what, _)| *what != Reached::End) {
         assert!(reached.len() < 1000, "{reached:?}");
@@ -268,7 +268,7 @@ fn a_panel_on_a_spring_reaches_an_angle() {
     let mut seen = Vec::new();
     loop {
         match simulation.advance_watched(u64::MAX, |_, _| ()).unwrap() {
-            Reached::Event(number) => seen.push((number, simulation.observation().unwrap())),
+            Reached::Event(number) => seen.push((number, simulation.system_observation().unwrap())),
             Reached::End => break,
             _ => {}
         }
@@ -344,7 +344,7 @@ fn what_changes_at_a_row_within_a_step_holds_from_there() {
         modal_displacement: Vec::new(),
         modal_velocity: Vec::new(),
     };
-    let mut simulation = SystemSimulation::new(SystemSetup {
+    let mut simulation = Simulation::of_system(SystemSetup {
         system,
         states: vec![state],
         relaxed: false,
@@ -364,19 +364,19 @@ fn what_changes_at_a_row_within_a_step_holds_from_there() {
     assert_eq!(simulation.time(), from);
     simulation.set_stop_time(Some(6.03));
     while simulation.advance_watched(u64::MAX, |_, _| ()).unwrap() != Reached::Stop {}
-    let found = simulation.observation().unwrap();
+    let found = simulation.system_observation().unwrap();
     assert_eq!(found.time, 6.03);
     let turn = 6.03 + 0.5 * 0.6 * (6.03 - from).powi(2);
     assert!((found.joints[0].coordinates.turn - turn).abs() < 1e-9, "{} {turn}", found.joints[0].coordinates.turn);
     // Back to where it was.
-    let mut state = simulation.motion().state(0).unwrap();
+    let mut state = simulation.system_motion().unwrap().state(0).unwrap();
     (state.time, state.omega_body) = (5.0, Vector3::z() * 2.0);
     simulation.set_states(&[state]).unwrap();
     signal.hold(0.0);
     simulation.loads_have_changed();
     assert_eq!(simulation.advance_watched(u64::MAX, |_, _| ()).unwrap(), Reached::Row);
     assert!((simulation.time() - 5.1).abs() < 1e-12);
-    let now = simulation.observation().unwrap().joints[0].coordinates;
+    let now = simulation.system_observation().unwrap().joints[0].coordinates;
     assert!((now.turn_rate - 2.0).abs() < 1e-10 && (now.turn - turn - 0.2).abs() < 1e-9, "{now:?} {turn}");
 }
 

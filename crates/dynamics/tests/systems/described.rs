@@ -84,11 +84,11 @@ pub fn run() -> RunDescription {
 }
 
 fn rows(run: &RunDescription) -> Vec<SystemObservation> {
-    let dynamics::IslandMotion::System(mut simulation) = run.begin().unwrap() else { panic!("bodies in joints") };
-    let mut rows = vec![simulation.observation().unwrap()];
+    let mut simulation = run.begin().unwrap();
+    let mut rows = vec![simulation.system_observation().unwrap()];
     while !simulation.is_over() {
         if simulation.advance(1).unwrap() == dynamics::Reached::Row {
-            rows.push(simulation.observation().unwrap());
+            rows.push(simulation.system_observation().unwrap());
         }
     }
     rows

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use dynamics::{
     CommonSpin, ConservativeBody, Coupling, DescriptionError, EquationValue, History, Joint, JointEquationFn, Marker,
-    MotionState, Physics, PointForce, PointShapes, RelativePlace, Rows, SetupError, StepControl, System, SystemMotion,
-    SystemScheme, SystemSetup, SystemSimulation,
+    MotionState, Physics, PointForce, PointShapes, RelativePlace, Rows, SetupError, Simulation, StepControl, System,
+    SystemMotion, SystemScheme, SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -92,7 +92,7 @@ fn point(mass: f64, gravity: f64) -> ConservativeBody {
 }
 
 /// A run of two units of time.
-fn begin(system: System, states: Vec<MotionState>) -> Result<SystemSimulation, SetupError> {
+fn begin(system: System, states: Vec<MotionState>) -> Result<Simulation, SetupError> {
     run(system, states, 1e-8, 2.0)
 }
 
@@ -107,7 +107,7 @@ fn a_point_mass_on_a_rod_circles_as_a_conical_pendulum() {
         let system = System::new(vec![point(MASS, GRAVITY)], vec![rod]).unwrap();
         let start = state([radius, 0.0, height], [0.0, radius * omega, 0.0], [0.0; 3]);
         let simulation = begin(system.clone(), vec![start.clone()]).unwrap();
-        assert_eq!(simulation.rigid_dofs(), 2);
+        assert_eq!(simulation.system().unwrap().rigid_dofs(), 2);
         let mut motion = SystemMotion::new(system, &[start]).unwrap().with_scheme(scheme);
         motion.advance(2.0, 1e-9, &mut 1e-3).unwrap();
         let found = motion.state(0).unwrap();
@@ -324,8 +324,8 @@ fn a_hinge_of_equations_between_moving_bodies_has_the_frequencies_of_a_hinge() {
     assert!(own.iter().zip(known).all(|(own, known)| (own / known - 1.0).abs() < 1e-9), "{frequencies:?}");
 }
 
-fn simulated(joint: Joint, start: MotionState) -> Result<SystemSimulation, SetupError> {
-    SystemSimulation::new(SystemSetup {
+fn simulated(joint: Joint, start: MotionState) -> Result<Simulation, SetupError> {
+    Simulation::of_system(SystemSetup {
         system: System::new(vec![body(GRAVITY)], vec![joint]).unwrap(),
         states: vec![start],
         relaxed: false,
@@ -393,7 +393,7 @@ fn an_equation_that_is_no_number_ends_the_run() {
         }
     };
     println!("{error}");
-    assert!((0.3..0.41).contains(&simulation.motion().time()), "{error}");
+    assert!((0.3..0.41).contains(&simulation.system_motion().unwrap().time()), "{error}");
     let mut run = described::run();
     run.joints[1] = Joint { name: "second".into(), ..joint };
     let refused = run.to_bytes().unwrap_err();

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use dynamics::{
     ConservativeBody, ForceElement, History, Initial, Joint, LoadFn, Marker, MarkerMotion, MarkerWrench, MotionState,
     Observation, Physics, PointForce, PointShapes, Reached, Rows, SharedLoad, Simulation, StepControl, System,
-    SystemMotion, SystemScheme, SystemSetup, SystemSimulation,
+    SystemMotion, SystemScheme, SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3, Vector6};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -107,9 +107,9 @@ fn hinges_on_ground_far_away_hold_a_door_as_they_do_at_the_origin() {
             ..at_rest(away + axis * 0.4 + arm)
         };
         let mut simulation = simulation(system, vec![state], 1e-7, 1.0);
-        let assembled = simulation.assembled()[0];
+        let assembled = simulation.system().unwrap().assembled()[0];
         assert!(assembled.velocity < 1e-8 && assembled.angular_velocity < 1e-8, "{assembled:?}");
-        assert_eq!(simulation.rigid_dofs(), 1);
+        assert_eq!(simulation.system().unwrap().rigid_dofs(), 1);
         while simulation.advance(1000).unwrap() != Reached::End {}
         let turn = simulation.observe_joint(0).coordinates.turn;
         println!("{away:?}: {turn}, {:?}", simulation.stats());
@@ -119,9 +119,9 @@ fn hinges_on_ground_far_away_hold_a_door_as_they_do_at_the_origin() {
     assert_eq!(steps[0], steps[1]);
 }
 
-fn simulation(system: System, states: Vec<MotionState>, tolerance: f64, end: f64) -> SystemSimulation {
+fn simulation(system: System, states: Vec<MotionState>, tolerance: f64, end: f64) -> Simulation {
     let points = vec![Vec::new(); states.len()];
-    SystemSimulation::new(SystemSetup {
+    Simulation::of_system(SystemSetup {
         system,
         states,
         relaxed: false,
@@ -135,7 +135,7 @@ fn simulation(system: System, states: Vec<MotionState>, tolerance: f64, end: f64
 }
 
 /// A pair of bars on a hinge that a uniform force takes away.
-fn pushed(acceleration: f64) -> SystemSimulation {
+fn pushed(acceleration: f64) -> Simulation {
     let inertia = Matrix3::from_diagonal(&Vector3::new(1e-3, 1.0 / 12.0, 1.0 / 12.0));
     let reduced = ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap();
     let center = PointShapes::new(&reduced, &BodyPoint::rigid(Vector3::zeros()));
@@ -153,11 +153,11 @@ fn pushed(acceleration: f64) -> SystemSimulation {
     simulation(system, vec![state(-0.5, -0.5, 1.0), state(0.5, -1.0, -2.0)], 1e-6, 7.0)
 }
 
-fn rows(simulation: &mut SystemSimulation) -> Vec<Vec<Observation>> {
+fn rows(simulation: &mut Simulation) -> Vec<Vec<Observation>> {
     let mut rows = Vec::new();
     loop {
         match simulation.advance(1000).unwrap() {
-            Reached::Row => rows.push(simulation.observation().unwrap().bodies),
+            Reached::Row => rows.push(simulation.system_observation().unwrap().bodies),
             Reached::End => return rows,
             _ => {}
         }

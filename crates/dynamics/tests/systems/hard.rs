@@ -5,8 +5,7 @@ use std::sync::Arc;
 
 use dynamics::{
     ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MotionState, Physics, PointForce,
-    PointShapes, Rows, StepControl, StepError, Stops, System, SystemMotion, SystemScheme, SystemSetup,
-    SystemSimulation,
+    PointShapes, Rows, Simulation, StepControl, StepError, Stops, System, SystemMotion, SystemScheme, SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -275,7 +274,7 @@ fn an_arm_that_is_driven_beyond_its_reach_names_the_joints_that_lock() {
             rows: Rows::EverySteps(1),
             points: vec![Vec::new(); 4],
         };
-        let mut simulation = SystemSimulation::new(setup).unwrap();
+        let mut simulation = Simulation::of_system(setup).unwrap();
         let failed = loop {
             match simulation.advance(100) {
                 Ok(reached) => assert_ne!(reached, dynamics::Reached::End),

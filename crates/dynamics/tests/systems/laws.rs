@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use dynamics::{
     Bushing, ConservativeBody, Coordinate, ForceElement, Friction, History, Joint, JointForce, JointLawFn, Marker,
     MarkerForce, MarkerLaw, MarkerMotion, MarkerWrench, MotionState, Observation, Physics, PointForce, PointShapes,
-    Reached, RelativeMotion, Rows, SharedLoad, StepControl, Stops, System, SystemMotion, SystemScheme, SystemSetup,
-    SystemSimulation,
+    Reached, RelativeMotion, Rows, SharedLoad, Simulation, StepControl, Stops, System, SystemMotion, SystemScheme,
+    SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -262,7 +262,7 @@ fn stiff_arms_come_to_rest_and_live() {
             hinge("third", [on(1, 0.4), on(2, -0.4)]),
         ];
         let bodies = vec![body(vec![]), body(vec![]), body(vec![Arc::clone(&load)])];
-        let mut simulation = SystemSimulation::new(SystemSetup {
+        let mut simulation = Simulation::of_system(SystemSetup {
             system: System::new(bodies, joints).unwrap(),
             states: [0.4, 1.2, 2.0].map(|x| at_rest(Vector3::x() * x)).to_vec(),
             relaxed: false,
@@ -281,7 +281,7 @@ fn stiff_arms_come_to_rest_and_live() {
             open = row.iter().map(Observation::energy_balance).sum::<f64>().abs().max(open);
         }
         // Each joint bends by its moment over its stiffness.
-        let turn = simulation.motion().joint_coordinates(0).turn;
+        let turn = simulation.system_motion().unwrap().joint_coordinates(0).turn;
         let work = 1000.0 * 1000.0 * (2.4 * 2.4 + 1.6 * 1.6 + 0.8 * 0.8) / 1e8;
         println!("{tolerance:e}: open by {:.1e} in {} steps", open / work, simulation.stats().accepted);
         assert!(rows == 20 && (turn / (-2400.0 / 1e8) - 1.0).abs() < 1e-4, "{rows} {turn}");

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use dynamics::{
     ConservativeBody, Initial, LoadFn, Marker, MotionState, Observation, Physics, PointShapes, PointSpring, Rows,
     SharedLoad, Simulation, StatedError, StepControl, System, SystemMotion, SystemScheme, SystemSetup,
-    SystemSimulation,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -34,12 +33,12 @@ fn end_of(
         rows: Rows::Interval(end),
         points,
     };
-    let mut simulation = SystemSimulation::new(setup).unwrap();
+    let mut simulation = Simulation::of_system(setup).unwrap();
     while !simulation.is_over() {
         simulation.advance(1000).unwrap();
     }
     let stats = simulation.stats();
-    (simulation.observation().unwrap().bodies, stats.error.unwrap(), stats.evaluations)
+    (simulation.system_observation().unwrap().bodies, stats.error.unwrap(), stats.evaluations)
 }
 
 /// Independent reference: the same run at 1e-10. A body tumbles near its unstable axis for a minute, alone and tied by a spring that does

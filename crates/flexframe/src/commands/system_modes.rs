@@ -54,7 +54,7 @@ pub fn system_modes(
 ) -> Result<Vec<SystemModes>, SystemModesError> {
     let of_system = |motion: &TiedMotion| {
         let (mut modes, steady) = of_motion(system, motion)?;
-        let found = steady.participation(motion.simulation.motion(), about.map(Vector3::from));
+        let found = steady.participation(motion.run.motion(), about.map(Vector3::from));
         let found = found.map_err(|source| failed(system, motion, source))?;
         modes.report.carried =
             found.map(|found| CarriedReport::of_system(found, about.is_some(), &modes.report.frequency_unit));
@@ -102,7 +102,7 @@ pub fn system_advice(
 
 fn of_motion(system: &System, motion: &TiedMotion) -> Result<(SystemModes, SteadyState), SystemModesError> {
     let failed = |source| failed(system, motion, source);
-    let of_motion = motion.simulation.motion();
+    let of_motion = motion.run.motion();
     let rotors = Rotors::of(of_motion, |_| false);
     let steady = rotors.steady_state(of_motion, &CommonSpin::REST).map_err(failed)?;
     let vibrations = steady.linear.vibrations().map_err(failed)?;

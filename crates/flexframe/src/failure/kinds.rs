@@ -616,8 +616,7 @@ impl Fault for SpectraError {
 impl Fault for SystemModesError {
     fn known(&self) -> Known {
         match self {
-            Self::Build(_) => Known::default(),
-            Self::Setup { scene, .. } => in_file(scene),
+            Self::Build(_) | Self::Begin(_) => Known::default(),
             Self::Run { scene, .. } | Self::Steady { scene, .. } => Kind::Run.of(scene),
         }
     }

@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use dynamics::{
-    Coordinate, DescribedBody, ForceElement, Island, IslandMotion, JointEquation, JointLaw, MarkerForce, MarkerLaw,
-    Method, Physics, PointShapes, RowTimes, Rows, Run, RunDescription, Setup, SetupError, SharedLoad, Simulation,
-    StepControl,
+    Coordinate, DescribedBody, ForceElement, Island, JointEquation, JointLaw, MarkerForce, MarkerLaw, Method, Physics,
+    PointShapes, RowTimes, Rows, Run, RunDescription, Setup, SetupError, SharedLoad, Simulation, StepControl,
 };
 use model::{BuildError, Model, StartError, Tied, physics_in_system, tie_models};
 use scene::{End, Scene, System};
@@ -72,6 +71,8 @@ pub struct Beginning {
     pub equations: Vec<OwnEquation>,
     /// Laws from outside between markers.
     pub marker_laws: Vec<MarkerForces>,
+    /// True if tied bodies begin deformed as their forces ask.
+    pub relaxed: bool,
     /// True if all bodies are stepped as one system, also those that nothing ties; laws between markers want that, too.
     pub together: bool,
 }
@@ -94,6 +95,7 @@ impl Beginning {
             laws: Vec::new(),
             equations: Vec::new(),
             marker_laws: Vec::new(),
+            relaxed: system.relaxed,
             together: false,
         })
     }
@@ -114,22 +116,34 @@ pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Resul
     for (number, (scene, model)) in system.bodies.iter().zip(models).enumerate() {
         if tied.iter().all(|tied| !tied.bodies.contains(&number)) {
             let alone = alone(scene, model, &beginning.bodies[number], beginning);
-            let simulation = alone.map_err(|source| BeginError::start(number, scene, source))?;
-            let motion = IslandMotion::Body(Box::new(simulation));
+            let motion = alone.map_err(|source| BeginError::start(number, scene, source))?;
             islands.push(Island { motion, bodies: vec![number], joints: Vec::new(), elements: Vec::new() });
         }
     }
     for tied in tied {
-        let (bodies, joints, elements) = (tied.bodies.clone(), tied.joints.clone(), elements_in_rows(system, &tied));
-        let motion = run_of_system(system, models, tied, beginning).begin().map_err(StartError::from);
-        let motion = motion.map_err(|source| {
-            // At the body that is meant, where it is one.
-            let number = source.body_of_system().map_or(bodies[0], |number| bodies[number]);
-            BeginError::start(number, &system.bodies[number], source)
-        })?;
-        islands.push(Island { motion, bodies, joints, elements });
+        islands.push(begin_island(system, models, tied, beginning)?);
     }
     Ok(Run::new(islands, beginning.row_times()))
+}
+
+/// The islands of the tied bodies alone.
+///
+/// # Errors
+/// As [`begin`].
+pub(crate) fn begin_tied(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Vec<Island>, BeginError> {
+    let tied = tied(system, models, beginning)?;
+    tied.into_iter().map(|tied| begin_island(system, models, tied, beginning)).collect()
+}
+
+fn begin_island(system: &System, models: &[&Model], tied: Tied, beginning: &Beginning) -> Result<Island, BeginError> {
+    let (bodies, joints, elements) = (tied.bodies.clone(), tied.joints.clone(), elements_in_rows(system, &tied));
+    let motion = run_of_system(system, models, tied, beginning).begin().map_err(StartError::from);
+    let motion = motion.map_err(|source| {
+        // At the body that is meant, where it is one.
+        let number = source.body_of_system().map_or(bodies[0], |number| bodies[number]);
+        BeginError::start(number, &system.bodies[number], source)
+    })?;
+    Ok(Island { motion, bodies, joints, elements })
 }
 
 /// Numbers in rows of the springs and bushings of a system, in its order; laws from outside come after them.
@@ -277,7 +291,7 @@ pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: 
         couplings: tied.system.couplings().to_vec(),
         elements: tied.system.elements().to_vec(),
         states: tied.states,
-        relaxed: system.relaxed,
+        relaxed: of.relaxed,
         method: Method::of_joints(of.method.joints.unwrap_or_default()),
         control: of.control,
         end: of.end,

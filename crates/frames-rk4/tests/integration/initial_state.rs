@@ -81,7 +81,7 @@ fn states_of_the_paper_s_formulation_are_what_was_given_in_any_attitude() {
                 points: &[],
             })
             .unwrap();
-            let state = simulation.state().unwrap();
+            let state = simulation.states().unwrap().remove(0);
             assert!((state.omega_body - initial.omega).norm() < 1e-10, "{}", state.omega_body);
             assert!((state.velocity_global - initial.velocity).norm() < 1e-9, "{}", state.velocity_global);
             let off = state.modal_velocity.iter().map(|v| (v - 10.0).abs()).fold(0.0, f64::max);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dynamics::{Observation, SystemSetup, SystemSimulation};
+use dynamics::{Observation, Simulation, SystemSetup};
 use model::{Model, tie};
 use scene::System;
 
@@ -100,7 +100,7 @@ fn run(text: &str) -> Result<usize, (usize, String)> {
             end: time.end,
             rows: system.bodies[0].output.rows,
         };
-        let mut simulation = SystemSimulation::new(setup).map_err(|error| (3, error.to_string()))?;
+        let mut simulation = Simulation::of_system(setup).map_err(|error| (3, error.to_string()))?;
         let mut now: Vec<Observation> = (0..tied.bodies.len()).map(|body| simulation.room(body)).collect();
         for _ in 0..3 {
             simulation.observe(&mut now).map_err(|error| (4, error.to_string()))?;

@@ -3,21 +3,21 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
 
-use dynamics::{Reached, Rows, SystemSetup, SystemSimulation};
+use dynamics::{Reached, Rows, Simulation, SystemSetup};
 use model::{Model, tie};
 use scene::System;
 
 use crate::build;
 
 /// The mechanism of an example at its start.
-fn mechanism(name: &str, rows: f64) -> SystemSimulation {
+fn mechanism(name: &str, rows: f64) -> Simulation {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/mechanisms").join(name);
     let system = System::read(path).unwrap_or_else(|error| panic!("{error}"));
     let models: Vec<Model> = system.bodies.iter().map(build).collect();
     let tied = tie(&system, &models).unwrap_or_else(|error| panic!("{error}")).remove(0);
     assert_eq!(tied.bodies.len(), system.bodies.len());
     let time = system.bodies[0].time;
-    let simulation = SystemSimulation::new(SystemSetup {
+    let simulation = Simulation::of_system(SystemSetup {
         points: vec![Vec::new(); tied.bodies.len()],
         system: tied.system,
         states: tied.states,
@@ -28,14 +28,14 @@ fn mechanism(name: &str, rows: f64) -> SystemSimulation {
         rows: Rows::Interval(rows),
     })
     .unwrap_or_else(|error| panic!("{error}"));
-    for change in simulation.assembled() {
+    for change in simulation.system().unwrap().assembled() {
         assert!(system.relaxed || change.moved < 1e-9 && change.turned < 1e-9, "its bodies are placed: {change:?}");
     }
     simulation
 }
 
 /// Goes to the next row; false at the end.
-fn to_row(simulation: &mut SystemSimulation) -> bool {
+fn to_row(simulation: &mut Simulation) -> bool {
     loop {
         match simulation.advance_watched(1000, |_, _| ()).unwrap_or_else(|error| panic!("{error}")) {
             Reached::End => return false,
@@ -45,8 +45,8 @@ fn to_row(simulation: &mut SystemSimulation) -> bool {
     }
 }
 
-fn turn(simulation: &SystemSimulation, joint: usize) -> f64 {
-    simulation.motion().joint_coordinates(joint).turn
+fn turn(simulation: &Simulation, joint: usize) -> f64 {
+    simulation.system_motion().unwrap().joint_coordinates(joint).turn
 }
 
 /// Conserved: the energy of a rigid bar on the hinge.
@@ -56,7 +56,7 @@ fn the_bar_on_a_hinge_falls_with_the_energy_of_its_weight() {
     let over_mass = 200.0_f64.powi(2) / 3.0 + 100.0 / 12.0;
     let mut rows = 0;
     while to_row(&mut simulation) {
-        let hinge = simulation.motion().joint_coordinates(0);
+        let hinge = simulation.system_motion().unwrap().joint_coordinates(0);
         let (kinetic, fallen) = (0.5 * over_mass * hinge.turn_rate.powi(2), 9810.0 * 100.0 * hinge.turn.sin());
         assert!((kinetic - fallen).abs() < 2e-3 * 9810.0 * 100.0, "{}: {kinetic} {fallen}", simulation.time());
         rows += 1;
@@ -101,7 +101,7 @@ fn the_double_pendulum_falls_as_two_rods_do() {
 fn the_slider_crank_of_a_scene_ends_where_others_have_it() {
     let mut simulation = mechanism("slider_crank.toml", 0.1);
     while to_row(&mut simulation) {}
-    let motion = simulation.motion();
+    let motion = simulation.system_motion().unwrap();
     let slider = motion.state(2).unwrap().origin_global;
     let crank = motion.state(0).unwrap();
     let pin = crank.origin_global * 2.0;
@@ -135,7 +135,11 @@ fn the_four_bar_linkage_turns_as_its_loop_says() {
         assert!((found - expected).abs() < 1e-4, "{time}: {found} {expected}");
     }
     assert!(rows >= 9);
-    assert_eq!(simulation.motion().dependent_rows(), 0, "the coupler's shapes make the rows independent");
+    assert_eq!(
+        simulation.system_motion().unwrap().dependent_rows(),
+        0,
+        "the coupler's shapes make the rows independent"
+    );
 }
 
 /// Conserved: the momenta of a satellite without forces. Closed form: the angles at rest.
@@ -146,7 +150,7 @@ fn the_panels_deploy_to_their_stops_and_momenta_stay_zero() {
     let mut largest = [0.0_f64; 2];
     while to_row(&mut simulation) {
         most = most.max(turn(&simulation, 0)).max(turn(&simulation, 1));
-        let [linear, angular] = simulation.motion().momenta();
+        let [linear, angular] = simulation.system_motion().unwrap().momenta();
         largest = [largest[0].max(linear.norm()), largest[1].max(angular.norm())];
     }
     println!("{most} {largest:?} {} {}", turn(&simulation, 0), turn(&simulation, 1));

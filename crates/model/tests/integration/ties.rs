@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dynamics::{Observation, Reached, Rows, StepControl, SystemSetup, SystemSimulation};
+use dynamics::{Observation, Reached, Rows, Simulation, StepControl, SystemSetup};
 use faer::Mat;
 use model::{BodyMarker, Model, StartError, Tied, UnknownTurns, tie};
 use nalgebra::Vector3;
@@ -99,8 +99,8 @@ fn two_islands() -> String {
     )
 }
 
-fn start(tied: &Tied, control: StepControl, end: f64) -> SystemSimulation {
-    SystemSimulation::new(SystemSetup {
+fn start(tied: &Tied, control: StepControl, end: f64) -> Simulation {
+    Simulation::of_system(SystemSetup {
         system: tied.system.clone(),
         states: tied.states.clone(),
         relaxed: false,
@@ -124,7 +124,8 @@ fn bodies_that_joints_connect_are_a_system_and_those_beside_them_another() {
     assert_eq!((names(&tied[0]), names(&tied[1])), (vec!["joint1".into(), "joint3".into()], vec!["hook".into()]));
     // The arm turns about its root, and the joints find the bodies where they belong, with axes that fit.
     for tied in &tied {
-        for (body, change) in tied.bodies.iter().zip(start(tied, StepControl::Tolerance(1e-4), 1e-3).assembled()) {
+        let begun = start(tied, StepControl::Tolerance(1e-4), 1e-3);
+        for (body, change) in tied.bodies.iter().zip(begun.system().unwrap().assembled()) {
             assert!(change.moved < 1e-9 && change.turned < 1e-12, "{body}: {change:?}");
             assert!(change.velocity < 1e-8 && change.angular_velocity < 1e-10, "{body}: {change:?}");
         }
@@ -151,7 +152,7 @@ fn a_ball_to_the_ground_moves_a_bar_as_a_pin_does() {
     let (system, models) = system(&text);
     let tied = tie(&system, &models).unwrap().remove(0);
     let points = vec![models[0].points.iter().map(|(_, point)| point.clone()).collect()];
-    let mut simulation = SystemSimulation::new(SystemSetup {
+    let mut simulation = Simulation::of_system(SystemSetup {
         system: tied.system,
         states: tied.states,
         relaxed: false,
@@ -187,7 +188,7 @@ fn the_force_of_a_joint_stiffens_its_body() {
         let tied = tie(&system, &models).unwrap().remove(0);
         let mut simulation = start(&tied, StepControl::Tolerance(1e-6), 0.1);
         while simulation.advance_watched(1000, |_, _| ()).unwrap() != Reached::End {}
-        let state = simulation.motion().state(0).unwrap();
+        let state = simulation.system_motion().unwrap().state(0).unwrap();
         let (_, tip) = &models[0].points[0];
         let arm = tip.position_body() + tip.deformation(&state.modal_displacement);
         (state.origin_global + state.attitude.to_global(&arm)).y
@@ -401,7 +402,7 @@ fn stress_at_rest(text: &str) -> Vec<f64> {
     let tied = tie(&system, &models).unwrap().remove(0);
     let mut simulation = start(&tied, StepControl::Tolerance(1e-6), 0.1);
     while simulation.advance_watched(1000, |_, _| ()).unwrap() != Reached::End {}
-    let q = simulation.motion().state(0).unwrap().modal_displacement;
+    let q = simulation.system_motion().unwrap().state(0).unwrap().modal_displacement;
     models[0].stress.as_ref().unwrap().at_points(&q).map(|stress| stress[0]).collect()
 }
 

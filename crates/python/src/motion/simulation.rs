@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use flexframe::columns::part;
 use flexframe::dynamics::{
-    self, Crossing, EffectMap, Event, Island, IslandMotion, JointObservation, Observation, StepError, SystemObservation,
+    self, Crossing, EffectMap, Event, Island, JointObservation, Observation, StepError, SystemObservation,
 };
 use flexframe::failure::{Details, Kind};
 use flexframe::model::{Model, StartError};
@@ -150,8 +150,8 @@ impl Simulation {
             let steps = left.min(STEPS_PER_LOOK);
             let motion = &mut running.island.motion;
             let reached = detached(py, || match &mut watches {
-                Some(watches) => motion.advance(steps, |body, moment| watches[body].look(moment)),
-                None => motion.advance(steps, |_, _| ()),
+                Some(watches) => motion.advance_watched(steps, |body, moment| watches[body].look(moment)),
+                None => motion.advance(steps),
             })?;
             if reached.is_err() {
                 // The next step is to start where the motion is.
@@ -186,7 +186,7 @@ impl Simulation {
     fn reached(&self, running: &Running, reached: dynamics::Reached) -> Reached {
         let motion = &running.island.motion;
         let (kind, event) = match reached {
-            dynamics::Reached::Event(number) => ("event", motion.event_name(number).map(str::to_owned)),
+            dynamics::Reached::Event(number) => ("event", motion.event(number).map(|event| event.name().to_owned())),
             dynamics::Reached::Stop => ("stop", None),
             dynamics::Reached::Row => ("row", None),
             dynamics::Reached::End => ("end", None),
@@ -241,7 +241,8 @@ impl Simulation {
             match reached? {
                 dynamics::Reached::Row => record(running, watches)?,
                 dynamics::Reached::Event(number) => {
-                    let name = running.island.motion.event_name(number).unwrap_or_default().to_owned();
+                    let name =
+                        running.island.motion.event(number).map_or_else(String::new, |event| event.name().to_owned());
                     events.push((name, running.island.motion.time()));
                 }
                 dynamics::Reached::End => break,
@@ -375,8 +376,8 @@ impl Simulation {
         let Some(mut island) = begun.into_islands().into_iter().next() else {
             return Err(exception(py, &RunError::NoBody));
         };
-        if let IslandMotion::Body(simulation) = &mut island.motion {
-            simulation.watch(Arc::new(Mutex::new(EndAtFault(faults.clone()))));
+        if island.motion.system().is_none() {
+            island.motion.watch(Arc::new(Mutex::new(EndAtFault(faults.clone()))));
         }
         let row = flexframe::row::Row {
             time: 0.0,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use dynamics::{
     ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MotionState, Physics, PointForce,
-    PointShapes, RateError, Reached, Rows, StepControl, Stops, System, SystemMotion, SystemScheme, SystemSetup,
-    SystemSimulation,
+    PointShapes, RateError, Reached, Rows, Simulation, StepControl, Stops, System, SystemMotion, SystemScheme,
+    SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -293,7 +293,7 @@ fn jump(scheme: SystemScheme, _: Extent) -> Result<f64, String> {
     let hinge = Joint::revolute("hinge", [ground(0.0), on(0, 0.0)])
         .with_force(Coordinate::Turn, JointForce { motor, ..JointForce::default() });
     let still = state(Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
-    let mut simulation = SystemSimulation::new(SystemSetup {
+    let mut simulation = Simulation::of_system(SystemSetup {
         system: System::new(vec![body(2.0, [0.4; 3], 0.0)?], vec![hinge]).map_err(words)?,
         states: vec![still],
         relaxed: false,
@@ -305,7 +305,7 @@ fn jump(scheme: SystemScheme, _: Extent) -> Result<f64, String> {
     })
     .map_err(words)?;
     while simulation.advance_watched(1000, |_, _| ()).map_err(words)? != Reached::End {}
-    Ok((simulation.motion().joint_coordinates(0).turn - 1.0).abs())
+    Ok((simulation.observe_joint(0).coordinates.turn - 1.0).abs())
 }
 
 fn strikes(scheme: SystemScheme, extent: Extent) -> Result<f64, String> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dynamics::{Observation, Reached, Rows, StepControl, SystemScheme, SystemSetup, SystemSimulation};
+use dynamics::{Observation, Reached, Rows, Simulation, StepControl, SystemScheme, SystemSetup};
 use model::{Model, Tied, tie};
 use scene::System;
 
@@ -43,7 +43,7 @@ impl Built {
         end: f64,
         interval: f64,
         relaxed: bool,
-    ) -> Result<SystemSimulation, NonlinearError> {
+    ) -> Result<Simulation, NonlinearError> {
         self.start_by(SystemScheme::Radau, control, end, interval, relaxed)
     }
 
@@ -58,9 +58,9 @@ impl Built {
         end: f64,
         interval: f64,
         relaxed: bool,
-    ) -> Result<SystemSimulation, NonlinearError> {
+    ) -> Result<Simulation, NonlinearError> {
         let points = |body: &usize| self.models[*body].points.iter().map(|(_, point)| point.clone()).collect();
-        SystemSimulation::new(SystemSetup {
+        Simulation::of_system(SystemSetup {
             system: self.tied.system.clone(),
             states: self.tied.states.clone(),
             relaxed,
@@ -78,7 +78,7 @@ impl Built {
 ///
 /// # Errors
 /// Errors that stop it.
-pub fn rows(simulation: &mut SystemSimulation, bodies: usize) -> Result<Vec<Vec<Observation>>, NonlinearError> {
+pub fn rows(simulation: &mut Simulation, bodies: usize) -> Result<Vec<Vec<Observation>>, NonlinearError> {
     let failed = |error: &dyn std::error::Error| NonlinearError::Scene(error.to_string());
     let mut rows = Vec::new();
     loop {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dynamics::{Observation, Rows, StepControl, SystemScheme, SystemSetup, SystemSimulation};
+use dynamics::{Observation, Rows, Simulation, StepControl, SystemScheme, SystemSetup};
 use fem_tet10::{Material, Mesh};
 use nalgebra::Vector3;
 use verification::nonlinear::{Motion, NodalState, Solid, cases};
@@ -225,7 +225,7 @@ fn a_free_pair_of_bent_bars_keeps_its_momenta_and_energy() {
             rows: Rows::Interval(0.02),
             points: vec![Vec::new(); 2],
         };
-        let mut simulation = SystemSimulation::new(setup).unwrap();
+        let mut simulation = Simulation::of_system(setup).unwrap();
         let found = rows(&mut simulation, 2).unwrap();
         let sums = |row: &Vec<Observation>| {
             let linear: Vector3<f64> = row.iter().map(|of| of.linear_momentum_global).sum();

@@ -41,7 +41,8 @@ fn errors(size: [f64; 3], cells: [usize; 3], keys: &str) -> ([f64; 2], Option<us
     let found = frequencies(&halves, [center, center + Vector3::x() * size[0]]).unwrap();
     // The linearised equations of the system say the same.
     let simulation = halves.start(StepControl::Tolerance(1e-4), 1.0, 1.0, false).unwrap();
-    let vibrations = simulation.motion().steady_state(&CommonSpin::REST).unwrap().linear.vibrations().unwrap();
+    let vibrations =
+        simulation.system_motion().unwrap().steady_state(&CommonSpin::REST).unwrap().linear.vibrations().unwrap();
     for (mode, omega) in vibrations.modes.iter().zip(&found).take(8) {
         assert!((mode.circular_frequency() / omega - 1.0).abs() < 1e-6, "{} {omega}", mode.circular_frequency());
     }
@@ -120,7 +121,7 @@ fn a_rigid_face_on_the_ground_is_one_whose_nodes_are_held() {
         let built = built(directory.path(), &text).unwrap();
         println!("{keys}: {} modes and shapes", built.models[0].body.flexible());
         let simulation = built.start(StepControl::Tolerance(1e-4), 1.0, 1.0, false).unwrap();
-        let linear = simulation.motion().steady_state(&CommonSpin::REST).unwrap().linear;
+        let linear = simulation.system_motion().unwrap().steady_state(&CommonSpin::REST).unwrap().linear;
         linear.vibrations().unwrap().modes.iter().map(|mode| mode.circular_frequency()).collect()
     };
     let [rigid, mean] = ["tie = 'rigid'", "tie = 'mean'"].map(found);

@@ -8,7 +8,7 @@ use crate::system::radau::{Failed, SystemMotion, Tried};
 use crate::tolerance::ErrorMeasure;
 
 /// Error of a step that is rounding.
-const ROUNDING: f64 = 1e-13;
+pub(in crate::system) const ROUNDING: f64 = 1e-13;
 /// The most that a step may grow by: the estimate of two steps is a bad one where the second is much longer. Before there is one, it may
 /// grow by more.
 const GROWTH: f64 = 1.6;
@@ -26,7 +26,7 @@ impl SystemMotion {
     /// # Errors
     /// [`StepError`] where no step is short enough.
     pub fn advance(&mut self, end: f64, tolerance: f64, h: &mut f64) -> Result<u64, StepError> {
-        let mut measure = Self::measure(tolerance, end - self.time);
+        let mut measure = ErrorMeasure::new(tolerance, end - self.time, ROUNDING);
         let mut steps = 0;
         while self.time < end {
             self.follow_islands();
@@ -34,11 +34,6 @@ impl SystemMotion {
             steps += u64::from(taken.map_err(|error| self.reason_or(error))?.is_some());
         }
         Ok(steps)
-    }
-
-    /// Measures the errors of the steps of a run of a span.
-    pub(in crate::system) fn measure(tolerance: f64, span: f64) -> ErrorMeasure {
-        ErrorMeasure::new(tolerance, span, ROUNDING)
     }
 
     /// Tries one step towards `end` whose estimated error is at most its share of the tolerance, about as long as `h`, which becomes

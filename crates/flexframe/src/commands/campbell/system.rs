@@ -54,7 +54,7 @@ pub fn campbell_of_system(
         let found = "bodies that nothing ties together".to_owned();
         return Err(CampbellError::NoAxis { scene: scene.path.clone(), found, joints: Vec::new() });
     };
-    let of_motion = motion.simulation.motion();
+    let of_motion = motion.run.motion();
     let Axis { direction: axis, point, joint } = axis_of(motion, settings).map_err(|found| match found {
         Found::Nothing(found) => CampbellError::NoAxis {
             scene: scene.path.clone(),
@@ -147,7 +147,7 @@ struct Axis {
 
 /// The axis of the spin.
 fn axis_of(motion: &TiedMotion, settings: &SystemCampbellSettings) -> Result<Axis, Found> {
-    let of_motion = motion.simulation.motion();
+    let of_motion = motion.run.motion();
     let joints = of_motion.system().joints();
     let is_meant = |joint: &dynamics::Joint| match &settings.joint {
         Some(name) => joint.name == *name,

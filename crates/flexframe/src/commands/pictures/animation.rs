@@ -284,7 +284,7 @@ fn observed_at(simulation: &mut Simulation, due: f64) -> Result<Observation, Ste
         return simulation.observation();
     }
     let mut now = simulation.observation()?;
-    simulation.interpolate(due, &mut now)?;
+    simulation.interpolate(due, [&mut now])?;
     Ok(now)
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use dynamics::{IslandMotion, Reached, RowTimes, Run};
+use dynamics::{Reached, RowTimes, Run, Simulation};
 use memory::Bytes;
 use results::{Metadata, bytes_per_row};
 use scene::Scene;
@@ -49,11 +49,11 @@ impl Estimate {
 }
 
 /// The time of the later half of some steps, which under step control have found their length by then, for the whole motion.
-fn seconds(mut motion: IslandMotion, trial: f64, stop: &AtomicBool) -> Option<f64> {
+fn seconds(mut motion: Simulation, trial: f64, stop: &AtomicBool) -> Option<f64> {
     let (started, end) = (Instant::now(), motion.end());
     let mut before = (0.0, 0.0);
     loop {
-        let reached = motion.advance(STEPS_PER_LOOK, |_, _| ()).ok()?;
+        let reached = motion.advance(STEPS_PER_LOOK).ok()?;
         let (time, taken) = (motion.time(), started.elapsed().as_secs_f64());
         let is_over = taken >= trial || time >= TRIAL_PART * end || stop.load(Ordering::Relaxed);
         if is_over || reached == Reached::End {

@@ -203,7 +203,7 @@ impl<'a> Recorder<'a> {
     /// The report of an island of tied bodies.
     fn tied_report(&self, island: &Island) -> Option<TiedReport> {
         let names = island.bodies.iter().map(|body| self.bodies[*body].of.name().to_owned());
-        Some(TiedReport::new(island.motion.system()?, names.collect()))
+        TiedReport::new(&island.motion, names.collect())
     }
 
     /// Name of a body among several, for messages.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use dynamics::{ErrorKinds, Joint, Marker, ShapeLimit, SystemSimulation};
+use dynamics::{ErrorKinds, Joint, Marker, ShapeLimit, Simulation};
 use serde::Serialize;
 
 use crate::files::json;
@@ -119,11 +119,12 @@ pub struct AssembledReport {
 }
 
 impl TiedReport {
-    pub(super) fn new(simulation: &SystemSimulation, bodies: Vec<String>) -> Self {
-        let system = simulation.motion().system();
-        let size = simulation.size();
+    /// The report of a run in progress; `None` without joints.
+    pub(super) fn new(simulation: &Simulation, bodies: Vec<String>) -> Option<Self> {
+        let (run, motion) = (simulation.system()?, simulation.system_motion()?);
+        let (system, size) = (motion.system(), run.size());
         let speed = size / simulation.end();
-        let assembled = simulation.assembled().iter().zip(&bodies);
+        let assembled = run.assembled().iter().zip(&bodies);
         let assembled = assembled.map(|(change, body)| AssembledReport {
             body: body.clone(),
             moved: change.moved,
@@ -135,7 +136,7 @@ impl TiedReport {
             let AssembledReport { moved, turned, velocity, angular_velocity, .. } = *of;
             moved.max(turned * size) > TOLD * size || velocity.max(angular_velocity * size) > TOLD * speed
         };
-        let held = simulation.motion().held().map(|(joint, [time, path])| HeldReport {
+        let held = motion.held().map(|(joint, [time, path])| HeldReport {
             joint: system.joints()[joint].name.clone(),
             time,
             path,
@@ -145,18 +146,18 @@ impl TiedReport {
             [&joint.turn_force, &joint.slide_force].into_iter().flatten().any(|force| force.stops.is_some())
         };
         let stops = system.joints().iter().filter(has_stops).filter(|joint| joint.markers.iter().any(is_flexible));
-        Self {
+        Some(Self {
             held: held.filter(|of| of.time > HELD * simulation.end()).collect(),
             flexible_stops: stops.map(|joint| joint.name.clone()).collect(),
             joints: system.joints().iter().map(|joint| joint.name.clone()).collect(),
             rows: system.joints().iter().map(|joint| joint.row_count()).sum(),
-            rigid_dofs: simulation.rigid_dofs(),
-            redundant: simulation.redundant().to_vec(),
-            largest_residual: simulation.largest_residual(),
-            undecided_at: simulation.undecided_at(),
-            branches: simulation.branching().map(|of| of.joints.clone()).unwrap_or_default(),
+            rigid_dofs: run.rigid_dofs(),
+            redundant: run.redundant().to_vec(),
+            largest_residual: run.largest_residual(),
+            undecided_at: run.undecided_at(),
+            branches: run.branching().map(|of| of.joints.clone()).unwrap_or_default(),
             assembled: assembled.filter(is_told).collect(),
-            rounding_of_places: simulation.rounding_of_places(),
+            rounding_of_places: run.rounding_of_places(),
             tolerance: simulation.tolerance(),
             size,
             steps: simulation.stats().accepted,
@@ -165,13 +166,13 @@ impl TiedReport {
                 sums.iter_mut().zip(stated.kinds.named()).for_each(|(sum, (_, of_kind))| *sum = of_kind);
                 StepErrorsReport { ruled_by: stated.ruling(tolerance), sums }
             }),
-            step_limit: simulation.met_shape_limit().map(|ShapeLimit { body, frequency, limit }| StepLimitReport {
+            step_limit: run.met_shape_limit().map(|ShapeLimit { body, frequency, limit }| StepLimitReport {
                 body: bodies[body].clone(),
                 frequency,
                 limit,
             }),
             bodies,
-        }
+        })
     }
 }
 

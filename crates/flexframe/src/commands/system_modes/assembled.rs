@@ -1,10 +1,11 @@
 //! Bodies of a scene that are tied together, put together at the start, and where they are later.
 
-use dynamics::{Reached, Rows, StepControl, SystemSetup, SystemSimulation};
-use model::{Model, StartError, Tied, tie};
+use dynamics::{Island, Reached, Rows, Simulation, StepControl, StepError, SystemRun};
+use model::Model;
 use scene::System;
 
 use super::error::SystemModesError;
+use crate::motion::{Beginning, begin_tied};
 
 /// Bodies that are tied together, at one time.
 pub(crate) struct TiedMotion {
@@ -15,14 +16,14 @@ pub(crate) struct TiedMotion {
     /// Names of force elements.
     pub elements: Vec<String>,
     /// The bodies, put together.
-    pub simulation: SystemSimulation,
+    pub run: SystemRun,
 }
 
 /// All bodies of a scene that are tied together, by systems, at the start.
 pub(crate) fn tied_motions(system: &System, models: &[Model]) -> Result<Vec<TiedMotion>, SystemModesError> {
     // No step is taken.
-    let tied_motion = |tied: Tied| TiedMotion::new(system, tied, StepControl::Tolerance(1e-3), false);
-    tie(system, models)?.into_iter().map(tied_motion).collect()
+    let at_start = |of| Beginning { control: StepControl::Tolerance(1e-3), relaxed: false, ..of };
+    motions(system, models, at_start, |_| Ok(()))
 }
 
 /// The same where a run of the scene has them at a time.
@@ -31,34 +32,31 @@ pub(crate) fn tied_motions_at(
     models: &[Model],
     time: f64,
 ) -> Result<Vec<TiedMotion>, SystemModesError> {
-    let tied_motion = |tied: Tied| {
-        let scene = &system.bodies[tied.bodies[0]];
-        let mut motion = TiedMotion::new(system, tied, scene.time.control, system.relaxed)?;
-        motion.simulation.set_stop_time(Some(time));
-        let failed = |source| SystemModesError::Run { scene: scene.path.clone(), source: Box::new(source) };
-        while !matches!(motion.simulation.advance(u64::MAX).map_err(failed)?, Reached::Stop | Reached::End) {}
-        Ok(motion)
+    let lead = |simulation: &mut Simulation| {
+        simulation.set_stop_time(Some(time));
+        while !matches!(simulation.advance(u64::MAX)?, Reached::Stop | Reached::End) {}
+        Ok(())
     };
-    tie(system, models)?.into_iter().map(tied_motion).collect()
+    motions(system, models, |of| of, lead)
 }
 
-impl TiedMotion {
-    fn new(system: &System, tied: Tied, control: StepControl, relaxed: bool) -> Result<Self, SystemModesError> {
-        let Tied { bodies, joints, elements, system: of_bodies, states, .. } = tied;
-        let scene = &system.bodies[bodies[0]];
-        let setup = SystemSetup {
-            points: bodies.iter().map(|_| Vec::new()).collect(),
-            system: of_bodies,
-            states,
-            relaxed,
-            scheme: scene.time.method.joints.unwrap_or_default(),
-            control,
-            end: scene.time.end,
-            rows: Rows::Interval(scene.time.end),
-        };
-        let refused =
-            |source| SystemModesError::Setup { scene: scene.path.clone(), source: Box::new(StartError::from(source)) };
-        let simulation = SystemSimulation::new(setup).map_err(refused)?;
-        Ok(Self { bodies, joints, elements, simulation })
+fn motions(
+    system: &System,
+    models: &[Model],
+    begun: impl FnOnce(Beginning) -> Beginning,
+    lead: impl Fn(&mut Simulation) -> Result<(), StepError>,
+) -> Result<Vec<TiedMotion>, SystemModesError> {
+    let models: Vec<&Model> = models.iter().collect();
+    let Some(beginning) = Beginning::of(system, &models) else { return Ok(Vec::new()) };
+    let beginning = begun(Beginning { rows: Rows::Interval(beginning.end), ..beginning });
+    let springs = system.springs.iter().map(|spring| &spring.name);
+    let names: Vec<&String> = springs.chain(system.bushings.iter().map(|bushing| &bushing.name)).collect();
+    let mut motions = Vec::new();
+    for Island { mut motion, bodies, joints, elements } in begin_tied(system, &models, &beginning).map_err(Box::new)? {
+        let scene = &system.bodies[bodies[0]].path;
+        lead(&mut motion).map_err(|source| SystemModesError::Run { scene: scene.clone(), source: Box::new(source) })?;
+        let elements = elements.iter().map(|number| names[number - system.joints.len()].clone()).collect();
+        motions.extend(motion.system().map(|run| TiedMotion { bodies, joints, elements, run: run.clone() }));
     }
+    Ok(motions)
 }

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use dynamics::{SteadyError, StepError};
-use model::{BuildError, StartError};
+use model::BuildError;
+
+use crate::motion::BeginError;
 
 /// Vibrations of a system that could not be found.
 #[derive(Debug, thiserror::Error)]
@@ -13,8 +15,8 @@ pub enum SystemModesError {
     #[error("{0}")]
     Build(#[from] BuildError),
     /// The bodies cannot be put together.
-    #[error("{}", source.in_scene(scene))]
-    Setup { scene: PathBuf, source: Box<StartError> },
+    #[error("{0}")]
+    Begin(#[from] Box<BeginError>),
     /// The run does not come to the time that is asked for.
     #[error("{}: {source}", scene.display())]
     Run { scene: PathBuf, source: Box<StepError> },

@@ -115,7 +115,7 @@ impl SystemModesReport {
         rotors: Rotors,
     ) -> Self {
         let scene = &system.bodies[motion.bodies[0]];
-        let of_motion = motion.simulation.motion().system();
+        let of_motion = motion.run.motion().system();
         let bodies = body_names(system, &motion.bodies);
         let joints: Vec<String> = of_motion.joints().iter().map(|joint| joint.name.clone()).collect();
         let springs = steady.linear.springs().map(|spring| match spring {
@@ -137,9 +137,9 @@ impl SystemModesReport {
             title: scene.title.clone(),
             frequency_unit: frequency_unit(time),
             time_unit: time.clone(),
-            time: motion.simulation.time(),
+            time: motion.run.motion().time(),
             rows: steady.multipliers().len(),
-            redundant: motion.simulation.redundant().to_vec(),
+            redundant: motion.run.redundant().to_vec(),
             degrees_of_freedom: steady.linear.size(),
             mechanisms: steady.linear.rigid,
             rigid_modes,
@@ -151,7 +151,7 @@ impl SystemModesReport {
             bodies,
             joints,
         };
-        report.warnings.extend(report.unbalance(steady, motion.simulation.size(), &scene.units.length));
+        report.warnings.extend(report.unbalance(steady, motion.run.size(), &scene.units.length));
         report.warnings.extend(report.growth());
         let scenes = motion.bodies.iter().map(|body| &system.bodies[*body]);
         let damping = scenes.zip(&report.bodies).filter_map(|(scene, name)| report.damping(scene, name));

@@ -80,7 +80,7 @@ pub(super) fn stiffened(
             modes: found.modes.iter().map(StiffenedFrequency::from).collect(),
         })
     };
-    let found = motion.simulation.motion().stiffening()?;
+    let found = motion.run.motion().stiffening()?;
     let names = body_names(system, &motion.bodies);
     Ok(names.into_iter().zip(motion.bodies.iter().zip(found)).filter_map(of_body).collect())
 }

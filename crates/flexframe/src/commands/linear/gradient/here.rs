@@ -112,7 +112,7 @@ impl<'a> Here<'a> {
         if self.motion.bodies.iter().enumerate().any(is_moved) {
             return Err(self.loaded());
         }
-        let motion = self.motion.simulation.motion();
+        let motion = self.motion.run.motion();
         let [[there, _], [whole, _]] = [&there, here].map(|at| motion.whole_matrices(at));
         let basis = &here.linear.basis;
         Ok(basis.transpose() * ((there - whole) * basis) * faer::Scale(1.0 / value))
@@ -127,7 +127,7 @@ fn steady(system: &System, models: &[Model]) -> Result<(TiedMotion, SteadyState)
         return Err(GradientError::Systems { scene, count });
     };
     let failed = |source| SystemModesError::Steady { scene: system.bodies[0].path.clone(), source };
-    let of_motion = motion.simulation.motion();
+    let of_motion = motion.run.motion();
     let steady = Rotors::of(of_motion, |_| false).steady_state(of_motion, &CommonSpin::REST).map_err(failed)?;
     Ok((motion, steady))
 }

@@ -110,7 +110,7 @@ impl Here<'_> {
 
     /// Loads and forces along joints; displacements of points and coordinates of joints.
     fn ports(&self) -> [Vec<Port>; 2] {
-        let (motion, linear) = (self.motion.simulation.motion(), &self.steady.linear);
+        let (motion, linear) = (self.motion.run.motion(), &self.steady.linear);
         let all = linear.basis.nrows();
         let [mut inputs, mut outputs] = [(); 2].map(|()| Vec::new());
         for (place, (body, state)) in self.motion.bodies.iter().zip(self.steady.states()).enumerate() {

@@ -43,7 +43,7 @@ pub(super) fn of_system(
         let scene = scene.path.clone();
         motion.set_states(&states).map_err(|source| LinearizeError::State { scene, source: Box::new(source) })?;
     }
-    let motion = motion.system().ok_or_else(no_body)?.motion();
+    let motion = motion.system_motion().ok_or_else(no_body)?;
     let failed = |source| LinearizeError::Steady { scene: scene.path.clone(), source: Box::new(source) };
     let SystemSpin { omega_global, steady, rotors, warnings: turning } =
         SystemSpin::new(motion, spin).map_err(failed)?;

@@ -86,7 +86,7 @@ impl SystemMotion {
 
     /// For each row of the joints and couplings, true if others imply it where bodies are rigid: what such rows share is not
     /// determined by rigid bodies. The system is where it has been assembled.
-    pub(super) fn implied_rows(&self) -> Vec<bool> {
+    pub(in crate::system) fn implied_rows(&self) -> Vec<bool> {
         Judgement::first(&self.system, &self.first.posture(&self.system), false).rank.is_implied
     }
 }

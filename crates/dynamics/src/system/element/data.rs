@@ -12,24 +12,24 @@ use crate::system::element::springs::{Bushing, PointSpring};
 
 /// An element of this crate.
 #[derive(Serialize, Deserialize)]
-pub(super) enum ElementData<'a> {
+pub(crate) enum ElementData<'a> {
     Spring(Cow<'a, PointSpring>),
     Bushing(Cow<'a, Bushing>),
 }
 
 /// An element as data; none of one that is code.
-pub(super) fn data(element: &dyn ForceElement) -> Option<ElementData<'_>> {
+pub(crate) fn data(element: &dyn ForceElement) -> Option<ElementData<'_>> {
     let element: &dyn Any = element;
     let spring = element.downcast_ref().map(|spring| ElementData::Spring(Cow::Borrowed(spring)));
     spring.or_else(|| element.downcast_ref().map(|bushing| ElementData::Bushing(Cow::Borrowed(bushing))))
 }
 
-pub(super) fn serialize<S: Serializer>(elements: &[Arc<dyn ForceElement>], serializer: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn serialize<S: Serializer>(elements: &[Arc<dyn ForceElement>], serializer: S) -> Result<S::Ok, S::Error> {
     let data: Option<Vec<_>> = elements.iter().map(|element| data(&**element)).collect();
     data.ok_or_else(|| S::Error::custom("a force that only its program knows"))?.serialize(serializer)
 }
 
-pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Arc<dyn ForceElement>>, D::Error> {
+pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Arc<dyn ForceElement>>, D::Error> {
     let element = |data| match data {
         ElementData::Spring(spring) => Arc::new(spring.into_owned()) as Arc<dyn ForceElement>,
         ElementData::Bushing(bushing) => Arc::new(bushing.into_owned()),

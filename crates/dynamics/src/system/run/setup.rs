@@ -17,7 +17,7 @@ use crate::system::joint::equation::{Misfit, misfit};
 use crate::system::joint::row::Row;
 use crate::system::radau::SystemMotion;
 use crate::system::relaxed::RelaxError;
-use crate::system::simulation::second_order::Branching;
+use crate::system::run::second_order::Branching;
 use crate::system::stage::{OF_PLACES, vector};
 use crate::vibration::system::CommonSpin;
 use crate::vibration::system::configuration::Configuration;
