@@ -84,7 +84,7 @@ fn main() {
 
 /// Microseconds a step, and evaluations a step.
 fn measure(model: &Model, scene: &Scene) -> (f64, f64) {
-    let method = scene.time.method;
+    let method = *scene.method();
     let simulation = model
         .start_with(scene, method, StepControl::Fixed(STEP), Rows::EverySteps(u64::MAX))
         .expect("the motion starts");

@@ -8,7 +8,7 @@ use flexframe::outputs::{OutputError, Written, outputs_of_scene};
 use flexframe::plausible;
 use flexframe::run::RunSettings;
 use model::Builder;
-use scene::{Scene, System};
+use scene::{Scene, Shared, System};
 use slepc::files_of_folder;
 
 use crate::arguments::ModeCountArgs;
@@ -78,7 +78,7 @@ impl Session {
 pub const RESULTS: &str = "a results file of `flexframe run`";
 
 /// The folder asked for, or one named after the scene.
-pub fn folder(scene: &Scene, output: Option<PathBuf>) -> Result<PathBuf, OutputError> {
+pub fn folder(scene: &Shared, output: Option<PathBuf>) -> Result<PathBuf, OutputError> {
     if let Some(folder) = &output {
         Written::FOLDER.check(folder)?;
     }

@@ -55,7 +55,7 @@ pub fn doubts_of_system(system: &System) -> Vec<String> {
 
 /// Drives whose coordinate goes along straight lines of a table: its rate jumps where they meet.
 pub(crate) fn struck_drives(system: &System) -> Vec<String> {
-    let end = system.bodies.first().map_or(0.0, |scene| scene.time.end);
+    let end = system.time.end;
     let of_joint = |joint: &Joint| {
         let tables = joint.drive.as_ref().map_or_else(Vec::new, |drive| tables_of(&drive.history));
         let lines = tables.into_iter().filter(|table| table.interpolation == Interpolation::Linear);
@@ -170,7 +170,7 @@ fn warping(marker: &BodyMarker) -> Option<String> {
 fn without_elements(scene: &Scene, model: &Model) -> impl Iterator<Item = String> {
     let missing = |effect: Effect| {
         let row = &model.advice.effects[effect];
-        let is_open = scene.effects.choices[effect] == Choice::Auto && scene.time.method.abilities.switches_effects;
+        let is_open = scene.effects.choices[effect] == Choice::Auto && scene.method().abilities.switches_effects;
         (is_open && row.on).then(|| {
             format!(
                 "{} may change the answer by up to {:.1e} (a bound), and is left out: the elements of a body of matrices are not \

@@ -299,10 +299,7 @@ impl JointLaw for Motor {
 fn run(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Run, Error> {
     let models: Vec<&Model> = fmu.bodies.iter().map(|body| &body.model).collect();
     let rows = Rows::EverySteps(u64::MAX);
-    let Some(beginning) = Beginning::of(&fmu.system, &models) else {
-        return Ok(Run::new(Vec::new(), RowTimes::new(rows, StepControl::Fixed(1.0), 0.0)));
-    };
-    let mut beginning = Beginning { rows, ..beginning };
+    let mut beginning = Beginning { rows, ..Beginning::of(&fmu.system, &models) };
     beginning.end = stop.unwrap_or(0.0).max(beginning.end);
     for (number, (body, forces)) in fmu.bodies.iter().zip(&mut beginning.bodies).enumerate() {
         connect(body, forces, inputs.iter().filter(|channel| channel.input.body == number));

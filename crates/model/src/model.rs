@@ -242,7 +242,7 @@ impl Model {
     /// # Errors
     /// [`StartError`], e.g. a step beyond the stability limit.
     pub fn start(&self, scene: &Scene) -> Result<Simulation, StartError> {
-        let started = self.start_with(scene, scene.time.method, scene.time.control, scene.output.rows);
+        let started = self.start_with(scene, *scene.method(), scene.time.control, scene.rows);
         started.map_err(|error| error.at_key(scene))
     }
 
@@ -286,10 +286,10 @@ impl Model {
             loads: &self.loads,
             physics: &self.physics,
             initial,
-            method: self.paper.or(&scene.time.method),
+            method: self.paper.or(scene.method()),
             control: scene.time.control,
             end: scene.time.end,
-            rows: scene.output.rows,
+            rows: scene.rows,
             points: &[],
         }
     }

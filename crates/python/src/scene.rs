@@ -64,11 +64,6 @@ impl Scene {
         &self.builder
     }
 
-    /// The scene of the first body: title, units and times are those of all.
-    fn first(&self) -> &flexframe::scene::Scene {
-        &self.scenes[0]
-    }
-
     fn parsed(py: Python<'_>, text: &str, path: PathBuf, body: Option<String>, builder: Builder) -> PyResult<Self> {
         // Tables of histories are read, too.
         let system = detached(py, || match &body {
@@ -137,13 +132,13 @@ impl Scene {
     /// The title of the run.
     #[getter]
     fn title(&self) -> &str {
-        &self.first().title
+        &self.system.title
     }
 
     /// The text of the scene, TOML; with all bodies, where it has several.
     #[getter]
     fn text(&self) -> &str {
-        self.first().file_text()
+        &self.system.text
     }
 
     /// Names of its bodies; "body" is that of a single one.
@@ -155,29 +150,29 @@ impl Scene {
     /// The scene file, or `base` and `name` of a dict.
     #[getter]
     fn path(&self) -> &PathBuf {
-        &self.first().path
+        &self.system.path
     }
 
     /// Time at the end of the run.
     #[getter]
     fn end(&self) -> f64 {
-        self.first().time.end
+        self.system.time.end
     }
 
     /// Labels of "length", "mass" and "time".
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        units(py, &self.first().units.length, &self.first().units.mass, &self.first().units.time)
+        units(py, &self.system.units.length, &self.system.units.mass, &self.system.units.time)
     }
 
     fn __repr__(&self) -> String {
-        format!("Scene({:?}, {:?})", self.path().display().to_string(), self.first().title)
+        format!("Scene({:?}, {:?})", self.path().display().to_string(), self.system.title)
     }
 
     /// The title and the text.
     fn _repr_html_(&self) -> String {
         let file = self.path().display().to_string();
-        heading(&self.first().title, &file) + &format!("<pre>{}</pre>", escaped(self.text()))
+        heading(&self.system.title, &file) + &format!("<pre>{}</pre>", escaped(self.text()))
     }
 }
 

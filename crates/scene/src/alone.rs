@@ -1,7 +1,5 @@
 //! The texts of the bodies of a scene of several, each as a scene of its own.
 
-use std::sync::Arc;
-
 use toml_edit::{DocumentMut, Item, Table};
 
 use crate::document::{BODIES, OF_A_BODY, OUTPUT_OF_A_BODY, TIES};
@@ -9,7 +7,6 @@ use crate::methods::is_without_joints;
 
 /// The text of a scene of several bodies, in parts.
 pub(crate) struct BodyTexts {
-    whole: Arc<str>,
     /// All but the bodies and what ties them together.
     shared: DocumentMut,
     bodies: Table,
@@ -19,12 +16,10 @@ pub(crate) struct BodyTexts {
 pub(crate) struct BodyText<'a> {
     /// Its name.
     pub name: &'a str,
-    /// True if there are other bodies.
-    pub has_others: bool,
+    /// Number of all bodies.
+    pub bodies: usize,
     /// The scene of it alone.
     pub alone: String,
-    /// The scene of all.
-    pub whole: Arc<str>,
 }
 
 impl BodyTexts {
@@ -38,7 +33,7 @@ impl BodyTexts {
         {
             time.remove("scheme");
         }
-        Self { whole: text.into(), shared, bodies: bodies.unwrap_or_default() }
+        Self { shared, bodies: bodies.unwrap_or_default() }
     }
 
     /// The text of one of them.
@@ -60,6 +55,6 @@ impl BodyTexts {
         if !output.is_empty() {
             root.insert("output", Item::Table(output));
         }
-        BodyText { name, has_others: self.bodies.len() > 1, alone: document.to_string(), whole: self.whole.clone() }
+        BodyText { name, bodies: self.bodies.len(), alone: document.to_string() }
     }
 }

@@ -2,13 +2,15 @@
 
 use std::io::{self, Read};
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::alone::{BodyText, BodyTexts};
 use crate::check::Check;
 use crate::document::{BODIES, Document, Node};
 use crate::error::SceneError;
-use crate::scene::{Scene, Time};
+use crate::scene::{Scene, Shared};
 use crate::section::Sections;
+use crate::system::refuse_several;
 use crate::text::name::ONLY_BODY;
 use crate::text::ordinary_file::open_ordinary;
 use crate::text::place::Place;
@@ -56,13 +58,10 @@ impl Scene {
             Err(document.place(key).refuse(found, expected, help))
         };
         match name {
-            None if bodies.is_none() => Self::of_document(&document, None, ties.as_ref()),
-            None => {
-                let help = format!("name one of them: {}", names.join(", "));
-                refuse(format!("a scene of {} bodies", names.len()), "one body", help)
-            }
+            None if bodies.is_none() => Self::of_document(&document, None, ties.as_ref(), None),
+            None => Err(refuse_several(document.place(BODIES), &names)),
             Some(name) if names.contains(&name) => {
-                Self::of_document(&document.of_body(name), Some(BodyTexts::new(text).of(name)), ties.as_ref())
+                Self::of_document(&document.of_body(name), Some(BodyTexts::new(text).of(name)), ties.as_ref(), None)
             }
             Some(name) if bodies.is_none() => refuse(
                 "a single body, which has no name".to_owned(),
@@ -76,11 +75,13 @@ impl Scene {
         }
     }
 
-    /// Checks the scene of a document, which may be that of a body of several, with what ties the bodies of the file together.
+    /// Checks the scene of a document, which may be that of a body of several, with what ties the bodies of the file together, and what an
+    /// earlier one of them shares with it.
     pub(crate) fn of_document(
         document: &Document<'_>,
         body_text: Option<BodyText<'_>>,
         ties: Option<&Document<'_>>,
+        shared: Option<Arc<Shared>>,
     ) -> Result<Self, SceneError> {
         let Sections { title, units, mut body, modes, effects, frame, initial, constraints, mut loads, time, output } =
             crate::text::deserialize::from_document(document)?;
@@ -100,18 +101,23 @@ impl Scene {
         check.effects_of_elements(&effects, &modes, &body)?;
         let time = check.time(&time, ties.is_some())?;
         check.fixed_effects(&effects, time.method)?;
-        let output = check.output(output, &time, &body)?;
+        let (rows, output) = check.output(output, &time, &body)?;
         let tied = ties.is_some_and(|ties| ties.ties(body_text.as_ref().map_or(ONLY_BODY, |text| text.name)));
         if !tied {
             check.turns(&body)?;
         }
-        let time = if tied { time } else { Time { method: time.method.without_joints(), ..time } };
-
-        Ok(Self {
-            name: body_text.as_ref().map(|text| text.name.to_owned()),
-            has_others: body_text.as_ref().is_some_and(|text| text.has_others),
+        let of_file = || Shared {
             title,
             units,
+            time,
+            rows,
+            path: document.path().to_owned(),
+            text: document.text().into(),
+            bodies_of_file: body_text.as_ref().map_or(1, |text| text.bodies),
+        };
+        Ok(Self {
+            name: body_text.as_ref().map(|text| text.name.to_owned()),
+            shared: shared.unwrap_or_else(|| Arc::new(of_file())),
             body,
             modes,
             effects,
@@ -121,17 +127,9 @@ impl Scene {
             tied,
             markers,
             loads,
-            time,
             output,
-            path: document.path().to_owned(),
-            whole_file: body_text.as_ref().map(|text| text.whole.clone()),
             source: body_text.map_or_else(|| document.text().to_owned(), |text| text.alone),
         })
-    }
-
-    /// The text of the scene file: of all bodies, where it has several.
-    pub fn file_text(&self) -> &str {
-        self.whole_file.as_deref().unwrap_or(&self.source)
     }
 
     /// The place in the scene file of the value with a key path such as
@@ -139,14 +137,7 @@ impl Scene {
     /// letters, digits, `-` and `_` in quotes); where the file lacks the key, the place of what
     /// would be around it.
     pub fn place(&self, key: &str) -> Place {
-        let text = self.file_text();
-        match Document::parse(text, &self.path) {
-            Ok(document) => match &self.name {
-                Some(name) => document.of_body(name).place(key),
-                None => document.place(key),
-            },
-            Err(_) => Place::new(&self.path, text, 0..0, key.to_owned()),
-        }
+        self.shared.place_from(self.name.as_deref(), key)
     }
 
     /// The refusal of the value with the key path `key`, for rules that need more than the file,
@@ -160,6 +151,22 @@ impl Scene {
         help: impl Into<String>,
     ) -> SceneError {
         self.place(key).refuse(found, expected, help)
+    }
+}
+
+impl Shared {
+    /// The place in the scene file of the value with a key path such as `joints[2].between`, or of what is around it.
+    pub fn place(&self, key: &str) -> Place {
+        self.place_from(None, key)
+    }
+
+    /// The same with a key path in the scene of a body alone.
+    fn place_from(&self, body: Option<&str>, key: &str) -> Place {
+        match (Document::parse(&self.text, &self.path), body) {
+            (Ok(document), Some(name)) => document.of_body(name).place(key),
+            (Ok(document), None) => document.place(key),
+            (Err(_), _) => Place::new(&self.path, &self.text, 0..0, key.to_owned()),
+        }
     }
 }
 

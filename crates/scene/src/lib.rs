@@ -58,7 +58,7 @@ pub use loads::history::{DrivenSpeed, Formula, History, Interpolation, TablePoin
 pub use loads::load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use matrix_import::MatrixFiles;
 pub use methods::{METHODS, method_named};
-pub use scene::{Body, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, Scene, TiedMass, Time, Units};
+pub use scene::{Body, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Shared, TiedMass, Time, Units};
 pub use schema::json_schema;
 pub use system::System;
 pub use text::assign::{AssignError, assign};

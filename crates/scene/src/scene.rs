@@ -5,6 +5,7 @@
 //! the body axes; at t = 0 the body axes are the global ones.
 
 use std::collections::BTreeMap;
+use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -20,17 +21,34 @@ use crate::body::modes::Modes;
 use crate::loads::load::Load;
 use crate::tie::marker::Marker;
 
-/// A scene that obeys every rule which needs no mesh: all numbers are finite and in range.
+/// The part of a scene file that all its bodies share. A [`Scene`] and a [`System`](crate::System) show it as theirs.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scene {
-    /// Name of its body among `bodies`; `None` of a scene with `body`.
-    pub name: Option<String>,
-    /// True if its file has other bodies, too.
-    pub has_others: bool,
+pub struct Shared {
     /// Title of the run, for headings.
     pub title: String,
     /// Labels of the units, for axes and tables.
     pub units: Units,
+    /// How far and how to step.
+    pub time: Time,
+    /// When a state is written, besides the first and the last: key `every`, after that number of steps, or `interval`, at the
+    /// multiples of this time. By default after each step, or after as many as give 5000 rows; with a tolerance, at each 500th
+    /// of the end.
+    pub rows: Rows,
+    /// The scene file, as it was named to [`Scene::read`] or [`Scene::parse`].
+    pub path: PathBuf,
+    /// The text of the scene file.
+    pub text: Arc<str>,
+    /// Number of bodies in the file, of which some may have been left out.
+    pub bodies_of_file: usize,
+}
+
+/// The scene of a body, which obeys every rule that needs no mesh: all numbers are finite and in range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Name of its body among `bodies`; `None` of a scene with `body`.
+    pub name: Option<String>,
+    /// What it shares with the other bodies of its file.
+    pub shared: Arc<Shared>,
     /// The body.
     pub body: Body,
     /// The modes kept and their damping.
@@ -49,16 +67,25 @@ pub struct Scene {
     pub tied: bool,
     /// Any number of loads, in the order of the file.
     pub loads: Vec<Load>,
-    /// How far and how to step.
-    pub time: Time,
     /// The choice of outputs.
     pub output: Output,
-    /// The scene file, as it was named to [`Scene::read`] or [`Scene::parse`].
-    pub path: PathBuf,
-    /// The text of the scene, for the results file: of a body of several, that of a scene of it alone.
+    /// The text of a scene of this body alone, for its body file.
     pub source: String,
-    /// The text of the scene file, for the places of later errors, where it is another.
-    pub whole_file: Option<Arc<str>>,
+}
+
+impl Deref for Scene {
+    type Target = Shared;
+
+    fn deref(&self) -> &Shared {
+        &self.shared
+    }
+}
+
+/// A change of what is shared is one of this scene alone.
+impl DerefMut for Scene {
+    fn deref_mut(&mut self) -> &mut Shared {
+        Arc::make_mut(&mut self.shared)
+    }
 }
 
 /// Labels of the units. The program never converts: they are shown, not used.
@@ -224,18 +251,14 @@ pub struct Time {
     pub end: f64,
     /// Control of the length of a step: key `step`, 1e-12 end ≤ step ≤ end, or `tolerance`, above 0 and below 1.
     pub control: StepControl,
-    /// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`. Of a body in joints, springs or
-    /// bushings it is one of [`Method::OF_JOINTS`].
+    /// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`. Where bodies are in joints, springs
+    /// or bushings it is one of [`Method::OF_JOINTS`]; [`Scene::method`] is the one of a body.
     pub method: Method,
 }
 
-/// The choice of outputs.
+/// The choice of outputs of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// When a state is written, besides the first and the last: key `every`, after that number of steps, or `interval`, at the
-    /// multiples of this time. By default after each step, or after as many as give 5000 rows; with a tolerance, at each 500th
-    /// of the end.
-    pub rows: Rows,
     /// Points whose motion is written: name, and position (length, mesh axes); default none.
     /// A name is not empty, `.` or `..` and has no `/` and no control character, since it names
     /// a group of the results file.
@@ -255,6 +278,11 @@ pub struct Output {
 }
 
 impl Scene {
+    /// The method by which the body moves: of joints only where joints, springs or bushings hold it.
+    pub fn method(&self) -> &Method {
+        if self.tied { &self.time.method } else { self.time.method.without_joints() }
+    }
+
     /// The same, with the stress of all nodes in each coordinate; a body without a mesh has none.
     pub fn with_stress_field(mut self) -> Self {
         self.output.stress_field = self.body.has_elements();

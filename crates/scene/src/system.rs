@@ -1,6 +1,10 @@
 //! A scene of several bodies.
 
+use std::ops::Deref;
 use std::path::Path;
+use std::sync::Arc;
+
+use dynamics::Method;
 
 use crate::alone::BodyTexts;
 use crate::check::Check;
@@ -8,7 +12,7 @@ use crate::check::tie::Ties;
 use crate::document::{BODIES, Document, Node, OF_A_BODY, OUTPUT_OF_A_BODY};
 use crate::error::SceneError;
 use crate::file::{refuse_long, text_of};
-use crate::scene::Scene;
+use crate::scene::{Scene, Shared};
 use crate::text::deserialize::from_document;
 use crate::text::name::{GROUND, ONLY_BODY, check_key};
 use crate::text::place::Place;
@@ -22,9 +26,11 @@ const MAX_BODIES: usize = 1000;
 const SHARED: [&str; 11] =
     ["title", "units", "relaxed", BODIES, GROUND, "joints", "springs", "bushings", "couplings", "time", "output"];
 
-/// A scene of one body or several, each as a scene of its own with the units, the times and the rows of all.
+/// A scene of one body or several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct System {
+    /// What all bodies share.
+    pub shared: Arc<Shared>,
     /// One scene for each body, in the order of the file. A single `[body]` has no name.
     pub bodies: Vec<Scene>,
     /// Places on the ground, in the order of the file.
@@ -45,7 +51,15 @@ pub struct System {
 impl From<Scene> for System {
     fn from(scene: Scene) -> Self {
         let Ties { ground, joints, springs, bushings, couplings, relaxed } = Ties::default();
-        Self { bodies: vec![scene], ground, joints, springs, bushings, couplings, relaxed }
+        Self { shared: scene.shared.clone(), bodies: vec![scene], ground, joints, springs, bushings, couplings, relaxed }
+    }
+}
+
+impl Deref for System {
+    type Target = Shared;
+
+    fn deref(&self) -> &Shared {
+        &self.shared
     }
 }
 
@@ -70,13 +84,39 @@ impl System {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut document = Document::parse(text, path)?;
         let ties = document.take_ties();
-        let bodies = bodies(&document, text, ties.as_ref())?;
-        let end = bodies.first().map_or(0.0, |scene| scene.time.end);
+        let (shared, bodies) = bodies(&document, text, ties.as_ref())?;
         let Ties { ground, joints, springs, bushings, couplings, relaxed } = match &ties {
-            Some(ties) => Check::new(ties, end).ties(from_document(ties)?, &bodies)?,
+            Some(ties) => Check::new(ties, shared.time.end).ties(from_document(ties)?, &bodies)?,
             None => Ties::default(),
         };
-        Ok(Self { bodies, ground, joints, springs, bushings, couplings, relaxed })
+        Ok(Self { shared, bodies, ground, joints, springs, bushings, couplings, relaxed })
+    }
+
+    /// The only body.
+    ///
+    /// # Errors
+    /// The refusal of several.
+    pub fn only_body(&self) -> Result<&Scene, SceneError> {
+        match &self.bodies[..] {
+            [scene] => Ok(scene),
+            several => {
+                let names: Vec<&str> = several.iter().filter_map(|scene| scene.name.as_deref()).collect();
+                Err(refuse_several(self.place(BODIES), &names))
+            }
+        }
+    }
+
+    /// The same with other things that all bodies share.
+    #[must_use]
+    pub fn with_shared(mut self, change: impl FnOnce(Shared) -> Shared) -> Self {
+        self.shared = Arc::new(change(Shared::clone(&self.shared)));
+        self.bodies.iter_mut().for_each(|scene| scene.shared = self.shared.clone());
+        self
+    }
+
+    /// The method by which bodies in joints, springs or bushings move, or without any the method of all.
+    pub fn method(&self) -> &Method {
+        if self.has_ties() { &self.time.method } else { self.time.method.without_joints() }
     }
 
     /// True if joints, springs or bushings tie bodies together or to the ground.
@@ -111,39 +151,33 @@ impl System {
         let of_ground = (0..self.ground.len()).map(Some).chain([None]);
         of_bodies.chain(of_ground.map(|marker| End::Ground { marker })).collect()
     }
-
-    /// The place in the scene file of the value with a key path such as `joints[2].between`, or of what is around it.
-    pub fn place(&self, key: &str) -> Place {
-        let (path, text) = self.bodies.first().map_or((Path::new(""), ""), |scene| (&scene.path, scene.file_text()));
-        match Document::parse(text, path) {
-            Ok(document) => document.place(key),
-            Err(_) => Place::new(path, text, 0..0, key.to_owned()),
-        }
-    }
-
-    /// True of a scene with named bodies.
-    pub fn is_of_several(&self) -> bool {
-        self.bodies.iter().any(|scene| scene.name.is_some())
-    }
 }
 
-/// The scenes of the bodies of a document, without its `ties`.
-fn bodies(document: &Document<'_>, text: &str, ties: Option<&Document<'_>>) -> Result<Vec<Scene>, SceneError> {
+/// The refusal of several bodies where one is wanted.
+pub(crate) fn refuse_several(place: Place, names: &[&str]) -> SceneError {
+    let help = format!("name one of them: {}", names.join(", "));
+    place.refuse(format!("a scene of {} bodies", names.len()), "one body", help)
+}
+
+/// The scenes of the bodies of a document, without its `ties`, and what they share.
+fn bodies(
+    document: &Document<'_>,
+    text: &str,
+    ties: Option<&Document<'_>>,
+) -> Result<(Arc<Shared>, Vec<Scene>), SceneError> {
     let Some(bodies) = document.bodies() else {
-        return Ok(vec![Scene::of_document(document, None, ties)?]);
+        let scene = Scene::of_document(document, None, ties, None)?;
+        return Ok((scene.shared.clone(), vec![scene]));
     };
     document.root().children().try_for_each(|child| check_shared(&child))?;
-    if bodies.is_empty() {
-        let help = "give each body a table, e.g. `[bodies.left]` with `mesh` and `material`";
-        return Err(document.place(BODIES).refuse("no body", "one table for each body", help));
-    }
     if bodies.len() > MAX_BODIES {
         let found = format!("{} bodies", bodies.len());
         let help = "make several scenes of them";
         return Err(document.place(BODIES).refuse(found, format!("at most {MAX_BODIES}"), help));
     }
     let texts = BodyTexts::new(text);
-    let scene = |body: &Node<'_>| {
+    let (mut shared, mut scenes) = (None, Vec::with_capacity(bodies.len()));
+    for body in &bodies {
         check_key(
             body,
             "rename the body, e.g. `hub`: it names a group in the results file, and `hub.tip` a point of it",
@@ -152,9 +186,13 @@ fn bodies(document: &Document<'_>, text: &str, ties: Option<&Document<'_>>) -> R
             let help = "rename the body: in `between`, this is the name of the ground";
             return Err(body.place_of_key().refuse("the name \"ground\"", "another one", help));
         }
-        Scene::of_document(&document.of_body(body.name()), Some(texts.of(body.name())), ties)
-    };
-    bodies.iter().map(scene).collect()
+        let scene = Scene::of_document(&document.of_body(body.name()), Some(texts.of(body.name())), ties, shared)?;
+        shared = Some(scene.shared.clone());
+        scenes.push(scene);
+    }
+    let help = "give each body a table, e.g. `[bodies.left]` with `mesh` and `material`";
+    let none = || document.place(BODIES).refuse("no body", "one table for each body", help);
+    Ok((shared.ok_or_else(none)?, scenes))
 }
 
 /// Refuses what belongs to a body beside the bodies.

@@ -36,7 +36,7 @@ fn keeps_its_energy_and_momenta(large_deflection: Choice, bounds: [f64; 2]) {
 fn first_frequency(stiffening: Choice) -> f64 {
     let mut scene = scene("spinning_plate");
     scene.time.end = 0.5;
-    scene.output.rows = flexframe::scene::Rows::Interval(5e-4);
+    scene.rows = flexframe::scene::Rows::Interval(5e-4);
     scene.effects.choices[Effect::GeometricStiffening] = stiffening;
     scene.effects.choices[Effect::LargeDeflection] = Choice::Off;
     let rows = rows(&build(&scene), &scene);

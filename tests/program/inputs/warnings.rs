@@ -172,7 +172,7 @@ fn of_modes_that_long_steps_get_wrong_though_the_energy_is_right_there_is_one() 
     let mut scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/accuracy/spin.toml")).unwrap();
     let mut with_step = |step: f64| {
         scene.time.control = flexframe::scene::StepControl::Fixed(step);
-        scene.output.rows = flexframe::scene::Rows::EverySteps(1);
+        scene.rows = flexframe::scene::Rows::EverySteps(1);
         let table = advise(&scene, &Builder::default(), false, |_| ()).unwrap();
         let report =
             run(&scene.clone().into(), tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ()).unwrap().1;
@@ -257,7 +257,7 @@ fn far_beyond_it_the_run_stops_and_its_file_can_be_read() {
     };
     let (time, deflection) = refusal(run(&scene.clone().into(), folder.path(), &RunSettings::default(), |_| ()));
     assert!(time > 1e-4 && deflection > 1.0, "{time} {deflection}");
-    let part = unfinished(results_path(from_ref(&scene), folder.path()).unwrap());
+    let part = unfinished(results_path(&scene.clone().into(), folder.path()));
     let rows = Results::open(&part, &COLUMNS).unwrap().rows();
     assert!(rows > 0 && rows as f64 <= 1.0 + time / 1e-4, "{rows} at {time}");
 }
@@ -274,7 +274,7 @@ fn the_surface_moves_as_the_points_do() {
         .iter()
         .position(|x| (x[0] - 200.0).hypot(x[1] - 5.0).hypot(x[2] - 5.0) < 1e-9)
         .unwrap();
-    let mut simulation = model.start_with(&scene, scene.time.method, scene.time.control, Rows::EverySteps(1)).unwrap();
+    let mut simulation = model.start_with(&scene, *scene.method(), scene.time.control, Rows::EverySteps(1)).unwrap();
     let now = simulation.observation().unwrap();
     let drawn = surface.displacements(&model.coordinates(&now.modal_displacement))[tip];
     assert!(

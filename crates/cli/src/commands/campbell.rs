@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use clap::Args;
 use flexframe::campbell::{self, AboutRest, CampbellSettings, Speeds, SystemCampbellSettings};
 use flexframe::outputs::outputs_of_system;
-use flexframe::run;
 
 use crate::arguments::values::{about_rest, axis, positive, speeds};
 use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
@@ -64,8 +63,7 @@ impl Campbell {
             self;
         output::require_file("--output", output.as_deref())?;
         let system = session.read_one(scene, modes)?;
-        let Some(scene) = system.bodies.first() else { return Err(run::RunError::NoBody.into()) };
-        let folder = folder(scene, output)?;
+        let folder = folder(&system, output)?;
         outputs_of_system(&system, &session.builder, files.overwrite).claim(&campbell::files(&folder))?;
         let report = if system.has_connections() {
             let settings = SystemCampbellSettings { axis, joint, speeds, orders };
@@ -78,7 +76,7 @@ impl Campbell {
                 help: "give x, y, z, or three numbers such as 0,0.6,0.8".to_owned(),
             })?;
             let settings = CampbellSettings { axis, speeds, orders, about_rest };
-            campbell::campbell(scene, &session.builder, &folder, &settings, |p| session.bar.campbell(p))
+            campbell::campbell(system.only_body()?, &session.builder, &folder, &settings, |p| session.bar.campbell(p))
         };
         let report = report.map_err(|error| modes.refusal(error))?;
         drop(session.bar);

@@ -37,7 +37,7 @@ impl Cost {
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;
         let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
-        let folder = folder(&system.bodies[0], output)?;
+        let folder = folder(&system, output)?;
         outputs_of_system(&system, &session.builder, files.overwrite).claim(&cost::files(&folder))?;
         let report = cost::price_list(&system, &session.builder, &folder, settings, |p| session.bar.cost(p))?;
         drop(session.bar);

@@ -56,7 +56,7 @@ impl Modes {
         }
         self.modes.set(&mut system);
         if let Some(to) = self.solver.take_of(&system.bodies, &mut session.builder, session.signals.slepc())? {
-            return session.write_only(&system.bodies[0], &to, self.files.overwrite);
+            return session.write_only(system.only_body()?, &to, self.files.overwrite);
         }
         self.output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
         let json = self.scene.json;

@@ -40,9 +40,9 @@ impl Run {
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;
         if let Some(to) = solver.take_of(&system.bodies, &mut session.builder, session.signals.slepc())? {
-            return session.write_only(&system.bodies[0], &to, files.overwrite);
+            return session.write_only(system.only_body()?, &to, files.overwrite);
         }
-        let folder = folder(&system.bodies[0], output)?;
+        let folder = folder(&system, output)?;
         let settings = RunSettings { large, check: !no_check, ..session.settings(files.overwrite) };
         let (_, report) = run::run(&system, &folder, &settings, |p| {
             session.signals.heard(p);

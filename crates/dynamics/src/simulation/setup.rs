@@ -242,8 +242,8 @@ impl Method {
 
     /// The method of a body that nothing ties: of one of bodies in joints the default.
     #[must_use]
-    pub fn without_joints(self) -> Self {
-        if self.joints.is_some() { Self::EXPONENTIAL } else { self }
+    pub fn without_joints(&self) -> &Self {
+        if self.joints.is_some() { &Self::EXPONENTIAL } else { self }
     }
 }
 

@@ -128,7 +128,7 @@ pub fn advise(
     verify: bool,
     mut progress: impl FnMut(AdviseProgress),
 ) -> Result<AdviseReport, RunError> {
-    let of_paper = !scene.time.method.abilities.switches_effects;
+    let of_paper = !scene.method().abilities.switches_effects;
     let mut scene = scene.clone().without_rows();
     if of_paper {
         scene.time.method = Method::EXPONENTIAL;

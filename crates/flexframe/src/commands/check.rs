@@ -39,7 +39,7 @@ pub fn check(
     let build = |scene| builder.build(scene, |p| progress(CheckProgress::Build(p)));
     let models: Vec<Model> = system.bodies.iter().map(build).collect::<Result<_, _>>()?;
     let of = bodies(&system.bodies, &models);
-    let now = metadata(&of).ok_or_else(|| changed("the list of bodies"))?;
+    let now = metadata(&system, &of);
     for (now, then) in now.bodies.iter().zip(&results.metadata.bodies) {
         let mut then = then.model.clone();
         then.mesh = None;

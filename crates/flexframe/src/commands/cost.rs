@@ -24,7 +24,7 @@ use std::path::Path;
 use advice::Subject;
 use dynamics::{Method, SystemScheme};
 use model::{BuildError, BuildProgress, Builder, Model};
-use scene::{Flexible, METHODS, Scene, System, Time};
+use scene::{Flexible, METHODS, Scene, System};
 
 pub use answer::Answer;
 pub use body::CostBody;
@@ -77,7 +77,6 @@ pub fn price_list(
 ) -> Result<CostReport, CostError> {
     let bodies = system.bodies.iter().map(|scene| scene.clone().without_rows()).collect();
     let system = System { bodies, ..system.clone() };
-    let scene = system.bodies.first().ok_or(CostError::NoBody)?;
     let built = system.bodies.iter().map(|scene| Built::new(scene, builder, |p| progress(CostProgress::Build(p))));
     let built = built.collect::<Result<Vec<_>, _>>()?;
     let case = PreparedScene::new(system.clone(), built.iter().map(|built| &built.model).collect());
@@ -98,7 +97,7 @@ pub fn price_list(
     step(0);
     let finest = if is_tied { Method::of_joints(SystemScheme::default()) } else { Method::EXPONENTIAL };
     let reference = converge(&case, finest, settings.budget(20), 0.0)
-        .map_err(|(steps, source)| CostError::Reference { scene: scene.path.clone(), steps, source })?;
+        .map_err(|(steps, source)| CostError::Reference { scene: system.path.clone(), steps, source })?;
     step(1);
     // The paper's formulation has a limit of its own, to which its schemes converge.
     let limit = (!is_tied).then(|| converge(&case, frames_rk4::LIMIT, settings.budget(5), 0.0));
@@ -109,8 +108,7 @@ pub fn price_list(
     };
     step(1);
     let evaluator = Evaluator { reference: &reference, paper_limit: paper_limit.as_ref(), settings };
-    let Time { method, control, .. } = system.bodies.iter().find(|scene| scene.tied).unwrap_or(scene).time;
-    let own = (method, control);
+    let own = (*system.method(), system.time.control);
     let mut lines = Vec::new();
     for (method, controlled) in ladders {
         lines.push(refine_line(&case, &evaluator, method, controlled, own));
@@ -128,15 +126,15 @@ pub fn price_list(
     let bodies: Vec<CostBody> = case.bodies().zip(&built).map(of_body).collect();
 
     let mut report = CostReport {
-        title: scene.title.clone(),
-        scene: scene.path.clone(),
-        time_unit: scene.units.time.clone(),
+        title: system.title.clone(),
+        scene: system.path.clone(),
+        time_unit: system.units.time.clone(),
         machine: Machine::this(),
-        end: scene.time.end,
+        end: system.time.end,
         reference: reference.report(),
         paper_limit: paper_limit.as_ref().map(|limit| limit.report_against(&reference, case.scales())),
         paper_limit_failure,
-        answer: settings.target.map(|target| Answer::new(target, scene.output.rows, &lines, &bodies)),
+        answer: settings.target.map(|target| Answer::new(target, system.rows, &lines, &bodies)),
         lines,
         bodies,
         files: Vec::new(),

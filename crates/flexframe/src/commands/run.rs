@@ -164,7 +164,7 @@ fn conclude(
 
 /// Refuses a run that could not write its files.
 fn check_files(system: &System, folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
-    let path = results_path(&system.bodies, folder).ok_or(RunError::NoBody)?;
+    let path = results_path(system, folder);
     let outputs = outputs_of_system(system, &settings.builder, settings.overwrite);
     outputs.spare(&path)?;
     outputs.spare(&unfinished(&path))?;
@@ -197,18 +197,17 @@ pub fn run_models(
     mut progress: impl FnMut(RunProgress),
 ) -> Result<RunReport, RunError> {
     let bodies = bodies(&system.bodies, models);
-    let scene = bodies.first().ok_or(RunError::NoBody)?.scene;
-    let path = results_path(&system.bodies, folder).ok_or(RunError::NoBody)?;
+    let path = results_path(system, folder);
     let started = Instant::now();
     let initial = initial(&bodies);
     let run = begin_run(system, models)?;
     let identity = identity(system, settings);
     let checkpoint = checkpoint(identity, &run, &path)?.len();
-    let metadata = metadata_of_file(system, &bodies, &settings.builder).ok_or(RunError::NoBody)?;
+    let metadata = metadata_of_file(system, &bodies, &settings.builder);
     let of_shapes = if settings.rows_alone { 0 } else { stored_bytes(&bodies) };
-    let estimate = Estimate::of_rows(scene, &metadata, of_shapes);
+    let estimate = Estimate::of_rows(system, &metadata, of_shapes);
     if estimate.bytes > LARGE && !settings.large {
-        return Err(RunError::Large { scene: scene.path.clone(), estimate });
+        return Err(RunError::Large { scene: system.path.clone(), estimate });
     }
     let estimate = estimate.with_seconds(&run, &settings.stop);
     progress(RunProgress::Estimate(estimate));
@@ -221,7 +220,7 @@ pub fn run_models(
     let followed = followed(&bodies, &initial)?;
     let mut recorder = Recorder::new(run, followed, writer, estimate, identity);
     recorder.begin()?;
-    let followed = recorder.follow(started, settings, &mut progress)?;
+    let followed = recorder.follow(system, started, settings, &mut progress)?;
     conclude(system, models, settings, followed, progress)
 }
 
@@ -244,11 +243,10 @@ pub fn resume(
     let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
     progress(RunProgress::Built);
     let bodies = bodies(&system.bodies, &models);
-    let first = bodies.first().ok_or(RunError::NoBody)?.scene;
     let of_shapes = if settings.rows_alone { 0 } else { stored_bytes(&bodies) };
-    let estimate = Estimate::of_rows(first, &results.metadata, of_shapes);
+    let estimate = Estimate::of_rows(&system, &results.metadata, of_shapes);
     let started = Instant::now();
-    let now = metadata_of_file(&system, &bodies, &settings.builder).ok_or(RunError::NoBody)?;
+    let now = metadata_of_file(&system, &bodies, &settings.builder);
     if now.program_version != results.metadata.program_version {
         return Err(changed("the version of flexframe"));
     }
@@ -276,7 +274,7 @@ pub fn resume(
         Some(_) => recorder.take_up(&results)?,
         None => recorder.begin()?,
     }
-    let followed = recorder.follow(started, settings, &mut progress)?;
+    let followed = recorder.follow(&system, started, settings, &mut progress)?;
     conclude(&system, &models, settings, followed, progress)
 }
 
@@ -302,7 +300,7 @@ pub(crate) fn system_of(results: &Results) -> Result<Option<System>, SceneError>
 /// The run of a system from its start.
 fn begin_run(system: &System, models: &[Model]) -> Result<Run, RunError> {
     let models: Vec<&Model> = models.iter().collect();
-    let beginning = Beginning::of(system, &models).ok_or(RunError::NoBody)?;
+    let beginning = Beginning::of(system, &models);
     Ok(begin(system, &models, &beginning).map_err(|error| error.at_key(system))?)
 }
 

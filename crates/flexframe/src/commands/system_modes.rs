@@ -55,7 +55,7 @@ pub fn system_modes(
     let of_system = |motion: &TiedMotion| {
         let (mut modes, steady) = of_motion(system, motion)?;
         let found = steady.participation(motion.run.motion(), about.map(Vector3::from));
-        let found = found.map_err(|source| failed(system, motion, source))?;
+        let found = found.map_err(|source| failed(system, source))?;
         modes.report.carried =
             found.map(|found| CarriedReport::of_system(found, about.is_some(), &modes.report.frequency_unit));
         Ok(modes)
@@ -93,15 +93,14 @@ pub fn system_advice(
         let (modes, _) = of_motion(system, motion)?;
         let flexible = motion.bodies.iter().copied().filter(|body| models[*body].body.flexible() > 0);
         let flexible = body_names(system, &flexible.collect::<Vec<_>>());
-        let scene = &system.bodies[motion.bodies[0]];
         let advice = SystemAdvice::new(&modes.report, &flexible);
-        Ok(advice.with_stiffening(stiffening::stiffened(system, &models, motion), scene, &modes.report.frequency_unit))
+        Ok(advice.with_stiffening(stiffening::stiffened(system, &models, motion), &system.units, &modes.report.frequency_unit))
     };
     tied_motions(system, &models)?.iter().map(of_system).collect()
 }
 
 fn of_motion(system: &System, motion: &TiedMotion) -> Result<(SystemModes, SteadyState), SystemModesError> {
-    let failed = |source| failed(system, motion, source);
+    let failed = |source| failed(system, source);
     let of_motion = motion.run.motion();
     let rotors = Rotors::of(of_motion, |_| false);
     let steady = rotors.steady_state(of_motion, &CommonSpin::REST).map_err(failed)?;
@@ -110,6 +109,6 @@ fn of_motion(system: &System, motion: &TiedMotion) -> Result<(SystemModes, Stead
     Ok((SystemModes { bodies: motion.bodies.clone(), states: steady.states(), vibrations, report }, steady))
 }
 
-fn failed(system: &System, motion: &TiedMotion, source: SteadyError) -> SystemModesError {
-    SystemModesError::Steady { scene: system.bodies[motion.bodies[0]].path.clone(), source }
+fn failed(system: &System, source: SteadyError) -> SystemModesError {
+    SystemModesError::Steady { scene: system.path.clone(), source }
 }

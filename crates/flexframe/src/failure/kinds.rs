@@ -398,7 +398,6 @@ impl Fault for RunError {
             Self::Refused { results, .. } => Kind::Refused.of(results),
             Self::Stopped { part, .. } => Kind::Stopped.of(part),
             Self::Restore { part, .. } | Self::Changed { part, .. } => Kind::Input.of(part),
-            Self::NoBody => Kind::Input.alone(),
             Self::Large { scene, estimate } => Kind::Refused.with(Details {
                 key: Some("output.interval".to_owned()),
                 found: Some(estimate.to_string()),
@@ -626,7 +625,6 @@ impl Fault for CostError {
     fn known(&self) -> Known {
         match self {
             Self::Build(_) | Self::Start(_) | Self::Figure(_) | Self::Write(_) | Self::Output(_) => Known::default(),
-            Self::NoBody => Kind::Input.alone(),
             Self::Reference { scene, .. } => in_file(scene),
         }
     }

@@ -78,26 +78,25 @@ pub struct Beginning {
 }
 
 impl Beginning {
-    /// Beginning of a scene with a model of each body; `None` without bodies.
-    pub fn of(system: &System, models: &[&Model]) -> Option<Self> {
-        let Scene { time, output, .. } = system.bodies.iter().find(|scene| scene.tied).or(system.bodies.first())?;
+    /// Beginning of a scene with a model of each body.
+    pub fn of(system: &System, models: &[&Model]) -> Self {
         let forces = |model: &&Model| BodyForces {
             loads: model.loads().to_vec(),
             damping_ratios: model.damping_ratios().to_vec(),
             physics: model.physics.clone(),
         };
-        Some(Self {
-            method: time.method,
-            control: time.control,
-            end: time.end,
-            rows: output.rows,
+        Self {
+            method: system.time.method,
+            control: system.time.control,
+            end: system.time.end,
+            rows: system.rows,
             bodies: models.iter().map(forces).collect(),
             laws: Vec::new(),
             equations: Vec::new(),
             marker_laws: Vec::new(),
             relaxed: system.relaxed,
             together: false,
-        })
+        }
     }
 
     /// Times of the rows of all bodies.
@@ -239,7 +238,7 @@ fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> R
         damping_ratios: &forces.damping_ratios,
         loads: &forces.loads,
         physics: &forces.physics,
-        method: model.paper.or(&method),
+        method: model.paper.or(method),
         control: of.control,
         end: of.end,
         rows: of.rows,
@@ -269,7 +268,7 @@ pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of:
         elements: Vec::new(),
         states: vec![model.initial(scene).state(&model.body)],
         relaxed: false,
-        method: of.method.without_joints(),
+        method: *of.method.without_joints(),
         control: of.control,
         end: of.end,
         rows: of.rows,

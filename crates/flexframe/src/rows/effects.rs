@@ -11,7 +11,7 @@ use crate::report::quantity;
 /// The effects and static shapes that can be on or off in a run of the conservative form, and whether they are; none for
 /// the paper's formulation, which has its own.
 pub(crate) fn computed(scene: &Scene, model: &Model) -> Vec<(&'static str, bool)> {
-    if !scene.time.method.abilities.switches_effects {
+    if !scene.method().abilities.switches_effects {
         return Vec::new();
     }
     let subjects = model.advice.rows().map(|(subject, _)| subject);
@@ -20,7 +20,7 @@ pub(crate) fn computed(scene: &Scene, model: &Model) -> Vec<(&'static str, bool)
 
 /// All effects of the conservative form in words, as a page about the run shows them; none for the paper's formulation.
 pub(crate) fn described(scene: &Scene, model: &Model) -> Vec<EffectProperties> {
-    if !scene.time.method.abilities.switches_effects {
+    if !scene.method().abilities.switches_effects {
         return Vec::new();
     }
     let effect = |(subject, row): (Subject, &advice::Row)| EffectProperties {

@@ -56,7 +56,7 @@ pub(crate) fn reduce(
     let drive = drive.clone();
     let model = MeshModel { scene, mesh, positions, reference, dofs, structure, support, loads, markers, drive };
 
-    if !scene.time.method.abilities.any_mass && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {
+    if !scene.method().abilities.any_mass && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {
         let found = "a scheme of the paper's formulation, which knows no rotations of nodes, for a mass that is no scalar for each node";
         let help = "set `formulation = \"conservative\"`";
         return Err(scene.refuse("time", found, "the conservative form", help).into());

@@ -32,7 +32,7 @@ pub(crate) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>
 pub(crate) fn may_stress(scene: &Scene) -> bool {
     scene.body.has_elements()
         && scene.effects.choices[Effect::GeometricStiffening] != Choice::Off
-        && scene.time.method.abilities.geometric_stiffening
+        && scene.method().abilities.geometric_stiffening
 }
 
 /// True if a load stays as it is, seen from the body.
@@ -50,7 +50,7 @@ pub(crate) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
     match scene.modes.static_correction {
         _ if flexible == 0 => Choice::Off,
         // The shapes are stiff, which only this scheme does not mind.
-        Choice::Auto if scene.time.method.without_joints() != Method::EXPONENTIAL => Choice::Off,
+        Choice::Auto if *scene.method().without_joints() != Method::EXPONENTIAL => Choice::Off,
         choice => choice,
     }
 }
@@ -58,7 +58,7 @@ pub(crate) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
 /// The effects of the motion of a body of which `keep` modes are kept: what the scene leaves open is as advised.
 pub(crate) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: usize) -> EffectMap<bool> {
     // The paper's formulation has the effects that it has; gravity is a load like others.
-    let in_any_case = |effect: Effect| !scene.time.method.abilities.switches_effects && effect != Effect::Gravity;
+    let in_any_case = |effect: Effect| !scene.method().abilities.switches_effects && effect != Effect::Gravity;
     let has_weight = !body.motion.is_free() && bears_weight(scene, body.mass);
     let mut effects = EffectMap::from_fn(|effect| match scene.effects.choices[effect] {
         Choice::On => true,
@@ -119,7 +119,7 @@ pub(crate) fn bent_modes(scene: &Scene, advice: &Advice, keep: usize, natural: u
     let large: Vec<usize> = match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
         (Choice::Off, _) => Vec::new(),
         _ if !scene.body.bends_far() => Vec::new(),
-        (Choice::Auto, _) if !scene.time.method.abilities.large_deflection => Vec::new(),
+        (Choice::Auto, _) if !scene.method().abilities.large_deflection => Vec::new(),
         (_, Some(Large::Count(count))) => first(*count),
         (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),
         (Choice::On, None) => match advice.furthest_modes(keep) {

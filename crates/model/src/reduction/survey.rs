@@ -101,7 +101,7 @@ fn may_stiffen(model: &MeshModel<'_, '_>, modal: &ModalModel) -> Result<bool, Bu
         Choice::On => true,
         Choice::Off => false,
         Choice::Auto => {
-            scene.time.method.abilities.geometric_stiffening
+            scene.method().abilities.geometric_stiffening
                 && physics::may_spin(scene, support.motion, model.drive.as_ref())
                 // How fast joints let it turn is not known.
                 && (!model.markers.is_empty() || screen(&modal.case(model), scene.effects.tolerance)?.on)

@@ -95,6 +95,6 @@ fn several(scene: &Scene) -> Option<&[scene::HeldDirections]> {
         Some(Constraint::Support { parts }) if parts.len() > 1 => Some(parts),
         _ => None,
     }
-    .filter(|_| scene.output.support_reactions && scene.time.method.abilities.reactions)
+    .filter(|_| scene.output.support_reactions && scene.method().abilities.reactions)
     .map(Vec::as_slice)
 }

@@ -13,7 +13,7 @@ use scene::{
 };
 
 use crate::error::BuildError;
-use crate::load::history::history;
+use crate::load::history::history_at;
 use crate::model::Model;
 use crate::tie::axes::axes;
 use crate::tie::body_marker::UnknownTurns;
@@ -305,8 +305,7 @@ impl<'a> Island<'a> {
     /// The drive of a coordinate, which may not jump: no force moves a body in no time.
     fn continuous_drive(&self, key: &str, drive: &JointDrive) -> Result<dynamics::JointDrive, BuildError> {
         let made = self.drive(key, drive)?;
-        let of_body = &self.scene.bodies[self.bodies[0]];
-        let end = of_body.time.end;
+        let end = self.scene.time.end;
         let beside = |time: f64, by: f64| made.history.at(time, time + by * BESIDE * end);
         let rounding = JUMP * made.history.largest(end);
         let jump =
@@ -322,8 +321,8 @@ impl<'a> Island<'a> {
     }
 
     fn drive(&self, key: &str, drive: &JointDrive) -> Result<dynamics::JointDrive, BuildError> {
-        let of_body = &self.scene.bodies[self.bodies[0]];
-        let history = history(of_body, &format!("{key}.history"), &drive.history)?;
+        let place = |key: &str| self.scene.place(key);
+        let history = history_at((self.scene.time.end, &place), &format!("{key}.history"), &drive.history)?;
         Ok(dynamics::JointDrive { amplitude: drive.amplitude, history })
     }
 

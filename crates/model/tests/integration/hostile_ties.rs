@@ -98,7 +98,7 @@ fn run(text: &str) -> Result<usize, (usize, String)> {
             scheme: dynamics::SystemScheme::Radau,
             control: time.control,
             end: time.end,
-            rows: system.bodies[0].output.rows,
+            rows: system.rows,
         };
         let mut simulation = Simulation::of_system(setup).map_err(|error| (3, error.to_string()))?;
         let mut now: Vec<Observation> = (0..tied.bodies.len()).map(|body| simulation.room(body)).collect();

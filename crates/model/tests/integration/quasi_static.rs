@@ -9,7 +9,7 @@ use crate::{CLAMPED, bar, build, parse};
 /// Rows of a run under this control, and the number of its steps.
 fn run(model: &Model, scene: &Scene, control: StepControl) -> (Vec<Observation>, u64) {
     let rows = Rows::Interval(scene.time.end / 50.0);
-    let mut simulation = model.start_with(scene, scene.time.method, control, rows).unwrap();
+    let mut simulation = model.start_with(scene, *scene.method(), control, rows).unwrap();
     let mut observations = Vec::new();
     loop {
         match simulation.advance(u64::MAX) {

@@ -9,7 +9,7 @@ pub(super) fn example(name: &str) -> Scene {
 }
 
 fn motion(model: &Model, scene: &Scene, step: f64, interval: f64) -> Vec<Observation> {
-    let (method, control) = (scene.time.method, StepControl::Fixed(step));
+    let (method, control) = (*scene.method(), StepControl::Fixed(step));
     let mut simulation = model.start_with(scene, method, control, Rows::Interval(interval)).unwrap();
     let mut rows = Vec::new();
     loop {
@@ -42,7 +42,7 @@ fn check(scene: &mut Scene, steps: &[f64], reference: f64, above: f64) -> Vec<f6
     let model = Model::build(scene, |_| ()).unwrap();
     let check = |step: &f64| {
         scene.time.control = StepControl::Fixed(*step);
-        scene.output.rows = scene::Rows::EverySteps(1);
+        scene.rows = scene::Rows::EverySteps(1);
         let interval = step * (scene.time.end / step / 200.0).ceil();
         let truth = motion(&model, scene, reference, interval);
         let (attitude, modes) = errors(&motion(&model, scene, *step, interval), &truth);
@@ -133,7 +133,7 @@ fn of_a_load_far_faster_than_the_steps_only_the_beginning_is_compared() {
     let mut scene = example("ring");
     scene.modes.flexible = scene::Flexible::Count(1);
     (scene.time.end, scene.time.control) = (1000.0, StepControl::Fixed(0.01));
-    scene.output.rows = scene::Rows::Interval(1.0);
+    scene.rows = scene::Rows::Interval(1.0);
     let scene::Load::Force(force) = &mut scene.loads[0] else { panic!("no force") };
     force.history = scene::History::Sine { frequency: 5e4, phase: 0.0, start: 0.0, duration: None };
     let model = Model::build(&scene, |_| ()).unwrap();

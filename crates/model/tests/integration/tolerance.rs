@@ -9,7 +9,7 @@ use super::step::example;
 /// Largest errors of the attitude, of the modal coordinates and of the points' accelerations, the latter two relative to
 /// the largest values, in a hundred rows, between which step control goes as far as it likes.
 fn errors(model: &Model, scene: &Scene, tolerance: f64, reference: f64) -> [f64; 3] {
-    let method = scene.time.method;
+    let method = *scene.method();
     let interval = scene.time.end / 100.0;
     let follow = |control| -> (Vec<Observation>, u64) {
         let mut simulation = model.start_with(scene, method, control, Rows::Interval(interval)).unwrap();

@@ -12,7 +12,7 @@ use flexframe::motion::{Beginning, BodyForces, begin};
 use flexframe::results::Metadata;
 use flexframe::row::BodyRow;
 use flexframe::run::{RunBody, RunError, Watch};
-use pyo3::exceptions::{PyRuntimeError, PyTypeError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -325,10 +325,8 @@ impl Simulation {
         let of_models: Vec<&Model> = models.iter().map(|model| &**model).collect();
         let of_run: Vec<RunBody<'_>> =
             system.bodies.iter().zip(&of_models).map(|(scene, model)| RunBody { scene, model }).collect();
-        let metadata = flexframe::run::metadata_of_system(&system, &of_run);
-        let mut metadata = metadata.ok_or_else(|| exception(py, &RunError::NoBody))?;
-        let beginning = Beginning::of(&system, &of_models).ok_or_else(|| exception(py, &RunError::NoBody))?;
-        let mut beginning = Beginning { together: is_system, ..beginning };
+        let mut metadata = flexframe::run::metadata_of_system(&system, &of_run);
+        let mut beginning = Beginning { together: is_system, ..Beginning::of(&system, &of_models) };
         let faults = Faults::default();
         let loads = loads_of_bodies(py, loads, &system.bodies, is_system)?;
         for (number, loads) in loads.into_iter().enumerate() {
@@ -374,7 +372,7 @@ impl Simulation {
         }
         let begun = begun.map_err(|error| exception(py, &RunError::from(error)))?;
         let Some(mut island) = begun.into_islands().into_iter().next() else {
-            return Err(exception(py, &RunError::NoBody));
+            return Err(PyValueError::new_err("there is no body to run; give one or more"));
         };
         if island.motion.system().is_none() {
             island.motion.watch(Arc::new(Mutex::new(EndAtFault(faults.clone()))));

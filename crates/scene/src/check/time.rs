@@ -145,7 +145,7 @@ impl Check<'_> {
         length < LEAST_PART * self.end
     }
 
-    pub fn output(&self, section: OutputSection, time: &Time, body: &Body) -> Result<Output, SceneError> {
+    pub fn output(&self, section: OutputSection, time: &Time, body: &Body) -> Result<(Rows, Output), SceneError> {
         let OutputSection { every, interval, points, stress, peak_stress } = section;
         let rows = match (every, interval, time.control) {
             (Some(_), Some(_), _) => {
@@ -213,6 +213,6 @@ impl Check<'_> {
             "points whose stress is written",
             "name them, e.g. `points = { root = [0, 0, 0] }`, or ask for `peak_stress = true`",
         )?;
-        Ok(Output { rows, points, stress, peak_stress, stress_field: false, support_reactions: true, backbones: true })
+        Ok((rows, Output { points, stress, peak_stress, stress_field: false, support_reactions: true, backbones: true }))
     }
 }

@@ -12,10 +12,9 @@ impl System {
     /// The scene file, the tables of all histories, and those of measured modes: the files that are read to know the scene. Those
     /// of its bodies are read later.
     pub fn files(&self) -> Vec<PathBuf> {
-        let scenes = self.bodies.iter().take(1).map(|scene| scene.path.clone());
         let tables = self.tables().filter_map(|table| table.file.clone());
         let measured = self.bodies.iter().flat_map(|scene| &scene.modes.measured).map(|measured| measured.file.clone());
-        scenes.chain(tables).chain(measured).collect()
+        std::iter::once(self.path.clone()).chain(tables).chain(measured).collect()
     }
 
     /// The tables of the histories of its bodies and joints, with their points as they were read.

@@ -37,8 +37,8 @@ fn the_whole_example() {
     assert_eq!(direction[1], 0.0);
     assert_eq!(*history, History::HalfSine { start: 0.0, duration: 0.02 });
     assert_eq!((scene.time.end, scene.time.control), (0.5, StepControl::Fixed(1e-4)));
-    assert_eq!(scene.time.method, Method::EXPONENTIAL);
-    assert_eq!(scene.output.rows, Rows::EverySteps(1));
+    assert_eq!(*scene.method(), Method::EXPONENTIAL);
+    assert_eq!(scene.rows, Rows::EverySteps(1));
     assert_eq!(scene.output.points.len(), 1);
     assert_eq!(scene.output.points["P1"], [-500.0, -25.0, 0.0]);
     assert_eq!(scene.source, EXAMPLE);
@@ -79,9 +79,9 @@ fn defaults_and_whole_numbers() {
     assert_eq!(scene.initial.velocity, [0.0; 3]);
     assert_eq!(scene.initial.angular_velocity, [0.0; 3]);
     assert!(scene.initial.modal_displacement.is_empty());
-    assert_eq!((scene.output.rows, scene.output.points.len()), (Rows::EverySteps(1), 0));
+    assert_eq!((scene.rows, scene.output.points.len()), (Rows::EverySteps(1), 0));
     assert_eq!((scene.time.end, scene.time.control), (1.0, StepControl::Fixed(1.0)));
-    assert_eq!(scene.time.method, Method::EXPONENTIAL);
+    assert_eq!(*scene.method(), Method::EXPONENTIAL);
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn formulation_and_scheme_name_a_method() {
         ("formulation = 'paper'\nscheme = 'rkmk4'", frames_rk4::LIMIT),
     ] {
         let scene = Scene::parse(&least(keys), "a.toml").unwrap_or_else(|error| panic!("{keys}: {error}"));
-        assert_eq!(scene.time.method, method, "{keys}");
+        assert_eq!(*scene.method(), method, "{keys}");
     }
 }
 
@@ -118,7 +118,7 @@ fn steps_or_a_tolerance_and_the_rows() {
     ] {
         let text = least(&format!("[output]\n{output}\n")).replace("end = 1\nstep = 1", time);
         let scene = Scene::parse(&text, "a.toml").unwrap_or_else(|error| panic!("{text}: {error}"));
-        assert_eq!((scene.time.control, scene.output.rows), (stepping, rows), "{text}");
+        assert_eq!((scene.time.control, scene.rows), (stepping, rows), "{text}");
     }
 }
 
@@ -159,7 +159,7 @@ fn every_optional_key() {
     }
     assert_eq!((force.amplitude, force.frame), (-2.0, LoadFrame::Global));
     assert_eq!(force.history, History::HalfSine { start: -1.0, duration: 3.0 });
-    assert_eq!(scene.output.rows, Rows::EverySteps(5));
+    assert_eq!(scene.rows, Rows::EverySteps(5));
 
     let absolute = text.replace("'a.msh'", "'/meshes/a.msh'");
     let scene = Scene::parse(&absolute, "/a/b.toml").unwrap();

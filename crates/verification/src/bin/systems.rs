@@ -63,7 +63,7 @@ fn ladder(scene: &Path, [body, point]: [&str; 2], rows: &str, tolerances: &[Stri
     let number = system.bodies.iter().position(|other| other.name.as_deref() == Some(body)).ok_or("no such body")?;
     let of_system = built.tied.bodies.iter().position(|other| *other == number).ok_or("a body that is not tied")?;
     let seen = built.models[number].points.iter().position(|(name, _)| name == point).ok_or("no such point")?;
-    let end = system.bodies[0].time.end;
+    let end = system.time.end;
     for tolerance in tolerances {
         let interval = end / rows.parse::<f64>()?;
         let (scheme, tolerance) = tolerance.split_once(':').unwrap_or((SystemScheme::Radau.name(), tolerance));

@@ -47,7 +47,7 @@ fn spinning(rates: &[f64]) -> (Scene, Solid) {
     scene.initial.modal_velocity = rates.to_vec();
     scene.time.end = 0.25;
     scene.time.control = StepControl::Fixed(5e-5);
-    scene.output.rows = Rows::Interval(1e-3);
+    scene.rows = Rows::Interval(1e-3);
     scene.effects.refuse = false;
     (scene, solid)
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use flexframe::fit::{self, FitError, FitSettings};
 use flexframe::outputs::{Written, outputs_of_system};
-use scene::{Measured, Scene};
+use scene::{Measured, Shared};
 
 use crate::arguments::values::positive;
 use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
@@ -53,7 +53,7 @@ impl Fit {
                 outputs = outputs.and_input(measured);
             }
             outputs.claim_as(&Written::SCENE, output)?;
-            check_beside(&system.bodies[0], output)?;
+            check_beside(&system, output)?;
         }
         let measured = measured.as_deref().map(Measured::read).transpose()?;
         let settings = FitSettings { parameters, measured, deviation };
@@ -71,7 +71,7 @@ impl Fit {
 }
 
 /// Refuses a scene in another folder than that of the scene which it is made of: its paths are relative to it.
-fn check_beside(scene: &Scene, output: &Path) -> Result<(), CliError> {
+fn check_beside(scene: &Shared, output: &Path) -> Result<(), CliError> {
     let folder = |path: &Path| {
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         parent.canonicalize().ok()

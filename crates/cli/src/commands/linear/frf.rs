@@ -44,7 +44,7 @@ impl Frf {
         let Self { scene: SceneArgs { scene, json }, about, frequencies, log, structural, output, files } = self;
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;
-        let folder = folder(&system.bodies[0], output)?;
+        let folder = folder(&system, output)?;
         outputs_of_system(&system, &session.builder, files.overwrite).claim(&frf::files(&folder))?;
         let settings = FrfSettings { linear: about.settings(), frequencies, logarithmic: log, loss_factor: structural };
         let report = frf::frf(&system, &session.builder, &folder, &settings, |p| session.bar.build(p))?;

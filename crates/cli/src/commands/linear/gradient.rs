@@ -45,7 +45,7 @@ impl Gradient {
         let Self { scene: SceneArgs { scene, json }, parameters, frequencies, modes, output, files } = self;
         output::require_file("--output", output.as_deref())?;
         let system = session.read_one(scene, modes)?;
-        let folder = folder(&system.bodies[0], output)?;
+        let folder = folder(&system, output)?;
         let settings = GradientSettings { parameters, frequencies };
         outputs_of_system(&system, &session.builder, files.overwrite).claim(&gradient::files(&folder, &settings))?;
         let report = gradient::gradient(&system, &session.builder, &folder, &settings, |p| session.bar.build(p));

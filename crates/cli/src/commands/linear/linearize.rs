@@ -40,7 +40,7 @@ impl Linearize {
         let system = session.read_system(scene)?;
         let file = match output {
             Some(file) => file,
-            None => folder(&system.bodies[0], None)?.join("linear.mat"),
+            None => folder(&system, None)?.join("linear.mat"),
         };
         outputs_of_system(&system, &session.builder, files.overwrite).claim(std::slice::from_ref(&file))?;
         let report = linearize::linearize(&system, &session.builder, &about.settings(), reduce, &file, |p| {

@@ -53,7 +53,7 @@ impl Psd {
         )?;
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;
-        let folder = folder(&system.bodies[0], output)?;
+        let folder = folder(&system, output)?;
         outputs_of_system(&system, &session.builder, files.overwrite)
             .and_input(&spectra)
             .claim(&psd::files(&folder))?;

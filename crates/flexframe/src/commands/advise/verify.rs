@@ -127,7 +127,7 @@ fn follow(scene: &Scene, model: &Model) -> Result<Vec<Observation>, RunFailure> 
         StepControl::Fixed(step) => (scene.time.end / step / COMPARED).ceil() * step,
         StepControl::Tolerance(_) => scene.time.end / COMPARED,
     };
-    let method = scene.time.method;
+    let method = *scene.method();
     let simulation = model.start_with(scene, method, control, Rows::Interval(interval))?;
     Ok(simulation.collect::<Result<Vec<_>, _>>()?)
 }

@@ -49,15 +49,14 @@ pub fn campbell_of_system(
     system.bodies.iter_mut().for_each(|scene| *scene = spinning(scene));
     let models = build(&system, builder, |p| progress(CampbellProgress::Build(p)))?;
     let motions = tied_motions(&system, &models)?;
-    let scene = &system.bodies[0];
     let Some(motion) = motions.first() else {
         let found = "bodies that nothing ties together".to_owned();
-        return Err(CampbellError::NoAxis { scene: scene.path.clone(), found, joints: Vec::new() });
+        return Err(CampbellError::NoAxis { scene: system.path.clone(), found, joints: Vec::new() });
     };
     let of_motion = motion.run.motion();
     let Axis { direction: axis, point, joint } = axis_of(motion, settings).map_err(|found| match found {
         Found::Nothing(found) => CampbellError::NoAxis {
-            scene: scene.path.clone(),
+            scene: system.path.clone(),
             found,
             joints: of_motion.system().joints().iter().map(|joint| joint.name.clone()).collect(),
         },
@@ -65,7 +64,7 @@ pub fn campbell_of_system(
     })?;
     let rotor = joint.map(|joint| rotor_of(of_motion, joint)).transpose().map_err(|source| {
         let joint = joint.map_or_else(String::new, |joint| of_motion.system().joints()[joint].name.clone());
-        CampbellError::Rotor { scene: scene.path.clone(), joint, source: Box::new(source) }
+        CampbellError::Rotor { scene: system.path.clone(), joint, source: Box::new(source) }
     })?;
     let rotor = rotor.flatten();
     // Rotors beside the one that is asked for spin as the scene has them; in a common spin, joints on the ground turn by it.
@@ -76,7 +75,7 @@ pub fn campbell_of_system(
         joint == Some(other) || is_meant
     });
     let find = |speed: f64| {
-        let failed = |source: SteadyError| CampbellError::Steady { scene: scene.path.clone(), speed, source };
+        let failed = |source: SteadyError| CampbellError::Steady { scene: system.path.clone(), speed, source };
         let modes = match &rotor {
             Some(rotor) => of_motion.rotor_modes(rotor, speed, &others.spinning),
             None => of_motion.spin_modes(&axis, point, speed, &others.spinning),
@@ -96,10 +95,10 @@ pub fn campbell_of_system(
     let begins = limits.critical.iter().filter(|critical| critical.kind == CriticalKind::GrowthBegins);
     let stable_below = begins.map(|critical| critical.speed).chain(unstable).reduce(f64::min);
     let mut report = CampbellReport {
-        title: scene.title.clone(),
-        time_unit: scene.units.time.clone(),
-        length_unit: scene.units.length.clone(),
-        frequency_unit: frequency_unit(&scene.units.time),
+        title: system.title.clone(),
+        time_unit: system.units.time.clone(),
+        length_unit: system.units.length.clone(),
+        frequency_unit: frequency_unit(&system.units.time),
         mesh: None,
         bodies: body_names(&system, &motion.bodies),
         rotor: rotor.map(|rotor| body_names(&system, &motion.bodies).swap_remove(rotor.body)),

@@ -1,6 +1,6 @@
 //! A scene with its models, ready to be run by any method.
 
-use dynamics::{Method, RowTimes, Rows, Run, SetupError, StepControl};
+use dynamics::{Method, Rows, Run, SetupError, StepControl};
 use model::{Model, StartError};
 use scene::{Scene, System};
 
@@ -36,7 +36,7 @@ impl<'a> PreparedScene<'a> {
     }
 
     pub(super) fn end(&self) -> f64 {
-        self.system.bodies.first().map_or(0.0, |scene| scene.time.end)
+        self.system.time.end
     }
 
     /// Sizes of each body below which a quantity does not move.
@@ -51,9 +51,7 @@ impl<'a> PreparedScene<'a> {
 
     fn try_begin(&self, method: Method, control: StepControl) -> Result<Run, BeginError> {
         let rows = Rows::Interval(self.end() / self.intervals(control) as f64);
-        let Some(beginning) = Beginning::of(&self.system, &self.models) else {
-            return Ok(Run::new(Vec::new(), RowTimes::new(rows, control, self.end())));
-        };
+        let beginning = Beginning::of(&self.system, &self.models);
         begin(&self.system, &self.models, &Beginning { method, control, rows, ..beginning })
     }
 

@@ -19,9 +19,6 @@ pub enum CostError {
     /// A body does not move alone.
     #[error("{0}")]
     Start(#[from] StartError),
-    /// No body was given.
-    #[error("there is no body to run")]
-    NoBody,
     /// No run of the reference came to its end. `steps`: those of the last try.
     #[error(
         "{scene}: no reference can be made: a run of {steps} steps of the exponential scheme failed: {source}; make the \

@@ -52,17 +52,16 @@ impl FmuModel {
         let bodies = system.bodies.iter().map(|scene| FmuBody::new(scene, builder, &mut progress));
         let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
         let models: Vec<&Model> = bodies.iter().map(|body| &body.model).collect();
-        let beginning = Beginning::of(&system, &models).ok_or(FmuError::NoBody)?;
+        let beginning = Beginning::of(&system, &models);
         begin(&system, &models, &beginning).map_err(|error| match error.at_key(&system) {
             BeginError::Build(source) => FmuError::Build(source),
             BeginError::Start { scene, source, .. } => FmuError::Start { scene, source },
         })?;
         let of_run: Vec<_> = bodies.iter().map(|FmuBody { scene, model, .. }| RunBody { scene, model }).collect();
-        let mut metadata = run::metadata_of_system(&system, &of_run).ok_or(FmuError::NoBody)?;
+        let mut metadata = run::metadata_of_system(&system, &of_run);
         add_motors(&system, &mut metadata);
         let variables = variables(&system, &of_run, &metadata);
-        let seconds = of_run.first().map_or(1.0, |body| seconds(&body.scene.units));
-        Ok(Self { variables, seconds, metadata, bodies, system })
+        Ok(Self { variables, seconds: seconds(&system.units), metadata, bodies, system })
     }
 
     /// The model in the resources of an FMU, which have been [checked](Manifest::checked).
@@ -71,11 +70,6 @@ impl FmuModel {
     /// [`FmuError`].
     pub fn open(resources: &Path, manifest: &Manifest) -> Result<Self, FmuError> {
         Self::new(manifest.system(resources)?, &Builder::default(), |_| ())
-    }
-
-    /// The scene of the first body: title, units, times and rows are those of all.
-    pub fn scene(&self) -> &Scene {
-        &self.bodies[0].scene
     }
 
     /// The numbers of a row, which [`Source::Row`](super::Source::Row) counts.

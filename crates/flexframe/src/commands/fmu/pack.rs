@@ -5,7 +5,7 @@ use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use model::{BuildProgress, Builder, StartError};
-use scene::{Body, Flexible, MeshedBody, Scene, System};
+use scene::{Body, Flexible, MeshedBody, Scene, Shared, System};
 use sealed::{Format, SealedFile};
 use serde::Serialize;
 use whole_file::{TemporaryFolder, write_whole};
@@ -115,7 +115,7 @@ pub fn pack(
     let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
     let resources = temporary.path();
     let (mut names, mut bodies) = (Vec::new(), Vec::new());
-    let file = is_tied.then(|| pack_system(scenes, resources, &mut names)).transpose()?;
+    let file = is_tied.then(|| pack_system(system, resources, &mut names)).transpose()?;
     for (i, scene) in scenes.iter().enumerate() {
         if let Some(file) = &file {
             bodies.push(PackedBody { name: scene.name.clone(), scene: file.clone() });
@@ -128,11 +128,10 @@ pub fn pack(
     let manifest = Manifest::of(resources, &names, (bodies, file))?;
     // What is packed is what will be opened. Its files have been found by now; messages name the scene that was given.
     let opened = manifest.system(resources)?;
-    let opened_bodies = opened.bodies.into_iter().zip(scenes).map(|(opened, given)| {
-        let Scene { path, source, whole_file, .. } = given.clone();
-        Scene { path, source, whole_file, ..opened }
-    });
-    let opened = System { bodies: opened_bodies.collect(), ..opened };
+    let mut opened = opened.with_shared(|shared| Shared { path: system.path.clone(), text: system.text.clone(), ..shared });
+    for (opened, given) in opened.bodies.iter_mut().zip(scenes) {
+        opened.source.clone_from(&given.source);
+    }
     let fmu = FmuModel::new(opened, &Builder::default(), progress)?;
     let text = serde_json::to_string_pretty(&manifest).map_err(|error| FmuError::Text(error.to_string()))?;
     std::fs::write(resources.join(MANIFEST), text).map_err(WriteError::of(&resources.join(MANIFEST)))?;
@@ -176,10 +175,9 @@ fn check(scene: &Scene) -> Result<(), FmuError> {
 }
 
 /// Writes the scene of bodies that are tied together, its tables and meshes into the resources, and adds their names.
-fn pack_system(scenes: &[Scene], resources: &Path, names: &mut Vec<String>) -> Result<String, FmuError> {
-    let scene = scenes.first().ok_or(FmuError::NoBody)?;
+fn pack_system(scene: &Shared, resources: &Path, names: &mut Vec<String>) -> Result<String, FmuError> {
     let folder = scene.path.parent().unwrap_or(Path::new(""));
-    let packed = PackedScene::of_system(scene.file_text(), folder)?;
+    let packed = PackedScene::of_system(&scene.text, folder)?;
     let name = "scene.toml".to_owned();
     let place = resources.join(&name);
     std::fs::write(&place, &packed.text).map_err(WriteError::of(&place))?;

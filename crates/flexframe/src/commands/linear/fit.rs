@@ -51,7 +51,7 @@ impl Fit {
         settings: &FitSettings,
         progress: impl FnMut(BuildProgress),
     ) -> Result<Self, FitError> {
-        let of_scene = || system.bodies.first().and_then(|scene| scene.modes.measured.clone());
+        let of_scene = || system.bodies.iter().find_map(|scene| scene.modes.measured.clone());
         let measured = settings.measured.clone().or_else(of_scene).ok_or(FitError::NoTable)?;
         let subject = Subject::new(system, builder, &settings.parameters, &measured, progress)?;
         let (deviations, is_stated) = deviations(&measured, settings.deviation)?;

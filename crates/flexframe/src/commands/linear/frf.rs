@@ -81,25 +81,24 @@ pub fn frf(
         false => settings.frequencies.evenly(MAX_FREQUENCIES),
     };
     let frequencies = frequencies.ok_or(LinearizeError::Frequencies { start, end, count })?;
-    let scene = &system.bodies[0];
     let mut model = linear_model(system, builder, &settings.linear, progress)?;
     if let Some(loss_factor) = settings.loss_factor {
         model.state.damping = structural(loss_factor);
     }
     let equations = &model.equations;
-    let failed = |source| LinearizeError::Linear { scene: scene.path.clone(), source: Box::new(source) };
+    let failed = |source| LinearizeError::Linear { scene: system.path.clone(), source: Box::new(source) };
     let response = equations.frequency_response(&frequencies, damping_of(settings.loss_factor)).map_err(failed)?;
 
-    let unit = frequency_unit(&scene.units.time);
+    let unit = frequency_unit(&system.units.time);
     let logarithmic = settings.logarithmic;
     let peaks = peaks(equations, &response);
     let answer = Answer {
         csv: csv(equations, &response),
-        chart: chart(&scene.title, &unit, equations, &response, logarithmic),
-        page: page::page(&scene.title, &unit, (&response, &peaks, &model.state), logarithmic),
+        chart: chart(&system.title, &unit, equations, &response, logarithmic),
+        page: page::page(&system.title, &unit, (&response, &peaks, &model.state), logarithmic),
     };
     Ok(FrfReport {
-        title: scene.title.clone(),
+        title: system.title.clone(),
         frequency_unit: unit,
         files: curves::write::<LinearizeError>(folder, NAME, answer)?,
         about: model.state.to_string(),

@@ -83,14 +83,13 @@ pub fn rates(
         }
         None => Vec::new(),
     };
-    let scene = &system.bodies[0];
     if system.has_connections() {
         let parameters = Number::named(system, &settings.parameters)?;
         let varied = VariedSystem::new(system, builder, progress)?;
         let found = varied.rates(system, &parameters, &frequencies)?;
         return Ok(GradientReport::of_system(system, &parameters, found, frequencies));
     }
-    let scene = &unloaded_body(scene).map_err(BuildError::from)?;
+    let scene = &unloaded_body(system).map_err(BuildError::from)?;
     let parameters = Parameter::named(scene, &settings.parameters).map_err(BuildError::from)?;
     let body = builder.varied(scene, progress)?;
     let found = body.rates(body.body(), &parameters, RatesOf::All)?;

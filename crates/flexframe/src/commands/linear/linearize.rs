@@ -64,15 +64,15 @@ pub fn linear_model(
     let models: Vec<Model> =
         scenes.iter().map(|scene| builder.build(scene, &mut progress)).collect::<Result<_, _>>()?;
     let refuse = |found: &str, help| LinearizeError::Refused {
-        scene: system.bodies[0].path.clone(),
+        scene: system.path.clone(),
         found: found.to_owned(),
         help,
     };
     let is_free = |model: &Model| model.body.motion.is_free() && model.physics.drive.is_none();
     let states = settings.time.map(|time| states_at(system, &models, time)).transpose()?;
     let is_alone = models.len() == 1 && !system.has_connections();
-    let (channels, mut state) = match &models[..] {
-        [model] if is_alone && !is_free(model) => {
+    let (channels, mut state) = match (&system.bodies[..], &models[..]) {
+        ([scene], [model]) if is_alone && !is_free(model) => {
             if settings.spin.is_some() {
                 return Err(refuse("--spin of a body that is held", "give its hinge the speed, as `motion`"));
             }
@@ -82,16 +82,16 @@ pub fn linear_model(
                     origin: Some(state.origin_global),
                     ..Initial::at_rest(model.body.flexible())
                 },
-                _ => model.initial(&system.bodies[0]),
+                _ => model.initial(scene),
             };
-            held::of_held(&system.bodies[0], model, (&initial, settings.time.unwrap_or(0.0)), settings)?
+            held::of_held(scene, model, (&initial, settings.time.unwrap_or(0.0)), settings)?
         }
-        models if models.iter().all(is_free) => {
+        (scenes, models) if models.iter().all(is_free) => {
             let of_state = |state: &MotionState| state.attitude.global_to_body().transpose() * state.omega_body;
-            let own = || match (models, states.as_deref()) {
-                ([_], Some([state, ..])) if is_alone => Some(of_state(state)),
-                ([model], None) if is_alone => {
-                    let initial = model.initial(&system.bodies[0]);
+            let own = || match (scenes, models, states.as_deref()) {
+                (_, [_], Some([state, ..])) if is_alone => Some(of_state(state)),
+                ([scene], [model], None) if is_alone => {
+                    let initial = model.initial(scene);
                     Some(initial.attitude.global_to_body().transpose() * initial.omega)
                 }
                 _ => None,
@@ -109,7 +109,7 @@ pub fn linear_model(
     if let Some(states) = &states {
         state.warnings.extend(moving_modes(&models, states));
     }
-    let whole = channels.chosen(settings, &system.bodies[0])?;
+    let whole = channels.chosen(settings, system)?;
     let without_rigid = settings.without_rigid.then(|| whole.without(&(0..state.rigid).collect::<Vec<_>>()));
     state.warnings.extend(unseen(&whole, without_rigid.as_ref().unwrap_or(&whole)));
     Ok(LinearModel { equations: without_rigid.unwrap_or(whole), state })
@@ -127,7 +127,7 @@ pub fn linear_space(
     progress: impl FnMut(BuildProgress),
 ) -> Result<LinearSpace, LinearizeError> {
     let LinearModel { equations, mut state } = linear_model(system, builder, settings, progress)?;
-    let failed = |source| LinearizeError::Linear { scene: system.bodies[0].path.clone(), source: Box::new(source) };
+    let failed = |source| LinearizeError::Linear { scene: system.path.clone(), source: Box::new(source) };
     let whole = equations.state_space().map_err(failed)?;
     let rigid = if settings.without_rigid { 0 } else { state.rigid };
     state.warnings.extend(growing(&equations, rigid).map_err(failed)?);
@@ -149,9 +149,8 @@ pub fn linearize(
 ) -> Result<LinearReport, LinearizeError> {
     files::check_ending(output)?;
     let space = linear_space(system, builder, settings, reduction, progress)?;
-    let scene = &system.bodies[0];
-    let failed = |source| LinearizeError::Linear { scene: scene.path.clone(), source: Box::new(source) };
+    let failed = |source| LinearizeError::Linear { scene: system.path.clone(), source: Box::new(source) };
     let poles = space.model().poles().map_err(failed)?;
     files::write(space.model(), output)?;
-    Ok(LinearReport::new(scene, &space, &poles, output))
+    Ok(LinearReport::new(system, &space, &poles, output))
 }

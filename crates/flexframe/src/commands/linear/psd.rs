@@ -47,13 +47,12 @@ pub fn psd(
 ) -> Result<PsdReport, PsdError> {
     let spectra = Spectra::read(table)?;
     let band = spectra.band(settings.band)?;
-    let scene = &system.bodies[0];
     let asked = LinearSettings { inputs: spectra.inputs(), ..settings.linear.clone() };
     let mut model = linear_model(system, builder, &asked, progress)?;
     if let Some(loss_factor) = settings.loss_factor {
         model.state.damping = structural(loss_factor);
     }
-    let failed = |source| PsdError::Linear { scene: scene.path.clone(), source: Box::new(source) };
+    let failed = |source| PsdError::Linear { scene: system.path.clone(), source: Box::new(source) };
     let damping = damping_of(settings.loss_factor);
     let poles = model.equations.poles(damping).map_err(failed)?;
     let rule = Quadrature::of_poles(band, &spectra.frequencies(), &poles).map_err(failed)?;
@@ -61,8 +60,8 @@ pub fn psd(
     let input = spectra.at(&names, &rule.frequencies)?;
     let response = model.equations.frequency_response(&rule.frequencies, damping).map_err(failed)?;
     let responses = Responses::new(&model.equations, &response, &input, &rule.weights).map_err(failed)?;
-    let mut report = PsdReport::new(scene, &model, band, &responses);
-    let page = page::page(scene, &model.state, &report, &responses, &rule.weights);
-    report.files = files::write(&scene.title, &scene.units.time, &responses, page, folder)?;
+    let mut report = PsdReport::new(system, &model, band, &responses);
+    let page = page::page(system, &model.state, &report, &responses, &rule.weights);
+    report.files = files::write(&system.title, &system.units.time, &responses, page, folder)?;
     Ok(report)
 }

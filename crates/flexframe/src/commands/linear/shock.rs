@@ -33,16 +33,15 @@ pub fn shock(
     progress: impl FnMut(BuildProgress),
 ) -> Result<ShockReport, ShockResponseError> {
     let motion = table::read(table, interpolation)?;
-    let scene = &system.bodies[0];
     let model = linear_model(system, builder, settings, progress)?;
     let inputs: Vec<String> = model.equations.inputs.iter().map(|input| input.name.clone()).collect();
     let [input] = &inputs[..] else {
-        return Err(ShockResponseError::Inputs { scene: scene.path.clone(), found: inputs.join(", ") });
+        return Err(ShockResponseError::Inputs { scene: system.path.clone(), found: inputs.join(", ") });
     };
     let modes = model
         .equations
         .real_modes()
-        .map_err(|source| ShockResponseError::Linear { scene: scene.path.clone(), source: Box::new(source) })?;
+        .map_err(|source| ShockResponseError::Linear { scene: system.path.clone(), source: Box::new(source) })?;
     let failed = |source| ShockResponseError::Shock { table: table.to_owned(), source };
     let peaks = ModePeaks::new(&model.equations, &modes, &motion).map_err(failed)?;
     let mut warnings = model.state.warnings.clone();
@@ -54,7 +53,7 @@ pub fn shock(
     }
     let outputs = peaks.outputs(&model.equations, motion.peak()).map_err(failed)?;
     if outputs.is_empty() {
-        return Err(ShockResponseError::Outputs { scene: scene.path.clone() });
+        return Err(ShockResponseError::Outputs { scene: system.path.clone() });
     }
     let mixed = peaks::mixed(&model.equations);
     if !mixed.is_empty() {
@@ -64,5 +63,5 @@ pub fn shock(
             mixed.join(", ")
         ));
     }
-    Ok(ShockReport::new(scene, (input, interpolation), &motion, &peaks, outputs, warnings))
+    Ok(ShockReport::new(system, (input, interpolation), &motion, &peaks, outputs, warnings))
 }

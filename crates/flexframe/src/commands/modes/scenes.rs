@@ -2,7 +2,7 @@
 
 use dynamics::Effect;
 use model::{Meshed, Model};
-use scene::{Body, Choice, Flexible, Scene, SceneError};
+use scene::{Body, Choice, Flexible, Scene, SceneError, System};
 
 /// A scene with its modes as they are, whatever its motion would call for.
 pub(crate) fn unloaded(scene: &Scene) -> Scene {
@@ -20,8 +20,9 @@ pub(crate) fn unloaded(scene: &Scene) -> Scene {
 /// A scene of which the rates of a body alone are asked.
 ///
 /// # Errors
-/// The refusal of a body that others hold.
-pub(crate) fn unloaded_body(scene: &Scene) -> Result<Scene, SceneError> {
+/// The refusal of several bodies, and of a body that others hold.
+pub(crate) fn unloaded_body(system: &System) -> Result<Scene, SceneError> {
+    let scene = system.only_body()?;
     if scene.tied {
         let found = "a body that joints, springs or bushings hold, whose frequencies are those of the whole";
         let help = "take what ties the body out of the scene, and hold it by [[constraints]]";

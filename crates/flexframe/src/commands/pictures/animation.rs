@@ -14,7 +14,7 @@ use model::{BuildError, Builder};
 use nalgebra::Vector3;
 use results::{BodyResults, Shapes, Units};
 use rigid_kin::Attitude;
-use scene::{Rows, System};
+use scene::{Rows, Shared, System, Time};
 use whole_file::TemporaryFolder;
 
 pub use self::error::AnimationError;
@@ -44,10 +44,9 @@ pub fn animate(
 ) -> Result<Option<String>, AnimationError> {
     let format = Format::of(path)?;
     let scenes = &system.bodies[..];
-    let scene = scenes.first().ok_or(RunError::NoBody)?;
     let surface_of = |scene| require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)));
     scenes.iter().try_for_each(surface_of)?;
-    let [from, to] = settings.times(scene.time.end)?;
+    let [from, to] = settings.times(system.time.end)?;
     if system.has_ties() {
         return animate_tied(system, builder, path, settings, progress);
     }
@@ -67,13 +66,13 @@ pub fn animate(
         bodies.push(PictureBody::new(model.body.origin, surface, settings.coloured, &scene.path)?);
     }
     let last = settings.frames.clamp(2, MAX_FRAMES) - 1;
-    let units = run::units(scene);
-    let mut picture = Picture::new(&scene.title, &units, bodies, settings, (to - from) / last as f64);
+    let units = run::units(system);
+    let mut picture = Picture::new(&system.title, &units, bodies, settings, (to - from) / last as f64);
     for frame in 0..=last {
         let part = frame as f64 / last as f64;
         let due = from * (1.0 - part) + to * part;
         let now = simulations.iter_mut().map(|simulation| observed_at(simulation, due)).collect::<Result<Vec<_>, _>>();
-        let now = now.map_err(|source| AnimationError::Step { scene: scene.path.clone(), source })?;
+        let now = now.map_err(|source| AnimationError::Step { scene: system.path.clone(), source })?;
         let state =
             |now: &Observation| (now.origin_global, now.attitude, now.modal_displacement.clone(), now.omega_body);
         picture.add(due, &now.iter().map(state).collect::<Vec<_>>());
@@ -90,12 +89,10 @@ fn animate_tied(
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<Option<String>, AnimationError> {
-    let mut system = system.clone();
-    for scene in &mut system.bodies {
-        let [from, to] = settings.times(scene.time.end)?;
-        let intervals = settings.frames.clamp(2, MAX_FRAMES) - 1;
-        (scene.time.end, scene.output.rows) = (to, Rows::Interval((to - from) / intervals as f64));
-    }
+    let [from, to] = settings.times(system.time.end)?;
+    let rows = Rows::Interval((to - from) / (settings.frames.clamp(2, MAX_FRAMES) - 1) as f64);
+    let until = |shared: Shared| Shared { time: Time { end: to, ..shared.time }, rows, ..shared };
+    let system = system.clone().with_shared(until);
     let temporary = TemporaryFolder::new();
     let temporary = temporary.map_err(|source| RunError::Folder { folder: std::env::temp_dir(), source })?;
     let run_settings = RunSettings { large: true, builder: builder.clone(), ..RunSettings::default() };

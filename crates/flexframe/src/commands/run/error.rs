@@ -62,9 +62,6 @@ pub enum RunError {
         scene.display(), estimate.rows, memory::Bytes(usize::try_from(estimate.bytes).unwrap_or(usize::MAX))
     )]
     Large { scene: PathBuf, estimate: Estimate },
-    /// A run of no body.
-    #[error("there is no body to run; give one or more")]
-    NoBody,
     /// The output folder cannot be made.
     #[error("{}: cannot make the output folder: {source}\n = {}", folder.display(), help_of_writing(source))]
     Folder { folder: PathBuf, source: std::io::Error },

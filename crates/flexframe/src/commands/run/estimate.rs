@@ -7,7 +7,7 @@ use std::time::Instant;
 use dynamics::{Reached, RowTimes, Run, Simulation};
 use memory::Bytes;
 use results::{Metadata, bytes_per_row};
-use scene::Scene;
+use scene::Shared;
 use serde::Serialize;
 
 use crate::rows::columns::COLUMNS;
@@ -34,8 +34,8 @@ pub struct Estimate {
 
 impl Estimate {
     /// Estimate of the rows of a scene, without a look at its steps; `shapes` are the bytes of what is drawn.
-    pub(super) fn of_rows(scene: &Scene, metadata: &Metadata, shapes: u64) -> Self {
-        let rows = RowTimes::new(scene.output.rows, scene.time.control, scene.time.end).count();
+    pub(super) fn of_rows(scene: &Shared, metadata: &Metadata, shapes: u64) -> Self {
+        let rows = RowTimes::new(scene.rows, scene.time.control, scene.time.end).count();
         let bytes = rows.saturating_mul(bytes_per_row(&COLUMNS, metadata)).saturating_add(shapes);
         Self { rows, bytes, seconds: None }
     }

@@ -129,8 +129,8 @@ impl LargeChoice {
             ("modes.large", Value::Array(large)),
             ("modes.following", number(self.following)),
         ];
-        let text = assign(scene.file_text(), &values.map(|(of, value)| (key(of), value))).ok()?;
-        System::parse(&text, &scene.path).ok()
+        let text = assign(&system.text, &values.map(|(of, value)| (key(of), value))).ok()?;
+        System::parse(&text, &system.path).ok()
     }
 
     /// The keys of the choice, with their values.
@@ -160,7 +160,7 @@ impl LargeChoice {
 
 /// True if large modes may be among those of a body.
 fn may_be_large(scene: &Scene, model: &Model) -> bool {
-    scene.time.method.abilities.large_deflection
+    scene.method().abilities.large_deflection
         && scene.effects.choices[Effect::LargeDeflection] != Choice::Off
         && model.static_answer().is_none()
 }

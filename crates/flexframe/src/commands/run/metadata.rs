@@ -3,7 +3,7 @@
 use dynamics::{Coordinate, DrivenMotion};
 use model::Builder;
 use results::{BodyMetadata, BodyProperties, JointMetadata, Metadata, Units};
-use scene::{End, Scene, StepControl, System};
+use scene::{End, Shared, StepControl, System};
 
 use super::body::RunBody;
 use crate::drawn::mesh_properties;
@@ -12,53 +12,51 @@ use crate::report::BodyReport;
 use crate::rows::columns::part;
 use crate::rows::effects;
 
-/// The metadata in the results file of a run; `None` without a body.
-pub(super) fn metadata_of_file(system: &System, bodies: &[RunBody<'_>], builder: &Builder) -> Option<Metadata> {
-    let mut metadata = metadata_of_system(system, bodies)?;
+/// The metadata in the results file of a run.
+pub(super) fn metadata_of_file(system: &System, bodies: &[RunBody<'_>], builder: &Builder) -> Metadata {
+    let mut metadata = metadata_of_system(system, bodies);
     for (RunBody { scene, model }, body) in bodies.iter().zip(&mut metadata.bodies) {
         body.model.mesh = mesh_properties(scene, model);
     }
     let input_files = builder.files(system).iter().map(|file| scene_file::to_text(file)).collect();
-    Some(Metadata { input_files, ..metadata })
+    Metadata { input_files, ..metadata }
 }
 
 /// As [`metadata`], with the joints, springs and bushings.
-pub fn metadata_of_system(system: &System, bodies: &[RunBody<'_>]) -> Option<Metadata> {
+pub fn metadata_of_system(system: &System, bodies: &[RunBody<'_>]) -> Metadata {
     let joints = (0..system.joints.len()).map(|joint| joint_metadata(system, joint));
     let joints = joints.chain(element_metadata(system)).collect();
-    Some(Metadata { joints, ..metadata(bodies)? })
+    Metadata { joints, ..metadata(system, bodies) }
 }
 
-/// The metadata of a run without what only a file has: the files that it read, and the sizes of meshes. `None` without a body.
-pub fn metadata(bodies: &[RunBody<'_>]) -> Option<Metadata> {
-    let scene = bodies.first()?.scene;
-    let method = scene.time.method;
+/// The metadata of a run without what only a file has: the files that it read, and the sizes of meshes.
+pub fn metadata(scene: &Shared, bodies: &[RunBody<'_>]) -> Metadata {
     let (step, tolerance) = match scene.time.control {
         StepControl::Fixed(step) => (Some(step), None),
         StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
     };
-    Some(Metadata {
+    Metadata {
         title: scene.title.clone(),
         units: units(scene),
-        formulation: method.formulation.to_owned(),
+        formulation: scene.time.method.formulation.to_owned(),
         scheme: scheme(bodies),
         step,
         tolerance,
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
         end: scene.time.end,
-        scene_text: scene.file_text().to_owned(),
+        scene_text: scene.text.to_string(),
         scene_file: scene_file::to_text(&scene.path),
         input_files: Vec::new(),
         bodies: bodies.iter().map(body_metadata).collect(),
         joints: Vec::new(),
         warnings: Vec::new(),
         trust: Vec::new(),
-    })
+    }
 }
 
 /// The scheme, or the two of bodies that are tied and bodies that are not.
 fn scheme(bodies: &[RunBody<'_>]) -> String {
-    let mut schemes: Vec<&str> = bodies.iter().map(|of| of.scene.time.method.scheme).collect();
+    let mut schemes: Vec<&str> = bodies.iter().map(|of| of.scene.method().scheme).collect();
     schemes.sort_unstable();
     schemes.dedup();
     schemes.join(", ")
@@ -136,7 +134,7 @@ fn element_metadata(system: &System) -> impl Iterator<Item = JointMetadata> {
 }
 
 /// The labels of a scene's units.
-pub(crate) fn units(scene: &Scene) -> Units {
+pub(crate) fn units(scene: &Shared) -> Units {
     let scene::Units { length, mass, time } = scene.units.clone();
     Units { length, mass, time }
 }
@@ -147,7 +145,7 @@ fn parts<'a>(RunBody { scene, model }: &RunBody<'a>) -> impl Iterator<Item = &'s
     let drive = model.physics.drive.as_ref().map(|drive| drive.motion);
     let turns = matches!(drive, Some(DrivenMotion::Turn { .. }));
     let slides = matches!(drive, Some(DrivenMotion::Slide { .. }));
-    let is_held = !motion.is_free() && scene.time.method.abilities.reactions;
+    let is_held = !motion.is_free() && scene.method().abilities.reactions;
     [
         (part::CONSTRAINT, true),
         (part::HINGE, turns || motion.rotations().len() == 1),

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use dynamics::{Island, IslandError, Reached, Run};
 use results::{BodyResults, Results, Writer};
-use scene::{Scene, StepControl};
+use scene::{Shared, StepControl};
 
 use super::balances::Monitor;
 use super::body::FollowedBody;
@@ -97,6 +97,7 @@ impl<'a> Recorder<'a> {
     /// Goes on to the end. The results are then still in the unfinished file.
     pub fn follow(
         mut self,
+        scene: &Shared,
         started: Instant,
         settings: &RunSettings,
         mut progress: impl FnMut(RunProgress),
@@ -136,7 +137,6 @@ impl<'a> Recorder<'a> {
         let tied: Vec<_> = self.run.islands().iter().filter_map(|island| self.tied_report(island)).collect();
         let Self { run, bodies, row, writer, rows, estimate, .. } = self;
         let reports = reports(&run, bodies, &row);
-        let Some(scene) = reports.first().map(|report| report.scene) else { return Err(RunError::NoBody) };
         let mut schemes: Vec<&str> = reports.iter().map(|report| report.body.scheme.as_str()).collect();
         schemes.sort_unstable();
         schemes.dedup();
@@ -253,28 +253,26 @@ impl<'a> Recorder<'a> {
 }
 
 /// A body at the end of its run.
-struct Finished<'a> {
-    scene: &'a Scene,
+struct Finished {
     body: BodyRunReport,
     warnings: Vec<String>,
     times: Times,
 }
 
 /// Reports of all bodies at the end of a run, in the order of the scene.
-fn reports<'a>(run: &Run, mut bodies: Vec<FollowedBody<'a>>, last: &Row) -> Vec<Finished<'a>> {
+fn reports(run: &Run, mut bodies: Vec<FollowedBody<'_>>, last: &Row) -> Vec<Finished> {
     for island in run.islands() {
         Monitor::widen_together(&mut bodies, &island.bodies, FollowedBody::monitor_mut);
     }
     let count = bodies.len();
-    let report = |body: FollowedBody<'a>| {
+    let report = |body: FollowedBody<'_>| {
         let (of, number) = (body.of, body.number);
         let (island, own) = run.island_of(number)?;
-        let scheme = of.scene.time.method.scheme;
+        let scheme = of.scene.method().scheme;
         let (report, warnings) =
             body.report(&last.bodies[number], (&island.motion.stats(), &island.motion.energies(own), scheme));
         let named = |text| if count == 1 { text } else { format!("body {}: {text}", of.name()) };
         Some(Finished {
-            scene: of.scene,
             body: report,
             warnings: warnings.into_iter().chain(not_stored(of, count)).map(named).collect(),
             times: Times::of_model(of.model),

@@ -144,7 +144,7 @@ impl<'a> Watch<'a> {
             balances,
             right_unsummed,
             // The equations of the paper do not keep the energy in any steps.
-            energy_tells: scene.time.method.abilities.keeps_energy && !is_right_unsummed && passed.is_none(),
+            energy_tells: scene.method().abilities.keeps_energy && !is_right_unsummed && passed.is_none(),
             step_error: self.step.as_ref().map(StepEstimate::largest),
             turned: self.turn.angle(),
             warnings: (plausible::doubts(scene, model).into_iter())
@@ -158,7 +158,7 @@ impl<'a> Watch<'a> {
 
     /// True if the steps are known to be right though they are too long for the sum of work and dissipation.
     fn is_right_unsummed(&self, longest_step: f64) -> bool {
-        if !self.scene.time.method.abilities.keeps_energy {
+        if !self.scene.method().abilities.keeps_energy {
             // The equations of the paper do not keep the energy in any steps.
             return false;
         }

@@ -180,8 +180,7 @@ impl Plan {
         check_bodies(&system, &file.results).map_err(|(key, found, expected)| invalid(&key, found, &expected))?;
         let identity = format!("{of_sweep}\n{of_all}");
         let identities = identities(&rows);
-        let title = system.bodies.first().map_or_else(String::new, |scene| scene.title.clone());
-        Ok(Self { title, identity, parameters, results: file.results, rows, identities })
+        Ok(Self { title: system.title.clone(), identity, parameters, results: file.results, rows, identities })
     }
 
     /// True if something is asked of a run, and if the frequencies are asked for.

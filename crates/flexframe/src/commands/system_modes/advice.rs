@@ -3,7 +3,7 @@
 use std::fmt;
 
 use dynamics::SteadyError;
-use scene::Scene;
+use scene::Units;
 use serde::Serialize;
 
 use super::report::{SystemModeReport, SystemModesReport};
@@ -95,13 +95,12 @@ impl SystemAdvice {
     pub(super) fn with_stiffening(
         mut self,
         found: Result<Vec<StiffenedBody>, SteadyError>,
-        scene: &Scene,
+        units: &Units,
         frequency_unit: &str,
     ) -> Self {
         match found {
             Ok(found) => {
-                let tolerance = scene.effects.tolerance;
-                let sentence = |body: &StiffenedBody| body.sentence((&scene.units).into(), frequency_unit, tolerance);
+                let sentence = |body: &StiffenedBody| body.sentence(units.into(), frequency_unit);
                 self.sentences.extend(found.iter().map(sentence));
                 self.stiffening = Some(found);
             }

@@ -47,14 +47,13 @@ fn motions(
     lead: impl Fn(&mut Simulation) -> Result<(), StepError>,
 ) -> Result<Vec<TiedMotion>, SystemModesError> {
     let models: Vec<&Model> = models.iter().collect();
-    let Some(beginning) = Beginning::of(system, &models) else { return Ok(Vec::new()) };
-    let beginning = begun(Beginning { rows: Rows::Interval(beginning.end), ..beginning });
+    let beginning = begun(Beginning { rows: Rows::Interval(system.time.end), ..Beginning::of(system, &models) });
     let springs = system.springs.iter().map(|spring| &spring.name);
     let names: Vec<&String> = springs.chain(system.bushings.iter().map(|bushing| &bushing.name)).collect();
     let mut motions = Vec::new();
     for Island { mut motion, bodies, joints, elements } in begin_tied(system, &models, &beginning).map_err(Box::new)? {
-        let scene = &system.bodies[bodies[0]].path;
-        lead(&mut motion).map_err(|source| SystemModesError::Run { scene: scene.clone(), source: Box::new(source) })?;
+        let failed = |source| SystemModesError::Run { scene: system.path.clone(), source: Box::new(source) };
+        lead(&mut motion).map_err(failed)?;
         let elements = elements.iter().map(|number| names[number - system.joints.len()].clone()).collect();
         motions.extend(motion.system().map(|run| TiedMotion { bodies, joints, elements, run: run.clone() }));
     }

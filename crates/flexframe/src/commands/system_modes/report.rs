@@ -114,7 +114,6 @@ impl SystemModesReport {
         found: &Vibrations,
         rotors: Rotors,
     ) -> Self {
-        let scene = &system.bodies[motion.bodies[0]];
         let of_motion = motion.run.motion().system();
         let bodies = body_names(system, &motion.bodies);
         let joints: Vec<String> = of_motion.joints().iter().map(|joint| joint.name.clone()).collect();
@@ -132,9 +131,9 @@ impl SystemModesReport {
             strained: shares(&of_all, &mode.elastic),
         };
         let rigid_modes = found.rigid.ncols() + found.zeros / 2;
-        let time = &scene.units.time;
+        let time = &system.units.time;
         let mut report = Self {
-            title: scene.title.clone(),
+            title: system.title.clone(),
             frequency_unit: frequency_unit(time),
             time_unit: time.clone(),
             time: motion.run.motion().time(),
@@ -151,7 +150,7 @@ impl SystemModesReport {
             bodies,
             joints,
         };
-        report.warnings.extend(report.unbalance(steady, motion.run.size(), &scene.units.length));
+        report.warnings.extend(report.unbalance(steady, motion.run.size(), &system.units.length));
         report.warnings.extend(report.growth());
         let scenes = motion.bodies.iter().map(|body| &system.bodies[*body]);
         let damping = scenes.zip(&report.bodies).filter_map(|(scene, name)| report.damping(scene, name));

@@ -30,6 +30,9 @@ pub struct StiffenedBody {
     pub deflection: f64,
     /// False if the scene lets no forces stiffen it.
     pub stiffens: bool,
+    /// Relative changes of frequencies below this do not count: the tolerance of its effects.
+    #[serde(skip)]
+    pub tolerance: f64,
     /// Frequencies of the slowest vibrations in which it bends.
     pub modes: Vec<StiffenedFrequency>,
 }
@@ -77,6 +80,7 @@ pub(super) fn stiffened(
             moment: found.moment,
             deflection: largest(Surface::of_model(model)),
             stiffens: model.physics.effects[Effect::GeometricStiffening],
+            tolerance: system.bodies[*number].effects.tolerance,
             modes: found.modes.iter().map(StiffenedFrequency::from).collect(),
         })
     };
@@ -86,9 +90,9 @@ pub(super) fn stiffened(
 }
 
 impl StiffenedBody {
-    /// A sentence about it; changes of frequencies below `tolerance` do not count.
-    pub(super) fn sentence(&self, units: UnitLabels<'_>, frequency_unit: &str, tolerance: f64) -> String {
-        let Self { body, force, moment, .. } = self;
+    /// A sentence about it.
+    pub(super) fn sentence(&self, units: UnitLabels<'_>, frequency_unit: &str) -> String {
+        let &Self { ref body, force, moment, tolerance, .. } = self;
         let (length, unit) = (units.length, frequency_unit);
         let bent = if self.deflection > 0.0 {
             format!(", and it bends by up to {} {length}", short(self.deflection))
@@ -97,9 +101,9 @@ impl StiffenedBody {
         };
         let borne = format!(
             "{body}: at the start its joints bear up to {} {} and {} {}{bent}",
-            short(*force),
+            short(force),
             units.force(),
-            short(*moment),
+            short(moment),
             units.moment(),
         );
         if !self.stiffens {

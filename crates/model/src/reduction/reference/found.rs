@@ -169,7 +169,7 @@ pub(crate) fn fits(scene: &Scene, support: &Support) -> Result<(), SceneError> {
         let help = "remove `about`: what joints do to the body is not known before";
         return refuse("a body with markers", "one without joints", help);
     }
-    if !scene.time.method.abilities.geometric_stiffening {
+    if !scene.method().abilities.geometric_stiffening {
         return refuse(
             "a scheme of the paper's formulation",
             "the conservative form",

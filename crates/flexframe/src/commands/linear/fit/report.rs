@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use scene::{Scene, assign};
+use scene::{Shared, assign};
 use serde::Serialize;
 use toml::Value;
 use whole_file::write_whole;
@@ -101,7 +101,7 @@ pub(super) struct Quality {
 
 impl FitReport {
     pub(super) fn new(
-        scene: &Scene,
+        scene: &Shared,
         parameters: Vec<FittedParameter>,
         modes: Vec<FittedMode>,
         correlation: Vec<Vec<f64>>,
@@ -152,7 +152,7 @@ impl FitReport {
             iterations,
             warnings,
             file: None,
-            text: scene.file_text().to_owned(),
+            text: scene.text.to_string(),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use fem_tet10::BodyNumber;
 use model::{BuildError, BuildProgress, Builder, Parameter, RatesOf, VariedBody};
-use scene::{Measured, Scene, System};
+use scene::{Measured, Shared, System};
 
 use super::error::FitError;
 use crate::commands::linear::gradient::number::Number;
@@ -44,7 +44,7 @@ impl Subject {
             let parameters = Number::named(system, names)?;
             return Ok(Self::System(Box::new(VariedSystem::new(system, builder, progress)?), parameters));
         }
-        let scene = &unloaded_body(&system.bodies[0]).map_err(BuildError::from)?;
+        let scene = &unloaded_body(system).map_err(BuildError::from)?;
         let known = Parameter::all(scene).map_err(BuildError::from)?;
         check(names, || known.iter().map(|parameter| parameter.name.clone()).collect(), measured)?;
         let parameters = Parameter::named(scene, names).map_err(BuildError::from)?;
@@ -66,10 +66,10 @@ impl Subject {
         }
     }
 
-    pub fn scene(&self) -> &Scene {
+    pub fn scene(&self) -> &Shared {
         match self {
             Self::Body(body, _) => body.scene(),
-            Self::System(varied, _) => &varied.system.bodies[0],
+            Self::System(varied, _) => &varied.system,
         }
     }
 

@@ -44,13 +44,13 @@ impl<'a> Here<'a> {
     pub fn new(system: &'a System, models: &'a [Model]) -> Result<Self, GradientError> {
         let (motion, steady) = steady(system, models)?;
         let linear = &steady.linear;
-        let failed = |source| SystemModesError::Steady { scene: system.bodies[0].path.clone(), source };
+        let failed = |source| SystemModesError::Steady { scene: system.path.clone(), source };
         let Vibrations { rigid, zeros, modes } = linear.vibrations().map_err(failed)?;
         let mut modes: Vec<SystemMode> = modes.into_iter().filter(|mode| mode.circular_frequency() > 0.0).collect();
         modes.sort_by(|a, b| a.circular_frequency().total_cmp(&b.circular_frequency()));
         for matrix in [&linear.stiffness, &linear.damping] {
             if (matrix - matrix.transpose()).norm_max() > ROUNDING * matrix.norm_max() {
-                return Err(GradientError::Loaded { scene: system.bodies[0].path.clone() });
+                return Err(GradientError::Loaded { scene: system.path.clone() });
             }
         }
         let is_loose = rigid.ncols() > 0 || zeros > 0;
@@ -58,7 +58,7 @@ impl<'a> Here<'a> {
     }
 
     pub fn path(&self) -> PathBuf {
-        self.system.bodies[0].path.clone()
+        self.system.path.clone()
     }
 
     pub fn loaded(&self) -> GradientError {
@@ -123,10 +123,10 @@ impl<'a> Here<'a> {
 fn steady(system: &System, models: &[Model]) -> Result<(TiedMotion, SteadyState), GradientError> {
     let mut motions = tied_motions(system, models)?;
     let (Some(motion), true) = (motions.pop(), motions.is_empty()) else {
-        let (scene, count) = (system.bodies[0].path.clone(), motions.len() + 1);
+        let (scene, count) = (system.path.clone(), motions.len() + 1);
         return Err(GradientError::Systems { scene, count });
     };
-    let failed = |source| SystemModesError::Steady { scene: system.bodies[0].path.clone(), source };
+    let failed = |source| SystemModesError::Steady { scene: system.path.clone(), source };
     let of_motion = motion.run.motion();
     let steady = Rotors::of(of_motion, |_| false).steady_state(of_motion, &CommonSpin::REST).map_err(failed)?;
     Ok((motion, steady))

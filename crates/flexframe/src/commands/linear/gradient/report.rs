@@ -141,7 +141,6 @@ impl GradientReport {
         found: SystemRates,
         response_frequencies: Vec<f64>,
     ) -> Self {
-        let scene = &system.bodies[0];
         let SystemRates { frequencies, repeated, rates, responses } = found;
         let of_parameter = |((parameter, rates), of_responses): ((&Number, Vec<f64>), Vec<_>)| {
             let value = parameter.value(system);
@@ -156,8 +155,8 @@ impl GradientReport {
             }
         };
         Self {
-            title: scene.title.clone(),
-            frequency_unit: frequency_unit(&scene.units.time),
+            title: system.title.clone(),
+            frequency_unit: frequency_unit(&system.units.time),
             repeated: repeated.into_iter().map(|group| [group.start + 1, group.end]).collect(),
             effective_masses: Vec::new(),
             statics: Vec::new(),

@@ -14,15 +14,14 @@ const MOVES: f64 = 1e-3;
 
 /// The state of each body at a time of the scene's run.
 pub(super) fn states_at(system: &System, models: &[Model], time: f64) -> Result<Vec<MotionState>, LinearizeError> {
-    let scene = &system.bodies[0];
-    let end = scene.time.end;
+    let end = system.time.end;
     if !(time.is_finite() && (0.0..=end).contains(&time)) {
-        return Err(LinearizeError::Time { scene: scene.path.clone(), time, end });
+        return Err(LinearizeError::Time { scene: system.path.clone(), time, end });
     }
     let references: Vec<&Model> = models.iter().collect();
-    let Some(beginning) = Beginning::of(system, &references) else { return Ok(Vec::new()) };
+    let beginning = Beginning::of(system, &references);
     let mut states: Vec<Option<MotionState>> = vec![None; models.len()];
-    let failed = |source| LinearizeError::Run { scene: scene.path.clone(), source: Box::new(source) };
+    let failed = |source| LinearizeError::Run { scene: system.path.clone(), source: Box::new(source) };
     let mut run = motion::begin(system, &references, &beginning).map_err(Box::new)?;
     run.set_stop_time(Some(time));
     while run.time() < time {

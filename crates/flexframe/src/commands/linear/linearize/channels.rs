@@ -3,7 +3,7 @@
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
 use nalgebra::Vector3;
-use scene::{Load, Scene};
+use scene::{Load, Scene, Shared};
 
 use super::error::LinearizeError;
 use super::settings::LinearSettings;
@@ -21,7 +21,7 @@ pub(super) struct Channels {
 
 impl Channels {
     /// The equations with the channels that are asked for.
-    pub fn chosen(self, settings: &LinearSettings, scene: &Scene) -> Result<SecondOrder, LinearizeError> {
+    pub fn chosen(self, settings: &LinearSettings, scene: &Shared) -> Result<SecondOrder, LinearizeError> {
         let Self { equations, usual, more_inputs } = self;
         let inputs: Vec<&str> = equations.inputs.iter().map(|channel| &channel.name[..]).collect();
         let outputs: Vec<&str> = equations.outputs.iter().map(|output| &output.channel.name[..]).collect();
@@ -60,7 +60,7 @@ pub(super) fn along_axes(name: &str, unit: &str) -> [Channel; 3] {
 }
 
 /// The unit of a coordinate of unit mass: √mass · length.
-pub(super) fn unit_of_coordinate(scene: &Scene) -> String {
+pub(super) fn unit_of_coordinate(scene: &Shared) -> String {
     format!("√{} {}", scene.units.mass, scene.units.length)
 }
 
@@ -93,7 +93,7 @@ pub(in crate::commands::linear) fn input_channels(scene: &Scene, model: &Model, 
 }
 
 /// Displacement, velocity and acceleration of a point along the axes of its body, by its displacement in each coordinate.
-pub(super) fn point_outputs(scene: &Scene, name: &str, columns: &[Vector3<f64>]) -> Vec<Output> {
+pub(super) fn point_outputs(scene: &Shared, name: &str, columns: &[Vector3<f64>]) -> Vec<Output> {
     let UnitLabels { length, time, .. } = (&scene.units).into();
     let rates = [
         (Rate::Place, "displacement", length.to_owned()),
@@ -110,7 +110,7 @@ pub(super) fn point_outputs(scene: &Scene, name: &str, columns: &[Vector3<f64>])
 }
 
 /// Acceleration of a point relative to the support, along the axes of the body, by its displacement in each coordinate.
-pub(super) fn relative_outputs(scene: &Scene, name: &str, columns: &[Vector3<f64>]) -> Vec<Output> {
+pub(super) fn relative_outputs(scene: &Shared, name: &str, columns: &[Vector3<f64>]) -> Vec<Output> {
     let channels = along_axes(&format!("{name}.acceleration_relative"), &UnitLabels::from(&scene.units).acceleration());
     let row = |axis: usize| columns.iter().map(|column| column[axis]).collect();
     let channels = channels.into_iter().enumerate();
@@ -120,7 +120,7 @@ pub(super) fn relative_outputs(scene: &Scene, name: &str, columns: &[Vector3<f64
 /// Stress components of a point, body axes, by those of each modal displacement in each material there; `over` makes a row over the
 /// coordinates of one over the modes.
 pub(super) fn stress_outputs(
-    scene: &Scene,
+    scene: &Shared,
     name: &str,
     materials: &[Vec<[f64; 6]>],
     over: impl Fn(&[f64]) -> Vec<f64>,
@@ -139,7 +139,7 @@ pub(super) fn stress_outputs(
 }
 
 /// Names and units of the six components of a force and a moment.
-pub(super) fn wrench_channels(scene: &Scene, name: &str) -> Vec<Channel> {
+pub(super) fn wrench_channels(scene: &Shared, name: &str) -> Vec<Channel> {
     let units = UnitLabels::from(&scene.units);
     let force = along_axes(&format!("{name}.force"), &units.force());
     force.into_iter().chain(along_axes(&format!("{name}.moment"), &units.moment())).collect()

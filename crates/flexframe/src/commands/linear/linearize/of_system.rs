@@ -29,22 +29,20 @@ pub(super) fn of_system(
     states: Option<&[MotionState]>,
     settings: &LinearSettings,
 ) -> Result<(Channels, State), LinearizeError> {
-    let scene = &system.bodies[0];
     let references: Vec<&Model> = models.iter().collect();
     let refuse =
-        |found: &str, help| LinearizeError::Refused { scene: scene.path.clone(), found: found.to_owned(), help };
+        |found: &str, help| LinearizeError::Refused { scene: system.path.clone(), found: found.to_owned(), help };
     let no_body = || refuse("no body", "name a body in the scene");
-    let beginning = Beginning::of(system, &references).ok_or_else(no_body)?;
-    let beginning = Beginning { together: true, ..beginning };
+    let beginning = Beginning { together: true, ..Beginning::of(system, &references) };
     let mut run = motion::begin(system, &references, &beginning).map_err(Box::new)?;
     let Some(Island { motion, joints, bodies, .. }) = run.islands_mut().first_mut() else { return Err(no_body()) };
     if let Some(states) = states {
         let states: Vec<MotionState> = bodies.iter().map(|body| states[*body].clone()).collect();
-        let scene = scene.path.clone();
+        let scene = system.path.clone();
         motion.set_states(&states).map_err(|source| LinearizeError::State { scene, source: Box::new(source) })?;
     }
     let motion = motion.system_motion().ok_or_else(no_body)?;
-    let failed = |source| LinearizeError::Steady { scene: scene.path.clone(), source: Box::new(source) };
+    let failed = |source| LinearizeError::Steady { scene: system.path.clone(), source: Box::new(source) };
     let SystemSpin { omega_global, steady, rotors, warnings: turning } =
         SystemSpin::new(motion, spin).map_err(failed)?;
     let (linear, _) = steady.linear.with_loose_apart().map_err(failed)?;
@@ -110,7 +108,7 @@ pub(super) fn of_system(
             stresses.extend(stress_outputs(scene, &format!("{prefix}{name}"), materials, of_body));
         }
     }
-    let units: UnitLabels = (&scene.units).into();
+    let units: UnitLabels = (&system.units).into();
     for (number, joint) in joints.iter().enumerate() {
         let of = &system.joints[*joint];
         for coordinate in of.kind.coordinates() {
@@ -124,7 +122,7 @@ pub(super) fn of_system(
             inputs.push(Channel::new(format!("{}.{quantity}", of.name), force));
             columns.push(row);
             for (rate, suffix, unit) in
-                [(Rate::Place, "", unit.clone()), (Rate::Velocity, ".rate", format!("{unit}/{}", scene.units.time))]
+                [(Rate::Place, "", unit.clone()), (Rate::Velocity, ".rate", format!("{unit}/{}", system.units.time))]
             {
                 let channel = Channel::new(format!("{}.{quantity}{suffix}", of.name), unit);
                 outputs.push(Output::new(channel, rate, of_coordinates.clone()));
@@ -137,7 +135,7 @@ pub(super) fn of_system(
     for (number, joint) in joints.iter().enumerate() {
         let of = motion.reaction_rows(&steady, number);
         let times = |matrix: &Mat<f64>, i: usize| over(&(0..all).map(|k| matrix[(i, k)]).collect::<Vec<f64>>());
-        for (i, channel) in wrench_channels(scene, &system.joints[*joint].name).into_iter().enumerate() {
+        for (i, channel) in wrench_channels(system, &system.joints[*joint].name).into_iter().enumerate() {
             let of_input = columns.iter().map(|force| (0..all).map(|k| of.by_force[(i, k)] * force[k]).sum());
             // The part of accelerations of independent coordinates is rounding.
             let of_drives = times(&of.by_acceleration, i).split_off(free);
@@ -165,7 +163,7 @@ pub(super) fn of_system(
         Some(drive) if i == free + drive => 1.0,
         _ => 0.0,
     });
-    let unit = unit_of_coordinate(scene);
+    let unit = unit_of_coordinate(system);
     let mut coordinates: Vec<Channel> = (1..=free).map(|k| Channel::new(format!("x{k}"), unit.clone())).collect();
     let mut more_inputs = Vec::new();
     for (number, joint) in joints.iter().enumerate() {
@@ -174,7 +172,7 @@ pub(super) fn of_system(
         let unit = if quantity == "turn" { "rad" } else { units.length };
         match joint_drives.iter().position(|driven| *driven == number) {
             Some(drive) => {
-                inputs.push(Channel::new(drive_input(name), format!("{unit}/{}²", scene.units.time)));
+                inputs.push(Channel::new(drive_input(name), format!("{unit}/{}²", system.units.time)));
                 coordinates.push(Channel::new(format!("{name}.drive"), unit));
                 let mut row = vec![0.0; n];
                 row[free + drive] = 1.0;
@@ -189,7 +187,7 @@ pub(super) fn of_system(
     let state = State {
         time: motion.time(),
         omega_global: omega_global.into(),
-        rotors: rotors.iter().map(|rotor| rotor.words(&scene.units.time)).collect(),
+        rotors: rotors.iter().map(|rotor| rotor.words(&system.units.time)).collect(),
         rigid: linear.rigid,
         damping: damping_in_words(models),
         warnings,

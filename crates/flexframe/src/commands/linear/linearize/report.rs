@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use faer::c64;
 use linear::StateSpace;
-use scene::Scene;
+use scene::Shared;
 use serde::Serialize;
 
 use super::at_once::AtOnce;
@@ -67,7 +67,7 @@ pub struct Pole {
 }
 
 impl LinearReport {
-    pub(super) fn new(scene: &Scene, space: &LinearSpace, poles: &[c64], file: &Path) -> Self {
+    pub(super) fn new(scene: &Shared, space: &LinearSpace, poles: &[c64], file: &Path) -> Self {
         let LinearSpace { whole, state, .. } = space;
         let (written, balanced) = (space.model(), space.balanced());
         let pole = |pole: &c64| Pole {

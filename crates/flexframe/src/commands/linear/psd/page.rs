@@ -2,7 +2,7 @@
 
 use linear::{Channel, RandomResponse};
 use report::{Chart, Curve, Fact, Responses as Page};
-use scene::Scene;
+use scene::Shared;
 
 use super::report::PsdReport;
 use super::responses::Responses;
@@ -11,7 +11,7 @@ use crate::commands::linear::linearize::State;
 use crate::commands::modes::frequency_unit;
 
 /// The page of all outputs.
-pub(super) fn page(scene: &Scene, state: &State, report: &PsdReport, responses: &Responses, weights: &[f64]) -> Page {
+pub(super) fn page(scene: &Shared, state: &State, report: &PsdReport, responses: &Responses, weights: &[f64]) -> Page {
     let unit = frequency_unit(&scene.units.time);
     let curve = |(channel, response): &(Channel, RandomResponse)| {
         let mut square = 0.0;

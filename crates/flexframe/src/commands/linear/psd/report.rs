@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use linear::RandomResponse;
-use scene::Scene;
+use scene::Shared;
 use serde::Serialize;
 
 use super::responses::Responses;
@@ -56,7 +56,7 @@ pub struct RandomOutput {
 
 impl PsdReport {
     /// The report before files are written.
-    pub(super) fn new(scene: &Scene, model: &LinearModel, band: [f64; 2], responses: &Responses) -> Self {
+    pub(super) fn new(scene: &Shared, model: &LinearModel, band: [f64; 2], responses: &Responses) -> Self {
         let output = |(k, (channel, response)): (usize, &(linear::Channel, RandomResponse))| {
             let is_signal = k < responses.first_von_mises;
             RandomOutput {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use scene::{Interpolation, Scene};
+use scene::{Interpolation, Shared};
 use serde::Serialize;
 use shock::BaseMotion;
 
@@ -54,7 +54,7 @@ pub struct ShockMode {
 
 impl ShockReport {
     pub(super) fn new(
-        scene: &Scene,
+        scene: &Shared,
         (input, interpolation): (&str, Interpolation),
         motion: &BaseMotion,
         peaks: &ModePeaks,

@@ -6,13 +6,13 @@ use std::path::Path;
 use figures::{Animation, Frame};
 use model::Builder;
 use nalgebra::Vector3;
-use scene::{Scene, System};
+use scene::{Shared, System};
 
 use super::error::AnimationError;
 use super::film::Format;
 use super::settings::{AnimationSettings, Coloured, MAX_FRAMES};
 use crate::commands::modes::{self, frequency_unit, require_flexible, require_surface};
-use crate::commands::run::{RunError, RunProgress};
+use crate::commands::run::RunProgress;
 use crate::commands::system_modes::{self, SystemSurface};
 use crate::surface::Surface;
 
@@ -34,20 +34,19 @@ pub fn animate_mode(
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(), AnimationError> {
     let format = Format::of(path)?;
-    let scene = system.bodies.first().ok_or(RunError::NoBody)?;
-    let no_such = |modes| AnimationError::NoSuchMode { scene: scene.path.clone(), number, modes };
+    let no_such = |modes| AnimationError::NoSuchMode { scene: system.path.clone(), number, modes };
     let index = number.wrapping_sub(1);
     if system.has_connections() {
         let models = system_modes::build(system, builder, |p| progress(RunProgress::Build(p)))?;
         let found = system_modes::vibrations(system, &models)?;
         let [modes] = &found[..] else {
-            return Err(AnimationError::SeveralMotions { scene: scene.path.clone(), count: found.len() });
+            return Err(AnimationError::SeveralMotions { scene: system.path.clone(), count: found.len() });
         };
         let count = modes.vibrations.modes.len();
         let mode = modes.vibrations.modes.get(index).ok_or_else(|| no_such(count))?;
         let surface = SystemSurface::new(system, &models, modes, settings.coloured == Coloured::Stress)?;
         let swinging = Swinging {
-            title: title(scene, number, modes.report.modes[index].frequency),
+            title: title(system, number, modes.report.modes[index].frequency),
             triangles: &surface.triangles,
             edges: &surface.edges,
             points: &surface.points,
@@ -61,7 +60,7 @@ pub fn animate_mode(
         );
     }
     let [scene] = &system.bodies[..] else {
-        return Err(AnimationError::SeveralMotions { scene: scene.path.clone(), count: system.bodies.len() });
+        return Err(AnimationError::SeveralMotions { scene: system.path.clone(), count: system.bodies.len() });
     };
     require_surface(scene)?;
     let (model, _) = modes::modes(scene, builder, None, |p| progress(RunProgress::Build(p)))?;
@@ -73,7 +72,7 @@ pub fn animate_mode(
         Coloured::Displacement => Surface::of_model(&model),
     };
     let swinging = Swinging {
-        title: title(scene, number, frequency),
+        title: title(system, number, frequency),
         triangles: &surface.triangles,
         edges: &surface.edges,
         points: &surface.shapes.positions,
@@ -87,7 +86,7 @@ pub fn animate_mode(
     swinging.write(at, (format, path), settings, progress)
 }
 
-fn title(scene: &Scene, number: usize, frequency: f64) -> String {
+fn title(scene: &Shared, number: usize, frequency: f64) -> String {
     format!("{}: mode {number}, {frequency:.4} {}", scene.title, frequency_unit(&scene.units.time))
 }
 

@@ -34,7 +34,7 @@ pub(super) fn led_on(
     let system = system_of(results)?.ok_or_else(|| changed("the list of bodies"))?;
     let models =
         system.bodies.iter().map(|scene| builder.build(scene, &mut progress)).collect::<Result<Vec<_>, _>>()?;
-    let now = metadata(&bodies(&system.bodies, &models)).ok_or_else(|| changed("the list of bodies"))?;
+    let now = metadata(&system, &bodies(&system.bodies, &models));
     for (now, then) in now.bodies.iter().zip(&results.metadata.bodies) {
         let mut then = then.model.clone();
         then.mesh = None;
@@ -43,7 +43,7 @@ pub(super) fn led_on(
         }
     }
     let of_models: Vec<&Model> = models.iter().collect();
-    let beginning = Beginning::of(&system, &of_models).ok_or_else(|| changed("the list of bodies"))?;
+    let beginning = Beginning::of(&system, &of_models);
     let Described { run, elements } = describe(&system, &of_models, &beginning)?;
     let names: Vec<&str> = results.metadata.bodies.iter().map(|body| &*body.name).collect();
     let mut controls = Vec::new();
