@@ -51,7 +51,16 @@ pub struct System {
 impl From<Scene> for System {
     fn from(scene: Scene) -> Self {
         let Ties { ground, joints, springs, bushings, couplings, relaxed } = Ties::default();
-        Self { shared: scene.shared.clone(), bodies: vec![scene], ground, joints, springs, bushings, couplings, relaxed }
+        Self {
+            shared: scene.shared.clone(),
+            bodies: vec![scene],
+            ground,
+            joints,
+            springs,
+            bushings,
+            couplings,
+            relaxed,
+        }
     }
 }
 

@@ -1,7 +1,6 @@
 //! A warning means something: a run that is right ends without one.
 
 use std::process::Command;
-use std::slice::from_ref;
 
 use flexframe::advice::Refusal;
 use flexframe::advise::advise;

@@ -94,7 +94,11 @@ pub fn system_advice(
         let flexible = motion.bodies.iter().copied().filter(|body| models[*body].body.flexible() > 0);
         let flexible = body_names(system, &flexible.collect::<Vec<_>>());
         let advice = SystemAdvice::new(&modes.report, &flexible);
-        Ok(advice.with_stiffening(stiffening::stiffened(system, &models, motion), &system.units, &modes.report.frequency_unit))
+        Ok(advice.with_stiffening(
+            stiffening::stiffened(system, &models, motion),
+            &system.units,
+            &modes.report.frequency_unit,
+        ))
     };
     tied_motions(system, &models)?.iter().map(of_system).collect()
 }

@@ -84,8 +84,7 @@ fn communication_step(fmu: &FmuModel) -> f64 {
 
 /// The name of a variable's unit; none of a pure number.
 fn unit_name(fmu: &FmuModel, variable: &Variable) -> Option<String> {
-    if variable.source == Source::Time && Powers::of("time").and_then(|time| time.factor(&fmu.system.units)).is_some()
-    {
+    if variable.source == Source::Time && Powers::of("time").and_then(|time| time.factor(&fmu.system.units)).is_some() {
         // FMI counts time in seconds.
         return Some("s".to_owned());
     }

@@ -128,7 +128,8 @@ pub fn pack(
     let manifest = Manifest::of(resources, &names, (bodies, file))?;
     // What is packed is what will be opened. Its files have been found by now; messages name the scene that was given.
     let opened = manifest.system(resources)?;
-    let mut opened = opened.with_shared(|shared| Shared { path: system.path.clone(), text: system.text.clone(), ..shared });
+    let mut opened =
+        opened.with_shared(|shared| Shared { path: system.path.clone(), text: system.text.clone(), ..shared });
     for (opened, given) in opened.bodies.iter_mut().zip(scenes) {
         opened.source.clone_from(&given.source);
     }

@@ -63,11 +63,8 @@ pub fn linear_model(
     };
     let models: Vec<Model> =
         scenes.iter().map(|scene| builder.build(scene, &mut progress)).collect::<Result<_, _>>()?;
-    let refuse = |found: &str, help| LinearizeError::Refused {
-        scene: system.path.clone(),
-        found: found.to_owned(),
-        help,
-    };
+    let refuse =
+        |found: &str, help| LinearizeError::Refused { scene: system.path.clone(), found: found.to_owned(), help };
     let is_free = |model: &Model| model.body.motion.is_free() && model.physics.drive.is_none();
     let states = settings.time.map(|time| states_at(system, &models, time)).transpose()?;
     let is_alone = models.len() == 1 && !system.has_connections();
