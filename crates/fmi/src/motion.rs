@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use flexframe::advice::Review;
 use flexframe::dynamics::{
-    History, Initial, JointLaw, LoadFrame, PointForce, PointMoment, Reached, RowTimes, Rows, Run, ScaledLoad,
-    SharedLoad, Signal, StepControl, StepError,
+    History, Initial, JointLaw, LoadFrame, PointForce, PointMoment, Reached, Rows, Run, ScaledLoad, SharedLoad, Signal,
+    StepError,
 };
 use flexframe::fmu::{FmuBody, FmuModel, Input, InputKind, Source};
 use flexframe::model::Model;
