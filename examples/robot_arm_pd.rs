@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use flexframe::dynamics::{
     ConservativeBody, Coordinate, History, Joint, JointLawFn, Marker, MotionState, Physics, PointForce, PointShapes,
-    Reached, Rows, StepControl, System, SystemScheme, SystemSetup, Simulation,
+    Reached, Rows, Simulation, StepControl, System, SystemScheme, SystemSetup,
 };
 use flexframe::nalgebra::{Matrix3, Vector3};
 use flexframe::reduced_body::{BodyPoint, ReducedBody, RigidMotion};

@@ -10,7 +10,6 @@ use crate::document::{BODIES, Document, Node};
 use crate::error::SceneError;
 use crate::scene::{Scene, Shared};
 use crate::section::Sections;
-use crate::system::refuse_several;
 use crate::text::name::ONLY_BODY;
 use crate::text::ordinary_file::open_ordinary;
 use crate::text::place::Place;
@@ -195,6 +194,12 @@ pub fn text_from(reader: impl Read, path: &Path) -> Result<String, SceneError> {
             byte: bad.first().copied().unwrap_or_default(),
         }
     })
+}
+
+/// The refusal of several bodies where one is wanted.
+pub(crate) fn refuse_several(place: Place, names: &[&str]) -> SceneError {
+    let help = format!("name one of them: {}", names.join(", "));
+    place.refuse(format!("a scene of {} bodies", names.len()), "one body", help)
 }
 
 pub(crate) fn refuse_long(bytes: usize, path: &Path) -> Result<(), SceneError> {

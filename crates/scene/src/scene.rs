@@ -47,7 +47,7 @@ pub struct Shared {
 pub struct Scene {
     /// Name of its body among `bodies`; `None` of a scene with `body`.
     pub name: Option<String>,
-    /// What it shares with the other bodies of its file.
+    /// The part that it shares with the other bodies of its file.
     pub shared: Arc<Shared>,
     /// The body.
     pub body: Body,

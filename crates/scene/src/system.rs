@@ -11,11 +11,10 @@ use crate::check::Check;
 use crate::check::tie::Ties;
 use crate::document::{BODIES, Document, Node, OF_A_BODY, OUTPUT_OF_A_BODY};
 use crate::error::SceneError;
-use crate::file::{refuse_long, text_of};
+use crate::file::{refuse_long, refuse_several, text_of};
 use crate::scene::{Scene, Shared};
 use crate::text::deserialize::from_document;
 use crate::text::name::{GROUND, ONLY_BODY, check_key};
-use crate::text::place::Place;
 use crate::tie::joint::{Bushing, Coupling, End, Joint, Spring};
 use crate::tie::marker::GroundMarker;
 
@@ -29,7 +28,7 @@ const SHARED: [&str; 11] =
 /// A scene of one body or several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct System {
-    /// What all bodies share.
+    /// The part that all bodies share.
     pub shared: Arc<Shared>,
     /// One scene for each body, in the order of the file. A single `[body]` has no name.
     pub bodies: Vec<Scene>,
@@ -160,12 +159,6 @@ impl System {
         let of_ground = (0..self.ground.len()).map(Some).chain([None]);
         of_bodies.chain(of_ground.map(|marker| End::Ground { marker })).collect()
     }
-}
-
-/// The refusal of several bodies where one is wanted.
-pub(crate) fn refuse_several(place: Place, names: &[&str]) -> SceneError {
-    let help = format!("name one of them: {}", names.join(", "));
-    place.refuse(format!("a scene of {} bodies", names.len()), "one body", help)
 }
 
 /// The scenes of the bodies of a document, without its `ties`, and what they share.
