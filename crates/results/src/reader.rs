@@ -16,6 +16,8 @@ pub struct Results {
     pub metadata: Metadata,
     /// True if the run came to its end.
     pub complete: bool,
+    /// Time of the first row that no check sum covers: of an unfinished file, of the one after its last checkpoint.
+    pub unchecked_from: Option<f64>,
     rows: usize,
     /// By path.
     histories: BTreeMap<String, ColumnTable>,
@@ -134,6 +136,8 @@ impl Results {
         let mut columns = columns.into_iter();
         let mut times = columns.next().unwrap_or_default();
         times.truncate(rows);
+        let checked = checkpoint.as_ref().map_or(0, |(checkpoint, _)| checkpoint.rows);
+        let unchecked_from = times.get(checked).copied().filter(|_| !complete);
         tables.insert("time".to_owned(), ColumnTable { rows, width: 1, values: times });
         for (history, mut values) in histories(table, &metadata).zip(columns) {
             let (width, each) = (history.width(&metadata), history.values_of_each(&metadata));
@@ -148,7 +152,7 @@ impl Results {
                 tables.insert(history.path_of(&metadata, Some(name)), ColumnTable { rows, width: each, values });
             }
         }
-        Ok((Self { metadata, complete, rows, histories: tables }, checkpoint))
+        Ok((Self { metadata, complete, unchecked_from, rows, histories: tables }, checkpoint))
     }
 
     /// Number of rows, T.
@@ -217,6 +221,8 @@ impl Results {
     pub(crate) fn truncate(&mut self, rows: usize) {
         self.rows = self.rows.min(rows);
         self.histories.values_mut().for_each(|table| table.truncate(rows));
+        let last = self.numbers("time").and_then(|times| times.last().copied());
+        self.unchecked_from = self.unchecked_from.filter(|from| last.is_some_and(|last| *from <= last));
     }
 }
 

@@ -332,7 +332,10 @@ fn of_two_checkpoints_the_last_whole_one_counts() {
         let file = hdf5::File::open_rw(unfinished(&path)).unwrap();
         file.dataset("checkpoint").unwrap().write_slice(&[77_u64], ndarray::s![place, word..word + 1]).unwrap();
     };
+    let unchecked_from = || Results::open(unfinished(&path), &COLUMNS).unwrap().unchecked_from;
+    assert_eq!(unchecked_from(), None);
     spoil(0, 3);
+    assert_eq!(unchecked_from(), Some(Row::new(30, 1, 0).time()));
     assert_eq!(rows_and_state(resumed()), (30, Some(vec![29, 1, 2])));
     // From there its successor is the fourth again.
     let mut writer = resumed().writer;

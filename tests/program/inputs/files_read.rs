@@ -120,7 +120,8 @@ fn a_run_with_joints_does_not_go_on_with_another_table() {
     let Err(RunError::Stopped { part, .. }) = stopped else { panic!("{stopped:?}") };
     fs::write(folder.path().join("motor.csv"), "0, 1\n1, 2\n").unwrap();
     let refused = resume(&part, &settings, |_| ());
-    assert!(matches!(refused, Err(RunError::Changed { what: "a file that the run reads", .. })), "{refused:?}");
+    let Err(error @ RunError::Restore { .. }) = refused else { panic!("{refused:?}") };
+    assert!(error.to_string().contains("the joint \"axle\""), "{error}");
     fs::write(folder.path().join("motor.csv"), "0, 1\n1, 1\n").unwrap();
     resume(&part, &settings, |_| ()).unwrap();
 }

@@ -46,6 +46,9 @@ impl ExportRows {
     /// Warning about an export of these results.
     pub(super) fn warning(results: &Results) -> Option<String> {
         let last = results.numbers("time").and_then(|times| times.last()).copied().unwrap_or_default();
-        (!results.complete).then(|| format!("the run is unfinished: its rows end at time {last}"))
+        let unchecked =
+            results.unchecked_from.map(|time| format!(", and from time {time} on no check sum covers them"));
+        let unchecked = unchecked.unwrap_or_default();
+        (!results.complete).then(|| format!("the run is unfinished: its rows end at time {last}{unchecked}"))
     }
 }

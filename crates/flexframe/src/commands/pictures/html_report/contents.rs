@@ -92,8 +92,11 @@ fn state(file: &Path, results: &Results) -> Option<RunState> {
     let reached = results.numbers("time")?.last().copied().unwrap_or_default();
     let time = &results.metadata.units.time;
     let (reached, end) = (quantity(reached), quantity(results.metadata.end));
+    let from =
+        results.unchecked_from.map(|from| format!(" No check sum covers them from {} {time} on.", quantity(from)));
+    let unchecked = from.unwrap_or_default();
     let words = format!(
-        "This run has not come to its end: its rows reach {reached} {time} of {end} {time}. Continue it with: flexframe \
+        "This run has not come to its end: its rows reach {reached} {time} of {end} {time}.{unchecked} Continue it with: flexframe \
          resume {}",
         file.display()
     );
