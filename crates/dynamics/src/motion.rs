@@ -40,7 +40,7 @@ pub trait Motion: fmt::Debug + Send + Sync + Any {
     fn step(&mut self, h: f64, end: f64) -> Result<(), StepError>;
 
     /// Tries to go on by `h` to `end`, and does so where its estimate of the error is at most `tolerance`. Returns the
-    /// estimate, and that of a step twice as long. Steps [in pairs](crate::Stepping::Pairs) are controlled by it.
+    /// estimate, and the estimate for a step twice as long. It controls steps [in pairs](crate::Stepping::Pairs).
     ///
     /// # Errors
     /// [`StepError`] where even the try fails; the state stays. A scheme without an estimate always fails.
@@ -109,7 +109,7 @@ pub trait Motion: fmt::Debug + Send + Sync + Any {
         Ok(())
     }
 
-    /// Fills `out` with the motion of a body at the state, and that of `points` of it.
+    /// Fills `out` with the motion of a body at the state, and the motion of its `points`.
     ///
     /// # Errors
     /// [`StepError`].

@@ -74,8 +74,8 @@ impl Scene {
         }
     }
 
-    /// Checks the scene of a document, which may be that of a body of several, with what ties the bodies of the file together, and what an
-    /// earlier one of them shares with it.
+    /// Checks the scene of a document, which may be one body of several. `ties` are the joints and springs of the file; `shared` is the
+    /// shared part of the file, if an earlier body has been read with it.
     pub(crate) fn of_document(
         document: &Document<'_>,
         body_text: Option<BodyText<'_>>,

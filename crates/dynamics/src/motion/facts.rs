@@ -5,7 +5,7 @@ use crate::observation::energies::Energies;
 /// How the steps of a motion are controlled, and where they may end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stepping {
-    /// Steps end at rows. Under a tolerance they are tried in pairs, whose lengths are those of the way to the next row over powers of two,
+    /// Steps end at rows. Under a tolerance steps are tried in pairs, whose length is the time to the next row over a power of two,
     /// so that what belongs to a length is found once.
     Pairs,
     /// Steps end where they like: rows are found within them. Under a tolerance each is as long as its error allows.

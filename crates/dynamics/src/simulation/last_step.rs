@@ -19,7 +19,7 @@ pub(crate) struct Inside<'a> {
     pub step: &'a mut LastStep,
     pub points: &'a [Vec<PointShapes>],
     pub retaken: Retaken,
-    /// Time at its end, to the last bit that of the motion there.
+    /// Time at the end of the step, equal to the time of the motion there to the last bit.
     pub end: f64,
 }
 

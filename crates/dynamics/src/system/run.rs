@@ -154,7 +154,7 @@ impl SystemRun {
         self.shape_limit.filter(|of| self.longest_step > 0.9 * STABLE * of.limit)
     }
 
-    /// Energy below which a body rests: that of a motion in which its place changes by no more than it may be off in all of the run, and,
+    /// Energy below which a body rests: the energy of a motion that moves its place by no more than the error allowed in all of the run, and,
     /// of a rigid body that has gone no farther, the work of the loads over this way.
     fn energy_at_rest(&self, body: usize) -> f64 {
         let way = self.tolerance.unwrap_or(FIXED_REST) * self.motion.size();
