@@ -378,7 +378,8 @@ impl BodyReport {
     }
 }
 
-fn counted(count: usize, [one, several]: [&str; 2]) -> String {
+/// A count and its noun, such as "1 mode" or "3 modes".
+pub(crate) fn counted(count: usize, [one, several]: [&str; 2]) -> String {
     format!("{count} {}", if count == 1 { one } else { several })
 }
 

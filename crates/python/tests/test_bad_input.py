@@ -64,7 +64,7 @@ def test_scene(case):
 
 
 def test_scene_arguments(tmp_path):
-    with pytest.raises(FileError, match="the scene file cannot be read") as raised:
+    with pytest.raises(FileError, match="the file cannot be read") as raised:
         flexframe.Scene(tmp_path / "none.toml")
     assert isinstance(raised.value, OSError) and raised.value.file == str(tmp_path / "none.toml")
     with pytest.raises(TypeError, match="`base` and `name` are those of a scene from a dict"):

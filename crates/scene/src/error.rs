@@ -20,7 +20,7 @@ const NOT_UTF8_CURE: &str = "save it with encoding UTF-8";
 #[allow(missing_docs)] // the message of a variant says what its fields are
 pub enum SceneError {
     /// The file is not there or cannot be read.
-    #[error("{}: the scene file cannot be read: {cause}\n = {help}", .path.display())]
+    #[error("{}: the file cannot be read: {cause}\n = {help}", .path.display())]
     Unreadable { path: PathBuf, cause: io::Error, help: &'static str },
     /// The file is longer than a scene can be. `limit`: in bytes.
     #[error("{}: the scene file is longer than {limit} bytes\n = {TOO_LARGE_CURE}", .path.display())]

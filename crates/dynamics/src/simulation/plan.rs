@@ -31,8 +31,6 @@ pub(crate) struct Segment {
     /// `end − start`; segments that are equally long but for rounding have the very same length, so that what belongs
     /// to a step's length need not be computed again.
     pub length: f64,
-    /// True if the end is an output time.
-    pub row: bool,
     /// True if the end is a discontinuity.
     pub discontinuity: bool,
 }
@@ -151,33 +149,25 @@ impl Plan {
         }
         let discontinuity = self.discontinuities.get(self.passed).copied().unwrap_or(f64::INFINITY);
         let mut stop = discontinuity.min(output).min(self.end);
-        let row = (output - stop).abs() <= same || (self.end - stop).abs() <= same;
-        if (output - stop).abs() <= same {
+        let is_output = (output - stop).abs() <= same;
+        if is_output {
             self.outputs += 1;
             stop = output.min(self.end);
         }
         if (self.end - stop).abs() <= same {
             stop = self.end;
         }
-        let mut row = row;
         if let Some(asked) = self.stop.filter(|asked| *asked > self.reached + same && *asked < stop - same) {
-            if row && self.interval.is_some() && (output - stop).abs() <= same {
-                self.outputs -= 1;
-            }
-            (stop, row) = (asked, false);
+            self.outputs -= u64::from(is_output);
+            stop = asked;
         }
         let mut length = stop - self.reached;
         if (length - self.last_length).abs() <= 8.0 * f64::EPSILON * self.end {
             length = self.last_length;
         }
         self.last_length = length;
-        let segment = Segment {
-            start: self.reached,
-            end: stop,
-            length,
-            row,
-            discontinuity: (discontinuity - stop).abs() <= same,
-        };
+        let segment =
+            Segment { start: self.reached, end: stop, length, discontinuity: (discontinuity - stop).abs() <= same };
         self.reached = stop;
         Some(segment)
     }
@@ -325,16 +315,16 @@ mod tests {
         let mut ends = Vec::new();
         let mut lengths = Vec::new();
         while let Some(segment) = plan.next_segment() {
-            ends.push((segment.end, segment.row));
+            ends.push(segment.end);
             lengths.push(segment.length);
         }
-        assert_eq!(ends, [(0.02013, false), (0.1, true), (0.2, true), (3.0 * 0.1, true), (0.4, true), (0.5, true)]);
+        assert_eq!(ends, [0.02013, 0.1, 0.2, 3.0 * 0.1, 0.4, 0.5]);
         assert!(lengths[3].to_bits() == lengths[4].to_bits() && lengths[4].to_bits() == lengths[5].to_bits());
     }
 
     #[test]
     fn a_step_that_divides_the_end_is_kept_and_another_is_shortened() {
-        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, row: true, discontinuity: false };
+        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, discontinuity: false };
         for (step, count) in [(1e-4, 5000), (0.3, 2), (0.5, 1), (2.0, 1), (0.1, 5)] {
             let mut steps = EqualSteps::new(whole, step);
             let mut taken = Vec::new();
@@ -349,7 +339,7 @@ mod tests {
 
     #[test]
     fn halved_steps_land_on_the_end_whatever_is_accepted_and_rejected() {
-        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true, discontinuity: false };
+        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, discontinuity: false };
         let mut steps = HalvedSteps::new(segment, 0.11, f64::INFINITY);
         let mut time = 1.0;
         let mut tries = 0;
@@ -369,11 +359,8 @@ mod tests {
 
     #[test]
     fn steps_cannot_shrink_for_ever() {
-        let mut steps = HalvedSteps::new(
-            Segment { start: 0.0, end: 1.0, length: 1.0, row: true, discontinuity: false },
-            1.0,
-            f64::INFINITY,
-        );
+        let mut steps =
+            HalvedSteps::new(Segment { start: 0.0, end: 1.0, length: 1.0, discontinuity: false }, 1.0, f64::INFINITY);
         assert!((0..100).any(|_| !steps.reject(f64::NAN)));
     }
 }

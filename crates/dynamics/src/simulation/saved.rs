@@ -13,7 +13,7 @@ use crate::simulation::walk::Walk;
 use crate::simulation::{Phase, Simulation};
 
 /// Version of the data, in front of them.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 #[derive(Serialize, Deserialize)]
 struct Saved {

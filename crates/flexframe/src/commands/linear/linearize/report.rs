@@ -13,6 +13,7 @@ use super::at_once::AtOnce;
 use super::space::LinearSpace;
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
+use crate::report::counted;
 
 /// Poles that are shown.
 const POLES: usize = 20;
@@ -110,7 +111,9 @@ impl fmt::Display for LinearReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
         writeln!(f, "  about    {}", self.about)?;
-        write!(f, "  model    {} states, {} inputs, {} outputs", self.states, self.inputs.len(), self.outputs.len())?;
+        let inputs = counted(self.inputs.len(), ["input", "inputs"]);
+        let outputs = counted(self.outputs.len(), ["output", "outputs"]);
+        write!(f, "  model    {}, {inputs}, {outputs}", counted(self.states, ["state", "states"]))?;
         match self.error_bound {
             Some(bound) => writeln!(f, "; of {} states, no response wrong by more than {bound:.3e}", self.whole)?,
             None if self.states < self.whole => writeln!(f, "; of {} states, exact at frequency 0", self.whole)?,
