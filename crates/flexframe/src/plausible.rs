@@ -8,7 +8,7 @@ use dynamics::Effect;
 use fem_tet10::{Material, Materials};
 use modal::NoCycles;
 use model::{BodyMarker, Doubt, Meshed, Model};
-use scene::{Body, Choice, Interpolation, Joint, Load, Scene, System, TablePoints, Units, tables_of};
+use scene::{Body, Choice, Interpolation, Joint, Load, LoadKind, Scene, System, TablePoints, Units, tables_of};
 
 use crate::report::quantity;
 use crate::rows::units::UnitLabels;
@@ -260,9 +260,8 @@ fn of_mass(mass: f64, size: [f64; 3], units: &Units) -> Option<String> {
 /// Doubt about gravity, or about an acceleration of the base: the number of standard gravity in other units than those of
 /// the scene.
 fn of_acceleration(load: usize, acts: &Load, units: &Units) -> Option<String> {
-    let (name, amplitude) = match acts {
-        Load::Gravity(gravity) => ("gravity", gravity.amplitude.abs()),
-        Load::BaseAcceleration(base) => ("base-acceleration", base.amplitude.abs()),
+    let (name, amplitude) = match acts.kind {
+        LoadKind::Gravity | LoadKind::BaseAcceleration => (acts.kind.name(), acts.amplitude.abs()),
         _ => return None,
     };
     let labels = UnitLabels::from(units);
@@ -285,7 +284,8 @@ fn of_acceleration(load: usize, acts: &Load, units: &Units) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use scene::{BaseAcceleration, Gravity, History};
+    use dynamics::LoadFrame;
+    use scene::{History, LoadPlace};
 
     use super::*;
 
@@ -420,14 +420,15 @@ mod tests {
 
     #[test]
     fn gravity_in_other_units_than_the_scenes_is_told() {
-        let gravity = |kind: &str, amplitude: f64| -> Load {
-            let (direction, history) = ([0.0, 0.0, -1.0], History::Constant);
-            match kind {
-                "gravity" => Load::Gravity(Gravity { direction, amplitude, history }),
-                _ => Load::BaseAcceleration(BaseAcceleration { direction, amplitude, history }),
-            }
+        let gravity = |kind: LoadKind, amplitude: f64| Load {
+            kind,
+            place: LoadPlace::Everywhere,
+            direction: [0.0, 0.0, -1.0],
+            frame: LoadFrame::Global,
+            amplitude,
+            history: History::Constant,
         };
-        let told = |kind: &str, amplitude: f64, length: &str| {
+        let told = |kind: LoadKind, amplitude: f64, length: &str| {
             of_acceleration(
                 1,
                 &gravity(kind, amplitude),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use scene::{History, Load, Scene};
+use scene::{History, Scene};
 
 const SCENE: &str = include_str!("../../scene/src/text/example.toml");
 
@@ -24,8 +24,7 @@ fuzz_target!(|bytes: &[u8]| {
     std::fs::write(table, bytes).unwrap();
     match Scene::parse(text, folder.path().join("scene.toml")) {
         Ok(scene) => {
-            let Load::Force(force) = &scene.loads[0] else { panic!("not a force") };
-            let History::Table(table) = &force.history else { panic!("not a table") };
+            let History::Table(table) = &scene.loads[0].history else { panic!("not a table") };
             let (times, values) = table.points.iter().map(|[time, value]| (*time, *value)).unzip();
             let table = dynamics::Table::new(times, values).expect("what a scene takes is a table");
             assert!(table.discontinuities().windows(2).all(|pair| pair[0] < pair[1]));

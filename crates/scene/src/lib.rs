@@ -55,7 +55,7 @@ pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
 pub use file::{text_from, text_of};
 pub use loads::history::{DrivenSpeed, Formula, History, Interpolation, TablePoints};
-pub use loads::load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
+pub use loads::load::{Load, LoadKind, LoadPlace};
 pub use matrix_import::MatrixFiles;
 pub use methods::{METHODS, method_named};
 pub use scene::{Body, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Shared, TiedMass, Time, Units};

@@ -13,7 +13,7 @@ use serde::{Deserialize, Deserializer};
 use crate::body::effects::{Choice, Effects, auto};
 use crate::body::modes::Rayleigh;
 use crate::loads::history::DrivenSpeed;
-use crate::loads::load::Load;
+use crate::loads::load::{Load, LoadSection};
 use crate::methods::{formulation_names, scheme_names};
 use crate::scene::{Frame, Initial, TiedMass, Units};
 use crate::tie::section::{InOrder, MarkerSection};
@@ -43,6 +43,7 @@ pub(crate) struct Sections {
     pub constraints: Vec<ConstraintSection>,
     /// Loads on the body.
     #[serde(default)]
+    #[schemars(with = "Vec<LoadSection>")]
     pub loads: Vec<Load>,
     /// How far and how to step.
     pub time: TimeSection,

@@ -56,7 +56,7 @@ pub(crate) fn is_on(scene: &Scene, model: &Model, subject: Subject) -> Option<bo
                     let damped = |k: usize| scene.modes.damping.ratio(k, model.body.circular_frequencies[k]) > 0.0;
                     (0..flexible).any(damped)
                 }
-                Effect::Gravity => scene.loads.iter().any(|load| matches!(load, Load::Gravity(_))),
+                Effect::Gravity => scene.loads.iter().any(Load::is_gravity),
                 Effect::DeformedInertia | Effect::Coriolis | Effect::GeometricStiffening | Effect::LargeDeflection => {
                     flexible > 0
                 }

@@ -8,7 +8,7 @@ use faer::{Col, Mat, MatRef};
 use fem_tet10::{BodyNumber, Location, MatrixRates, Mesh, stretch};
 use modal::{ModeRates, Modes, Solver, StaticAccuracy};
 use nalgebra::Vector3;
-use scene::{Load, MeshedBody, Scene};
+use scene::{LoadKind, MeshedBody, Scene};
 
 use crate::building::assembly::AssembledMesh;
 use crate::error::{BuildError, modal};
@@ -190,7 +190,7 @@ impl At<'_> {
                     true
                 }
                 // Areas and levers change with the places of the nodes, the force at a point does not.
-                _ => rates.velocities().is_none() || matches!(of_scene, Load::Force(_)),
+                _ => rates.velocities().is_none() || of_scene.kind == LoadKind::Force,
             });
         }
         Ok((forces, is_known))

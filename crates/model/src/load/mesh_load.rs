@@ -12,7 +12,7 @@ use modal::{ModalError, Modes, NodalMass};
 use nalgebra::Vector3;
 use reduced_body::{BodyPoint, ReducedBody};
 use rigid_kin::Attitude;
-use scene::{Choice, Force, Load, Moment, Scene, Traction};
+use scene::{Choice, Load, LoadKind, LoadPlace, Scene};
 
 use crate::error::{BuildError, modal, refuse, refuse_mesh};
 use crate::load::directed::Directed;
@@ -134,52 +134,45 @@ pub(crate) fn on_mesh(
         .map(|(i, load)| {
             let key = |name: &str| format!("loads[{i}].{name}");
             let surface = |error| refuse_mesh(scene, &key("group"), &error);
-            let amplitude = amplitude(load);
+            let amplitude = load.amplitude;
             let unit = direction(load) * amplitude.signum();
-            let spread = |weights: Vec<f64>, nodes: Vec<u32>| {
-                let total: f64 = weights.iter().sum();
-                let weights = weights.into_iter().map(|w| w / total).collect();
-                Action::Force { nodes, weights, force: unit * total }
-            };
-            let action = match load {
-                Load::Force(load) => {
+            let action = match (load.kind, &load.place) {
+                (LoadKind::Moment, LoadPlace::Point(at)) => {
+                    Action::Moment { patch: Rotation::at(scene, mesh, dofs, &key("at"), *at)?, moment: unit }
+                }
+                (_, LoadPlace::Point(at)) => {
                     let Location { nodes, weights } =
-                        mesh.locate(load.at).map_err(|error| refuse(scene, &key("at"), error))?;
-                    Action::Force { nodes: nodes.to_vec(), weights: weights.to_vec(), force: unit }
+                        mesh.locate(*at).map_err(|error| refuse(scene, &key("at"), error))?;
+                    Action::Force { nodes, weights, force: unit }
                 }
-                Load::Moment(load) => Action::Moment {
-                    patch: match load.radius {
-                        None => Rotation::at(scene, mesh, dofs, &key("at"), load.at)?,
-                        radius => {
-                            let mean = mesh.mean_rotation(load.at, radius);
-                            Rotation::Mean(mean.map_err(|error| refuse(scene, &key("radius"), error))?)
-                        }
-                    },
-                    moment: unit,
-                },
-                Load::Traction(load) => {
-                    let (nodes, weights) = mesh.surface_weights(&load.group).map_err(surface)?;
-                    spread(weights, nodes)
+                (_, LoadPlace::Ball { at, radius }) => {
+                    let mean = mesh.mean_rotation(*at, Some(*radius));
+                    let patch = Rotation::Mean(mean.map_err(|error| refuse(scene, &key("radius"), error))?);
+                    Action::Moment { patch, moment: unit }
                 }
-                Load::Pressure(load) => {
-                    let (nodes, forces) = mesh.surface_pressure(&load.group).map_err(surface)?;
+                (LoadKind::Pressure, LoadPlace::Surface(group)) => {
+                    let (nodes, forces) = mesh.surface_pressure(group).map_err(surface)?;
                     let pressure = amplitude.signum();
                     let forces = forces.into_iter().map(|f| f * pressure).collect();
-                    Action::Field { nodes, forces, group: load.group.clone(), pressure }
+                    Action::Field { nodes, forces, group: group.clone(), pressure }
                 }
-                Load::Gravity(_) | Load::BaseAcceleration(_) => {
-                    Action::Weight { weight: weight.clone(), force: unit * weight.mass }
+                (_, LoadPlace::Surface(group)) => {
+                    let (nodes, weights) = mesh.surface_weights(group).map_err(surface)?;
+                    let total: f64 = weights.iter().sum();
+                    let weights = weights.into_iter().map(|w| w / total).collect();
+                    Action::Force { nodes, weights, force: unit * total }
                 }
+                (_, LoadPlace::Everywhere) => Action::Weight { weight: weight.clone(), force: unit * weight.mass },
             };
-            let history = history(scene, &key("history"), of(load))?;
+            let history = history(scene, &key("history"), &load.history)?;
             let name = name(i, load);
-            let turning = match load {
-                Load::Force(load) if load.frame == LoadFrame::Material => {
-                    Some(Rotation::at(scene, mesh, dofs, &key("frame"), load.at)?)
+            let turning = match load.place {
+                LoadPlace::Point(at) if load.frame == LoadFrame::Material => {
+                    Some(Rotation::at(scene, mesh, dofs, &key("frame"), at)?)
                 }
                 _ => None,
             };
-            let (follows, is_gravity) = (follows(load), is_gravity(load));
+            let (follows, is_gravity) = (load.follows(), load.is_gravity());
             Ok(MeshLoad { name, action, size: amplitude.abs(), history, follows, turning, dofs, attitude, is_gravity })
         })
         .collect()
@@ -193,26 +186,24 @@ pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, B
                 let position_body = Vector3::from(position) - body.origin;
                 PointShapes::new(body, &BodyPoint::rigid(position_body))
             };
-            let history = history(scene, &format!("loads[{i}].history"), of(load))?;
-            let on_body: SharedLoad = match load {
-                Load::Force(load) => Arc::new(PointForce {
-                    point: at(load.at),
-                    force: Vector3::from(load.direction) * load.amplitude,
-                    frame: load.frame,
-                    turning: None,
-                    history,
-                }),
-                Load::Moment(load) => Arc::new(PointMoment {
+            let history = history(scene, &format!("loads[{i}].history"), &load.history)?;
+            let vector = direction(load) * load.amplitude;
+            let on_body: SharedLoad = match (load.kind, &load.place) {
+                (LoadKind::Moment, LoadPlace::Point(_) | LoadPlace::Ball { .. }) => Arc::new(PointMoment {
                     rotation: RotationShapes::new(body, Mat::zeros(3, 0).as_ref()),
-                    moment: Vector3::from(load.direction) * load.amplitude,
+                    moment: vector,
                     frame: load.frame,
                     history,
                 }),
-                Load::Gravity(_) | Load::BaseAcceleration(_) => {
-                    let weight = direction(load) * (amplitude(load) * body.mass);
+                (_, LoadPlace::Point(point) | LoadPlace::Ball { at: point, .. }) => {
+                    let (point, frame) = (at(*point), load.frame);
+                    Arc::new(PointForce { point, force: vector, frame, turning: None, history })
+                }
+                (_, LoadPlace::Everywhere) => {
+                    let weight = direction(load) * (load.amplitude * body.mass);
                     Arc::new(PointForce::dead(at(body.center_of_mass.into()), weight, history))
                 }
-                Load::Pressure(_) | Load::Traction(_) => {
+                (_, LoadPlace::Surface(_)) => {
                     return Err(scene
                         .refuse(
                             &format!("loads[{i}].group"),
@@ -223,7 +214,7 @@ pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, B
                         .into());
                 }
             };
-            Ok((on_body, is_gravity(load)))
+            Ok((on_body, load.is_gravity()))
         })
         .collect()
 }
@@ -231,7 +222,7 @@ pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, B
 /// The loads that may act, with their numbers in the scene.
 pub(crate) fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
     let with_gravity = scene.effects.choices[Effect::Gravity] != Choice::Off;
-    scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !is_gravity(load))
+    scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !load.is_gravity())
 }
 
 /// The acceleration of the support that a load stands for.
@@ -247,18 +238,13 @@ pub struct BaseAcceleration {
 impl BaseAcceleration {
     /// All base accelerations of a scene, whose gravity acts or not.
     pub(crate) fn of(scene: &Scene, with_gravity: bool) -> Result<Vec<Self>, BuildError> {
-        let of_load = |(load, (i, of)): (usize, (usize, &Load))| match of {
-            Load::BaseAcceleration(base) => {
-                Some(history(scene, &format!("loads[{i}].history"), &base.history).map(|history| Self {
-                    load,
-                    acceleration_global: Vector3::from(base.direction) * base.amplitude,
-                    history,
-                }))
-            }
-            _ => None,
+        let of_load = |(load, (i, of)): (usize, (usize, &Load))| {
+            let acceleration_global = of.base_acceleration().into();
+            let history = history(scene, &format!("loads[{i}].history"), &of.history);
+            history.map(|history| Self { load, acceleration_global, history })
         };
-        let acting = acting(scene).filter(|(_, load)| with_gravity || !is_gravity(load));
-        acting.enumerate().filter_map(of_load).collect()
+        let acting = acting(scene).filter(|(_, load)| with_gravity || !load.is_gravity());
+        acting.enumerate().filter(|(_, (_, load))| load.kind == LoadKind::BaseAcceleration).map(of_load).collect()
     }
 
     /// At a time, global components.
@@ -269,63 +255,14 @@ impl BaseAcceleration {
 
 /// Name of a load for the reader.
 fn name(i: usize, load: &Load) -> String {
-    let kind = match load {
-        Load::Force(_) => "the force",
-        Load::Moment(_) => "the moment",
-        Load::Traction(_) => "the traction",
-        Load::Pressure(_) => "the pressure",
-        Load::Gravity(_) => "gravity",
-        Load::BaseAcceleration(_) => "the base acceleration",
-    };
-    format!("{kind} loads[{i}]")
+    let article = if load.is_gravity() { "" } else { "the " };
+    format!("{article}{} loads[{i}]", load.kind.name().replace('-', " "))
 }
 
-fn is_gravity(load: &Load) -> bool {
-    matches!(load, Load::Gravity(_))
-}
-
-fn of(load: &Load) -> &scene::History {
-    match load {
-        Load::Force(load) => &load.history,
-        Load::Moment(load) => &load.history,
-        Load::Pressure(load) => &load.history,
-        Load::Traction(load) => &load.history,
-        Load::Gravity(load) => &load.history,
-        Load::BaseAcceleration(load) => &load.history,
-    }
-}
-
-fn amplitude(load: &Load) -> f64 {
-    match load {
-        Load::Force(load) => load.amplitude,
-        Load::Moment(load) => load.amplitude,
-        Load::Pressure(load) => load.amplitude,
-        Load::Traction(load) => load.amplitude,
-        Load::Gravity(load) => load.amplitude,
-        Load::BaseAcceleration(load) => load.amplitude,
-    }
-}
-
-/// Where it acts along, as a unit vector; zero of a pressure. Every mass is pulled against the acceleration of the base.
+/// The unit vector that it acts along; zero of a pressure. Every mass is pulled against the acceleration of the base.
 fn direction(load: &Load) -> Vector3<f64> {
-    match load {
-        Load::Force(load) => load.direction.into(),
-        Load::Moment(load) => load.direction.into(),
-        Load::Traction(load) => load.direction.into(),
-        Load::Gravity(load) => load.direction.into(),
-        Load::BaseAcceleration(load) => -Vector3::from(load.direction),
-        Load::Pressure(_) => Vector3::zeros(),
-    }
-}
-
-fn follows(load: &Load) -> bool {
-    match load {
-        Load::Pressure(_) => true,
-        Load::Force(Force { frame, .. })
-        | Load::Moment(Moment { frame, .. })
-        | Load::Traction(Traction { frame, .. }) => *frame != LoadFrame::Global,
-        Load::Gravity(_) | Load::BaseAcceleration(_) => false,
-    }
+    let direction = Vector3::from(load.direction);
+    if load.kind == LoadKind::BaseAcceleration { -direction } else { direction }
 }
 
 impl MeshLoad {

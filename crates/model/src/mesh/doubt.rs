@@ -3,7 +3,7 @@
 use std::fmt;
 
 use fem_tet10::{Material, Materials, Mesh, centroid_lumped_inertia};
-use scene::{BaseAcceleration, Force, Gravity, Load, MeshedBody, Scene};
+use scene::{Load, LoadKind, MeshedBody, Scene};
 
 /// Added mass over the mass of the mesh from which on it is told: a satellite's bus on its panels is below.
 const HEAVY: f64 = 100.0;
@@ -84,14 +84,13 @@ fn deflections(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
     let young_modulus = materials(|material| material.young_modulus, f64::max);
     let density = materials(|material| material.density, f64::min);
     let bar = Bar::new(mesh.size(), young_modulus);
-    let of_load = |load: &Load| match load {
-        Load::Force(Force { direction, amplitude, .. }) => bar.under_force(*direction, *amplitude),
-        Load::Gravity(Gravity { direction, amplitude, .. })
-        | Load::BaseAcceleration(BaseAcceleration { direction, amplitude, .. }) => {
-            // Its weight w, all along it: w L³/8EI, where a force at the end has w L³/3EI.
-            3.0 / 8.0 * bar.under_force(*direction, density * amplitude * bar.volume)
+    let of_load = |load: &Load| match load.kind {
+        LoadKind::Force => bar.under_force(load.direction, load.amplitude),
+        // Its weight w, all along it: w L³/8EI, where a force at the end has w L³/3EI.
+        LoadKind::Gravity | LoadKind::BaseAcceleration => {
+            3.0 / 8.0 * bar.under_force(load.direction, density * load.amplitude * bar.volume)
         }
-        Load::Moment(_) | Load::Pressure(_) | Load::Traction(_) => 0.0,
+        LoadKind::Moment | LoadKind::Pressure | LoadKind::Traction => 0.0,
     };
     (scene.loads.iter().enumerate())
         .map(|(load, acts)| Doubt::Deflection { load, deflection: of_load(acts) })

@@ -3,7 +3,7 @@
 use advice::Advice;
 use dynamics::{Drive, Effect, EffectMap, Method};
 use reduced_body::{ReducedBody, RigidMotion};
-use scene::{Choice, Large, Load, Scene};
+use scene::{Choice, Large, Load, LoadKind, Scene};
 
 use crate::load::mesh_load::MeshLoad;
 use crate::load::turning::{Turning, turning};
@@ -80,9 +80,7 @@ pub(crate) fn in_joints(scene: &Scene, mut advice: Advice) -> Advice {
     if scene.markers.is_empty() {
         return advice;
     }
-    let is_missing = |effect: &Effect| {
-        *effect == Effect::Gravity && !scene.loads.iter().any(|load| matches!(load, Load::Gravity(_)))
-    };
+    let is_missing = |effect: &Effect| *effect == Effect::Gravity && !scene.loads.iter().any(Load::is_gravity);
     let has_modes = !advice.modes.is_empty();
     let flexibility = Some(Effect::Flexibility).filter(|_| has_modes);
     let stiffening = Some(Effect::GeometricStiffening).filter(|_| has_modes && scene.body.has_elements());
@@ -101,10 +99,12 @@ pub(crate) fn in_joints(scene: &Scene, mut advice: Advice) -> Advice {
 /// True if the constraint bears the weight of the body, however little that moves it: it is no less than `tolerance` of each
 /// force.
 fn bears_weight(scene: &Scene, mass: f64) -> bool {
-    let largest = |of: fn(&Load) -> Option<f64>| scene.loads.iter().filter_map(of).map(f64::abs).reduce(f64::max);
-    let force = largest(|load| if let Load::Force(force) = load { Some(force.amplitude) } else { None });
-    let gravity = largest(|load| if let Load::Gravity(gravity) = load { Some(gravity.amplitude) } else { None });
-    gravity.is_some_and(|gravity| mass * gravity >= scene.effects.tolerance * force.unwrap_or(0.0))
+    let largest = |kind| {
+        let of_kind = scene.loads.iter().filter(|load| load.kind == kind);
+        of_kind.map(|load| load.amplitude.abs()).reduce(f64::max)
+    };
+    let force = largest(LoadKind::Force);
+    largest(LoadKind::Gravity).is_some_and(|gravity| mass * gravity >= scene.effects.tolerance * force.unwrap_or(0.0))
 }
 
 /// How many modes are large where the scene asks for large deflection and does not say of which.

@@ -214,9 +214,7 @@ fn moments_that_act_one_after_the_other_have_no_answer() {
     let mut scene = turned(0.2);
     scene.loads.extend(turned(0.2).loads);
     assert_eq!(built(&scene).static_answer(), Some(2));
-    if let scene::Load::Moment(load) = &mut scene.loads[1] {
-        load.history = dynamics::History::HalfSine { start: 0.05, duration: 0.01 };
-    }
+    scene.loads[1].history = dynamics::History::HalfSine { start: 0.05, duration: 0.01 };
     assert_eq!(built(&scene).static_answer(), None);
 }
 

@@ -134,8 +134,7 @@ fn of_a_load_far_faster_than_the_steps_only_the_beginning_is_compared() {
     scene.modes.flexible = scene::Flexible::Count(1);
     (scene.time.end, scene.time.control) = (1000.0, StepControl::Fixed(0.01));
     scene.rows = scene::Rows::Interval(1.0);
-    let scene::Load::Force(force) = &mut scene.loads[0] else { panic!("no force") };
-    force.history = scene::History::Sine { frequency: 5e4, phase: 0.0, start: 0.0, duration: None };
+    scene.loads[0].history = scene::History::Sine { frequency: 5e4, phase: 0.0, start: 0.0, duration: None };
     let model = Model::build(&scene, |_| ()).unwrap();
     let seen = model.step_estimate(&scene).unwrap().map_or(0.0, |estimate| estimate.seen);
     assert!(seen < 0.01, "{seen}");

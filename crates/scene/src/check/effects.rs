@@ -29,7 +29,7 @@ impl Check<'_> {
             "give the relative influence below which an effect is left out, e.g. `tolerance = 1e-3`",
         )?;
         self.of_deformation(effects, modes, initial)?;
-        let has_gravity = loads.iter().any(|load| matches!(load, Load::Gravity(_)));
+        let has_gravity = loads.iter().any(Load::is_gravity);
         self.not_on(effects, Effect::Gravity, !has_gravity, "no load `kind = \"gravity\"`", "add it to [[loads]]")?;
 
         let (can_translate, can_turn) = match constraint {

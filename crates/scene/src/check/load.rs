@@ -6,7 +6,7 @@ use super::Check;
 use crate::body::constraint::Constraint;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::loads::load::{self, Load};
+use crate::loads::load::{Load, LoadKind, LoadPlace};
 use crate::scene::Body;
 
 impl Check<'_> {
@@ -16,9 +16,10 @@ impl Check<'_> {
         self.not_too_many("loads", loads.len(), help)?;
         for (i, load) in loads.iter_mut().enumerate() {
             let key = format!("loads[{i}]");
-            if let Load::Pressure(_) | Load::Traction(_) = load {
+            if let LoadPlace::Surface(group) = &load.place {
                 let key = join(&key, "group");
                 self.needs_mesh(&key, body)?;
+                self.group(&key, group)?;
                 if let Body::Matrices(_) = body {
                     return Err(self.document.place(&key).refuse(
                         "a surface of a body of matrices, which has no elements",
@@ -27,52 +28,33 @@ impl Check<'_> {
                     ));
                 }
             }
-            if let (Load::BaseAcceleration(_), None) = (&*load, constraint) {
+            if load.kind == LoadKind::BaseAcceleration && constraint.is_none() {
                 return Err(self.document.place(&join(&key, "kind")).refuse(
                     "the acceleration of the base of a free body",
                     "a body that something holds",
                     "add [[constraints]], or use `kind = \"gravity\"` for an acceleration of all of a free body",
                 ));
             }
-            if let Load::Moment(load::Moment { frame, .. }) | Load::Traction(load::Traction { frame, .. }) = load
-                && *frame == LoadFrame::Material
-            {
+            if load.frame == LoadFrame::Material && load.kind != LoadKind::Force {
                 return Err(self.document.place(&join(&key, "frame")).refuse(
                     "a moment or a traction that turns with the material",
                     "`global` or `body`",
                     "use a force for a direction that turns with the material at a point, or a pressure, which turns with its surface",
                 ));
             }
-            self.load(&key, load, body)?;
+            if let LoadPlace::Ball { radius, .. } = load.place {
+                let key = join(&key, "radius");
+                let help = "give the radius of the ball whose nodes take the moment, or remove `radius`";
+                self.positive(&key, radius, help)?;
+                self.needs_mesh(&key, body)?;
+            }
+            if load.kind != LoadKind::Pressure {
+                let help = "give the direction of the load; its length does not matter";
+                self.normalise(&join(&key, "direction"), &mut load.direction, help)?;
+            }
+            self.history(&join(&key, "history"), &mut load.history)?;
         }
         Ok(())
-    }
-
-    fn load(&self, key: &str, load: &mut Load, body: &Body) -> Result<(), SceneError> {
-        let (direction, group, history) = match load {
-            Load::Force(force) => (Some(&mut force.direction), None, &mut force.history),
-            Load::Moment(moment) => {
-                if let Some(radius) = moment.radius {
-                    let key = join(key, "radius");
-                    let help = "give the radius of the ball whose nodes take the moment, or remove `radius`";
-                    self.positive(&key, radius, help)?;
-                    self.needs_mesh(&key, body)?;
-                }
-                (Some(&mut moment.direction), None, &mut moment.history)
-            }
-            Load::Pressure(pressure) => (None, Some(&pressure.group), &mut pressure.history),
-            Load::Traction(traction) => (Some(&mut traction.direction), Some(&traction.group), &mut traction.history),
-            Load::Gravity(gravity) => (Some(&mut gravity.direction), None, &mut gravity.history),
-            Load::BaseAcceleration(base) => (Some(&mut base.direction), None, &mut base.history),
-        };
-        if let Some(direction) = direction {
-            let help = "give the direction of the load; its length does not matter";
-            self.normalise(&join(key, "direction"), direction, help)?;
-        }
-        if let Some(group) = group {
-            self.group(&join(key, "group"), group)?;
-        }
-        self.history(&join(key, "history"), history)
     }
 
     pub(super) fn group(&self, key: &str, group: &str) -> Result<(), SceneError> {

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use crate::body::constraint::Constraint;
 use crate::loads::history::{History, TablePoints};
-use crate::loads::load::Load;
 use crate::scene::Scene;
 use crate::system::System;
 
@@ -28,14 +27,7 @@ impl System {
 impl Scene {
     /// The histories of the loads and of what drives the body.
     fn histories(&self) -> impl Iterator<Item = &History> {
-        let of_loads = self.loads.iter().map(|load| match load {
-            Load::Force(load) => &load.history,
-            Load::Moment(load) => &load.history,
-            Load::Pressure(load) => &load.history,
-            Load::Traction(load) => &load.history,
-            Load::Gravity(load) => &load.history,
-            Load::BaseAcceleration(load) => &load.history,
-        });
+        let of_loads = self.loads.iter().map(|load| &load.history);
         let driven = match &self.constraint {
             Some(Constraint::Hinge { motion, .. } | Constraint::Slider { motion, .. }) => motion.as_ref(),
             _ => None,

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use scene::{
-    Body, Choice, Damping, Effect, Effects, Flexible, Force, History, Load, LoadFrame, Material, Materials, MeshedBody,
-    Method, Rows, Scene, SceneError, StepControl,
+    Body, Choice, Damping, Effect, Effects, Flexible, History, Load, LoadFrame, LoadKind, LoadPlace, Material,
+    Materials, MeshedBody, Method, Rows, Scene, SceneError, StepControl,
 };
 
 const EXAMPLE: &str = include_str!("../../src/text/example.toml");
@@ -29,10 +29,11 @@ fn the_whole_example() {
     assert_eq!(frame.p, [500.0, -25.0, 0.0]);
     assert_eq!(frame.q, [500.0, 25.0, 0.0]);
     assert_eq!(scene.initial, Default::default());
-    let [Load::Force(Force { at, direction, amplitude, frame, history })] = &scene.loads[..] else {
-        panic!("not one force: {:?}", scene.loads)
+    let [Load { kind, place, direction, amplitude, frame, history }] = &scene.loads[..] else {
+        panic!("not one load: {:?}", scene.loads)
     };
-    assert_eq!((*at, *amplitude, *frame), ([-500.0, 0.0, 10.0], 50.0, LoadFrame::Global));
+    assert_eq!((*kind, place), (LoadKind::Force, &LoadPlace::Point([-500.0, 0.0, 10.0])));
+    assert_eq!((*amplitude, *frame), (50.0, LoadFrame::Global));
     assert!((direction[0] - 0.5f64.sqrt()).abs() < 1e-15 && direction[0] == direction[2]);
     assert_eq!(direction[1], 0.0);
     assert_eq!(*history, History::HalfSine { start: 0.0, duration: 0.02 });
@@ -153,7 +154,8 @@ fn every_optional_key() {
     assert_eq!((scene.modes.flexible, &scene.modes.damping), (Flexible::Count(2), &Damping::Uniform(1.5)));
     assert_eq!(scene.initial.velocity, [0.0; 3]);
     assert_eq!(scene.initial.angular_velocity, [1.0, 2.0, 3.0]);
-    let Load::Force(force) = &scene.loads[0] else { panic!("not a force: {:?}", scene.loads) };
+    let force = &scene.loads[0];
+    assert_eq!(force.kind, LoadKind::Force);
     for (found, wanted) in force.direction.iter().zip([0.0, -0.6, 0.8]) {
         assert!((found - wanted).abs() < 1e-15, "{:?}", force.direction);
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use scene::{History, Interpolation, Load, Scene, SceneError, TablePoints};
+use scene::{History, Interpolation, Scene, SceneError, TablePoints};
 
 const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
@@ -28,10 +28,9 @@ fn two_columns_in_every_writing() {
         "\u{feff}t,f\n0,0\n0.5,-1.5\n2,300\n",
     ] {
         let scene = read(folder.path(), text.as_bytes()).unwrap_or_else(|error| panic!("{text:?}: {error}"));
-        let Load::Force(force) = &scene.loads[0] else { panic!("not a force") };
         let file = Some(folder.path().join("pulse.csv"));
         assert_eq!(
-            force.history,
+            scene.loads[0].history,
             History::Table(TablePoints { points: points.clone(), file, interpolation: Interpolation::Linear }),
             "{text:?}"
         );

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use dynamics::Observation;
 use model::Model;
-use scene::{Choice, Effect, Large, Load, Scene};
+use scene::{Choice, Effect, Large, LoadKind, Scene};
 use verification::nonlinear::cases;
 
 fn example(name: &str) -> PathBuf {
@@ -47,11 +47,7 @@ fn made_small(mut scene: Scene) -> Scene {
     let part = (1e-5 / deflection).min(1.0);
     scene.initial.modal_displacement.iter_mut().for_each(|q| *q *= part);
     scene.initial.modal_velocity.iter_mut().for_each(|v| *v *= part);
-    for load in &mut scene.loads {
-        if let Load::Force(force) = load {
-            force.amplitude *= part;
-        }
-    }
+    scene.loads.iter_mut().filter(|load| load.kind == LoadKind::Force).for_each(|load| load.amplitude *= part);
     scene
 }
 

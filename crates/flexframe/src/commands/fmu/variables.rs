@@ -124,7 +124,7 @@ fn inputs(body: usize, RunBody { scene, model }: &RunBody<'_>, of: &Of, all: &mu
         let source = Source::Input(Input { body, kind });
         all.push(Variable { name: format!("{prefix}{name}"), description, unit, source });
     };
-    let acts = |load: &Load| model.physics.effects[Effect::Gravity] || !matches!(load, Load::Gravity(_));
+    let acts = |load: &Load| model.physics.effects[Effect::Gravity] || !load.is_gravity();
     for (acting, (i, _)) in scene.loads.iter().enumerate().filter(|(_, load)| acts(load)).enumerate() {
         let whole = if words.is_empty() { " of the scene" } else { words };
         let description = format!("factor on load {}{whole}, counted from 1, beside its own history", i + 1);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use scene::{History, Load, Scene};
+use scene::{History, LoadKind, LoadPlace, Scene};
 
 use super::comparison::{Comparison, Histories, Pair};
 use crate::commands::run::RunReport;
@@ -138,14 +138,14 @@ fn apart(histories: &Histories, unit: &str) -> String {
 
 fn force_in_words(scene: &Scene) -> String {
     let sentences = scene.loads.iter().filter_map(|load| {
-        let Load::Force(force) = load else { return None };
-        let History::HalfSine { start, duration } = force.history else { return None };
+        let (LoadKind::Force, LoadPlace::Point(at)) = (load.kind, &load.place) else { return None };
+        let History::HalfSine { start, duration } = load.history else { return None };
         Some(format!(
             "Here: a half-sine pulse of {} {} along {:.4?} at {:?}, from {start} for {duration} {}.",
-            force.amplitude,
+            load.amplitude,
             UnitLabels::from(&scene.units).force(),
-            force.direction,
-            force.at,
+            load.direction,
+            at,
             scene.units.time
         ))
     });

@@ -3,7 +3,7 @@
 use advice::{Refusal, Review, StepEstimate};
 use dynamics::{EffectMap, Initial, Moment, MotionState, Observation, RunEnergies};
 use model::{BuildError, Model};
-use scene::{Load, Scene};
+use scene::{Load, LoadKind, LoadPlace, Scene};
 
 use super::balances::{Balances, Conserved, Monitor};
 use super::error::RunError;
@@ -174,7 +174,7 @@ impl<'a> Watch<'a> {
 
 /// Moments at points of a mesh, which twist the element there alone: that excites shapes faster than any step.
 fn pointed_moments(scene: &Scene) -> Option<String> {
-    let is_pointed = |load: &Load| matches!(load, Load::Moment(moment) if moment.radius.is_none());
+    let is_pointed = |load: &Load| load.kind == LoadKind::Moment && matches!(load.place, LoadPlace::Point(_));
     let load = scene.loads.iter().position(is_pointed).filter(|_| scene.body.has_elements())?;
     Some(format!(
         "loads[{load}]: this moment has no `radius`, so that it twists the one element at its point, by an angle that depends on the \

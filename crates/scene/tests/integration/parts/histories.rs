@@ -1,6 +1,6 @@
 //! How loads go with time. Tables in files have a test of their own.
 
-use scene::{Formula, History, Interpolation, Load, TablePoints};
+use scene::{Formula, History, Interpolation, TablePoints};
 
 const HALF_SINE: &str = "history = { kind = \"half-sine\", start = 0.0, duration = 0.02 }";
 
@@ -11,7 +11,7 @@ fn history(written: &str) -> History {
         &crate::parts::section("[[loads]]", "[time]").replace(HALF_SINE, written),
     );
     match &scene.loads[..] {
-        [Load::Force(force)] => force.history.clone(),
+        [load] => load.history.clone(),
         loads => panic!("{loads:?}"),
     }
 }

@@ -1,6 +1,6 @@
 //! Loads of the body.
 
-use scene::{BaseAcceleration, Force, Gravity, History, Load, LoadFrame, Moment, Pressure, Scene, Traction};
+use scene::{History, Load, LoadFrame, LoadKind, LoadPlace, Scene};
 
 use crate::common::EXAMPLE;
 
@@ -20,35 +20,38 @@ fn refused(lines: &str, mark: &str, key: &str, words: &[&str]) {
 
 #[test]
 fn every_kind() {
-    let (at, direction) = ([1.0, 2.0, 3.0], [0.0, 0.0, -1.0]);
-    let constant = History::Constant;
-    assert_eq!(
-        load("kind = \"force\"\nat = [1, 2, 3]\ndirection = [0, 0, -7]\namplitude = 5\nframe = \"body\""),
-        Load::Force(Force { at, direction, amplitude: 5.0, frame: LoadFrame::Body, history: constant.clone() })
-    );
-    let moment = "kind = \"moment\"\nat = [1, 2, 3]\ndirection = [0, 0, -7]\namplitude = 5\n";
-    let expected = Moment { at, direction, amplitude: 5.0, frame: LoadFrame::Global, history: constant, radius: None };
-    assert_eq!(load(moment), Load::Moment(expected.clone()));
+    let expected = |kind, place, frame| Load {
+        kind,
+        place,
+        direction: if kind == LoadKind::Pressure { [0.0; 3] } else { [0.0, 0.0, -1.0] },
+        frame,
+        amplitude: 5.0,
+        history: History::Constant,
+    };
+    let (point, top) = (LoadPlace::Point([1.0, 2.0, 3.0]), LoadPlace::Surface("top".to_owned()));
+    let along = "direction = [0, 0, -7]\namplitude = 5";
+    let force = format!("kind = \"force\"\nat = [1, 2, 3]\n{along}\nframe = \"body\"");
+    assert_eq!(load(&force), expected(LoadKind::Force, point.clone(), LoadFrame::Body));
+    let moment = format!("kind = \"moment\"\nat = [1, 2, 3]\n{along}\n");
+    assert_eq!(load(&moment), expected(LoadKind::Moment, point, LoadFrame::Global));
+    let ball = LoadPlace::Ball { at: [1.0, 2.0, 3.0], radius: 2.0 };
     assert_eq!(
         load(&format!("{moment}radius = 2\nhistory = {{ kind = \"step\", at = 0.1 }}")),
-        Load::Moment(Moment { radius: Some(2.0), history: History::Step { at: 0.1 }, ..expected })
+        Load { history: History::Step { at: 0.1 }, ..expected(LoadKind::Moment, ball, LoadFrame::Global) }
     );
-    let (group, history) = ("top".to_owned(), History::Constant);
     assert_eq!(
         load("kind = \"pressure\"\ngroup = \"top\"\namplitude = -5"),
-        Load::Pressure(Pressure { group: group.clone(), amplitude: -5.0, history: history.clone() })
+        Load { amplitude: -5.0, ..expected(LoadKind::Pressure, top.clone(), LoadFrame::Body) }
     );
     assert_eq!(
-        load("kind = \"traction\"\ngroup = \"top\"\ndirection = [0, 0, -7]\namplitude = 5\nframe = \"global\""),
-        Load::Traction(Traction { group, direction, amplitude: 5.0, frame: LoadFrame::Global, history })
+        load(&format!("kind = \"traction\"\ngroup = \"top\"\n{along}\nframe = \"global\"")),
+        expected(LoadKind::Traction, top, LoadFrame::Global)
     );
+    let everywhere = |kind| expected(kind, LoadPlace::Everywhere, LoadFrame::Global);
+    assert_eq!(load(&format!("kind = \"gravity\"\n{along}")), everywhere(LoadKind::Gravity));
     assert_eq!(
-        load("kind = \"gravity\"\ndirection = [0, 0, -7]\namplitude = 9.81"),
-        Load::Gravity(Gravity { direction, amplitude: 9.81, history: History::Constant })
-    );
-    assert_eq!(
-        load("kind = \"base-acceleration\"\ndirection = [0, 0, -7]\namplitude = 5\nhistory = \"constant\""),
-        Load::BaseAcceleration(BaseAcceleration { direction, amplitude: 5.0, history: History::Constant })
+        load(&format!("kind = \"base-acceleration\"\n{along}\nhistory = \"constant\"")),
+        everywhere(LoadKind::BaseAcceleration)
     );
 }
 

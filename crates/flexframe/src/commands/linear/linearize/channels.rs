@@ -71,22 +71,18 @@ pub(in crate::commands::linear) fn acting_loads<'a>(
 ) -> impl Iterator<Item = (usize, &'a Load)> {
     // Gravity that the scene does not call for is not among them.
     let all = scene.loads.len() == model.loads().len();
-    scene.loads.iter().enumerate().filter(move |(_, load)| all || !matches!(load, Load::Gravity(_)))
+    scene.loads.iter().enumerate().filter(move |(_, load)| all || !load.is_gravity())
 }
 
 /// The acceleration of the support, global axes, that each load that acts stands for where its history is 1: zero of most.
 pub(super) fn base_accelerations(scene: &Scene, model: &Model) -> Vec<Vector3<f64>> {
-    let of_load = |(_, load): (usize, &Load)| match load {
-        Load::BaseAcceleration(base) => Vector3::from(base.direction) * base.amplitude,
-        _ => Vector3::zeros(),
-    };
-    acting_loads(scene, model).map(of_load).collect()
+    acting_loads(scene, model).map(|(_, load)| load.base_acceleration().into()).collect()
 }
 
 /// An input for each load that acts: its factor, so that 1 is the load as the scene has it where its history is 1.
 pub(in crate::commands::linear) fn input_channels(scene: &Scene, model: &Model, prefix: &str) -> Vec<Channel> {
     let names: Vec<String> =
-        acting_loads(scene, model).map(|(i, load)| format!("{prefix}loads[{i}].{}", load.kind())).collect();
+        acting_loads(scene, model).map(|(i, load)| format!("{prefix}loads[{i}].{}", load.kind.name())).collect();
     (0..model.loads().len())
         .map(|k| Channel::new(names.get(k).cloned().unwrap_or_else(|| format!("{prefix}load{k}")), "factor"))
         .collect()

@@ -83,7 +83,8 @@ fn of_body(group: &str, body: usize, described: &DescribedBody, loads: &[Load]) 
     let mut controls = Vec::new();
     for load in 0..described.loads.len() {
         // Gravity that is left out is not among the loads of the run.
-        let kind = loads.get(load).filter(|_| loads.len() == described.loads.len()).map_or("load", Load::kind);
+        let kind =
+            loads.get(load).filter(|_| loads.len() == described.loads.len()).map_or("load", |load| load.kind.name());
         let kind = kind.replace('-', " ");
         let name = if described.loads.len() > 1 { format!("{kind} (load {})", load + 1) } else { kind };
         controls.push(factor(group, name, Change::Load { body, load }));
