@@ -437,7 +437,7 @@ mod tests {
         };
         for (length, right) in [("m", 9.81), ("cm", 981.0), ("mm", 9810.0), ("in", 386.1), ("ft", 32.2)] {
             for number in [9.81, 981.0, 9810.0, 386.1, 32.17] {
-                let told = told("gravity", number, length);
+                let told = told(LoadKind::Gravity, number, length);
                 let may_be_meant = matches!(
                     (length, number),
                     ("m", 981.0) | ("cm", 9810.0) | ("ft", 981.0 | 9810.0) | ("in", 981.0 | 9810.0)
@@ -450,15 +450,18 @@ mod tests {
             }
             // The Moon, Jupiter, ten times gravity.
             for factor in [0.166, 2.53, 10.0] {
-                assert_eq!(told("gravity", factor * right, length), None, "{length} {factor}");
+                assert_eq!(told(LoadKind::Gravity, factor * right, length), None, "{length} {factor}");
             }
         }
-        let words = told("gravity", 9.81, "mm").unwrap();
+        let words = told(LoadKind::Gravity, 9.81, "mm").unwrap();
         assert!(
             words.contains("loads[1]: gravity of 9.81 mm/s² is 1.0e-3 times") && words.contains("9.80665e3 mm/s²"),
             "{words}"
         );
-        assert!(told("base-acceleration", 9.81, "mm").is_some() && told("base-acceleration", 9810.0, "m").is_none());
-        assert_eq!(told("gravity", 9.81, "furlong"), None);
+        assert!(
+            told(LoadKind::BaseAcceleration, 9.81, "mm").is_some()
+                && told(LoadKind::BaseAcceleration, 9810.0, "m").is_none()
+        );
+        assert_eq!(told(LoadKind::Gravity, 9.81, "furlong"), None);
     }
 }

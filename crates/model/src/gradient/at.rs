@@ -190,7 +190,11 @@ impl At<'_> {
                     true
                 }
                 // Areas and levers change with the places of the nodes, the force at a point does not.
-                _ => rates.velocities().is_none() || of_scene.kind == LoadKind::Force,
+                Action::Force { .. } | Action::Moment { .. } | Action::Field { .. } => match of_scene.kind {
+                    LoadKind::Force => true,
+                    LoadKind::Moment | LoadKind::Pressure | LoadKind::Traction => rates.velocities().is_none(),
+                    LoadKind::Gravity | LoadKind::BaseAcceleration => false,
+                },
             });
         }
         Ok((forces, is_known))

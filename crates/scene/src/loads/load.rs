@@ -10,7 +10,7 @@ use crate::loads::history::History;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "LoadSection")]
 pub struct Load {
-    /// What it is.
+    /// The kind: a force, a moment, …
     pub kind: LoadKind,
     /// The part of the body that it acts on.
     pub place: LoadPlace,
