@@ -1,4 +1,4 @@
-//! A shell in an empty folder with the examples and the meshes, as a reader has one.
+//! A shell in an empty folder with the examples, the meshes and the decks, as a reader has one.
 
 use std::env;
 use std::fs;
@@ -18,7 +18,7 @@ pub struct Session {
 impl Session {
     pub fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["examples", "meshes"] {
+        for name in ["examples", "meshes", "tests"] {
             std::os::unix::fs::symlink(fs::canonicalize(root().join(name)).unwrap(), folder.path().join(name)).unwrap();
         }
         // Bytes that pass for the library of FMUs, which is not built for these tests: ./dev fmu-test runs real ones.
