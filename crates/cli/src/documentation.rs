@@ -1,5 +1,6 @@
 //! Tests that what the documentation shows works: its commands, its scenes and its Rust; and pages made of the sources.
 
+mod columns;
 mod commands;
 mod keys;
 

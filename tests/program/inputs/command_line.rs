@@ -4,7 +4,7 @@ use std::path::Path;
 
 use flexframe::columns::COLUMNS;
 use hdf5::types::VarLenUnicode;
-use results::{Column, Components, Metadata, Results, Scope, Units, histories};
+use results::{Metadata, Results, Scope, Units, histories};
 
 use crate::program::{flexframe, json, numbers, root};
 
@@ -132,30 +132,6 @@ fn assert_describes_its_columns(path: &Path, rows: usize, metadata: &Metadata) {
 fn datasets(group: &hdf5::Group, out: &mut Vec<String>) {
     out.extend(group.datasets().unwrap().iter().map(|dataset| dataset.name()));
     group.groups().unwrap().iter().for_each(|group| datasets(group, out));
-}
-
-#[test]
-fn the_page_on_results_has_the_table_of_columns() {
-    let mut table = "| data set | shape | unit | frame | what |\n|---|---|---|---|---|\n".to_owned();
-    for column in &COLUMNS {
-        let (group, places) = match column.scope() {
-            Scope::System => ("system/", ""),
-            Scope::Body => ("", ""),
-            Scope::Point => ("", "×P"),
-            Scope::Support => ("", "×S"),
-            Scope::Joint => ("joints/NAME/", ""),
-        };
-        let values = match column.components() {
-            Components::Number => String::new(),
-            Components::Modes => "×nf".to_owned(),
-            other => format!("×{}", other.names().len()),
-        };
-        let Column { dimension, frame, description, .. } = column;
-        let (path, unit) = (column.path(), dimension.unit());
-        table += &format!("| `{group}{path}` | T{places}{values} | {unit} | {frame} | {description} |\n");
-    }
-    let page = std::fs::read_to_string(root().join("docs/reference/results.md")).unwrap();
-    assert!(page.contains(&(table.clone() + "\n")), "docs/reference/results.md is to have this table:\n{table}");
 }
 
 /// Closed form: the momentum is the impulse of a half sine, 2FT/π.
