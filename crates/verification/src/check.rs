@@ -10,8 +10,8 @@ mod pairs;
 mod random;
 mod rest;
 
-pub use cases::{Case, MODELS, Truth, cases};
+pub use cases::{CheckedCase, MODELS, Truth, cases};
 pub use motions::{LetGo, MotionRow, let_go, motions};
 pub use page::page;
-pub use pairs::{Pair, pair, pairs};
+pub use pairs::{CaseInModel, pair, pairs};
 pub use random::random_cases;

@@ -1,7 +1,7 @@
 //! A nonlinear finite-element body to hold flexframe's modes against: nothing of it is in the program.
 //!
 //! * [`Solid`]: a total Lagrangian St. Venant–Kirchhoff body of second-order tetrahedra.
-//! * [`Motion`]: its motion by the energy–momentum midpoint rule of Simo and Tarnow.
+//! * [`SolidMotion`]: its motion by the energy–momentum midpoint rule of Simo and Tarnow.
 //! * [`Solid::at_rest`], [`Solid::held_in_modes`]: its static responses.
 //! * [`Solid::pressure`]: a pressure that follows its surface, exactly.
 //! * [`mean_axes()`]: the frame of the linear modes in its motion.
@@ -17,7 +17,7 @@ pub mod signal;
 mod solid;
 mod statics;
 
-pub use error::NonlinearError;
+pub use error::SolidError;
 pub use mean_axes::{MeanAxes, mean_axes};
-pub use motion::{Motion, NodalState};
+pub use motion::{NodalState, SolidMotion};
 pub use solid::{Factor, Solid, product};

@@ -14,7 +14,7 @@ pub mod systems;
 pub mod time;
 pub mod trial;
 
-pub use case::{BOUNDED, BodyCheck, Expected, Extent, HardCase, Outcome};
+pub use case::{BOUNDED, BodyFigure, Bound, Extent, HardCase, TrialOutcome};
 
 /// The cases with their headings.
 pub fn sections() -> [(&'static str, Vec<HardCase>); 4] {

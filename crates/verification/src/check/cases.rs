@@ -4,7 +4,7 @@ use fem_tet10::Material;
 
 /// A body under a load or a spin.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub struct CheckedCase {
     /// Its name.
     pub name: String,
     /// Its mesh.
@@ -58,13 +58,23 @@ fn force(at: [f64; 3], direction: [f64; 3]) -> String {
 }
 
 /// All cases.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<CheckedCase> {
     let mut cases = Vec::new();
     let mut add = |name: &str, mesh, text: String, tip, spins, parameters: &[f64]| {
         for parameter in parameters {
             let (name, text, parameter) = (name.to_owned(), text.clone(), *parameter);
             let parts = [1.0, 1.0, 0.6];
-            cases.push(Case { name, mesh, material: SOFT, text, parameter, parts, tip, spins, truth: Truth::Rest });
+            cases.push(CheckedCase {
+                name,
+                mesh,
+                material: SOFT,
+                text,
+                parameter,
+                parts,
+                tip,
+                spins,
+                truth: Truth::Rest,
+            });
         }
     };
     let end = [1.0, 0.0, 0.0];

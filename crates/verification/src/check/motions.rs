@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use nonlinear::StateErrorSettings;
 
 use crate::nonlinear::cases::{built, peaks, rows, shape};
-use crate::nonlinear::{Motion, NodalState, Solid, bodies, mean_axes};
+use crate::nonlinear::{NodalState, Solid, SolidMotion, bodies, mean_axes};
 
 /// A body that is let go from its first mode.
 #[derive(Debug, Clone, Copy)]
@@ -116,7 +116,7 @@ pub fn let_go(case: &LetGo) -> Result<Vec<MotionRow>, String> {
     };
     let largest = body.mass_norm(&u);
     let state = NodalState { time: 0.0, v: vec![0.0; u.len()], u };
-    let mut motion = Motion::new(&solid, state, h, |_, u: &[f64]| vec![0.0; u.len()]);
+    let mut motion = SolidMotion::new(&solid, state, h, |_, u: &[f64]| vec![0.0; u.len()]);
     let mut found = Vec::new();
     for step in 1..=PERIODS * STEPS {
         motion.advance().map_err(|error| words(&error))?;

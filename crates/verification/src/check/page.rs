@@ -5,7 +5,7 @@ use std::path::Path;
 
 use figures::{LineChart, Scale, Series, Stroke};
 
-use super::{MotionRow, Pair, cases, let_go, motions, pair, pairs, random_cases};
+use super::{CaseInModel, MotionRow, cases, let_go, motions, pair, pairs, random_cases};
 
 /// Classes of the true error.
 const CLASSES: [(&str, f64, f64); 4] =
@@ -33,7 +33,7 @@ pub fn page(picture: &Path, mut progress: impl FnMut(&str)) -> Result<String, St
         all.len()
     );
     for (name, from, to) in CLASSES {
-        let of: Vec<&Pair> = all.iter().filter(|pair| (from..to).contains(&pair.error)).collect();
+        let of: Vec<&CaseInModel> = all.iter().filter(|pair| (from..to).contains(&pair.error)).collect();
         let range = |which: usize| {
             let values = of.iter().map(|pair| pair.estimates[which]);
             let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
@@ -42,8 +42,8 @@ pub fn page(picture: &Path, mut progress: impl FnMut(&str)) -> Result<String, St
         // Writing to a String cannot fail.
         let _ = writeln!(page, "| {name} | {} | {} | {} |", of.len(), range(0), range(1));
     }
-    let stated = |pair: &&Pair| pair.stated[1] >= 0.8 * pair.stated[0];
-    let near = |pair: &&Pair| pair.stated[1] <= 3.0 * pair.stated[0];
+    let stated = |pair: &&CaseInModel| pair.stated[1] >= 0.8 * pair.stated[0];
+    let near = |pair: &&CaseInModel| pair.stated[1] <= 3.0 * pair.stated[0];
     let _ = writeln!(
         page,
         "\nOver the whole body, with as many factors as the check takes by itself, it states at least 0.8 of the true error in {} of {} \

@@ -5,13 +5,13 @@ use nalgebra::Vector3;
 use nonlinear::{EquilibriumSettings, NonlinearError, StateErrorSettings, equilibrium, state_error};
 use scene::Scene;
 
-use super::cases::{Case, MODELS, Truth};
+use super::cases::{CheckedCase, MODELS, Truth};
 use super::rest::rest;
 use crate::nonlinear::bodies::mesh_path;
 
 /// A case in a model.
 #[derive(Debug, Clone)]
-pub struct Pair {
+pub struct CaseInModel {
     /// The case.
     pub case: String,
     /// Its parameter.
@@ -34,7 +34,7 @@ pub struct Pair {
 ///
 /// # Errors
 /// As [`pair`].
-pub fn pairs(case: &Case, left_out: &mut Vec<String>) -> Result<Vec<Pair>, String> {
+pub fn pairs(case: &CheckedCase, left_out: &mut Vec<String>) -> Result<Vec<CaseInModel>, String> {
     let found = (0..MODELS.len()).map(|model| pair(case, model, left_out)).collect::<Result<Vec<_>, _>>()?;
     Ok(found.into_iter().flatten().collect())
 }
@@ -43,7 +43,7 @@ pub fn pairs(case: &Case, left_out: &mut Vec<String>) -> Result<Vec<Pair>, Strin
 ///
 /// # Errors
 /// Scenes that are refused, and factors that cannot be made, in words.
-pub fn pair(case: &Case, model: usize, left_out: &mut Vec<String>) -> Result<Option<Pair>, String> {
+pub fn pair(case: &CheckedCase, model: usize, left_out: &mut Vec<String>) -> Result<Option<CaseInModel>, String> {
     let (name, modes, effects) = MODELS[model];
     let builder = Builder::default();
     let base = build(&builder, case, ["", ""], [0.0; 3])?.1;
@@ -94,7 +94,7 @@ pub fn pair(case: &Case, model: usize, left_out: &mut Vec<String>) -> Result<Opt
     let true_size = body.mass_norm(&of_truth);
     let own_truth: Vec<f64> = state.displacement.iter().zip(&own.error).map(|(u, e)| u + e).collect();
     let extent = body.mesh().size().into_iter().fold(0.0, f64::max);
-    Ok(Some(Pair {
+    Ok(Some(CaseInModel {
         case: case.name.clone(),
         parameter: case.parameter,
         model: name,
@@ -114,7 +114,7 @@ fn full_tip(body: &nonlinear::FullBody<'_>, tip: [f64; 3]) -> usize {
 
 fn build(
     builder: &Builder,
-    case: &Case,
+    case: &CheckedCase,
     [modes, effects]: [&str; 2],
     [spin, force, gravity]: [f64; 3],
 ) -> Result<(Scene, model::Model), String> {

@@ -1,6 +1,6 @@
 //! Random scenes: bodies, supports, drives, loads and models drawn by lot, the same ones each time.
 
-use super::cases::{Case, SOFT, Truth};
+use super::cases::{CheckedCase, SOFT, Truth};
 use crate::lot::Lot;
 
 /// A body, and the point at its end.
@@ -12,12 +12,12 @@ const BODIES: [(&str, [f64; 3]); 4] = [
 ];
 
 /// `count` scenes, each with the number of its model.
-pub fn random_cases(count: usize) -> Vec<(Case, usize)> {
+pub fn random_cases(count: usize) -> Vec<(CheckedCase, usize)> {
     let mut lot = Lot::new();
     (0..count).map(|_| random_case(&mut lot)).collect()
 }
 
-fn random_case(lot: &mut Lot) -> (Case, usize) {
+fn random_case(lot: &mut Lot) -> (CheckedCase, usize) {
     let (mesh, tip) = BODIES[lot.of(BODIES.len())];
     let constant = "history = { kind = \"constant\" }\n";
     let (support, spins, truth) = match lot.of(10) {
@@ -71,7 +71,7 @@ fn random_case(lot: &mut Lot) -> (Case, usize) {
     }
     let name = format!("{mesh}, {support}, {load}");
     (
-        Case {
+        CheckedCase {
             name,
             mesh,
             material: SOFT,

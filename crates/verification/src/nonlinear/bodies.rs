@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use fem_tet10::{Material, Mesh, read_msh};
 
-use crate::nonlinear::error::NonlinearError;
+use crate::nonlinear::error::SolidError;
 
 /// The material of the soft bodies, SI.
 pub const SOFT: Material = Material { young_modulus: 1e7, poisson_ratio: 0.3, density: 1000.0 };
@@ -24,7 +24,7 @@ pub fn mesh_path(name: &str) -> PathBuf {
 ///
 /// # Errors
 /// Errors of the file.
-pub fn mesh(name: &str) -> Result<Mesh, NonlinearError> {
+pub fn mesh(name: &str) -> Result<Mesh, SolidError> {
     Ok(read_msh(mesh_path(name))?)
 }
 

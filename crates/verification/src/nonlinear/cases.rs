@@ -8,9 +8,9 @@ use model::Model;
 use nalgebra::Vector3;
 use scene::Scene;
 
-use crate::nonlinear::error::NonlinearError;
+use crate::nonlinear::error::SolidError;
 use crate::nonlinear::mean_axes::mean_axes;
-use crate::nonlinear::motion::{Motion, NodalState, dot};
+use crate::nonlinear::motion::{NodalState, SolidMotion, dot};
 use crate::nonlinear::signal;
 use crate::nonlinear::solid::Solid;
 
@@ -18,7 +18,7 @@ use crate::nonlinear::solid::Solid;
 ///
 /// # Errors
 /// Errors of the scene.
-pub fn built(mesh: &str, material: Material, rest: &str) -> Result<(Scene, Model), NonlinearError> {
+pub fn built(mesh: &str, material: Material, rest: &str) -> Result<(Scene, Model), SolidError> {
     let Material { young_modulus, poisson_ratio, density } = material;
     let text = format!(
         "title = \"Case\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n[body]\n\
@@ -27,8 +27,8 @@ pub fn built(mesh: &str, material: Material, rest: &str) -> Result<(Scene, Model
          {rest}"
     );
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scene.toml");
-    let scene = Scene::parse(&text, path).map_err(|error| NonlinearError::Scene(error.to_string()))?;
-    let model = Model::build(&scene, |_| ()).map_err(|error| NonlinearError::Scene(error.to_string()))?;
+    let scene = Scene::parse(&text, path).map_err(|error| SolidError::Scene(error.to_string()))?;
+    let model = Model::build(&scene, |_| ()).map_err(|error| SolidError::Scene(error.to_string()))?;
     Ok((scene, model))
 }
 
@@ -36,8 +36,8 @@ pub fn built(mesh: &str, material: Material, rest: &str) -> Result<(Scene, Model
 ///
 /// # Errors
 /// Errors that stop it.
-pub fn rows(scene: &Scene, model: &Model) -> Result<Vec<Observation>, NonlinearError> {
-    let failed = |error: &dyn std::error::Error| NonlinearError::Scene(error.to_string());
+pub fn rows(scene: &Scene, model: &Model) -> Result<Vec<Observation>, SolidError> {
+    let failed = |error: &dyn std::error::Error| SolidError::Scene(error.to_string());
     let run = model.start(scene).map_err(|error| failed(&error))?;
     run.map(|row| row.map_err(|error| failed(&error))).collect()
 }
@@ -58,14 +58,14 @@ pub fn peaks(shape: &[f64], axis: usize) -> [f64; 2] {
 
 /// A quantity over time.
 #[derive(Debug, Clone, Default)]
-pub struct Course {
+pub struct Curve {
     /// Times.
     pub times: Vec<f64>,
     /// Values.
     pub values: Vec<f64>,
 }
 
-impl Course {
+impl Curve {
     /// Largest size.
     pub fn peak(&self) -> f64 {
         self.values.iter().fold(0.0, |peak, value| value.abs().max(peak))
@@ -98,7 +98,7 @@ const L_MODES: &str = "[modes]\nflexible = 8\n";
 ///
 /// # Errors
 /// Errors of the scene.
-pub fn the_l(rest: &str) -> Result<(Scene, Model), NonlinearError> {
+pub fn the_l(rest: &str) -> Result<(Scene, Model), SolidError> {
     built("l", crate::nonlinear::bodies::SOFT, &format!("{L_MODES}{rest}"))
 }
 
@@ -107,7 +107,7 @@ pub fn the_l(rest: &str) -> Result<(Scene, Model), NonlinearError> {
 ///
 /// # Errors
 /// Errors that stop a run.
-pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<Course>), NonlinearError> {
+pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<Curve>), SolidError> {
     let (_, model) = the_l("static_correction = false\n[time]\nend = 1e-3\nstep = 1e-3")?;
     let first = in_plane(&model)[0];
     let omega = model.body.circular_frequencies[first];
@@ -125,8 +125,8 @@ pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<C
         .collect();
     let start = NodalState { time: 0.0, u: vec![0.0; v.len()], v };
     let steps = (100.0 * periods).ceil();
-    let mut motion = Motion::new(&solid, start, end / steps, |_, u| vec![0.0; u.len()]);
-    let mut course = Course { times: vec![0.0], values: vec![0.0] };
+    let mut motion = SolidMotion::new(&solid, start, end / steps, |_, u| vec![0.0; u.len()]);
+    let mut course = Curve { times: vec![0.0], values: vec![0.0] };
     for _ in 0..steps as usize {
         motion.advance()?;
         course.times.push(motion.state.time);
@@ -143,7 +143,7 @@ pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<C
         let rows = rows(&scene, &model)?;
         // Modes may come with either sign.
         let sign = dot(&shape(&model, first), &momentum).signum();
-        courses.push(Course {
+        courses.push(Curve {
             times: rows.iter().map(|row| row.time).collect(),
             values: rows.iter().map(|row| sign * row.modal_displacement[first]).collect(),
         });
@@ -152,7 +152,7 @@ pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<C
 }
 
 /// Frequency of a course in cycles per time; of a `step` of the midpoint rule, which is slow by a known amount, or of none.
-pub fn cycles(course: &Course, omega: f64, step: Option<f64>) -> f64 {
+pub fn cycles(course: &Curve, omega: f64, step: Option<f64>) -> f64 {
     let found = signal::frequency(&course.times, &course.values, omega, 3);
     let exact = step.map_or(found, |h| 2.0 / h * (0.5 * found * h).tan());
     exact / std::f64::consts::TAU
@@ -163,7 +163,7 @@ pub fn cycles(course: &Course, omega: f64, step: Option<f64>) -> f64 {
 ///
 /// # Errors
 /// A solution that is not found.
-pub fn static_energy(solid: &Solid, model: &Model, mode: usize, q: f64) -> Result<f64, NonlinearError> {
+pub fn static_energy(solid: &Solid, model: &Model, mode: usize, q: f64) -> Result<f64, SolidError> {
     let mut shapes = vec![shape(model, mode)];
     if let Some(meshed) = &model.meshed {
         shapes.extend(meshed.modes.rigid.shapes.col_iter().map(|column| column.iter().copied().collect()));
@@ -180,17 +180,17 @@ pub fn static_energy(solid: &Solid, model: &Model, mode: usize, q: f64) -> Resul
 ///
 /// # Errors
 /// Errors that stop a run.
-pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> Result<Vec<Course>, NonlinearError> {
+pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> Result<Vec<Curve>, SolidError> {
     let material = crate::nonlinear::bodies::soft(young_modulus);
     let solid = Solid::new(crate::nonlinear::bodies::mesh("rod")?, material, |x| x.x.abs() < 1e-9 && x.z.abs() < 1e-9)?;
     let down: Vec<f64> = (0..solid.dofs()).map(|k| if k % 3 == 2 { -9.81 } else { 0.0 }).collect();
     let weight = solid.momentum(&down);
     let tip = solid.mesh().positions().iter().position(|x| (Vector3::from(*x) - Vector3::x()).norm() < 1e-9);
-    let tip = tip.ok_or(NonlinearError::Mesh("the rod has no node at its tip".to_owned()))?;
+    let tip = tip.ok_or(SolidError::Mesh("the rod has no node at its tip".to_owned()))?;
     let rest = vec![0.0; solid.dofs()];
     let start = NodalState { time: 0.0, u: rest.clone(), v: rest };
-    let mut motion = Motion::new(&solid, start, end / steps as f64, |_, _| weight.clone());
-    let mut course = Course { times: vec![0.0], values: vec![0.0] };
+    let mut motion = SolidMotion::new(&solid, start, end / steps as f64, |_, _| weight.clone());
+    let mut course = Curve { times: vec![0.0], values: vec![0.0] };
     for _ in 0..steps {
         motion.advance()?;
         course.times.push(motion.state.time);
@@ -206,7 +206,7 @@ pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> R
         );
         let (scene, model) = built("rod", material, &text)?;
         let rows = rows(&scene, &model)?;
-        courses.push(Course {
+        courses.push(Curve {
             times: rows.iter().map(|row| row.time).collect(),
             values: rows
                 .iter()
@@ -244,7 +244,7 @@ pub fn pressed(
     pressures: &[(&str, f64)],
     is_on: impl Fn(Vector3<f64>) -> bool,
     shift: Option<f64>,
-) -> Result<[f64; 3], NonlinearError> {
+) -> Result<[f64; 3], SolidError> {
     let material = crate::nonlinear::bodies::soft(young_modulus);
     let loads: String = pressures
         .iter()
@@ -262,7 +262,7 @@ pub fn pressed(
     };
     let (_, free) = scene("")?;
     let (with, model) = scene(&loads)?;
-    let loaded = model.loaded_modes(&with).map_err(|error| NonlinearError::Scene(error.to_string()))?;
+    let loaded = model.loaded_modes(&with).map_err(|error| SolidError::Scene(error.to_string()))?;
     let solid = Solid::new(crate::nonlinear::bodies::mesh(mesh)?, material, |_| false)?;
     let faces = solid.faces(is_on);
     let size = pressures[0].1;
@@ -278,8 +278,8 @@ pub fn pressed(
     let u = at_rest.iter().zip(&phi).map(|(u, phi)| u + amplitude * phi).collect();
     // Short enough for the tangent, which is without that of the pressure, where the rod turns about itself.
     let h = std::f64::consts::TAU / omega / 200.0;
-    let mut motion = Motion::new(&solid, NodalState { time: 0.0, u, v: vec![0.0; phi.len()] }, h, |_, u| force(u));
-    let mut course = Course::default();
+    let mut motion = SolidMotion::new(&solid, NodalState { time: 0.0, u, v: vec![0.0; phi.len()] }, h, |_, u| force(u));
+    let mut course = Curve::default();
     for _ in 0..800 {
         motion.advance()?;
         course.times.push(motion.state.time);

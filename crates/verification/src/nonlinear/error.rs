@@ -2,7 +2,7 @@
 
 /// Errors of a body that is not found or does not move.
 #[derive(Debug)]
-pub enum NonlinearError {
+pub enum SolidError {
     /// A mesh, a material or a group that is refused.
     Mesh(String),
     /// A tangent stiffness that is not positive definite.
@@ -18,7 +18,7 @@ pub enum NonlinearError {
     Scene(String),
 }
 
-impl std::fmt::Display for NonlinearError {
+impl std::fmt::Display for SolidError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Mesh(error) | Self::Scene(error) => f.write_str(error),
@@ -30,15 +30,15 @@ impl std::fmt::Display for NonlinearError {
     }
 }
 
-impl std::error::Error for NonlinearError {}
+impl std::error::Error for SolidError {}
 
-impl From<fem_tet10::AssemblyError> for NonlinearError {
+impl From<fem_tet10::AssemblyError> for SolidError {
     fn from(error: fem_tet10::AssemblyError) -> Self {
         Self::Mesh(error.to_string())
     }
 }
 
-impl From<fem_tet10::MeshError> for NonlinearError {
+impl From<fem_tet10::MeshError> for SolidError {
     fn from(error: fem_tet10::MeshError) -> Self {
         Self::Mesh(error.to_string())
     }

@@ -7,7 +7,7 @@
 //! Without loads it keeps energy, momentum and angular momentum for any step (Simo and Tarnow 1992). A small vibration ω
 //! comes out as ω' with `tan ½ω'h = ½ωh`.
 
-use crate::nonlinear::error::NonlinearError;
+use crate::nonlinear::error::SolidError;
 use crate::nonlinear::solid::{Factor, Solid};
 
 /// Most iterations in a step.
@@ -29,7 +29,7 @@ pub struct NodalState {
 }
 
 /// A solid that moves under forces that depend on the time and on the displacements.
-pub struct Motion<'a, F> {
+pub struct SolidMotion<'a, F> {
     solid: &'a Solid,
     forces: F,
     step: f64,
@@ -38,7 +38,7 @@ pub struct Motion<'a, F> {
     pub state: NodalState,
 }
 
-impl<'a, F: Fn(f64, &[f64]) -> Vec<f64>> Motion<'a, F> {
+impl<'a, F: Fn(f64, &[f64]) -> Vec<f64>> SolidMotion<'a, F> {
     /// From a state, in equal steps.
     pub fn new(solid: &'a Solid, state: NodalState, step: f64, forces: F) -> Self {
         Self { solid, forces, step, factor: None, state }
@@ -47,8 +47,8 @@ impl<'a, F: Fn(f64, &[f64]) -> Vec<f64>> Motion<'a, F> {
     /// One step.
     ///
     /// # Errors
-    /// [`NonlinearError`] where the iteration does not come to rest.
-    pub fn advance(&mut self) -> Result<(), NonlinearError> {
+    /// [`SolidError`] where the iteration does not come to rest.
+    pub fn advance(&mut self) -> Result<(), SolidError> {
         let (solid, h) = (self.solid, self.step);
         let NodalState { time, u, v } = &self.state;
         let mut next: Vec<f64> = u.iter().zip(v).map(|(u, v)| u + h * v).collect();
@@ -71,7 +71,7 @@ impl<'a, F: Fn(f64, &[f64]) -> Vec<f64>> Motion<'a, F> {
                 break;
             }
             if last.is_infinite() && !residual.iter().all(|r| r.is_finite()) {
-                return Err(NonlinearError::Iterations { at: *time, residual: left });
+                return Err(SolidError::Iterations { at: *time, residual: left });
             }
             let factor = match self.factor.take().filter(|_| left < SLOW * last) {
                 Some(factor) => factor,
@@ -83,7 +83,7 @@ impl<'a, F: Fn(f64, &[f64]) -> Vec<f64>> Motion<'a, F> {
             last = left;
         }
         if !next.iter().all(|u| u.is_finite()) {
-            return Err(NonlinearError::Iterations { at: *time, residual: last });
+            return Err(SolidError::Iterations { at: *time, residual: last });
         }
         let v = (0..u.len()).map(|i| 2.0 / h * (next[i] - u[i]) - v[i]).collect();
         self.state = NodalState { time: time + h, u: next, v };

@@ -10,7 +10,7 @@ use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use fem_tet10::{Material, Materials, Matrices, Mesh, PointMass, assemble, quadrature, shape_gradients};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::nonlinear::error::NonlinearError;
+use crate::nonlinear::error::SolidError;
 
 /// An integration point of an element.
 struct Point {
@@ -38,7 +38,7 @@ impl Solid {
     ///
     /// # Errors
     /// Errors of the material and of the matrices.
-    pub fn new(mesh: Mesh, material: Material, held: impl Fn(Vector3<f64>) -> bool) -> Result<Self, NonlinearError> {
+    pub fn new(mesh: Mesh, material: Material, held: impl Fn(Vector3<f64>) -> bool) -> Result<Self, SolidError> {
         Self::with_masses(mesh, material, &[], held)
     }
 
@@ -51,7 +51,7 @@ impl Solid {
         material: Material,
         masses: &[PointMass],
         held: impl Fn(Vector3<f64>) -> bool,
-    ) -> Result<Self, NonlinearError> {
+    ) -> Result<Self, SolidError> {
         let matrices = assemble(&mesh, &Materials::Uniform(material), masses)?;
         let rule: Vec<_> = quadrature::degree_5().into_iter().map(|p| (p.weight, shape_gradients(p.at))).collect();
         let points = mesh.elements().iter().map(|nodes| {
@@ -70,7 +70,7 @@ impl Solid {
             };
             pairs.map(place).collect()
         });
-        let symbolic = SymbolicLlt::try_new(pattern, Side::Lower).map_err(|_| NonlinearError::Factor)?;
+        let symbolic = SymbolicLlt::try_new(pattern, Side::Lower).map_err(|_| SolidError::Factor)?;
         let is_held = mesh.positions().iter().flat_map(|x| [held(Vector3::from(*x)); 3]).collect();
         Ok(Self {
             lame: material.lame(),
@@ -144,7 +144,7 @@ impl Solid {
 
     /// The factor of `shift M + scale K_T`, K_T the tangent stiffness half-way from `u` to `next`. It stands in for that of
     /// the step, which lacks symmetry by the change of F over the step.
-    pub fn tangent(&self, u: &[f64], next: &[f64], shift: f64, scale: f64) -> Result<Factor, NonlinearError> {
+    pub fn tangent(&self, u: &[f64], next: &[f64], shift: f64, scale: f64) -> Result<Factor, SolidError> {
         let mass = self.matrices.mass();
         let mut values: Vec<f64> = mass.val().iter().map(|m| shift * m).collect();
         let (lambda, mu) = self.lame;
@@ -187,7 +187,7 @@ impl Solid {
         }
         let matrix = SparseColMatRef::new(pattern, &values[..]);
         let factor = Llt::try_new_with_symbolic(self.symbolic.clone(), matrix, Side::Lower);
-        Ok(Factor { factor: factor.map_err(|_| NonlinearError::Factor)?, held: self.held.clone() })
+        Ok(Factor { factor: factor.map_err(|_| SolidError::Factor)?, held: self.held.clone() })
     }
 
     /// F half-way and the mean of the stresses.

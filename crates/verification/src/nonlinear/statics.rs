@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::nonlinear::error::NonlinearError;
+use crate::nonlinear::error::SolidError;
 use crate::nonlinear::motion::{clear, dot, norm};
 use crate::nonlinear::solid::Solid;
 
@@ -18,13 +18,13 @@ impl Solid {
     /// for a body that is held, is a small square of a circular frequency: forces on a free body have no resultant.
     ///
     /// # Errors
-    /// [`NonlinearError`] where no equilibrium is found.
+    /// [`SolidError`] where no equilibrium is found.
     pub fn at_rest(
         &self,
         steps: usize,
         shift: f64,
         forces: impl Fn(&[f64]) -> Vec<f64>,
-    ) -> Result<Vec<f64>, NonlinearError> {
+    ) -> Result<Vec<f64>, SolidError> {
         let mut u = vec![0.0; self.dofs()];
         for step in 1..=steps {
             let part = step as f64 / steps as f64;
@@ -41,7 +41,7 @@ impl Solid {
                     break;
                 }
                 if iteration == MOST || !left.is_finite() {
-                    return Err(NonlinearError::Iterations { at: part, residual: left });
+                    return Err(SolidError::Iterations { at: part, residual: left });
                 }
                 last = left;
                 self.tangent(&u, &u, shift, 1.0)?.solve(&mut residual);
@@ -55,8 +55,8 @@ impl Solid {
     /// near their modes, by subspace iteration.
     ///
     /// # Errors
-    /// [`NonlinearError::Factor`] where the rest is not stable.
-    pub fn frequencies_at_rest(&self, u: &[f64], shapes: &[Vec<f64>]) -> Result<Vec<f64>, NonlinearError> {
+    /// [`SolidError::Factor`] where the rest is not stable.
+    pub fn frequencies_at_rest(&self, u: &[f64], shapes: &[Vec<f64>]) -> Result<Vec<f64>, SolidError> {
         let factor = self.tangent(u, u, 0.0, 1.0)?;
         let count = shapes.len();
         let mut shapes = shapes.to_vec();
@@ -76,8 +76,8 @@ impl Solid {
             let moving: Vec<Vec<f64>> = answers.iter().map(|answer| self.momentum(answer)).collect();
             let stiffness = DMatrix::from_fn(count, count, |i, j| dot(&answers[i], &momenta[j]));
             let mass = DMatrix::from_fn(count, count, |i, j| dot(&answers[i], &moving[j]));
-            let lower = mass.cholesky().ok_or(NonlinearError::Factor)?.l();
-            let inverse = lower.try_inverse().ok_or(NonlinearError::Factor)?;
+            let lower = mass.cholesky().ok_or(SolidError::Factor)?.l();
+            let inverse = lower.try_inverse().ok_or(SolidError::Factor)?;
             let found = (&inverse * stiffness * inverse.transpose()).symmetric_eigen();
             let mixed = inverse.transpose() * &found.eigenvectors;
             shapes = (0..count)
@@ -100,14 +100,14 @@ impl Solid {
     /// against the others.
     ///
     /// # Errors
-    /// [`NonlinearError`] where none are found.
+    /// [`SolidError`] where none are found.
     pub fn held_in_modes(
         &self,
         shapes: &[Vec<f64>],
         amounts: &[f64],
         shift: f64,
         steps: usize,
-    ) -> Result<Vec<f64>, NonlinearError> {
+    ) -> Result<Vec<f64>, SolidError> {
         let momenta: Vec<Vec<f64>> = shapes.iter().map(|shape| self.momentum(shape)).collect();
         let mut u = vec![0.0; self.dofs()];
         for step in 1..=steps {
@@ -119,7 +119,7 @@ impl Solid {
     }
 
     /// Newton's iteration with a bordered tangent.
-    fn hold(&self, u: &mut [f64], momenta: &[Vec<f64>], amounts: &[f64], shift: f64) -> Result<(), NonlinearError> {
+    fn hold(&self, u: &mut [f64], momenta: &[Vec<f64>], amounts: &[f64], shift: f64) -> Result<(), SolidError> {
         let (count, mut last) = (momenta.len(), f64::INFINITY);
         for _ in 0..MOST {
             let mut change: Vec<f64> = self.internal_forces(u, u).iter().map(|f| -f).collect();
@@ -129,7 +129,7 @@ impl Solid {
             through.iter_mut().for_each(|column| factor.solve(column));
             let border = DMatrix::from_fn(count, count, |i, j| dot(&momenta[i], &through[j]));
             let excess = |i: usize| dot(&momenta[i], u) + dot(&momenta[i], &change) - amounts[i];
-            let forces = border.lu().solve(&DVector::from_fn(count, |i, _| excess(i))).ok_or(NonlinearError::Factor)?;
+            let forces = border.lu().solve(&DVector::from_fn(count, |i, _| excess(i))).ok_or(SolidError::Factor)?;
             for (column, force) in through.iter().zip(&forces) {
                 change.iter_mut().zip(column).for_each(|(du, c)| *du -= force * c);
             }
@@ -140,6 +140,6 @@ impl Solid {
             }
             last = left;
         }
-        Err(NonlinearError::Iterations { at: 1.0, residual: last })
+        Err(SolidError::Iterations { at: 1.0, residual: last })
     }
 }

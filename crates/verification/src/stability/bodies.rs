@@ -14,7 +14,7 @@ pub fn rigid(moments: [f64; 3]) -> Result<ReducedBody, String> {
 
 /// An elastic body with its mode shapes.
 #[derive(Debug)]
-pub struct Elastic {
+pub struct ElasticBody {
     /// Its constants.
     pub body: ReducedBody,
     /// Its modes.
@@ -23,7 +23,7 @@ pub struct Elastic {
     pub positions: Vec<[f64; 3]>,
 }
 
-impl Elastic {
+impl ElasticBody {
     /// A node as a point.
     pub fn point(&self, node: u32) -> PointShapes {
         let point = self.modes.point(&self.positions, &[node], &[1.0]).expect("a node of the body");
@@ -53,7 +53,7 @@ pub fn changed(body: &ReducedBody, change: impl FnOnce(&mut Constants)) -> Reduc
 
 /// Point masses, each joined to each other by a spring of the same stiffness: small, elastic in every direction, and
 /// with all constants of a body from a mesh.
-pub fn truss(nodes: &[([f64; 3], f64)], spring: f64, flexible: usize) -> Result<Elastic, String> {
+pub fn truss(nodes: &[([f64; 3], f64)], spring: f64, flexible: usize) -> Result<ElasticBody, String> {
     let n = nodes.len();
     let mut blocks = vec![Matrix3::zeros(); n * n];
     for i in 0..n {
@@ -74,7 +74,7 @@ pub fn truss(nodes: &[([f64; 3], f64)], spring: f64, flexible: usize) -> Result<
         SparseColMat::try_new_from_triplets(3 * n, 3 * n, entries).map_err(|e| format!("{e:?}"))
     };
     let positions = nodes.iter().map(|node| node.0).collect();
-    Elastic::solve(matrix(&stiffness)?.as_ref(), matrix(&mass)?.as_ref(), positions, flexible)
+    ElasticBody::solve(matrix(&stiffness)?.as_ref(), matrix(&mass)?.as_ref(), positions, flexible)
 }
 
 /// Six unequal masses, no two principal moments alike, of size 1.
@@ -88,7 +88,7 @@ pub const CLUSTER: [([f64; 3], f64); 6] = [
 ];
 
 /// The body of [`CLUSTER`] in its softest `flexible` modes, from about 20 to 60 rad per time.
-pub fn cluster(flexible: usize) -> Result<Elastic, String> {
+pub fn cluster(flexible: usize) -> Result<ElasticBody, String> {
     truss(&CLUSTER, 60.0, flexible)
 }
 

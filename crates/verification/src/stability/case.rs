@@ -28,7 +28,7 @@ impl Extent {
 
 /// How a run went.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
+pub enum TrialOutcome {
     /// It came to its end, with this error or drift. NaN where anything in its observations was none.
     Ran(f64),
     /// It did not start, or stopped, with this message.
@@ -37,25 +37,25 @@ pub enum Outcome {
 
 /// Bound of an outcome.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Expected {
+pub enum Bound {
     /// The error or drift is not above this.
     Within(f64),
     /// It does not start, or stops, with this in its message.
     Refused(&'static str),
 }
 
-impl Expected {
+impl Bound {
     /// True if the outcome is within the bound.
-    pub fn holds(&self, outcome: &Outcome) -> bool {
+    pub fn holds(&self, outcome: &TrialOutcome) -> bool {
         match (self, outcome) {
-            (Self::Within(bound), Outcome::Ran(error)) => error <= bound,
-            (Self::Refused(part), Outcome::Refused(message)) => message.contains(part),
+            (Self::Within(bound), TrialOutcome::Ran(error)) => error <= bound,
+            (Self::Refused(part), TrialOutcome::Refused(message)) => message.contains(part),
             _ => false,
         }
     }
 }
 
-impl fmt::Display for Expected {
+impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Within(bound) => write!(f, "≤ {bound:.0e}"),
@@ -66,19 +66,19 @@ impl fmt::Display for Expected {
 
 /// A figure of the body itself, before it moves.
 #[derive(Debug, Clone, Copy)]
-pub struct BodyCheck {
+pub struct BodyFigure {
     /// Name of the figure.
     pub what: &'static str,
     /// Finds it.
     pub figure: fn() -> Result<f64, String>,
     /// Its bound.
-    pub expected: Expected,
+    pub expected: Bound,
 }
 
-impl BodyCheck {
+impl BodyFigure {
     /// Finds the figure.
-    pub fn run(&self) -> Outcome {
-        (self.figure)().map_or_else(Outcome::Refused, Outcome::Ran)
+    pub fn run(&self) -> TrialOutcome {
+        (self.figure)().map_or_else(TrialOutcome::Refused, TrialOutcome::Ran)
     }
 }
 
@@ -90,27 +90,27 @@ pub struct HardCase {
     /// Reason of the difficulty.
     pub why: &'static str,
     /// Figure of the body.
-    pub body: Option<BodyCheck>,
+    pub body: Option<BodyFigure>,
     /// Name of the figure of the motion.
     pub measure: &'static str,
     /// Runs it.
-    pub run: fn(Method, Extent) -> Outcome,
+    pub run: fn(Method, Extent) -> TrialOutcome,
     /// Bound of each of [`BOUNDED`].
-    pub expected: [Expected; 4],
+    pub expected: [Bound; 4],
 }
 
 impl HardCase {
     /// Bound of a scheme, if any.
-    pub fn expected_of(&self, method: Method) -> Option<&Expected> {
+    pub fn expected_of(&self, method: Method) -> Option<&Bound> {
         let place = BOUNDED.iter().position(|bounded| *bounded == method)?;
         self.expected.get(place)
     }
 }
 
 /// A case with a body, or its refusal.
-pub(crate) fn on(body: Result<ReducedBody, String>, run: impl FnOnce(&ReducedBody) -> Outcome) -> Outcome {
+pub(crate) fn on(body: Result<ReducedBody, String>, run: impl FnOnce(&ReducedBody) -> TrialOutcome) -> TrialOutcome {
     match body {
         Ok(body) => run(&body),
-        Err(refusal) => Outcome::Refused(refusal),
+        Err(refusal) => TrialOutcome::Refused(refusal),
     }
 }

@@ -4,16 +4,16 @@
 use dynamics::Method;
 use fem_tet10::{Material, Materials, Mesh, MeshParts, PointMass, assemble};
 
-use crate::stability::Expected::{Refused, Within};
-use crate::stability::bodies::Elastic;
+use crate::stability::Bound::{Refused, Within};
+use crate::stability::bodies::ElasticBody;
 use crate::stability::case::on;
 use crate::stability::meshes::{EDGES, ball, box_mesh, cells_of, cracked, numbered, opened};
 use crate::stability::structure::tumble;
-use crate::stability::{BodyCheck, Expected, Extent, HardCase, Outcome};
+use crate::stability::{BodyFigure, Bound, Extent, HardCase, TrialOutcome};
 
 const DRIFT: &str = "drift";
 /// Bounds of the tumbling of any well-made body.
-const TUMBLING: [Expected; 4] = [Within(1e-8), Within(1e-5), Within(0.1), Within(0.1)];
+const TUMBLING: [Bound; 4] = [Within(1e-8), Within(1e-5), Within(0.1), Within(0.1)];
 
 /// The cases.
 pub fn cases() -> Vec<HardCase> {
@@ -21,7 +21,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "a layer of slivers of aspect 1e4 in a cube",
             why: "stiffnesses across and along an element differ by 1e8",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "difference of the frequencies without the layer, relative",
                 figure: || difference(&with_layer()?, &bar([1.0; 3], [2; 3], METRES, 8)?),
                 expected: Within(0.02),
@@ -49,7 +49,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "a plate of 1000×50×0.1",
             why: "10 000 times as long as thick",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "lowest frequency against a thin beam, relative (a wide strip is 1/√(1 − ν²) = 1.048 of it)",
                 figure: || against_beam([1000.0, 50.0, 0.1], [40, 2, 1]),
                 expected: Within(0.1),
@@ -61,7 +61,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "curved elements: a bar bent to a quarter of a ring",
             why: "the mid-edge nodes leave the edges, and the integrands are no polynomials",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "mass against the ring's, relative",
                 figure: || Ok((quarter_ring()?.body.mass / QUARTER - 1.0).abs()),
                 expected: Within(1e-3),
@@ -73,7 +73,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "ν = 0.4999",
             why: "the volume can hardly change: an element that locks is too stiff",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "lowest frequency against ν = 0.49 of the same shear modulus, relative",
                 figure: || {
                     let lowest = |nu: f64| {
@@ -99,7 +99,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "a square plate",
             why: "frequencies that repeat in the plate do so only nearly in its mesh",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "relative gap within the 4th and 5th and the 6th and 7th frequency, equal in a plate",
                 figure: || gap(&bar([1.0, 1.0, 0.05], [6, 6, 1], METRES, 8)?, &[3..5, 5..7]),
                 expected: Within(5e-2),
@@ -111,7 +111,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "a bar in metres and in micrometres",
             why: "lengths differ by 1e6, the entries of K by 1, those of M by 1, inertias by 1e12",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "difference of the frequencies, relative",
                 figure: || difference(&bar(STEEL_BAR, [8, 2, 2], STEEL, 8)?, &micrometres()?),
                 expected: Within(1e-8),
@@ -131,7 +131,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "nodes and elements numbered at random",
             why: "bandwidth, pivots and the order of every sum change",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "difference of the frequencies, relative",
                 figure: || difference(&bar(STEEL_BAR, [8, 2, 2], STEEL, 8)?, &shuffled()?),
                 expected: Within(1e-8),
@@ -143,7 +143,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "a cube of elements",
             why: "its frequencies repeat, but its mesh has not all of its symmetry",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "relative gap within the groups of 2, 3, 3 and 2 lowest frequencies, equal in a cube",
                 figure: || gap(&bar([1.0; 3], [3; 3], METRES, 10)?, &[0..2, 2..5, 5..8, 8..10]),
                 expected: Within(2e-2),
@@ -155,7 +155,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "a ball of curved elements",
             why: "the inertia of a sphere; frequencies that repeat five times in a ball do so only nearly in its mesh",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "the five lowest frequencies against Lamb's k a = 2.50113 of torsion, relative",
                 figure: || {
                     let lamb = 2.501_132_620_409_396 * shear_speed(METRES);
@@ -171,7 +171,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "a point mass of 1e6 times the rest of a mesh",
             why: "M spans twelve orders of magnitude, and the body swings about a point that hardly moves",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "difference of the frequencies from those with a mass of 1e9 times the rest, relative, the largest of six places",
                 figure: || {
                     let of_place = |place: &[f64; 3]| difference(&loaded(*place, 1e6, 6)?, &loaded(*place, 1e9, 6)?);
@@ -198,7 +198,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "a crack: nodes in one place along half of a section",
             why: "what touches is not joined; nothing holds the faces of the crack together or apart",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "difference of the frequencies from those with the crack opened by 1e-9, relative",
                 figure: || {
                     difference(&solve(half_cracked(), STEEL, 8)?, &solve(opened(half_cracked(), 1e-9), STEEL, 8)?)
@@ -274,21 +274,26 @@ const STEEL_BAR: [f64; 3] = [1.0, 0.05, 0.07];
 /// A quarter of the circle of radius 4.
 const QUARTER: f64 = 2.0 * std::f64::consts::PI;
 
-fn moves(elastic: Result<Elastic, String>, method: Method) -> Outcome {
+fn moves(elastic: Result<ElasticBody, String>, method: Method) -> TrialOutcome {
     on(elastic.map(|e| e.body), |body| tumble(body, method))
 }
 
-fn solve(parts: MeshParts, material: Material, flexible: usize) -> Result<Elastic, String> {
+fn solve(parts: MeshParts, material: Material, flexible: usize) -> Result<ElasticBody, String> {
     solve_with(parts, material, &[], flexible)
 }
 
-fn solve_with(parts: MeshParts, material: Material, masses: &[PointMass], flexible: usize) -> Result<Elastic, String> {
+fn solve_with(
+    parts: MeshParts,
+    material: Material,
+    masses: &[PointMass],
+    flexible: usize,
+) -> Result<ElasticBody, String> {
     let mesh = Mesh::new(parts).map_err(|e| e.to_string())?;
     let matrices = assemble(&mesh, &Materials::Uniform(material), masses).map_err(|e| e.to_string())?;
-    Elastic::solve(matrices.stiffness(), matrices.mass(), mesh.positions().to_vec(), flexible)
+    ElasticBody::solve(matrices.stiffness(), matrices.mass(), mesh.positions().to_vec(), flexible)
 }
 
-fn bar(size: [f64; 3], cells: [usize; 3], material: Material, flexible: usize) -> Result<Elastic, String> {
+fn bar(size: [f64; 3], cells: [usize; 3], material: Material, flexible: usize) -> Result<ElasticBody, String> {
     solve(box_mesh(size, cells), material, flexible)
 }
 
@@ -300,7 +305,7 @@ fn against_beam(size: [f64; 3], cells: [usize; 3]) -> Result<f64, String> {
 }
 
 /// A cube of three layers, the middle one 5e-5 thick, the elements half as wide as the cube.
-fn with_layer() -> Result<Elastic, String> {
+fn with_layer() -> Result<ElasticBody, String> {
     let mut parts = box_mesh([1.0, 1.0, 3.0], [2, 2, 3]);
     for x in &mut parts.positions {
         let thin = 5e-5;
@@ -317,7 +322,7 @@ fn with_layer() -> Result<Elastic, String> {
 }
 
 /// A bar of 1 × 1, its middle line a quarter of a circle of radius 4.
-fn quarter_ring() -> Result<Elastic, String> {
+fn quarter_ring() -> Result<ElasticBody, String> {
     let mut parts = box_mesh([QUARTER, 1.0, 1.0], [4, 1, 1]);
     for x in &mut parts.positions {
         let (radius, angle) = (3.5 + x[1], x[0] / 4.0);
@@ -327,12 +332,12 @@ fn quarter_ring() -> Result<Elastic, String> {
 }
 
 /// The steel bar in µm, kg and s.
-fn micrometres() -> Result<Elastic, String> {
+fn micrometres() -> Result<ElasticBody, String> {
     let material = Material { young_modulus: STEEL.young_modulus * 1e-6, density: STEEL.density * 1e-18, ..STEEL };
     bar(STEEL_BAR.map(|x| x * 1e6), [8, 2, 2], material, 8)
 }
 
-fn one_element() -> Result<Elastic, String> {
+fn one_element() -> Result<ElasticBody, String> {
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let middles = EDGES.map(|[a, b]: [usize; 2]| [0, 1, 2].map(|axis| 0.5 * (corners[a][axis] + corners[b][axis])));
     let parts = MeshParts {
@@ -346,7 +351,7 @@ fn one_element() -> Result<Elastic, String> {
 }
 
 /// The steel bar with its nodes and elements in another order.
-fn shuffled() -> Result<Elastic, String> {
+fn shuffled() -> Result<ElasticBody, String> {
     let mut parts = box_mesh(STEEL_BAR, [8, 2, 2]);
     let places = permutation(parts.positions.len());
     let mut positions = parts.positions.clone();
@@ -374,7 +379,12 @@ fn permutation(n: usize) -> Vec<usize> {
 }
 
 /// A mesh that is refused before anything can move.
-fn refused(name: &'static str, why: &'static str, words: &'static str, run: fn(Method, Extent) -> Outcome) -> HardCase {
+fn refused(
+    name: &'static str,
+    why: &'static str,
+    words: &'static str,
+    run: fn(Method, Extent) -> TrialOutcome,
+) -> HardCase {
     HardCase { name, why, body: None, measure: "–", run, expected: [Refused(words); 4] }
 }
 
@@ -384,7 +394,7 @@ fn shear_speed(material: Material) -> f64 {
 }
 
 /// The largest relative gap within groups of frequencies.
-fn gap(elastic: &Elastic, groups: &[std::ops::Range<usize>]) -> Result<f64, String> {
+fn gap(elastic: &ElasticBody, groups: &[std::ops::Range<usize>]) -> Result<f64, String> {
     let frequencies = &elastic.body.circular_frequencies;
     Ok(groups.iter().map(|group| frequencies[group.end - 1] / frequencies[group.start] - 1.0).fold(0.0, f64::max))
 }
@@ -400,7 +410,7 @@ const PLACES: [[f64; 3]; 6] = [
 ];
 
 /// A cube with a mass of a multiple of its own, spread over the nodes around a place.
-fn loaded(at: [f64; 3], times: f64, flexible: usize) -> Result<Elastic, String> {
+fn loaded(at: [f64; 3], times: f64, flexible: usize) -> Result<ElasticBody, String> {
     let mass = PointMass { at, mass: times, spread: Some(0.6) };
     solve_with(box_mesh([1.0; 3], [2; 3]), METRES, &[mass], flexible)
 }
@@ -412,7 +422,7 @@ fn half_cracked() -> MeshParts {
 }
 
 /// The largest relative difference of the frequencies of two bodies.
-fn difference(a: &Elastic, b: &Elastic) -> Result<f64, String> {
+fn difference(a: &ElasticBody, b: &ElasticBody) -> Result<f64, String> {
     let pairs = a.body.circular_frequencies.iter().zip(&b.body.circular_frequencies);
     Ok(pairs.map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max))
 }

@@ -7,11 +7,11 @@ use nalgebra::Vector3;
 use reduced_body::ReducedBody;
 use rigid_kin::{Attitude, Inertia, TorqueFreeMotion, euler_angular_acceleration};
 
-use crate::stability::Expected::{Refused, Within};
+use crate::stability::Bound::{Refused, Within};
 use crate::stability::bodies::{CLUSTER, cluster, rigid, spinning, truss};
 use crate::stability::case::on;
 use crate::stability::trial::{Trial, worse};
-use crate::stability::{Extent, HardCase, Outcome};
+use crate::stability::{Extent, HardCase, TrialOutcome};
 
 const MOMENTS: [f64; 3] = [1.0, 2.0, 3.0];
 const LOST: &str = "the attitude is lost";
@@ -64,7 +64,7 @@ pub fn cases() -> Vec<HardCase> {
             run: |method, _| {
                 on(rigid(MOMENTS), |body| {
                     let omega = [1e-5, 1.0, 1e-5];
-                    let Some(period) = period(body, omega) else { return Outcome::Ran(f64::NAN) };
+                    let Some(period) = period(body, omega) else { return TrialOutcome::Ran(f64::NAN) };
                     Trial::free(body, spin(omega), 1e-3, period).off_closed_form(method)
                 })
             },
@@ -130,7 +130,7 @@ fn spin(omega: [f64; 3]) -> Initial {
     Initial { omega: omega.into(), ..Initial::at_rest(0) }
 }
 
-fn turns(body: &ReducedBody, method: Method, extent: Extent) -> Outcome {
+fn turns(body: &ReducedBody, method: Method, extent: Extent) -> TrialOutcome {
     let turns = extent.pick(method, 200, 10_000);
     let end = TAU / 100.0 * turns;
     let trial = Trial::free(body, spin([0.0, 0.0, 100.0]), 1e-3, end);
@@ -147,16 +147,16 @@ fn period(body: &ReducedBody, omega: [f64; 3]) -> Option<f64> {
     closed_form(body, omega.into())?.period()
 }
 
-fn flips(body: &ReducedBody, method: Method, extent: Extent) -> Outcome {
+fn flips(body: &ReducedBody, method: Method, extent: Extent) -> TrialOutcome {
     let omega = [0.01, 1.0, 0.01];
     // Two flips in a period.
-    let Some(period) = period(body, omega) else { return Outcome::Ran(f64::NAN) };
+    let Some(period) = period(body, omega) else { return TrialOutcome::Ran(f64::NAN) };
     Trial::free(body, spin(omega), 2e-3, period * extent.pick(method, 5, 50)).off_closed_form(method)
 }
 
-fn near_separatrix(body: &ReducedBody, method: Method) -> Outcome {
+fn near_separatrix(body: &ReducedBody, method: Method) -> TrialOutcome {
     let omega = [1e-8, 1.0, 1e-8];
-    let Some(period) = period(body, omega) else { return Outcome::Ran(f64::NAN) };
+    let Some(period) = period(body, omega) else { return TrialOutcome::Ran(f64::NAN) };
     Trial::free(body, spin(omega), 1e-3, period).drift(method)
 }
 
@@ -168,9 +168,9 @@ fn tilted(body: &ReducedBody) -> [f64; 3] {
     (axis(3 - low - high) + (axis(low) + axis(high)) * 0.01).into()
 }
 
-fn tiny(body: &ReducedBody, method: Method) -> Outcome {
+fn tiny(body: &ReducedBody, method: Method) -> TrialOutcome {
     let omega = Vector3::new(2e-10, -3e-10, 9e-10);
-    let Ok(inertia) = Inertia::new(body.inertia) else { return Outcome::Ran(f64::NAN) };
+    let Ok(inertia) = Inertia::new(body.inertia) else { return TrialOutcome::Ran(f64::NAN) };
     // The next terms of both series are 1e-18 of the first. The closed form of finite turns is no help: its rounding is
     // of the size of a turn of 1.
     let alpha = euler_angular_acceleration(&Vector3::zeros(), &inertia, &omega);
@@ -182,7 +182,7 @@ fn tiny(body: &ReducedBody, method: Method) -> Outcome {
     })
 }
 
-fn nothing(body: &ReducedBody, method: Method) -> Outcome {
+fn nothing(body: &ReducedBody, method: Method) -> TrialOutcome {
     let trial = Trial::free(body, Initial::at_rest(body.flexible()), 1e-3, 1.0);
     trial.largest(method, |_, row| {
         let vibration = row.modal_displacement.iter().chain(&row.modal_velocity).map(|x| x.abs()).sum::<f64>();
@@ -190,23 +190,23 @@ fn nothing(body: &ReducedBody, method: Method) -> Outcome {
     })
 }
 
-fn each_axis(body: &ReducedBody, method: Method) -> Outcome {
+fn each_axis(body: &ReducedBody, method: Method) -> TrialOutcome {
     let mut largest = 0.0;
     for axis in 0..3 {
         for speed in [1e-6, 1e6] {
             let mut omega = [0.0; 3];
             omega[axis] = speed;
             match Trial::free(body, spin(omega), 0.05 / speed, 100.0 * TAU / speed).off_closed_form(method) {
-                Outcome::Ran(error) => largest = worse(largest, error),
+                TrialOutcome::Ran(error) => largest = worse(largest, error),
                 refused => return refused,
             }
         }
     }
-    Outcome::Ran(largest)
+    TrialOutcome::Ran(largest)
 }
 
 /// The largest difference from the run of another body or start.
-fn against(trial: &Trial, other: &Trial, method: Method) -> Outcome {
+fn against(trial: &Trial, other: &Trial, method: Method) -> TrialOutcome {
     let mut expected = Vec::new();
     let mut scale = 0.0_f64;
     let outcome = other.largest(method, |_, row| {
@@ -214,7 +214,7 @@ fn against(trial: &Trial, other: &Trial, method: Method) -> Outcome {
         expected.push((row.attitude, row.modal_displacement.clone()));
         0.0
     });
-    if let Outcome::Refused(_) = outcome {
+    if let TrialOutcome::Refused(_) = outcome {
         return outcome;
     }
     let mut rows = expected.iter();
@@ -225,18 +225,18 @@ fn against(trial: &Trial, other: &Trial, method: Method) -> Outcome {
     })
 }
 
-fn far_away(method: Method) -> Outcome {
+fn far_away(method: Method) -> TrialOutcome {
     let moved = CLUSTER.map(|(at, mass)| (at.map(|x| x + 1e6), mass));
     match (cluster(6), truss(&moved, 60.0, 6)) {
         (Ok(here), Ok(there)) => {
             let trial = |body| Trial::free(body, spinning(body, [1.0, 2.0, 1.5], 0.05), 5e-3, 5.0);
             against(&trial(&there.body), &trial(&here.body), method)
         }
-        (Err(refusal), _) | (_, Err(refusal)) => Outcome::Refused(refusal),
+        (Err(refusal), _) | (_, Err(refusal)) => TrialOutcome::Refused(refusal),
     }
 }
 
-fn fast(body: &ReducedBody, method: Method) -> Outcome {
+fn fast(body: &ReducedBody, method: Method) -> TrialOutcome {
     let still = spinning(body, [1.0, 2.0, 1.5], 0.05);
     let moving = Initial { velocity: Vector3::new(6e5, -8e5, 1e3), ..still.clone() };
     let trial = |initial| Trial::free(body, initial, 5e-3, 5.0);

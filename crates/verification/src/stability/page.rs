@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::time::Instant;
 
 use crate::stability::systems::{self, SCHEMES, SystemCase};
-use crate::stability::{BOUNDED, Expected, Extent, HardCase, Outcome, sections};
+use crate::stability::{BOUNDED, Bound, Extent, HardCase, TrialOutcome, sections};
 
 /// The page, and the outcomes that are not what is asked for.
 pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<String>) {
@@ -81,7 +81,7 @@ fn row(
 ) {
     let HardCase { name: title, why, measure, .. } = case;
     let _ = write!(page, "| {title} | {measure}");
-    let mut judge = |who: &str, outcome: &Outcome, expected: Option<&Expected>| {
+    let mut judge = |who: &str, outcome: &TrialOutcome, expected: Option<&Bound>| {
         if let Some(expected) = expected.filter(|expected| !expected.holds(outcome)) {
             broken.push(format!("{title} ({why}), {who}: {outcome:?} is not {expected}"));
         }
@@ -104,14 +104,14 @@ fn row(
 }
 
 /// An outcome with its bound; words go below the table, each once.
-fn cell(outcome: &Outcome, expected: Option<&Expected>, refusals: &mut Vec<String>) -> String {
+fn cell(outcome: &TrialOutcome, expected: Option<&Bound>, refusals: &mut Vec<String>) -> String {
     let bound = expected.map_or_else(String::new, |expected| format!(" ({expected})"));
     match outcome {
-        Outcome::Ran(0.0) => format!("0{bound}"),
-        Outcome::Ran(error) => format!("{error:.1e}{bound}"),
-        Outcome::Refused(message) => {
+        TrialOutcome::Ran(0.0) => format!("0{bound}"),
+        TrialOutcome::Ran(error) => format!("{error:.1e}{bound}"),
+        TrialOutcome::Refused(message) => {
             let words = match expected {
-                Some(Expected::Refused(part)) => part,
+                Some(Bound::Refused(part)) => part,
                 _ => message.as_str(),
             };
             let place = refusals.iter().position(|known| known == words).unwrap_or_else(|| {

@@ -6,11 +6,11 @@ use dynamics::{Initial, Method};
 use nalgebra::Vector3;
 use reduced_body::ReducedBody;
 
-use crate::stability::Expected::{Refused, Within};
-use crate::stability::bodies::{CLUSTER, Elastic, changed, cluster, rigid, spinning, truss};
+use crate::stability::Bound::{Refused, Within};
+use crate::stability::bodies::{CLUSTER, ElasticBody, changed, cluster, rigid, spinning, truss};
 use crate::stability::case::on;
 use crate::stability::trial::{Trial, worse};
-use crate::stability::{BodyCheck, HardCase, Outcome};
+use crate::stability::{BodyFigure, HardCase, TrialOutcome};
 
 /// Refusal of a step beyond the limit of a mode.
 const MODES: &str = "beyond the stability limit";
@@ -22,7 +22,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "a cube of eight equal masses",
             why: "its frequencies repeat two and three times, and any turn of a group's modes is as good as another",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "relative gap within the groups of 1, 1, 3, 3 … frequencies",
                 figure: || Ok(largest_gap_in_groups(&cube()?.body.circular_frequencies)),
                 expected: Within(1e-12),
@@ -34,7 +34,7 @@ pub fn cases() -> Vec<HardCase> {
         HardCase {
             name: "an icosahedron of twelve equal masses",
             why: "the inertia of a sphere, whose principal axes are any, and frequencies that repeat five times",
-            body: Some(BodyCheck {
+            body: Some(BodyFigure {
                 what: "difference of the principal moments, relative",
                 figure: || {
                     let moments = icosahedron()?.body.inertia.symmetric_eigenvalues();
@@ -129,7 +129,7 @@ pub fn cases() -> Vec<HardCase> {
 
 /// A body that tumbles at a twentieth of its lowest frequency and vibrates with a hundredth of that energy, in steps of
 /// 0.1/ω of its highest mode, for some periods of the lowest.
-pub(crate) fn tumble(body: &ReducedBody, method: Method) -> Outcome {
+pub(crate) fn tumble(body: &ReducedBody, method: Method) -> TrialOutcome {
     let (trial, _) = tumbling(body);
     trial.drift(method)
 }
@@ -145,12 +145,12 @@ fn tumbling(body: &ReducedBody) -> (Trial<'_>, f64) {
     (trial, vibration)
 }
 
-fn cube() -> Result<Elastic, String> {
+fn cube() -> Result<ElasticBody, String> {
     let corners: [[f64; 3]; 8] = std::array::from_fn(|k| [k & 1, k >> 1 & 1, k >> 2].map(|bit| bit as f64));
     truss(&corners.map(|at| (at, 1.0)), 100.0, 12)
 }
 
-fn icosahedron() -> Result<Elastic, String> {
+fn icosahedron() -> Result<ElasticBody, String> {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut nodes = Vec::new();
     for (a, b) in [(1.0, golden), (1.0, -golden), (-1.0, golden), (-1.0, -golden)] {
@@ -166,7 +166,7 @@ fn largest_gap_in_groups(frequencies: &[f64]) -> f64 {
     gaps.reduce(f64::max).unwrap_or(f64::NAN)
 }
 
-fn wide_spectrum(body: &ReducedBody, method: Method) -> Outcome {
+fn wide_spectrum(body: &ReducedBody, method: Method) -> TrialOutcome {
     let frequencies = [1e-3, 1e-1, 1e1, 1e3, 1e5, 1e6].map(|hertz| TAU * hertz).to_vec();
     let body = changed(body, |body| body.circular_frequencies = frequencies);
     let initial = spinning(&body, [1e-4, 2e-4, 1.5e-4], 1e-5);
@@ -174,7 +174,7 @@ fn wide_spectrum(body: &ReducedBody, method: Method) -> Outcome {
 }
 
 /// Modes set free from rest, so small that they do not see each other, in steps of `turn`/ω of the highest damped rate.
-fn damped(ratios: [f64; 6], turn: f64, method: Method) -> Outcome {
+fn damped(ratios: [f64; 6], turn: f64, method: Method) -> TrialOutcome {
     const AMPLITUDE: f64 = 1e-9;
     on(cluster(6).map(|e| e.body), |body| {
         let omegas = &body.circular_frequencies;
@@ -204,7 +204,7 @@ fn free_decay(omega: f64, zeta: f64, t: f64) -> f64 {
     }
 }
 
-fn reference_points(off: f64, method: Method) -> Outcome {
+fn reference_points(off: f64, method: Method) -> TrialOutcome {
     on(cluster(3).map(|e| e.body), |body| {
         let points = [Vector3::new(-1.0, 0.0, 0.0), Vector3::new(0.0, off, 0.0), Vector3::x()];
         Trial { reference_points: points, ..tumbling(body).0 }.drift(method)

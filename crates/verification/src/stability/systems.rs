@@ -12,8 +12,8 @@ use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
 use rigid_kin::Attitude;
 
-use crate::stability::Expected::{Refused, Within};
-use crate::stability::{Expected, Extent, Outcome};
+use crate::stability::Bound::{Refused, Within};
+use crate::stability::{Bound, Extent, TrialOutcome};
 
 const GRAVITY: f64 = 9.81;
 const TOLERANCE: f64 = 1e-7;
@@ -30,14 +30,14 @@ pub struct SystemCase {
     /// Runs it.
     pub run: fn(SystemScheme, Extent) -> Result<f64, String>,
     /// Bounds of Radau and of Gauss.
-    pub expected: [Expected; 2],
+    pub expected: [Bound; 2],
 }
 
 impl SystemCase {
     /// Runs it by one of [`SCHEMES`].
-    pub fn outcome(&self, scheme: usize, extent: Extent) -> Outcome {
+    pub fn outcome(&self, scheme: usize, extent: Extent) -> TrialOutcome {
         let (_, scheme) = SCHEMES[scheme];
-        (self.run)(scheme, extent).map_or_else(Outcome::Refused, Outcome::Ran)
+        (self.run)(scheme, extent).map_or_else(TrialOutcome::Refused, TrialOutcome::Ran)
     }
 }
 

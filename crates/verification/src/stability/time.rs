@@ -12,11 +12,11 @@ use dynamics::{
 use nalgebra::Vector3;
 use reduced_body::ReducedBody;
 
-use crate::stability::Expected::{Refused, Within};
-use crate::stability::bodies::{Elastic, changed, cluster, spinning};
+use crate::stability::Bound::{Refused, Within};
+use crate::stability::bodies::{ElasticBody, changed, cluster, spinning};
 use crate::stability::case::on;
 use crate::stability::trial::{Trial, worse};
-use crate::stability::{HardCase, Outcome};
+use crate::stability::{HardCase, TrialOutcome};
 
 /// Refusal of a step beyond the limit of a mode.
 const MODES: &str = "beyond the stability limit";
@@ -235,7 +235,7 @@ fn on_mode(body: &ReducedBody, mode: usize, history: History) -> SharedLoad {
 }
 
 /// The highest mode of the cluster, set free.
-fn free_vibration(method: Method) -> Outcome {
+fn free_vibration(method: Method) -> TrialOutcome {
     const AMPLITUDE: f64 = 1e-3;
     on(cluster(6).map(|e| e.body), |body| {
         let last = body.flexible() - 1;
@@ -249,7 +249,7 @@ fn free_vibration(method: Method) -> Outcome {
 }
 
 /// The softest mode of the cluster, at ω, under a load that is given by ω, in steps and to an end in parts of 1/ω.
-fn oscillator(load: impl Fn(f64) -> (History, Exact), step: f64, end: f64, method: Method) -> Outcome {
+fn oscillator(load: impl Fn(f64) -> (History, Exact), step: f64, end: f64, method: Method) -> TrialOutcome {
     on(cluster(6).map(|e| e.body), |body| {
         let omega = body.circular_frequencies[0];
         let (history, Exact(response, begin)) = load(omega);
@@ -265,25 +265,25 @@ fn oscillator(load: impl Fn(f64) -> (History, Exact), step: f64, end: f64, metho
             0.0
         });
         match outcome {
-            Outcome::Ran(ran) => Outcome::Ran(worse(ran, most / peak)),
+            TrialOutcome::Ran(ran) => TrialOutcome::Ran(worse(ran, most / peak)),
             refused => refused,
         }
     })
 }
 
 /// [`oscillator`] in steps of 0.05/ω, about 5 ms, for five turns of the mode.
-fn with_history(history: Result<History, SetupError>, exact: Exact, method: Method) -> Outcome {
+fn with_history(history: Result<History, SetupError>, exact: Exact, method: Method) -> TrialOutcome {
     match history {
         Ok(history) => oscillator(|_| (history.clone(), exact), 0.05, 5.0 * TAU, method),
-        Err(refusal) => Outcome::Refused(refusal.to_string()),
+        Err(refusal) => TrialOutcome::Refused(refusal.to_string()),
     }
 }
 
 /// A bell curve on the softest mode of the cluster.
-fn bell(method: Method) -> Outcome {
+fn bell(method: Method) -> TrialOutcome {
     let formula = match Expression::new("exp(-((t - 0.5)/0.02)^2)", vec![]) {
         Ok(formula) => formula,
-        Err(refusal) => return Outcome::Refused(refusal.to_string()),
+        Err(refusal) => return TrialOutcome::Refused(refusal.to_string()),
     };
     on(cluster(6).map(|e| e.body), |body| {
         let loads = vec![on_mode(body, 0, History::Expression(formula))];
@@ -296,7 +296,7 @@ fn bell(method: Method) -> Outcome {
 }
 
 /// All modes under a constant load from the beginning on, half damped, in steps of `turn`/ω of the highest one.
-fn settled(turn: f64, method: Method) -> Outcome {
+fn settled(turn: f64, method: Method) -> TrialOutcome {
     on(cluster(6).map(|e| e.body), |body| {
         let nf = body.flexible();
         let omega = &body.circular_frequencies;
@@ -312,11 +312,11 @@ fn settled(turn: f64, method: Method) -> Outcome {
     })
 }
 
-fn follower(method: Method) -> Outcome {
+fn follower(method: Method) -> TrialOutcome {
     match cluster(6) {
         Ok(mut elastic) => {
             elastic.body = changed(&elastic.body, |body| body.circular_frequencies.iter_mut().for_each(|w| *w *= 50.0));
-            let Elastic { body, .. } = &elastic;
+            let ElasticBody { body, .. } = &elastic;
             let force = Vector3::new(0.1, 0.4, -0.2);
             let history = History::Ramp { start: 0.0, duration: 1.0 };
             let load = PointForce { point: elastic.point(0), force, frame: LoadFrame::Body, turning: None, history };
@@ -324,6 +324,6 @@ fn follower(method: Method) -> Outcome {
             let loads: Vec<SharedLoad> = vec![Arc::new(load)];
             Trial { loads, damping_ratios: vec![0.05; 6], ..trial }.drift(method)
         }
-        Err(refusal) => Outcome::Refused(refusal),
+        Err(refusal) => TrialOutcome::Refused(refusal),
     }
 }

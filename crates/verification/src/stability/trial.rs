@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use reduced_body::ReducedBody;
 use rigid_kin::{Attitude, Inertia, TorqueFreeMotion};
 
-use crate::stability::Outcome;
+use crate::stability::TrialOutcome;
 
 /// A run.
 #[derive(Debug, Clone)]
@@ -48,7 +48,7 @@ impl<'a> Trial<'a> {
     }
 
     /// The observations, the first one included, one after the other; the largest of their errors.
-    pub fn largest(&self, method: Method, mut error: impl FnMut(&Observation, &Observation) -> f64) -> Outcome {
+    pub fn largest(&self, method: Method, mut error: impl FnMut(&Observation, &Observation) -> f64) -> TrialOutcome {
         let paper = Paper { reference_points: self.reference_points };
         let setup = Setup {
             body: self.body,
@@ -64,24 +64,24 @@ impl<'a> Trial<'a> {
         };
         let mut simulation = match Simulation::new(&setup) {
             Ok(simulation) => simulation,
-            Err(refusal) => return Outcome::Refused(refusal.to_string()),
+            Err(refusal) => return TrialOutcome::Refused(refusal.to_string()),
         };
         let first = match simulation.observation() {
             Ok(first) => first,
-            Err(refusal) => return Outcome::Refused(refusal.to_string()),
+            Err(refusal) => return TrialOutcome::Refused(refusal.to_string()),
         };
         let mut largest = error(&first, &first);
         for row in simulation {
             match row {
                 Ok(row) => largest = worse(largest, error(&first, &row)),
-                Err(refusal) => return Outcome::Refused(refusal.to_string()),
+                Err(refusal) => return TrialOutcome::Refused(refusal.to_string()),
             }
         }
-        Outcome::Ran(largest)
+        TrialOutcome::Ran(largest)
     }
 
     /// The largest relative gap in the balances of energy and angular momentum.
-    pub fn drift(&self, method: Method) -> Outcome {
+    pub fn drift(&self, method: Method) -> TrialOutcome {
         let mut energy_scale = 0.0_f64;
         let mut momentum_scale = 0.0_f64;
         self.largest(method, |first, row| {
@@ -95,13 +95,13 @@ impl<'a> Trial<'a> {
 
     /// The largest distance from the torque-free motion in closed form: of the attitude in rad, and of the angular
     /// velocity relative to its size.
-    pub fn off_closed_form(&self, method: Method) -> Outcome {
+    pub fn off_closed_form(&self, method: Method) -> TrialOutcome {
         let exact = Inertia::new(self.body.inertia).map_err(|e| e.to_string()).and_then(|i| {
             TorqueFreeMotion::new(&i, Attitude::identity(), self.initial.omega).map_err(|e| e.to_string())
         });
         let exact = match exact {
             Ok(exact) => exact,
-            Err(refusal) => return Outcome::Refused(refusal),
+            Err(refusal) => return TrialOutcome::Refused(refusal),
         };
         self.largest(method, |_, row| {
             let Ok(now) = exact.at(row.time) else { return f64::NAN };

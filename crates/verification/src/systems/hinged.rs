@@ -8,8 +8,8 @@ use dynamics::{Observation, StepControl};
 use fem_tet10::{Material, Mesh};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::nonlinear::{Motion, NodalState, NonlinearError, Solid, mean_axes};
-use crate::systems::meshes::{Bar, Frame, write};
+use crate::nonlinear::{NodalState, Solid, SolidError, SolidMotion, mean_axes};
+use crate::systems::meshes::{BarFrame, FrameBar, write};
 use crate::systems::run::{built, rows};
 
 /// A hinge on a line of nodes in a scene.
@@ -61,7 +61,7 @@ struct Seen {
 }
 
 /// The bars of a frame in the joined mesh at equal times, from rows + 1.
-pub struct Reference(Vec<Vec<Seen>>);
+pub struct JoinedReference(Vec<Vec<Seen>>);
 
 /// A bar of the joined mesh.
 struct Part {
@@ -76,24 +76,24 @@ struct Part {
 impl Part {
     /// With what finds the number of a node of the joined mesh by its place.
     fn new(
-        frame: &Frame,
-        bar: &Bar,
+        frame: &BarFrame,
+        bar: &FrameBar,
         material: Material,
         find: impl Fn([f64; 3]) -> Option<usize>,
-    ) -> Result<Self, NonlinearError> {
+    ) -> Result<Self, SolidError> {
         let mesh = Mesh::new(frame.bar(bar.upright))?;
         let moved = |x: &[f64; 3]| [0, 1, 2].map(|k| x[k] + bar.at[k]);
         let nodes: Option<Vec<usize>> = mesh.positions().iter().map(|x| find(moved(x))).collect();
-        let nodes = nodes.ok_or_else(|| NonlinearError::Mesh("meshes that differ".to_owned()))?;
+        let nodes = nodes.ok_or_else(|| SolidError::Mesh("meshes that differ".to_owned()))?;
         let place = |x: &Vector3<f64>| mesh.positions().iter().position(|y| (Vector3::from(*y) - x).norm() < 1e-9);
         let seen: Option<Vec<usize>> = places(frame, bar.upright).iter().map(place).collect();
-        let seen = seen.ok_or_else(|| NonlinearError::Mesh("no node at a place that is compared".to_owned()))?;
+        let seen = seen.ok_or_else(|| SolidError::Mesh("no node at a place that is compared".to_owned()))?;
         Ok(Self { alone: Solid::new(mesh, material, |_| false)?, nodes, seen })
     }
 }
 
 /// Places on a bar that are compared: both ends and its middle.
-fn places(frame: &Frame, upright: bool) -> [Vector3<f64>; 3] {
+fn places(frame: &BarFrame, upright: bool) -> [Vector3<f64>; 3] {
     let [l, b, h] = frame.size;
     [0.0, 0.5, 1.0].map(|part| match upright {
         false => Vector3::new(part * l, 0.5 * b, 0.5 * h),
@@ -105,7 +105,7 @@ fn places(frame: &Frame, upright: bool) -> [Vector3<f64>; 3] {
 ///
 /// # Errors
 /// Steps that fail.
-pub fn reference(frame: &Frame, motions: &Motions) -> Result<Reference, NonlinearError> {
+pub fn reference(frame: &BarFrame, motions: &Motions) -> Result<JoinedReference, SolidError> {
     let Motions { material, gravity, hung, end, steps, rows, .. } = *motions;
     let mesh = Mesh::new(frame.joined())?;
     let first = frame.bars[0].at;
@@ -116,7 +116,7 @@ pub fn reference(frame: &Frame, motions: &Motions) -> Result<Reference, Nonlinea
     let numbers: HashMap<[i64; 3], usize> =
         solid.mesh().positions().iter().zip(0..).map(|(x, i)| (key(*x), i)).collect();
     let parts = frame.bars.iter().map(|bar| Part::new(frame, bar, material, |x| numbers.get(&key(x)).copied()));
-    let parts = parts.collect::<Result<Vec<Part>, NonlinearError>>()?;
+    let parts = parts.collect::<Result<Vec<Part>, SolidError>>()?;
     let mut v = vec![0.0; solid.dofs()];
     for (Part { alone, nodes, .. }, [velocity, omega]) in parts.iter().zip(&motions.velocities) {
         let middle = center(alone, &vec![0.0; alone.dofs()]);
@@ -127,9 +127,9 @@ pub fn reference(frame: &Frame, motions: &Motions) -> Result<Reference, Nonlinea
     }
     let down: Vec<f64> = (0..solid.dofs()).map(|k| if k % 3 == 2 { -gravity } else { 0.0 }).collect();
     let weight = solid.momentum(&down);
-    let run = |steps: usize| -> Result<Vec<Vec<f64>>, NonlinearError> {
+    let run = |steps: usize| -> Result<Vec<Vec<f64>>, SolidError> {
         let start = NodalState { time: 0.0, u: vec![0.0; v.len()], v: v.clone() };
-        let mut motion = Motion::new(&solid, start, end / steps as f64, |_, _| weight.clone());
+        let mut motion = SolidMotion::new(&solid, start, end / steps as f64, |_, _| weight.clone());
         let mut found = vec![motion.state.u.clone()];
         for step in 1..=steps {
             motion.advance()?;
@@ -141,7 +141,7 @@ pub fn reference(frame: &Frame, motions: &Motions) -> Result<Reference, Nonlinea
     };
     let [coarse, fine] = [run(steps)?, run(2 * steps)?];
     let at_time = |(coarse, fine): (&Vec<f64>, &Vec<f64>)| {
-        let of_bar = |(bar, Part { alone, nodes, seen }): (&Bar, &Part)| {
+        let of_bar = |(bar, Part { alone, nodes, seen }): (&FrameBar, &Part)| {
             let dof = |k: usize| (4.0 * fine[k] - coarse[k]) / 3.0;
             let u: Vec<f64> = nodes.iter().flat_map(|node| [0, 1, 2].map(|axis| dof(3 * node + axis))).collect();
             let axes = mean_axes(alone, &u);
@@ -155,7 +155,7 @@ pub fn reference(frame: &Frame, motions: &Motions) -> Result<Reference, Nonlinea
         };
         frame.bars.iter().zip(&parts).map(of_bar).collect()
     };
-    Ok(Reference(coarse.iter().zip(&fine).map(at_time).collect()))
+    Ok(JoinedReference(coarse.iter().zip(&fine).map(at_time).collect()))
 }
 
 fn near(a: f64, b: f64) -> bool {
@@ -176,12 +176,12 @@ fn center(solid: &Solid, u: &[f64]) -> Vector3<f64> {
 /// Errors of the scene and of the run.
 pub fn off(
     directory: &Path,
-    frame: &Frame,
+    frame: &BarFrame,
     motions: &Motions,
     hinge: Hinge,
     keys: &str,
-    reference: &Reference,
-) -> Result<Off, NonlinearError> {
+    reference: &JoinedReference,
+) -> Result<Off, SolidError> {
     let text = scene(directory, frame, motions, hinge, keys)?;
     let built = built(directory, &text)?;
     let control = StepControl::Tolerance(1e-6);
@@ -218,12 +218,12 @@ fn compare(body: &Observation, seen: &Seen, off: &mut Off) {
 /// The scene of a frame.
 fn scene(
     directory: &Path,
-    frame: &Frame,
+    frame: &BarFrame,
     motions: &Motions,
     hinge: Hinge,
     keys: &str,
-) -> Result<String, NonlinearError> {
-    let failed = |error: std::io::Error| NonlinearError::Mesh(error.to_string());
+) -> Result<String, SolidError> {
+    let failed = |error: std::io::Error| SolidError::Mesh(error.to_string());
     for (name, upright) in [("lying", false), ("upright", true)] {
         let mesh = frame.bar(upright);
         write(directory, name, &mesh, &frame.lines(upright, &mesh)).map_err(failed)?;
@@ -267,9 +267,9 @@ fn scene(
 }
 
 /// Lines (x, z) that two bars share, or one and the ground.
-fn lines(frame: &Frame, hung: bool) -> Vec<([Option<usize>; 2], [f64; 2])> {
+fn lines(frame: &BarFrame, hung: bool) -> Vec<([Option<usize>; 2], [f64; 2])> {
     let h = frame.size[2];
-    let corners = |bar: &Bar| frame.edges(bar.upright).map(|[x, z]| [bar.at[0] + x, bar.at[2] + z]);
+    let corners = |bar: &FrameBar| frame.edges(bar.upright).map(|[x, z]| [bar.at[0] + x, bar.at[2] + z]);
     let mut lines = Vec::new();
     if hung {
         lines.push(([None, Some(0)], [frame.bars[0].at[0], frame.bars[0].at[2] + h]));

@@ -9,7 +9,7 @@ use crate::stability::meshes::{box_mesh, cells_of};
 
 /// A bar of a frame: a box with its lowest corner here, along x or upright along z.
 #[derive(Debug, Clone, Copy)]
-pub struct Bar {
+pub struct FrameBar {
     /// Its lowest corner.
     pub at: [f64; 3],
     /// True if its length is along z.
@@ -18,26 +18,26 @@ pub struct Bar {
 
 /// Bars of one size in one mesh, which share lines of nodes where edges of them meet.
 #[derive(Debug, Clone)]
-pub struct Frame {
+pub struct BarFrame {
     /// Length, breadth (along y) and height of a bar.
     pub size: [f64; 3],
     /// Cells along its length and its breadth; one along its height.
     pub cells: [usize; 2],
     /// The bars.
-    pub bars: Vec<Bar>,
+    pub bars: Vec<FrameBar>,
 }
 
-impl Frame {
+impl BarFrame {
     /// Two bars along x that share the line x = z = 0.
     pub fn pair(size: [f64; 3], cells: [usize; 2]) -> Self {
-        let bar = |at| Bar { at, upright: false };
+        let bar = |at| FrameBar { at, upright: false };
         Self { size, cells, bars: vec![bar([-size[0], 0.0, 0.0]), bar([0.0, 0.0, -size[2]])] }
     }
 
     /// Four bars around a square, each of which shares a line with the next.
     pub fn rhombus(size: [f64; 3], cells: [usize; 2]) -> Self {
         let [l, _, h] = size;
-        let bar = |x: f64, z: f64, upright| Bar { at: [x, 0.0, z], upright };
+        let bar = |x: f64, z: f64, upright| FrameBar { at: [x, 0.0, z], upright };
         Self { size, cells, bars: vec![bar(0.0, -h, false), bar(l, 0.0, true), bar(0.0, l, false), bar(-h, 0.0, true)] }
     }
 
@@ -55,7 +55,7 @@ impl Frame {
         let ([l, b, h], [along, across]) = (self.size, self.cells);
         // Where bars begin and end along x and z cuts a grid of cells; those of the bars are kept.
         let cuts = |axis: usize| {
-            let ends = |bar: &Bar| {
+            let ends = |bar: &FrameBar| {
                 let length = if (axis == 0) != bar.upright { l } else { h };
                 [bar.at[axis], bar.at[axis] + length]
             };
@@ -72,7 +72,7 @@ impl Frame {
         };
         let [xs, zs] = [cuts(0), cuts(2)];
         let cells = [xs.len() - 1, across, zs.len() - 1];
-        let is_in = |bar: &Bar, x: f64, z: f64| {
+        let is_in = |bar: &FrameBar, x: f64, z: f64| {
             let [length, height] = if bar.upright { [h, l] } else { [l, h] };
             (0.0..length).contains(&(x - bar.at[0])) && (0.0..height).contains(&(z - bar.at[2]))
         };
@@ -95,14 +95,14 @@ impl Frame {
 
 /// A straight line of nodes with a name: the ends of its edges and their middles, in turn.
 #[derive(Debug, Clone)]
-pub struct Line {
+pub struct NodeLine {
     /// Name of the physical curve.
     pub name: String,
     /// Tags of the nodes.
     pub nodes: Vec<u64>,
 }
 
-impl Frame {
+impl BarFrame {
     /// Places (x, z) of the four edges along y of a bar with its lowest corner at the origin.
     pub fn edges(&self, upright: bool) -> [[f64; 2]; 4] {
         let [l, _, h] = self.size;
@@ -111,13 +111,13 @@ impl Frame {
     }
 
     /// The same as lines `edge0` to `edge3` of its mesh.
-    pub fn lines(&self, upright: bool, mesh: &MeshParts) -> Vec<Line> {
+    pub fn lines(&self, upright: bool, mesh: &MeshParts) -> Vec<NodeLine> {
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
         let line = |(number, [x, z]): (usize, [f64; 2])| {
             let on = mesh.positions.iter().zip(1..).filter(|(at, _)| near(at[0], x) && near(at[2], z));
             let mut nodes: Vec<(f64, u64)> = on.map(|(at, tag)| (at[1], tag)).collect();
             nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
-            Line { name: format!("edge{number}"), nodes: nodes.into_iter().map(|(_, tag)| tag).collect() }
+            NodeLine { name: format!("edge{number}"), nodes: nodes.into_iter().map(|(_, tag)| tag).collect() }
         };
         self.edges(upright).into_iter().enumerate().map(line).collect()
     }
@@ -127,7 +127,7 @@ impl Frame {
 ///
 /// # Errors
 /// Errors of the file.
-pub fn write(directory: &Path, name: &str, parts: &MeshParts, lines: &[Line]) -> std::io::Result<PathBuf> {
+pub fn write(directory: &Path, name: &str, parts: &MeshParts, lines: &[NodeLine]) -> std::io::Result<PathBuf> {
     let (nodes, elements) = (parts.positions.len(), parts.elements.len());
     let edges: usize = lines.iter().map(|line| line.nodes.len() / 2).sum();
     let mut text = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");

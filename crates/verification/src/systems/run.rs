@@ -6,7 +6,7 @@ use dynamics::{Observation, Reached, Rows, Simulation, StepControl, SystemScheme
 use model::{Model, Tied, tie};
 use scene::System;
 
-use crate::nonlinear::NonlinearError;
+use crate::nonlinear::SolidError;
 
 /// The bodies of a scene, reduced, and the system that they are.
 pub struct Built {
@@ -20,15 +20,15 @@ pub struct Built {
 ///
 /// # Errors
 /// Errors of the scene.
-pub fn built(directory: &Path, text: &str) -> Result<Built, NonlinearError> {
-    let failed = |error: &dyn std::error::Error| NonlinearError::Scene(error.to_string());
+pub fn built(directory: &Path, text: &str) -> Result<Built, SolidError> {
+    let failed = |error: &dyn std::error::Error| SolidError::Scene(error.to_string());
     let system = System::parse(text, directory.join("scene.toml")).map_err(|error| failed(&error))?;
     let models: Result<Vec<Model>, _> = system.bodies.iter().map(|scene| Model::build(scene, |_| ())).collect();
     let models = models.map_err(|error| failed(&error))?;
     let tied = tie(&system, &models).map_err(|error| failed(&error))?;
     match <[Tied; 1]>::try_from(tied) {
         Ok([tied]) => Ok(Built { models, tied }),
-        Err(all) => Err(NonlinearError::Scene(format!("{} systems in the place of one", all.len()))),
+        Err(all) => Err(SolidError::Scene(format!("{} systems in the place of one", all.len()))),
     }
 }
 
@@ -43,7 +43,7 @@ impl Built {
         end: f64,
         interval: f64,
         relaxed: bool,
-    ) -> Result<Simulation, NonlinearError> {
+    ) -> Result<Simulation, SolidError> {
         self.start_by(SystemScheme::Radau, control, end, interval, relaxed)
     }
 
@@ -58,7 +58,7 @@ impl Built {
         end: f64,
         interval: f64,
         relaxed: bool,
-    ) -> Result<Simulation, NonlinearError> {
+    ) -> Result<Simulation, SolidError> {
         let points = |body: &usize| self.models[*body].points.iter().map(|(_, point)| point.clone()).collect();
         Simulation::of_system(SystemSetup {
             system: self.tied.system.clone(),
@@ -70,7 +70,7 @@ impl Built {
             rows: Rows::Interval(interval),
             points: self.tied.bodies.iter().map(points).collect(),
         })
-        .map_err(|error| NonlinearError::Scene(error.to_string()))
+        .map_err(|error| SolidError::Scene(error.to_string()))
     }
 }
 
@@ -78,8 +78,8 @@ impl Built {
 ///
 /// # Errors
 /// Errors that stop it.
-pub fn rows(simulation: &mut Simulation, bodies: usize) -> Result<Vec<Vec<Observation>>, NonlinearError> {
-    let failed = |error: &dyn std::error::Error| NonlinearError::Scene(error.to_string());
+pub fn rows(simulation: &mut Simulation, bodies: usize) -> Result<Vec<Vec<Observation>>, SolidError> {
+    let failed = |error: &dyn std::error::Error| SolidError::Scene(error.to_string());
     let mut rows = Vec::new();
     loop {
         let mut row: Vec<Observation> = (0..bodies).map(|body| simulation.room(body)).collect();

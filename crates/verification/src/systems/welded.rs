@@ -4,7 +4,7 @@ use faer::{Mat, Side};
 use model::BodyMarker;
 use nalgebra::Vector3;
 
-use crate::nonlinear::NonlinearError;
+use crate::nonlinear::SolidError;
 use crate::systems::run::Built;
 
 /// Circular frequencies of two bodies whose marker `0` is welded to that of the other at each of its places, ascending, without
@@ -16,7 +16,7 @@ use crate::systems::run::Built;
 ///
 /// # Errors
 /// An eigenproblem that fails.
-pub fn frequencies(built: &Built, origins: [Vector3<f64>; 2]) -> Result<Vec<f64>, NonlinearError> {
+pub fn frequencies(built: &Built, origins: [Vector3<f64>; 2]) -> Result<Vec<f64>, SolidError> {
     let bodies = [0, 1].map(|k| &built.models[k].body);
     let first = [0, 6 + bodies[0].flexible()];
     let count = first[1] + 6 + bodies[1].flexible();
@@ -43,7 +43,7 @@ pub fn frequencies(built: &Built, origins: [Vector3<f64>; 2]) -> Result<Vec<f64>
     for (number, (x, shapes)) in one.iter().enumerate() {
         let gap = |place: &(Vector3<f64>, Mat<f64>)| (place.0 + origins[1] - origins[0] - x).norm();
         let nearest = other.iter().min_by(|a, b| gap(a).total_cmp(&gap(b)));
-        let (y, of_other) = nearest.ok_or(NonlinearError::Mesh("no place to weld".to_owned()))?;
+        let (y, of_other) = nearest.ok_or(SolidError::Mesh("no place to weld".to_owned()))?;
         for (sign, at, x, shapes) in [(1.0, first[0], x, shapes), (-1.0, first[1], y, of_other)] {
             let cross = x.cross_matrix();
             for i in 0..size {
@@ -56,12 +56,12 @@ pub fn frequencies(built: &Built, origins: [Vector3<f64>; 2]) -> Result<Vec<f64>
             }
         }
     }
-    let failed = |_| NonlinearError::Factor;
+    let failed = |_| SolidError::Factor;
     let scaled = &rows * &root;
     // Motions that the rows leave free: eigenvectors of RᵀR without stiffness.
     let length = |row: usize| (0..count).map(|k| scaled[(row, k)].powi(2)).sum::<f64>().sqrt();
     let unit = Mat::from_fn(scaled.nrows(), count, |i, k| scaled[(i, k)] / length(i));
-    let svd = unit.svd().map_err(|_| NonlinearError::Factor)?;
+    let svd = unit.svd().map_err(|_| SolidError::Factor)?;
     let values = svd.S().column_vector();
     let rank = values.iter().filter(|value| **value > 1e-9 * values[0]).count();
     let free = svd.V().subcols(rank, count - rank);

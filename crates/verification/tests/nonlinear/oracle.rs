@@ -1,7 +1,7 @@
 //! The nonlinear body itself: what it keeps, and what it is for small displacements.
 
 use nalgebra::{Rotation3, Vector3};
-use verification::nonlinear::{Motion, NodalState, Solid, bodies, cases, mean_axes, signal};
+use verification::nonlinear::{NodalState, Solid, SolidMotion, bodies, cases, mean_axes, signal};
 
 fn l() -> Solid {
     Solid::new(bodies::mesh("l").unwrap(), bodies::SOFT, |_| false).unwrap()
@@ -56,8 +56,8 @@ fn it_keeps_energy_and_momenta_while_it_tumbles_and_bends() {
     let solid = l();
     let v = field(&solid, |x| Vector3::new(3.0, -2.0, 5.0).cross(&x) + Vector3::new(0.0, 2.0 * x.x, 4.0 * x.y * x.x));
     let u = field(&solid, |x| Vector3::new(0.0, 0.02 * x.x * x.x, 0.03 * x.y * x.x));
-    let mut motion = Motion::new(&solid, NodalState { time: 0.0, u, v }, 2e-3, |_, u| vec![0.0; u.len()]);
-    let state = |motion: &Motion<'_, _>| {
+    let mut motion = SolidMotion::new(&solid, NodalState { time: 0.0, u, v }, 2e-3, |_, u| vec![0.0; u.len()]);
+    let state = |motion: &SolidMotion<'_, _>| {
         let momentum = solid.momentum(&motion.state.v);
         let [kinetic, strain] = motion.energies();
         (kinetic + strain, strain, moments(&solid, &motion.state.u, &momentum))
@@ -93,7 +93,7 @@ fn small_vibrations_have_the_linear_frequency() {
     let u = phi.iter().map(|phi| 1e-6 * phi).collect();
     let step = std::f64::consts::TAU / omega / 30.0;
     let mut motion =
-        Motion::new(&solid, NodalState { time: 0.0, u, v: vec![0.0; phi.len()] }, step, |_, u| vec![0.0; u.len()]);
+        SolidMotion::new(&solid, NodalState { time: 0.0, u, v: vec![0.0; phi.len()] }, step, |_, u| vec![0.0; u.len()]);
     let (mut times, mut values) = (vec![], vec![]);
     for _ in 0..90 {
         motion.advance().unwrap();

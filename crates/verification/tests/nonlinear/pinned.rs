@@ -1,7 +1,7 @@
 //! A rod that is pinned beside its axis, so that the spin bends it.
 
 use nalgebra::Vector3;
-use verification::nonlinear::{Motion, NodalState, Solid, bodies, cases};
+use verification::nonlinear::{NodalState, Solid, SolidMotion, bodies, cases};
 
 /// Independent reference: the nonlinear finite elements of this crate. The centrifugal field of a body that is pinned
 /// at a corner bends it, and its static response stretches it besides. With static shapes, stiffening about that
@@ -20,7 +20,7 @@ fn a_rod_that_is_pinned_at_a_corner_swings_as_the_whole_mesh_does() {
     let weight = solid.momentum(&gravity.as_slice().repeat(positions.len()));
     let v: Vec<f64> = positions.iter().flat_map(|x| <[f64; 3]>::from(omega.cross(&(x - corner)))).collect();
     let start = NodalState { time: 0.0, u: vec![0.0; solid.dofs()], v };
-    let mut motion = Motion::new(&solid, start, end / f64::from(steps), |_, _| weight.clone());
+    let mut motion = SolidMotion::new(&solid, start, end / f64::from(steps), |_, _| weight.clone());
     let mut expected = vec![Vector3::zeros()];
     for _ in 0..steps {
         motion.advance().unwrap();

@@ -4,7 +4,7 @@ use dynamics::{Method, Observation, Rows};
 use model::Model;
 use nalgebra::Vector3;
 use scene::{Body, Choice, Effect, Large, Materials, Scene, StepControl};
-use verification::nonlinear::{Motion, NodalState, Solid, bodies, cases, mean_axes};
+use verification::nonlinear::{NodalState, Solid, SolidMotion, bodies, cases, mean_axes};
 
 /// Independent reference: the nonlinear finite elements of this crate.
 #[test]
@@ -64,7 +64,7 @@ fn of_whole_mesh(model: &Model, solid: &Solid, rates: &[f64], steps_per_row: usi
         v.iter_mut().zip(shape).for_each(|(v, shape)| *v += rate * shape);
     }
     let start = NodalState { time: 0.0, u: vec![0.0; v.len()], v };
-    let mut motion = Motion::new(solid, start, 1e-3 / steps_per_row as f64, |_, u| vec![0.0; u.len()]);
+    let mut motion = SolidMotion::new(solid, start, 1e-3 / steps_per_row as f64, |_, u| vec![0.0; u.len()]);
     let mut rows = Vec::new();
     for row in 0..=250 {
         if row > 0 {

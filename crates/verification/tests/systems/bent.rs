@@ -5,7 +5,7 @@ use std::path::Path;
 use dynamics::{Observation, Rows, Simulation, StepControl, SystemScheme, SystemSetup};
 use fem_tet10::{Material, Mesh};
 use nalgebra::Vector3;
-use verification::nonlinear::{Motion, NodalState, Solid, cases};
+use verification::nonlinear::{NodalState, Solid, SolidMotion, cases};
 use verification::stability::meshes::box_mesh;
 use verification::systems::meshes::write;
 use verification::systems::run::{built, rows};
@@ -141,7 +141,7 @@ fn a_soft_pendulum_swings_as_the_whole_mesh_does() {
     let weight = hinged.momentum(&down);
     let whole = |steps: usize| {
         let start = NodalState { time: 0.0, u: vec![0.0; hinged.dofs()], v: vec![0.0; hinged.dofs()] };
-        let mut motion = Motion::new(&hinged, start, end / steps as f64, |_, _| weight.clone());
+        let mut motion = SolidMotion::new(&hinged, start, end / steps as f64, |_, _| weight.clone());
         let mut found = vec![Vector3::zeros()];
         for step in 1..=steps {
             motion.advance().unwrap();

@@ -3,7 +3,7 @@
 use fem_tet10::Material;
 use nalgebra::Vector3;
 use verification::systems::hinged::{Hinge, Motions, Off, off, reference};
-use verification::systems::meshes::Frame;
+use verification::systems::meshes::BarFrame;
 
 /// Bars of it bend by some thousandths of their length.
 const SOFT: f64 = 5e7;
@@ -14,8 +14,8 @@ fn material(young_modulus: f64) -> Material {
 }
 
 /// Two bars that tumble, the second one flapping about the hinge as well.
-fn tumbling(end: f64, steps: usize, rows: usize) -> (Frame, Motions) {
-    let frame = Frame::pair(SIZE, [6, 2]);
+fn tumbling(end: f64, steps: usize, rows: usize) -> (BarFrame, Motions) {
+    let frame = BarFrame::pair(SIZE, [6, 2]);
     let omega = Vector3::new(1.5, 3.0, 2.0);
     let flap = Vector3::new(0.0, -3.0, 0.0);
     let middle = |side: f64| Vector3::new(side * 0.5, 0.0, -side * 0.025);
@@ -23,7 +23,7 @@ fn tumbling(end: f64, steps: usize, rows: usize) -> (Frame, Motions) {
     (frame, Motions { material: material(SOFT), velocities, gravity: 0.0, hung: false, end, steps, rows })
 }
 
-fn found(frame: &Frame, motions: &Motions, hinges: &[(Hinge, &str)]) -> Vec<Off> {
+fn found(frame: &BarFrame, motions: &Motions, hinges: &[(Hinge, &str)]) -> Vec<Off> {
     let directory = tempfile::tempdir().unwrap();
     let expected = reference(frame, motions).unwrap();
     let found = hinges.iter().map(|(hinge, keys)| {
@@ -66,7 +66,7 @@ fn a_pair_tumbles_as_the_joined_mesh() {
 #[test]
 #[ignore = "minutes: just nonlinear"]
 fn a_hung_pair_falls_as_the_joined_mesh() {
-    let frame = Frame::pair(SIZE, [6, 2]);
+    let frame = BarFrame::pair(SIZE, [6, 2]);
     let rest = [[Vector3::zeros(); 2]; 2].to_vec();
     let motions = Motions {
         material: material(2.0 * SOFT),
@@ -87,7 +87,7 @@ fn a_hung_pair_falls_as_the_joined_mesh() {
 #[test]
 #[ignore = "minutes: just nonlinear"]
 fn a_rhombus_moves_as_the_joined_mesh() {
-    let frame = Frame::rhombus(SIZE, [6, 2]);
+    let frame = BarFrame::rhombus(SIZE, [6, 2]);
     // The square shears: lying bars keep their direction, upright ones turn, seen from its middle; and all tumble.
     let (shear, omega) = (Vector3::new(0.0, 1.0, 0.0), Vector3::new(0.6, 0.8, 0.4));
     let middle = Vector3::new(0.5, 0.0, 0.5);
