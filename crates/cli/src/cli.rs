@@ -122,7 +122,7 @@ fn values_set(matches: &ArgMatches) -> Vec<(String, Value)> {
 
 fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Error>> {
     let cache = if cli.no_cache { Cache::none() } else { Cache::of_user() };
-    let builder = Builder { cache: cache.clone(), solver: None, trust_geometry: cli.trust_geometry };
+    let builder = Builder { trust_geometry: cli.trust_geometry, ..Builder::with_cache(cache.clone()) };
     let done = command(cli, json, builder);
     if !json {
         output::notes(&cache.notes());

@@ -102,7 +102,7 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         }
         doubts.extend(mesh_notes.iter().map(|note| format!("{}: {note}", body.mesh.display())));
         doubts.extend(of_mass(model.body.mass, mesh.size(), &scene.units));
-        doubts.extend(model::doubts(scene, body, mesh).into_iter().map(|doubt: Doubt| doubt.to_string()));
+        doubts.extend(model::doubts(scene, &scene.loads, body, mesh).into_iter().map(|doubt: Doubt| doubt.to_string()));
     }
     if let Some(reason) = model.meshed.as_ref().and_then(|meshed| meshed.no_cycles.as_ref()) {
         doubts.push(without_cycles(reason));
@@ -118,14 +118,14 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
             ratios.len()
         ));
     }
-    doubts.extend(without_statics(scene, model));
+    doubts.extend(without_statics(model));
     doubts
 }
 
 /// Stress of modes that leave out something of the static response.
-fn without_statics(scene: &Scene, model: &Model) -> Option<String> {
+fn without_statics(model: &Model) -> Option<String> {
     let row = &model.advice.static_correction;
-    let has_modes = scene.output.any_stress() && model.body.flexible() > 0;
+    let has_modes = model.stress.is_some() && model.body.flexible() > 0;
     (has_modes && model.static_shapes() == 0 && row.on).then(|| {
         format!(
             "the stress lacks what the modes leave out of the static response, which is largest beside loads and supports. {} Take \
@@ -170,7 +170,7 @@ fn warping(marker: &BodyMarker) -> Option<String> {
 fn without_elements(scene: &Scene, model: &Model) -> impl Iterator<Item = String> {
     let missing = |effect: Effect| {
         let row = &model.advice.effects[effect];
-        let is_open = scene.effects.choices[effect] == Choice::Auto && scene.method().abilities.switches_effects;
+        let is_open = model.choices[effect] == Choice::Auto && scene.method().abilities.switches_effects;
         (is_open && row.on).then(|| {
             format!(
                 "{} may change the answer by up to {:.1e} (a bound), and is left out: the elements of a body of matrices are not \

@@ -64,7 +64,7 @@ impl Builder {
         }
         let FeMatrices::Assembled(matrices) = assembled.matrices()? else { return Ok(None) };
         let weight = Arc::new(UnitWeight::of_elements(matrices).map_err(crate::error::modal(scene))?);
-        let loads = mesh_load::on_mesh(scene, &assembled.mesh, 3, &weight)?;
+        let loads = mesh_load::on_mesh(&assembled.needed(), &assembled.mesh, 3, &weight)?;
         let markers = mesh_marker::on_mesh(scene, &assembled.mesh, 3)?;
         Ok(Some(FullModel { assembled, loads, markers }))
     }

@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
 use dynamics::{
-    ConservativeBody, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, Physics, PointShapes, Rows,
-    Setup, SharedLoad, Simulation, StepControl,
+    ConservativeBody, EffectMap, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, Physics, PointShapes,
+    Rows, Setup, SharedLoad, Simulation, StepControl,
 };
 use faer::Mat;
 use fem_tet10::Mesh;
@@ -18,13 +18,14 @@ use frames_rk4::Paper;
 use modal::{Modes, NoCycles};
 use nalgebra::Vector3;
 use reduced_body::ReducedBody;
-use scene::{MeshedBody, Scene};
+use scene::{Choice, MeshedBody, Scene};
 
 use crate::building::progress::BuildTimes;
 use crate::error::StartError;
 use crate::load::mesh_load::BaseAcceleration;
 use crate::mesh::given::MatrixChecks;
 use crate::model::initial::initial;
+use crate::needs::{Needed, Needs};
 use crate::stress::shapes::BodyStress;
 use crate::structure::remainders::Remainders;
 use crate::support::reactions::SupportRows;
@@ -76,6 +77,8 @@ pub struct Model {
     pub advice: Advice,
     /// Known error of the model, if there is one: it does not start unless the scene says `refuse = false`.
     pub refusal: Option<Refusal>,
+    /// The effects as the scene chooses them, or whoever needs others.
+    pub choices: EffectMap<Choice>,
     /// Where the time went.
     pub times: BuildTimes,
     /// Its stress, where the scene asks for it.
@@ -128,10 +131,10 @@ impl Model {
     }
 
     /// The parts of the run of its scene where forces are added that the estimates do not know: the physics, the loads and the
-    /// damping ratio of each flexible mode. The effects are those of [`Scene::for_unknown_forces`].
+    /// damping ratio of each flexible mode. The effects are those of [`Needs::external_inputs`].
     pub fn under_unknown_forces(&self, scene: &Scene) -> (Physics, Vec<SharedLoad>, Vec<f64>) {
         let mut physics = self.physics.clone();
-        for effect in scene.on_under_unknown_forces() {
+        for effect in Needed::new(scene, &Needs::default()).on_under_unknown_forces() {
             physics.effects[effect] = true;
         }
         (physics, self.all_loads.clone(), self.all_damping_ratios.clone())

@@ -19,7 +19,7 @@ fn counts(name: &str) -> String {
     let builder = Builder::default();
     let assembly = builder.assemble(&scene, |_| ()).unwrap();
     let mut variants = assembly.variants().unwrap();
-    let model = variants.build(&scene, |_| ()).unwrap();
+    let model = variants.build(&scene, &builder.needs, |_| ()).unwrap();
     let work = variants.work();
     let mut text = format!("{name}\n");
     if let Some(meshed) = &model.meshed {

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::sync::Arc;
 
 use flexframe::faer::{ColRef, MatRef};
-use flexframe::model::{Assembly, BuildError, BuildProgress, Meshed, Model};
+use flexframe::model::{Assembly, BuildError, BuildProgress, Meshed, Model, Needs};
 use flexframe::modes::frequency_unit;
 use flexframe::plausible::doubts_of_scene;
 use flexframe::report::{BodyReport, quantity};
@@ -52,13 +52,14 @@ impl Body {
     /// The same body in another scene.
     pub(crate) fn of_scene(&self, py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
         let of = scene.get().scene(py)?.clone();
-        if Assembly::made_of(&of) != Assembly::made_of(self.scene_of()) {
+        let needs = Needs::default();
+        if Assembly::made_of(&of, &needs) != Assembly::made_of(self.scene_of(), &needs) {
             let expected = "one with the same [body], constraints and modes.flexible";
             let help = "make another body: Simulation(Body(scene))";
             return Err(wrong_input(py, "scene", "a scene of another body", expected, help));
         }
         let (assembly, of_thread) = (self.assembly.clone(), of.clone());
-        let build = move |told: &mut dyn FnMut(BuildProgress)| assembly.variants()?.build(&of_thread, told);
+        let build = move |told: &mut dyn FnMut(BuildProgress)| assembly.variants()?.build(&of_thread, &needs, told);
         let model = Arc::new(built(py, &scene, build)?);
         Ok(Self { scene, of, model, assembly: self.assembly.clone() })
     }
@@ -93,7 +94,7 @@ impl Body {
         let (of_thread, builder) = (of.clone(), scene.get().builder().clone());
         let build = move |told: &mut dyn FnMut(BuildProgress)| {
             let assembly = builder.assemble(&of_thread, &mut *told)?;
-            let model = assembly.variants()?.build(&of_thread, told)?;
+            let model = assembly.variants()?.build(&of_thread, &builder.needs, told)?;
             Ok::<_, BuildError>((model, assembly.without_matrices()))
         };
         let (model, assembly) = built(py, &scene, build)?;

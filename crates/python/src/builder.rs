@@ -12,5 +12,5 @@ pub(crate) const MODULE: &str = "flexframe._flexframe";
 /// not taken.
 pub(crate) fn builder(py: Python<'_>, trust_geometry: bool) -> PyResult<Builder> {
     let library: PathBuf = py.import(MODULE)?.getattr("__file__")?.extract()?;
-    Ok(Builder { cache: Cache::of_user().of_program(library), solver: None, trust_geometry })
+    Ok(Builder { trust_geometry, ..Builder::with_cache(Cache::of_user().of_program(library)) })
 }

@@ -9,14 +9,14 @@ use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use dynamics::{Effect, Method, Rows, StepControl};
+use dynamics::{Method, Rows, StepControl};
 use fem_tet10::{Materials, PointMass};
 use matrix_import::MatrixFiles;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::body::constraint::Constraint;
-use crate::body::effects::{Choice, Effects};
+use crate::body::effects::Effects;
 use crate::body::modes::Modes;
 use crate::loads::load::Load;
 use crate::tie::marker::Marker;
@@ -267,76 +267,11 @@ pub struct Output {
     pub stress: bool,
     /// True if the largest von Mises stress of the whole body among the rows is looked for; default no.
     pub peak_stress: bool,
-    /// True if the stress of all nodes is wanted, in each coordinate: for body files. No key of the scene file;
-    /// [`Scene::with_stress_field`] sets it.
-    pub stress_field: bool,
-    /// True if each of several supports gets reactions of its own. No key of the scene file; [`Scene::without_rows`] clears it.
-    pub support_reactions: bool,
-    /// True if the change of frequency with amplitude of modes that bend the body far is to be known, which takes static
-    /// responses. No key of the scene file; who computes no motion clears it.
-    pub backbones: bool,
 }
 
 impl Scene {
     /// The method by which the body moves: of joints only where joints, springs or bushings hold it.
     pub fn method(&self) -> &Method {
         if self.tied { &self.time.method } else { self.time.method.without_joints() }
-    }
-
-    /// The same, with the stress of all nodes in each coordinate; a body without a mesh has none.
-    pub fn with_stress_field(mut self) -> Self {
-        self.output.stress_field = self.body.has_elements();
-        self
-    }
-
-    /// The same, without what only the rows of a run have: for whoever writes none. That is stress, and the reactions of
-    /// several supports.
-    pub fn without_rows(mut self) -> Self {
-        let Output { stress, peak_stress, stress_field, support_reactions, .. } = &mut self.output;
-        (*stress, *peak_stress, *stress_field, *support_reactions) = (false, false, false, false);
-        self
-    }
-
-    /// The same, for forces from elsewhere that nobody knows while the body is built. Effects that would be left out since
-    /// the scene calls for none of them are on, as long as the scene does not say otherwise: translation, rotation, gravity,
-    /// and of a body with modes damping, deformed inertia and Coriolis. What each of several supports does is left out: it
-    /// would have to know these forces. So is the peak of the stress.
-    pub fn for_unknown_forces(mut self) -> Self {
-        (self.output.support_reactions, self.output.peak_stress) = (false, false);
-        for effect in self.on_under_unknown_forces() {
-            self.effects.choices[effect] = Choice::On;
-        }
-        self
-    }
-
-    /// The same with damping of the modes that there are, unless the scene says otherwise: for small vibrations that no load of the scene
-    /// sets off.
-    pub fn with_damping(mut self) -> Self {
-        if self.on_under_unknown_forces().contains(&Effect::Damping) {
-            self.effects.choices[Effect::Damping] = Choice::On;
-        }
-        self
-    }
-
-    /// The effects that are on under forces that nobody knows, of those that the scene leaves open.
-    pub fn on_under_unknown_forces(&self) -> Vec<Effect> {
-        let choices = &self.effects.choices;
-        let is_rigid = matches!(self.body, Body::Rigid(_))
-            || self.modes.flexible.most() == 0
-            || choices[Effect::Flexibility] == Choice::Off;
-        let of_modes: &[Effect] = if is_rigid { &[] } else { &OF_MODES };
-        let effects = OF_ANY_BODY.iter().chain(of_modes).copied();
-        effects.filter(|effect| choices[*effect] == Choice::Auto).collect()
-    }
-}
-
-/// Effects that unknown forces may call for, of any body and of one with modes.
-const OF_ANY_BODY: [Effect; 3] = [Effect::Translation, Effect::Rotation, Effect::Gravity];
-const OF_MODES: [Effect; 3] = [Effect::Damping, Effect::DeformedInertia, Effect::Coriolis];
-
-impl Output {
-    /// True if anything of the stress is wanted.
-    pub fn any_stress(&self) -> bool {
-        self.stress || self.peak_stress || self.stress_field
     }
 }

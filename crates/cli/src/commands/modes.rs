@@ -126,7 +126,9 @@ impl Modes {
         system: &System,
         session: &mut Session,
     ) -> Result<(ModesOfSystems, Vec<PathBuf>), Box<dyn Error>> {
-        let models = system_modes::build(system, &session.builder, |p| session.bar.build(p))
+        let models = session
+            .builder
+            .models(system, |p| session.bar.build(p))
             .map_err(|error| self.modes.refusal(error.into()))?;
         let systems = system_modes::system_modes(system, &models, self.time, self.about)?;
         let mut pictures = Vec::new();

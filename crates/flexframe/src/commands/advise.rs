@@ -5,7 +5,8 @@ mod verify;
 use std::fmt;
 
 use advice::{Row, StrainError, Subject};
-use model::{BuildProgress, Builder, Model};
+use dynamics::Setup;
+use model::{BuildProgress, Builder, Model, Needs};
 use scene::{Method, Scene};
 use serde::{Serialize, Serializer};
 
@@ -129,15 +130,11 @@ pub fn advise(
     mut progress: impl FnMut(AdviseProgress),
 ) -> Result<AdviseReport, RunError> {
     let of_paper = !scene.method().abilities.switches_effects;
-    let mut scene = scene.clone().without_rows();
-    if of_paper {
-        scene.time.method = Method::EXPONENTIAL;
-    }
-    let scene = &scene;
-    let assembly = builder.assemble(scene, |p| progress(AdviseProgress::Build(p)))?;
+    let needs = &Needs { method: of_paper.then_some(Method::EXPONENTIAL), ..Needs::without_rows() };
+    let assembly = builder.needing(needs.clone()).assemble(scene, |p| progress(AdviseProgress::Build(p)))?;
     let mut variants = assembly.variants()?;
-    let model = variants.build(scene, |p| progress(AdviseProgress::Build(p)))?;
-    let step = step_row(scene, &model);
+    let model = variants.build(scene, needs, |p| progress(AdviseProgress::Build(p)))?;
+    let step = step_row(scene, needs, &model);
     let rows = model.advice.rows().chain([(Subject::Step, &step)]).map(|(subject, row)| EffectRow {
         subject,
         formula: subject.formula(),
@@ -170,7 +167,7 @@ pub fn advise(
     if verify {
         let total = report.rows.iter().filter(|row| row.on.is_some()).count() as u64 + 1;
         progress(AdviseProgress::Verifying { done: 0, total });
-        let mut base = verify::Base::new(scene, &model, &mut variants)?;
+        let mut base = verify::Base::new(scene, needs, &model, &mut variants)?;
         for (i, row) in report.rows.iter_mut().filter(|row| row.on.is_some()).enumerate() {
             progress(AdviseProgress::Verifying { done: i as u64 + 1, total });
             row.real = Some(base.influence(row.subject));
@@ -180,9 +177,10 @@ pub fn advise(
 }
 
 /// Error of the steps; that of a step that no run can start with is infinite.
-fn step_row(scene: &Scene, model: &Model) -> Row {
-    let tolerance = scene.effects.tolerance;
-    match model.step_estimate(scene) {
+fn step_row(scene: &Scene, needs: &Needs, model: &Model) -> Row {
+    let (tolerance, initial) = (scene.effects.tolerance, model.initial(scene));
+    let method = needs.method.unwrap_or(*scene.method());
+    match advice::step_estimate(&Setup { method: model.paper.or(&method), ..model.setup(scene, &initial) }) {
         Ok(Some(estimate)) => estimate.row(tolerance),
         Ok(None) => {
             let why = "The step follows from the tolerance.".into();

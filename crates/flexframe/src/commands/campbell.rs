@@ -20,9 +20,9 @@ mod table;
 use std::path::Path;
 
 use dynamics::{Effect, SteadySpin};
-use model::{BuildError, BuildProgress, Builder};
+use model::{BuildError, BuildProgress, Builder, Needs};
 use nalgebra::Vector3;
-use scene::{Choice, Flexible, Scene};
+use scene::Scene;
 
 pub use bent::AboutRest;
 pub use branches::Branch;
@@ -101,22 +101,6 @@ fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, CampbellError> {
     unit.ok_or(CampbellError::Axis { axis })
 }
 
-/// A scene with all its modes and without loads, whose effects of spin are on unless it says otherwise: the spin is given,
-/// whatever the scene's own motion would call for.
-fn spinning(scene: &Scene) -> Scene {
-    let mut scene = scene.clone().without_rows();
-    scene.loads.clear();
-    // The rest at each speed is found here.
-    scene.modes.about = None;
-    scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
-    for effect in [Effect::DeformedInertia, Effect::Coriolis, Effect::GeometricStiffening] {
-        if scene.effects.choices[effect] == Choice::Auto {
-            scene.effects.choices[effect] = Choice::On;
-        }
-    }
-    scene
-}
-
 /// Computes the diagram of a scene, and writes `campbell.csv`, `critical_speeds.csv`, and `campbell` as SVG, PDF and PNG
 /// to `folder`.
 ///
@@ -134,9 +118,10 @@ pub fn campbell(
 ) -> Result<CampbellReport, CampbellError> {
     let axis = unit(settings.axis)?;
     let speeds = checked(settings.speeds, &settings.orders)?;
-    let scene = spinning(scene);
-    let model = builder.build(&scene, |p| progress(CampbellProgress::Build(p)))?;
-    require_flexible(&scene, &model).map_err(BuildError::from)?;
+    // The rest at each speed is found here.
+    let builder = builder.needing(Needs::spin());
+    let model = builder.build(scene, |p| progress(CampbellProgress::Build(p)))?;
+    require_flexible(scene, &model).map_err(BuildError::from)?;
 
     let effects = &model.physics.effects;
     let effects = SpinEffects {
@@ -162,8 +147,8 @@ pub fn campbell(
         None => format!("not found of {found}"),
         Some(part) => format!("not found of {found}, which the highest speed bends by about {part:.1e} of its length"),
     });
-    let full = may_be_bent.then(|| bent::full(&scene, builder)).transpose()?;
-    let bent = full.as_ref().map(|full| BentSpin::new(&scene, full, &model, &axis)).transpose()?;
+    let full = may_be_bent.then(|| bent::full(scene, &builder)).transpose()?;
+    let bent = full.as_ref().map(|full| BentSpin::new(scene, full, &model, &axis)).transpose()?;
     let bent = match bent {
         Some(bent) if settings.about_rest == AboutRest::Always || bent.differs(&spin, highest)? => Some(bent),
         _ => None,

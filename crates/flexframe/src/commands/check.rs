@@ -11,7 +11,7 @@ pub(crate) mod rows;
 
 use std::path::Path;
 
-use model::{Builder, Model};
+use model::Builder;
 use results::{FileError, Results};
 
 pub use checked_rows::{CheckProgress, check_run};
@@ -36,8 +36,7 @@ pub fn check(
     let results = Results::open(file, &COLUMNS)?;
     let changed = |what| CheckError::Changed { file: file.to_owned(), what };
     let system = system_of(&results)?.ok_or_else(|| changed("the list of bodies"))?;
-    let build = |scene| builder.build(scene, |p| progress(CheckProgress::Build(p)));
-    let models: Vec<Model> = system.bodies.iter().map(build).collect::<Result<_, _>>()?;
+    let models = builder.models(&system, |p| progress(CheckProgress::Build(p)))?;
     let of = bodies(&system.bodies, &models);
     let now = metadata(&system, &of);
     for (now, then) in now.bodies.iter().zip(&results.metadata.bodies) {

@@ -23,8 +23,8 @@ use std::path::Path;
 
 use advice::Subject;
 use dynamics::{Method, SystemScheme};
-use model::{BuildError, BuildProgress, Builder, Model};
-use scene::{Flexible, METHODS, Scene, System};
+use model::{BuildError, BuildProgress, Builder, ModeCount, Model, Needs};
+use scene::{METHODS, Scene, System};
 
 pub use answer::Answer;
 pub use body::CostBody;
@@ -75,8 +75,7 @@ pub fn price_list(
     settings: CostSettings,
     mut progress: impl FnMut(CostProgress),
 ) -> Result<CostReport, CostError> {
-    let bodies = system.bodies.iter().map(|scene| scene.clone().without_rows()).collect();
-    let system = System { bodies, ..system.clone() };
+    let builder = &builder.needing(Needs::without_rows());
     let built = system.bodies.iter().map(|scene| Built::new(scene, builder, |p| progress(CostProgress::Build(p))));
     let built = built.collect::<Result<Vec<_>, _>>()?;
     let case = PreparedScene::new(system.clone(), built.iter().map(|built| &built.model).collect());
@@ -146,9 +145,8 @@ pub fn price_list(
 /// A body that is built.
 struct Built {
     model: Model,
-    /// The same effects whatever the number of modes, and no static shapes, which stand for modes that are left out.
-    settled: Scene,
-    /// Its models with more and more modes.
+    /// Its models with more and more modes: the same effects whatever their number, and no static shapes, which stand for modes that are
+    /// left out.
     with_modes: Vec<Model>,
 }
 
@@ -156,15 +154,15 @@ impl Built {
     fn new(scene: &Scene, builder: &Builder, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
         let assembly = builder.assemble(scene, &mut progress)?;
         let mut variants = assembly.variants()?;
-        let model = variants.build(scene, &mut progress)?;
-        let mut settled = settled(scene, &model, Some((Subject::StaticCorrection, false)));
+        let model = variants.build(scene, &builder.needs, &mut progress)?;
+        let settled = settled(&builder.needs, scene, &model, Some((Subject::StaticCorrection, false)));
         let mut with_modes = Vec::new();
         let counts = if scene.tied { Vec::new() } else { modes::counts(Self::flexible(&model), variants.available()?) };
         for count in counts.into_iter().rev() {
-            settled.modes.flexible = Flexible::Count(count);
-            with_modes.insert(0, variants.build(&settled, &mut progress)?);
+            let needs = Needs { flexible: Some(ModeCount::Count(count)), ..settled.clone() };
+            with_modes.insert(0, variants.build(scene, &needs, &mut progress)?);
         }
-        Ok(Self { model, settled, with_modes })
+        Ok(Self { model, with_modes })
     }
 
     fn flexible(model: &Model) -> usize {
@@ -172,7 +170,7 @@ impl Built {
     }
 
     fn report(&self, body: RunBody<'_>, settings: &CostSettings) -> CostBody {
-        let compared = (!body.scene.tied).then(|| modes::compare(&self.settled, &self.with_modes, settings));
+        let compared = (!body.scene.tied).then(|| modes::compare(body.scene, &self.with_modes, settings));
         let (modes, modes_failure) = match compared {
             None => (Vec::new(), Some(TIED_MODES.to_owned())),
             Some(Ok(modes)) => (modes, None),

@@ -9,7 +9,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use model::{BuildError, BuildProgress, Builder, Model};
+use model::{BuildError, BuildProgress, Builder, Model, Needs};
 use scene::Scene;
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ use crate::plausible;
 pub use carried::CarriedReport;
 pub use mac::{MacReport, mac};
 pub use scenes::require_surface;
-pub(crate) use scenes::{require_flexible, unloaded, unloaded_body};
+pub(crate) use scenes::{lone_body, require_flexible};
 pub use strain_energy::{EnergyPart, StrainEnergyReport};
 
 use crate::report::{BodyReport, MeshReport, Times, size_and_mass};
@@ -77,7 +77,7 @@ pub fn reduce(
     stress: bool,
     progress: impl FnMut(BuildProgress),
 ) -> Result<ModesReport, BuildError> {
-    let scene = &if stress { scene.clone().with_stress_field() } else { scene.clone() };
+    let builder = builder.needing(Needs { stress_field: stress, ..Needs::default() });
     let model = builder.write_body(scene, output, matrices, progress)?;
     Ok(ModesReport::new(scene, &model))
 }
@@ -93,9 +93,8 @@ pub fn modes(
     about: Option<[f64; 3]>,
     progress: impl FnMut(BuildProgress),
 ) -> Result<(Model, ModesReport), BuildError> {
-    let scene = unloaded(scene);
-    let model = builder.build(&scene, progress)?;
-    let mut report = ModesReport::new(&scene, &model);
+    let model = builder.needing(Needs::modes()).build(scene, progress)?;
+    let mut report = ModesReport::new(scene, &model);
     if let Some(meshed) = model.meshed.as_ref().filter(|_| model.body.flexible() > 0) {
         report.carried = Some(CarriedReport::new(&model, about));
         let start = Instant::now();

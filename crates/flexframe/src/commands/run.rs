@@ -22,7 +22,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use dynamics::{Initial, Run};
-use model::{BuildError, BuildProgress, Builder, Model};
+use model::{BuildError, Model};
 use results::{Expected, Results, Resumed, Writer, unfinished};
 use scene::{Scene, SceneError, System};
 
@@ -70,7 +70,7 @@ pub fn run(
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Vec<Model>, RunReport), RunError> {
     check_files(system, folder, settings)?;
-    let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
+    let models = settings.builder.models(system, |p| progress(RunProgress::Build(p)))?;
     // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
     progress(RunProgress::Built);
     let report = run_models(system, &models, folder, settings, &mut progress)?;
@@ -88,7 +88,9 @@ fn again(
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Vec<Model>, RunReport), RunError> {
     let over = RunSettings { overwrite: true, ..settings.clone() };
-    let second = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))
+    let second = settings
+        .builder
+        .models(system, |p| progress(RunProgress::Build(p)))
         .map_err(RunError::from)
         .and_then(|models| Ok((run_models(system, &models, folder, &over, progress)?, models)));
     match second {
@@ -172,14 +174,6 @@ fn check_files(system: &System, folder: &Path, settings: &RunSettings) -> Result
     Ok(Writer::<Row>::check(&path, settings.overwrite)?)
 }
 
-fn build(
-    scenes: &[Scene],
-    builder: &Builder,
-    mut progress: impl FnMut(BuildProgress),
-) -> Result<Vec<Model>, BuildError> {
-    scenes.iter().map(|scene| builder.build(scene, &mut progress)).collect()
-}
-
 /// The bodies of scenes and their models.
 pub(crate) fn bodies<'a>(scenes: &'a [Scene], models: &'a [Model]) -> Vec<RunBody<'a>> {
     scenes.iter().zip(models).map(|(scene, model)| RunBody { scene, model }).collect()
@@ -240,7 +234,7 @@ pub fn resume(
     let changed = |what| RunError::Changed { part: part.clone(), what };
     let system = system_of(&results)?.ok_or_else(|| changed("the list of bodies"))?;
     outputs_of_system(&system, &settings.builder, settings.overwrite).spare(writer.path())?;
-    let models = build(&system.bodies, &settings.builder, |p| progress(RunProgress::Build(p)))?;
+    let models = settings.builder.models(&system, |p| progress(RunProgress::Build(p)))?;
     progress(RunProgress::Built);
     let bodies = bodies(&system.bodies, &models);
     let of_shapes = if settings.rows_alone { 0 } else { stored_bytes(&bodies) };

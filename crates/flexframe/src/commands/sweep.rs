@@ -18,7 +18,7 @@ use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
 use keys::Hash;
-use model::{Assembly, BuildError, BuildProgress, Builder, Model, Variants};
+use model::{Assembly, BuildError, BuildProgress, Builder, Model, Needs, Variants};
 use results::{ColumnTable, Results};
 use scene::{Body, Scene, System};
 use serde::Serialize;
@@ -179,7 +179,8 @@ pub fn sweep(
         match row {
             _ if table.rows[i] != RowState::Open || !is_mine(i) => {}
             Ok(system) => {
-                let made_of: Vec<String> = system.bodies.iter().map(Assembly::made_of).collect();
+                let made_of: Vec<String> =
+                    system.bodies.iter().map(|scene| Assembly::made_of(scene, &builder.needs)).collect();
                 groups.entry(made_of.join("\n")).or_default().push(i);
             }
             Err(words) => table.rows[i] = RowState::Failed(words.clone()),
@@ -357,9 +358,9 @@ fn run_row(
     folder: &Path,
     settings: &RunSettings,
 ) -> Result<Done, String> {
-    let build = |scene: &Scene, variants: &Mutex<Variants<'_>>| -> Result<Model, String> {
+    let build = |scene: &Scene, needs: &Needs, variants: &Mutex<Variants<'_>>| -> Result<Model, String> {
         let mut variants = variants.lock().unwrap_or_else(PoisonError::into_inner);
-        variants.build(scene, |_| ()).map_err(|error| cured(&error, error.to_string()))
+        variants.build(scene, needs, |_| ()).map_err(|error| cured(&error, error.to_string()))
     };
     let [asks_run, asks_frequencies] = plan.asks();
     let mut done = Done { results: Vec::new(), warnings: Vec::new() };
@@ -367,17 +368,17 @@ fn run_row(
     if asks_frequencies {
         for (scene, variants) in system.bodies.iter().zip(variants).filter(|(scene, _)| plan.asks_frequencies_of(scene))
         {
-            let unloaded = modes::unloaded(scene);
-            let model = build(&unloaded, variants)?;
-            modes::require_flexible(&unloaded, &model).map_err(|error| error.to_string())?;
+            let model = build(scene, &Needs::modes(), variants)?;
+            modes::require_flexible(scene, &model).map_err(|error| error.to_string())?;
             frequencies.insert(scene.name.as_deref(), model.natural_frequencies());
-            done.warnings.extend(plausible::doubts(&unloaded, &model));
+            done.warnings.extend(plausible::doubts(scene, &model));
         }
     }
     let folder = TemporaryFolder::inside(folder).map_err(|error| cured(&error, error.to_string()))?;
     let mut results = None;
     if asks_run {
-        let models = system.bodies.iter().zip(variants).map(|(scene, variants)| build(scene, variants));
+        let models =
+            system.bodies.iter().zip(variants).map(|(scene, variants)| build(scene, &Needs::default(), variants));
         let models = models.collect::<Result<Vec<_>, _>>()?;
         let run = run::run_models(system, &models, folder.path(), settings, |_| ());
         let run = run.map_err(|error| cured(&error, error.without_files()))?;

@@ -10,7 +10,7 @@ mod shape;
 mod stiffening;
 
 use dynamics::{CommonSpin, SteadyError, SteadyState};
-use model::{BuildError, BuildProgress, Builder, Model};
+use model::{BuildProgress, Builder, Model};
 use nalgebra::Vector3;
 use scene::System;
 
@@ -26,18 +26,6 @@ pub(crate) use rotors::Rotors;
 pub use rotors::SpinningRotor;
 pub(crate) use shape::SystemSurface;
 pub use stiffening::{StiffenedBody, StiffenedFrequency};
-
-/// Builds the bodies of a scene.
-///
-/// # Errors
-/// [`BuildError`].
-pub fn build(
-    system: &System,
-    builder: &Builder,
-    mut progress: impl FnMut(BuildProgress),
-) -> Result<Vec<Model>, BuildError> {
-    system.bodies.iter().map(|scene| builder.build(scene, &mut progress)).collect()
-}
 
 /// Finds the vibrations of all bodies of a scene that joints, springs or bushings tie together, at rest where they stand at the
 /// start, or where a run has them at a time; the bodies are deformed as their loads ask, and drives hold still, but rotors spin. Where forces do
@@ -88,7 +76,7 @@ pub fn system_advice(
     builder: &Builder,
     progress: impl FnMut(BuildProgress),
 ) -> Result<Vec<SystemAdvice>, SystemModesError> {
-    let models = build(system, builder, progress)?;
+    let models = builder.models(system, progress)?;
     let of_system = |motion: &TiedMotion| {
         let (modes, _) = of_motion(system, motion)?;
         let flexible = motion.bodies.iter().copied().filter(|body| models[*body].body.flexible() > 0);

@@ -24,6 +24,7 @@ use crate::cache::kept::{by_columns, group};
 use crate::error::BuildError;
 use crate::mesh::arrays::MeshArrays;
 use crate::model::{Meshed, Model};
+use crate::needs::Needs;
 use crate::stress::shapes::BodyStress;
 
 /// Numbers that are ready to be written.
@@ -78,20 +79,20 @@ impl Builder {
                 return Err(scene.refuse("body.matrices", "a body of matrices", "a body with a mesh", help).into());
             }
         }
-        let scene = scene.clone();
-        let scene = if scene.output.any_stress() { scene.with_stress_field() } else { scene };
+        let stress_field = self.needs.stress_field || self.needed(scene).any_stress();
+        let builder = self.needing(Needs { stress_field, ..self.needs.clone() });
         // The values come by way of a cache, from which nothing is removed in the meantime: that of the user, or one of a time where
         // it cannot be written, which is a warning.
         if let Some(folder) = self.cache.folder().filter(|_| !self.cache.is_closed()) {
             let cache = self.cache.elsewhere(folder, u64::MAX);
-            let written = self.write_by_way_of(&cache, &scene, path, matrices, &mut progress);
+            let written = builder.write_by_way_of(&cache, scene, path, matrices, &mut progress);
             if written.is_ok() || !cache.is_closed() {
                 return written;
             }
         }
         let temporary = TemporaryFolder::new().map_err(SealedError::system(path, "make a temporary folder"))?;
         let cache = self.cache.elsewhere(temporary.path(), u64::MAX);
-        let written = self.write_by_way_of(&cache, &scene, path, matrices, &mut progress);
+        let written = builder.write_by_way_of(&cache, scene, path, matrices, &mut progress);
         if written.is_err() && cache.is_closed() {
             let full = io::Error::from(io::ErrorKind::StorageFull);
             return Err(
@@ -115,7 +116,7 @@ impl Builder {
             return Err(without_store(cache, scene));
         }
         let mut variants = assembly.variants()?;
-        let model = variants.build(scene, &mut progress)?;
+        let model = variants.build(scene, &builder.needs, &mut progress)?;
         let (Assembled::Meshed(assembled), Some(meshed), Some(structure)) =
             (&assembly.0, &model.meshed, variants.structure())
         else {
@@ -152,7 +153,7 @@ impl Builder {
             mesh: body.mesh.display().to_string(),
             mesh_hash: store.mesh_hash().to_string(),
             elements: ElementKeys::of(body),
-            modes: crate::building::variants::requested(scene),
+            modes: crate::building::variants::requested(&builder.needed(scene)),
             support: structure.support_hash(),
             reference: structure.reference().map(|reference| reference.hash.to_string()),
         };

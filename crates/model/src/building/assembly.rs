@@ -21,6 +21,7 @@ use crate::mesh::fe_matrices::FeMatrices;
 use crate::mesh::given::{Given, MatrixChecks};
 use crate::mesh::others::{other_masses, other_materials, other_ties};
 use crate::mesh::read::{matrices, mesh_file, mesh_in, tied_points};
+use crate::needs::{Needed, Needs};
 use crate::reduction::reference::Reference;
 use crate::reduction::reference::found::Asked;
 use crate::support::support;
@@ -97,7 +98,9 @@ impl Builder {
         mesh_notes.extend(other_masses(&mesh, &beside, &body));
         mesh_notes.extend(other_ties(&beside, &scene.markers, &body));
         let mesh = Arc::new(mesh);
-        doubts(scene, &body, &mesh).into_iter().for_each(|doubt| progress(BuildProgress::Doubt(doubt)));
+        doubts(scene, self.needed(scene).loads, &body, &mesh)
+            .into_iter()
+            .for_each(|doubt| progress(BuildProgress::Doubt(doubt)));
         let (support, drive) = support(scene, Some((&mesh, 3)))?;
         let assembled = AssembledMesh {
             builder: self.clone(),
@@ -155,8 +158,9 @@ impl Builder {
 }
 
 impl Assembly {
-    /// All that the assembly of a scene is made of, as a text: scenes with the same may share it.
-    pub fn made_of(scene: &Scene) -> String {
+    /// All that the assembly of a scene is made of with these needs, as a text: scenes with the same may share it.
+    pub fn made_of(scene: &Scene, needs: &Needs) -> String {
+        let scene = Needed::new(scene, needs);
         let flexibility = scene.effects.choices[Effect::Flexibility];
         // Such a support is checked against what the scene begins with.
         let initial = matches!(scene.constraint, Some(Constraint::Support { .. })).then_some(&scene.initial);
@@ -201,7 +205,7 @@ impl AssembledMesh {
         if let Some(found) = self.reference.get() {
             return Ok(found.as_ref());
         }
-        let found = match self.scene.modes.about {
+        let found = match self.needed().modes.about {
             Some(about) => self.asked()?.reference(about, || self.assembled_matrices())?,
             None => None,
         };
@@ -248,11 +252,16 @@ impl AssembledMesh {
         self.asked()?.stress_tangent(reference, self.assembled_matrices()?)
     }
 
+    /// The body with the needs of its builder.
+    pub fn needed(&self) -> Needed<'_> {
+        self.builder.needed(&self.scene)
+    }
+
     /// The body as a bent rest of it is asked for.
     fn asked(&self) -> Result<Asked<'_>, BuildError> {
-        let Self { scene, mesh, support, drive, store, .. } = self;
+        let Self { mesh, support, drive, store, .. } = self;
         let (drive, store) = (drive.as_ref(), store.as_ref());
-        Ok(Asked { scene, mesh, materials: self.materials()?, support, drive, store })
+        Ok(Asked { scene: self.needed(), mesh, materials: self.materials()?, support, drive, store })
     }
 
     fn assembled_matrices(&self) -> Result<&Matrices, BuildError> {

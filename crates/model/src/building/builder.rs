@@ -1,10 +1,13 @@
 //! Settings with which bodies are built.
 
+use scene::Scene;
 use slepc::Slepc;
 
 use crate::cache::Cache;
+use crate::needs::{Needed, Needs};
 
-/// Builds models of scenes. None of its settings changes a model but for rounding, so they are no part of a scene.
+/// Builds models of scenes, with what a command needs of them. None of its other settings changes a model but for rounding, so they are no
+/// part of a scene.
 #[derive(Debug, Clone, Default)]
 pub struct Builder {
     /// Results of the finite-element model that are kept from run to run; none by default.
@@ -15,11 +18,23 @@ pub struct Builder {
     /// True if gmsh may do all that geometry says
     /// ([`ImportSettings::trust_geometry`](mesh_import::ImportSettings::trust_geometry)).
     pub trust_geometry: bool,
+    /// The parts of a body that are wanted.
+    pub needs: Needs,
 }
 
 impl Builder {
     /// One with a cache.
     pub fn with_cache(cache: Cache) -> Self {
         Self { cache, ..Self::default() }
+    }
+
+    /// The same for other needs.
+    pub fn needing(&self, needs: Needs) -> Self {
+        Self { needs, ..self.clone() }
+    }
+
+    /// The body of a scene with the needs.
+    pub(crate) fn needed<'a>(&self, scene: &'a Scene) -> Needed<'a> {
+        Needed::new(scene, &self.needs)
     }
 }

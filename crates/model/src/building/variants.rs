@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use dynamics::Effect;
-use scene::{Choice, RigidBody, Scene};
+use scene::{Choice, RigidBody, Scene, System};
 
 use crate::building::assembly::{Assembled, AssembledMesh, Assembly};
 use crate::building::builder::Builder;
 use crate::building::progress::{BuildProgress, BuildTimes, BuildWork, timed};
 use crate::error::BuildError;
 use crate::model::Model;
+use crate::needs::{Needed, Needs};
 use crate::reduction::meshed;
 use crate::reduction::rigid;
 use crate::structure::Structure;
@@ -39,7 +40,15 @@ impl Builder {
     /// [`BuildError`]: what the mesh, the materials or the modes refuse, with the place in the scene file where
     /// there is one.
     pub fn build(&self, scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Model, BuildError> {
-        self.assemble(scene, &mut progress)?.variants()?.into_model(scene, progress)
+        self.assemble(scene, &mut progress)?.variants()?.into_model(&self.needed(scene), progress)
+    }
+
+    /// The models of all bodies of a scene.
+    ///
+    /// # Errors
+    /// As [`Builder::build`].
+    pub fn models(&self, system: &System, mut progress: impl FnMut(BuildProgress)) -> Result<Vec<Model>, BuildError> {
+        system.bodies.iter().map(|scene| self.build(scene, &mut progress)).collect()
     }
 }
 
@@ -70,11 +79,17 @@ impl Assembly {
 }
 
 impl<'a> Variants<'a> {
-    /// The model of a scene, which may differ from that of the assembly in its effects and modes.
+    /// The model of a scene, which may differ from that of the assembly in its effects and modes, as its needs may.
     ///
     /// # Errors
     /// As [`Builder::build`].
-    pub fn build(&mut self, scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Model, BuildError> {
+    pub fn build(
+        &mut self,
+        scene: &Scene,
+        needs: &Needs,
+        mut progress: impl FnMut(BuildProgress),
+    ) -> Result<Model, BuildError> {
+        let scene = &Needed::new(scene, needs);
         match &mut self.0 {
             Of::Meshed(variants) => {
                 let model = variants.build(scene, &mut progress);
@@ -91,7 +106,7 @@ impl<'a> Variants<'a> {
     /// # Errors
     /// As [`Assembly::variants`], and of a body without modes.
     pub fn write_problem(&self, scene: &Scene, folder: &Path, ranks: usize) -> Result<Vec<PathBuf>, BuildError> {
-        match (self.structure(), requested(scene)) {
+        match (self.structure(), requested(&Needed::new(scene, &Needs::default()))) {
             (Some(structure), modes @ 1..) => structure.write_problem(modes, folder, ranks),
             (None, _) => {
                 let help = "run the scene as it is: a rigid body has no modes";
@@ -117,7 +132,7 @@ impl<'a> Variants<'a> {
     /// The same, where no others are wanted: it keeps no modes for them.
     pub(crate) fn into_model(
         self,
-        scene: &Scene,
+        scene: &Needed<'_>,
         mut progress: impl FnMut(BuildProgress),
     ) -> Result<Model, BuildError> {
         match self.0 {
@@ -149,7 +164,7 @@ impl<'a> Variants<'a> {
 }
 
 impl MeshedVariants<'_> {
-    fn build(&mut self, scene: &Scene, progress: &mut dyn FnMut(BuildProgress)) -> Result<Model, BuildError> {
+    fn build(&mut self, scene: &Needed<'_>, progress: &mut dyn FnMut(BuildProgress)) -> Result<Model, BuildError> {
         let requested = requested(scene);
         let (found, time) = match self.found.take().filter(|found| found.modes.natural() >= requested) {
             Some(found) => (found, Duration::ZERO),
@@ -166,7 +181,11 @@ impl MeshedVariants<'_> {
     }
 
     /// The modes that a scene asks for, and how long that took.
-    fn search(&self, scene: &Scene, progress: &mut dyn FnMut(BuildProgress)) -> Result<(Found, Duration), BuildError> {
+    fn search(
+        &self,
+        scene: &Needed<'_>,
+        progress: &mut dyn FnMut(BuildProgress),
+    ) -> Result<(Found, Duration), BuildError> {
         let mut time = Duration::ZERO;
         let found = timed(&mut time, || self.structure.modes(requested(scene), progress))?;
         Ok((found, time))
@@ -174,7 +193,7 @@ impl MeshedVariants<'_> {
 
     fn reduce(
         &self,
-        scene: &Scene,
+        scene: &Needed<'_>,
         found: Found,
         search: Duration,
         progress: &mut dyn FnMut(BuildProgress),
@@ -185,7 +204,7 @@ impl MeshedVariants<'_> {
 }
 
 /// How many modes a scene asks for.
-pub(crate) fn requested(scene: &Scene) -> usize {
+pub(crate) fn requested(scene: &Needed<'_>) -> usize {
     match scene.effects.choices[Effect::Flexibility] {
         Choice::Off => 0,
         Choice::On | Choice::Auto => scene.modes.flexible.most(),

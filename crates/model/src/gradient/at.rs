@@ -158,7 +158,7 @@ impl At<'_> {
             return Ok(None);
         }
         let weight = UnitWeight::of_elements(matrices).map_err(modal(self.scene()))?;
-        let list = mesh_load::on_mesh(self.scene(), self.mesh(), 3, &Arc::new(weight))?;
+        let list = mesh_load::on_mesh(&self.assembled.needed(), self.mesh(), 3, &Arc::new(weight))?;
         let rows = 3 * self.mesh().positions().len();
         let mut forces = Mat::zeros(rows, list.len());
         for (load, mut forces) in list.iter().zip(forces.col_iter_mut()) {
@@ -179,7 +179,8 @@ impl At<'_> {
         let [_, weights] = rates.products(self.mesh(), self.translations().as_ref())?;
         let mut forces = Mat::zeros(weights.nrows(), loads.list.len());
         let mut is_known = Vec::new();
-        for (k, (load, (_, of_scene))) in loads.list.iter().zip(mesh_load::acting(self.scene())).enumerate() {
+        for (k, (load, (_, of_scene))) in loads.list.iter().zip(mesh_load::acting(&self.assembled.needed())).enumerate()
+        {
             is_known.push(match &load.action {
                 Action::Weight { weight, .. } => {
                     let acceleration = load.unit().unwrap_or_default() * (load.size() / weight.mass);

@@ -59,12 +59,12 @@ pub(super) fn load_forces(varied: &VariedBody, matrices: &FeMatrices) -> Result<
     let (scene, AssembledMesh { mesh, support, .. }) = (varied.scene(), varied.assembled());
     let FeMatrices::Assembled(matrices) = matrices else { return Ok((Vec::new(), Mat::new())) };
     let weight = UnitWeight::of_elements(matrices).map_err(modal(scene))?;
-    let turning = turning::turning(scene, support.motion, None);
-    let loads = mesh_load::on_mesh(scene, mesh, 3, &Arc::new(weight))?;
+    let turning = turning::turning(&varied.assembled().needed(), support.motion, None);
+    let loads = mesh_load::on_mesh(&varied.assembled().needed(), mesh, 3, &Arc::new(weight))?;
     let mut columns = Vec::new();
     let mut found = Vec::new();
     let rows = 3 * mesh.positions().len();
-    let numbers = mesh_load::acting(scene).map(|(i, _)| i);
+    let numbers = mesh_load::acting(&varied.assembled().needed()).map(|(i, _)| i);
     for (number, load) in numbers.zip(&loads).filter(|(_, load)| load.size() > 0.0) {
         let of_units = || {
             let mut forces = Mat::zeros(rows, 3);

@@ -39,14 +39,15 @@ impl Builder {
     /// [`BuildError`]; a body that is not made of elements, or whose modes are about a bent one.
     pub fn varied(&self, scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<VariedBody, BuildError> {
         let body = meshed(scene)?.clone();
-        let modes = scene.modes.flexible.most();
+        let needed = self.needed(scene);
+        let modes = needed.modes.flexible.most();
         let refuse_at = |key: &str, found: &str, expected: &str, help: &str| scene.refuse(key, found, expected, help);
         if modes == 0 {
             return Err(
                 refuse_at("modes.flexible", "no modes", "one flexible mode or more", "keep flexible modes").into()
             );
         }
-        if scene.modes.about.is_some() {
+        if needed.modes.about.is_some() {
             let found = "modes about a bent body, whose rates are not known";
             return Err(refuse_at("modes.about", found, "modes about the undeformed body", "leave it out").into());
         }
@@ -118,7 +119,7 @@ impl VariedBody {
 
     /// Names of the loads that act, in the order of static answers.
     pub fn load_names(&self) -> Vec<String> {
-        mesh_load::acting(self.scene()).map(|(i, _)| format!("loads[{i}]")).collect()
+        mesh_load::acting(&self.assembled.needed()).map(|(i, _)| format!("loads[{i}]")).collect()
     }
 
     /// Frequencies, and what else is asked for, of a body with other numbers, with their rates.

@@ -20,6 +20,7 @@ use crate::load::history::history;
 use crate::load::rotation::Rotation;
 use crate::load::turning::Turning;
 use crate::model::initial::first_attitude;
+use crate::needs::Needed;
 
 /// A part of a load along or across an axis that is rounding.
 const PARALLEL: f64 = 1e-12;
@@ -124,7 +125,7 @@ pub(crate) struct FollowerChange {
 
 /// The loads of a scene on its mesh.
 pub(crate) fn on_mesh(
-    scene: &Scene,
+    scene: &Needed<'_>,
     mesh: &Mesh,
     dofs: usize,
     weight: &Arc<UnitWeight>,
@@ -179,7 +180,7 @@ pub(crate) fn on_mesh(
 }
 
 /// The loads of a scene on a rigid body without a mesh.
-pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, BuildError> {
+pub(crate) fn on_rigid(scene: &Needed<'_>, body: &ReducedBody) -> Result<BodyLoads, BuildError> {
     acting(scene)
         .map(|(i, load)| {
             let at = |position: [f64; 3]| {
@@ -220,7 +221,7 @@ pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, B
 }
 
 /// The loads that may act, with their numbers in the scene.
-pub(crate) fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
+pub(crate) fn acting<'a>(scene: &Needed<'a>) -> impl Iterator<Item = (usize, &'a Load)> + use<'a> {
     let with_gravity = scene.effects.choices[Effect::Gravity] != Choice::Off;
     scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !load.is_gravity())
 }
@@ -237,7 +238,7 @@ pub struct BaseAcceleration {
 
 impl BaseAcceleration {
     /// All base accelerations of a scene, whose gravity acts or not.
-    pub(crate) fn of(scene: &Scene, with_gravity: bool) -> Result<Vec<Self>, BuildError> {
+    pub(crate) fn of(scene: &Needed<'_>, with_gravity: bool) -> Result<Vec<Self>, BuildError> {
         let of_load = |(load, (i, of)): (usize, (usize, &Load))| {
             let acceleration_global = of.base_acceleration().into();
             let history = history(scene, &format!("loads[{i}].history"), &of.history);

@@ -3,7 +3,9 @@
 use dynamics::{Drive, DrivenMotion, Effect};
 use nalgebra::Vector3;
 use reduced_body::RigidMotion;
-use scene::{Choice, Scene};
+use scene::Choice;
+
+use crate::needs::Needed;
 
 /// How a body can turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,7 +16,7 @@ pub(crate) enum Turning {
     Freely,
 }
 
-pub(crate) fn turning(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> Turning {
+pub(crate) fn turning(scene: &Needed<'_>, motion: RigidMotion, drive: Option<&Drive>) -> Turning {
     if scene.effects.choices[Effect::Rotation] == Choice::Off {
         return Turning::Not;
     }

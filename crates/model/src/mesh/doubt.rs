@@ -50,9 +50,9 @@ impl fmt::Display for Doubt {
     }
 }
 
-/// Doubts about a scene whose body is made of these elements.
-pub fn doubts(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
-    added_mass(body, mesh).into_iter().chain(deflections(scene, body, mesh)).collect()
+/// Doubts about a scene whose body is made of these elements, and about loads of it.
+pub fn doubts(scene: &Scene, loads: &[Load], body: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
+    added_mass(body, mesh).into_iter().chain(deflections(scene, loads, body, mesh)).collect()
 }
 
 fn added_mass(body: &MeshedBody, mesh: &Mesh) -> Option<Doubt> {
@@ -73,7 +73,7 @@ fn added_mass(body: &MeshedBody, mesh: &Mesh) -> Option<Doubt> {
 
 /// Loads of a held body that would bend a solid bar of the size of its mesh far, which is of its stiffest and its lightest
 /// material and held at one end. A free body is bent by a part of that only.
-fn deflections(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
+fn deflections(scene: &Scene, loads: &[Load], body: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
     if scene.constraint.is_none() {
         return Vec::new();
     }
@@ -92,7 +92,7 @@ fn deflections(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
         }
         LoadKind::Moment | LoadKind::Pressure | LoadKind::Traction => 0.0,
     };
-    (scene.loads.iter().enumerate())
+    (loads.iter().enumerate())
         .map(|(load, acts)| Doubt::Deflection { load, deflection: of_load(acts) })
         .filter(|doubt| matches!(doubt, Doubt::Deflection { deflection, .. } if *deflection > FAR))
         .collect()

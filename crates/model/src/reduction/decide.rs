@@ -1,8 +1,9 @@
 //! Second stage: what the scene leaves open is decided.
 
 use dynamics::{Effect, EffectMap};
-use scene::{Choice, Flexible, Scene};
+use scene::{Choice, Flexible};
 
+use crate::needs::Needed;
 use crate::reduction::bent::Bent;
 use crate::reduction::physics;
 use crate::reduction::survey::Survey;
@@ -22,7 +23,7 @@ pub(crate) struct Decision {
 }
 
 impl Decision {
-    pub fn new(scene: &Scene, survey: &Survey) -> Self {
+    pub fn new(scene: &Needed<'_>, survey: &Survey) -> Self {
         let Survey { modal, advice, statics, .. } = survey;
         let flexible = modal.body.flexible();
         let keep = match (scene.modes.flexible, scene.effects.choices[Effect::Flexibility]) {

@@ -3,16 +3,16 @@
 use dynamics::Drive;
 use fem_tet10::Mesh;
 use modal::Support;
-use scene::Scene;
 
 use crate::load::mesh_load::MeshLoad;
+use crate::needs::Needed;
 use crate::reduction::reference::Reference;
 use crate::structure::Structure;
 use crate::tie::mesh_marker::MeshMarker;
 
 /// The finite-element model of a scene: what modes, static responses and the reduced body are made from.
 pub(crate) struct MeshModel<'a, 's> {
-    pub scene: &'a Scene,
+    pub scene: &'a Needed<'a>,
     pub mesh: &'a Mesh,
     /// The nodes of the body that the modes are about.
     pub positions: &'a [[f64; 3]],

@@ -19,6 +19,7 @@ use crate::error::{BuildError, modal, refuse};
 use crate::load::mesh_load::{self, BaseAcceleration, UnitWeight};
 use crate::model::points::{output_points, well_spread};
 use crate::model::{Meshed, Model};
+use crate::needs::Needed;
 use crate::reduction::about::proposed;
 use crate::reduction::bent::manifold::LargeDeflection;
 use crate::reduction::decide::Decision;
@@ -37,7 +38,7 @@ use crate::tie::place::ShapedBody;
 
 /// The model of a scene, from its mesh and the modes that it asks for.
 pub(crate) fn reduce(
-    scene: &Scene,
+    scene: &Needed<'_>,
     assembled: &AssembledMesh,
     structure: &Structure<'_>,
     found: Found,
@@ -112,6 +113,7 @@ pub(crate) fn reduce(
         paper: Paper { reference_points },
         advice,
         refusal: None,
+        choices: scene.effects.choices,
         times,
         base: BaseAcceleration::of(scene, effects[Effect::Gravity])?,
         all_loads: reduced.loads.loads.clone(),

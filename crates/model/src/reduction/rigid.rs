@@ -7,7 +7,7 @@ use frames_rk4::Paper;
 use modal::Support;
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody};
-use scene::{Frame, RigidBody, Scene};
+use scene::{Frame, RigidBody};
 
 use crate::building::progress::BuildTimes;
 use crate::error::{BuildError, modal};
@@ -15,12 +15,13 @@ use crate::load::mesh_load::{self, BaseAcceleration};
 use crate::model::initial::initial;
 use crate::model::points::output_points;
 use crate::model::{Model, Size};
+use crate::needs::Needed;
 use crate::reduction::physics;
 use crate::structure::remainders::Remainders;
 use crate::support::support;
 use crate::tie::body_marker;
 
-pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildError> {
+pub(crate) fn build(scene: &Needed<'_>, rigid: &RigidBody) -> Result<Model, BuildError> {
     let (Support { motion, .. }, drive) = support(scene, None)?;
     let center = Vector3::from(rigid.center_of_mass);
     let about_center = Matrix3::from_fn(|i, j| rigid.inertia[i][j]);
@@ -80,6 +81,7 @@ pub(crate) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         paper: Paper { reference_points },
         advice,
         refusal: None,
+        choices: scene.effects.choices,
         times: BuildTimes::default(),
         damping_ratios: Vec::new(),
         all_damping_ratios: Vec::new(),

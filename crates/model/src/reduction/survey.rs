@@ -45,7 +45,7 @@ impl Survey {
         let has_shapes = physics::static_correction(model.scene, flexible) != Choice::Off;
         let may_stress = flexible > 0 && physics::may_stress(model.scene);
         // To tell what the modes leave out of it.
-        let has_stress = flexible > 0 && model.scene.output.any_stress();
+        let has_stress = flexible > 0 && model.scene.any_stress();
         // For static shapes, or to tell that they are missing.
         let may_lack = flexible > 0 && model.scene.modes.static_correction != Choice::Off;
         let asked = Asked {

@@ -14,9 +14,9 @@ use faer::Mat;
 use fem_tet10::{StressSites, von_mises};
 use modal::{Modes, side_by_side};
 use nalgebra::Vector3;
-use scene::Output;
 
 use crate::error::{BuildError, refuse};
+use crate::needs::Needed;
 use crate::reduction::mesh_model::MeshModel;
 use crate::stress::left_out::LeftOut;
 use crate::stress::products::ProductStrains;
@@ -66,8 +66,8 @@ impl BodyStress {
         has_gravity: bool,
     ) -> Result<Option<Self>, BuildError> {
         let &MeshModel { scene, mesh, structure, .. } = model;
-        let Output { stress, peak_stress, stress_field, .. } = scene.output;
-        if !scene.output.any_stress() {
+        let &Needed { stress, peak_stress, stress_field, .. } = scene;
+        if !scene.any_stress() {
             return Ok(None);
         }
         let nodal = of_coordinates(structure, modes, large)?;

@@ -4,9 +4,10 @@ use dynamics::{EffectMap, Manifold, Observation, SupportReactions};
 use faer::Mat;
 use modal::Modes;
 use nalgebra::Vector3;
-use scene::{Constraint, Scene};
+use scene::Constraint;
 
 use crate::error::BuildError;
+use crate::needs::Needed;
 use crate::reduction::mesh_model::MeshModel;
 use crate::structure::kept::Basis;
 use crate::support::held_parts;
@@ -33,7 +34,7 @@ impl SupportRows {
         let Some(parts) = several(scene) else { return Ok(None) };
         if model.reference.is_some() {
             let found = "modes about a bent body, whose supports' shares of the reaction are not known";
-            let help = "set `support_reactions = false` in [output]: the reaction of all supports together is written in any case";
+            let help = "remove `about`, or hold the body by one support";
             return Err(scene.refuse("modes.about", found, "one support", help).into());
         }
         let parts = held_parts(scene, mesh, parts)?;
@@ -90,11 +91,11 @@ impl SupportRows {
 }
 
 /// The supports of a scene that has several and whose rows have reactions.
-fn several(scene: &Scene) -> Option<&[scene::HeldDirections]> {
+fn several<'a>(scene: &'a Needed<'_>) -> Option<&'a [scene::HeldDirections]> {
     match &scene.constraint {
         Some(Constraint::Support { parts }) if parts.len() > 1 => Some(parts),
         _ => None,
     }
-    .filter(|_| scene.output.support_reactions && scene.method().abilities.reactions)
+    .filter(|_| scene.support_reactions && scene.method().abilities.reactions)
     .map(Vec::as_slice)
 }

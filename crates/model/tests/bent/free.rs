@@ -136,7 +136,7 @@ fn moments_at_both_ends_bend_a_free_rod() {
 /// momentum, too.
 #[test]
 fn a_free_body_goes_on_in_its_reference() {
-    let scene = spinning("about = \"spin\"\n", 0.5 * first()).without_rows();
+    let scene = spinning("about = \"spin\"\n", 0.5 * first());
     let model = built(&scene);
     let mut simulation = model.start(&scene).unwrap();
     let moved = |o: &dynamics::Observation| o.points[0].elastic_displacement_body;

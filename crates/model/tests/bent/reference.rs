@@ -117,7 +117,7 @@ fn vibrations_of_the_full_body_are_those_of_the_modes_about_it() {
 #[test]
 fn a_motion_begins_in_the_reference_and_stays_there() {
     let spin = BLADE.first();
-    let scene = BLADE.spinning_about("", spin, spin).without_rows();
+    let scene = BLADE.spinning_about("", spin, spin);
     let model = built(&scene);
     let (_, check) = rest(&scene);
     let mut simulation = model.start(&scene).unwrap();

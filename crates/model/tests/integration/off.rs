@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use advice::{Refusal, RestOfBody};
 use dynamics::{ConservativeBody, Effect};
+use model::{Builder, Needs};
 
 use crate::{BENDING, BREADTH, BuildProgress, CLAMPED, LENGTH, Model, Scene, YOUNG, bar, build};
 
@@ -154,7 +155,7 @@ fn under_unknown_forces_nothing_is_left_out_but_what_the_scene_switches_off() {
         assert_eq!(of_scene.len(), loads[1], "{which} {rest}");
         assert_eq!(damping_ratios, [ratios[1]; 6], "{which} {rest}");
 
-        let full = build(&scene.clone().for_unknown_forces());
+        let full = Builder::default().needing(Needs::external_inputs()).build(&scene, |_| ()).unwrap();
         assert_eq!(physics.effects, full.physics.effects, "{which} {rest}");
         assert_eq!(of_scene.len(), full.loads().len(), "{which} {rest}");
         assert_eq!(damping_ratios, full.damping_ratios(), "{which} {rest}");

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dynamics::{Observation, Reached, Rows, Simulation, StepControl, SystemSetup};
+use dynamics::{Effect, Observation, Reached, Rows, Simulation, StepControl, SystemSetup};
 use faer::Mat;
 use model::{BodyMarker, Model, StartError, Tied, UnknownTurns, tie};
 use nalgebra::Vector3;
@@ -75,7 +75,15 @@ fn auto_keeps_all_modes_of_a_body_with_markers_and_has_the_effects_of_unknown_fo
     ));
     let model = build(&scene);
     assert_eq!(model.body.natural_modes, 5);
-    assert!(scene.on_under_unknown_forces().iter().all(|effect| model.physics.effects[*effect]));
+    let of_unknown_forces = [
+        Effect::Translation,
+        Effect::Rotation,
+        Effect::Gravity,
+        Effect::Damping,
+        Effect::DeformedInertia,
+        Effect::Coriolis,
+    ];
+    assert!(of_unknown_forces.iter().all(|effect| model.physics.effects[*effect]));
     assert!(model.damping_ratios().iter().all(|ratio| *ratio == 0.1));
 }
 

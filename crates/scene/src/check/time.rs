@@ -213,9 +213,6 @@ impl Check<'_> {
             "points whose stress is written",
             "name them, e.g. `points = { root = [0, 0, 0] }`, or ask for `peak_stress = true`",
         )?;
-        Ok((
-            rows,
-            Output { points, stress, peak_stress, stress_field: false, support_reactions: true, backbones: true },
-        ))
+        Ok((rows, Output { points, stress, peak_stress }))
     }
 }

@@ -2,8 +2,8 @@
 
 use flexframe::dynamics::{Rows, StepControl};
 use flexframe::frames_rk4;
-use flexframe::model::{BuildError, Builder};
-use flexframe::scene::{Flexible, Scene};
+use flexframe::model::{BuildError, Builder, ModeCount, Needs};
+use flexframe::scene::Scene;
 
 /// Steps of the runs.
 const STEPS: [u64; 4] = [1000, 2000, 5000, 10_000];
@@ -25,12 +25,11 @@ pub(super) fn spin_rates(scene: &Scene) -> Result<Vec<SpinRow>, BuildError> {
     let mut rows = Vec::new();
     let assembly = Builder::default().assemble(scene, |_| ())?;
     let mut variants = assembly.variants()?;
-    let model = variants.build(scene, |_| ())?;
+    let model = variants.build(scene, &Needs::default(), |_| ())?;
     let most = model.body.flexible() - model.static_shapes();
     for flexible in [most / 2, most] {
-        let mut scene = scene.clone();
-        scene.modes.flexible = Flexible::Count(flexible);
-        let (scene, model) = (&scene, variants.build(&scene, |_| ())?);
+        let needs = Needs { flexible: Some(ModeCount::Count(flexible)), ..Needs::default() };
+        let model = variants.build(scene, &needs, |_| ())?;
         let rate = |method, step| -> Option<f64> {
             let rows = model.start_with(scene, method, StepControl::Fixed(step), Rows::Interval(end)).ok()?;
             let spins: Vec<f64> =

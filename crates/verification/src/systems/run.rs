@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use dynamics::{Observation, Reached, Rows, Simulation, StepControl, SystemScheme, SystemSetup};
-use model::{Model, Tied, tie};
+use model::{Builder, Model, Tied, tie};
 use scene::System;
 
 use crate::nonlinear::SolidError;
@@ -23,8 +23,7 @@ pub struct Built {
 pub fn built(directory: &Path, text: &str) -> Result<Built, SolidError> {
     let failed = |error: &dyn std::error::Error| SolidError::Scene(error.to_string());
     let system = System::parse(text, directory.join("scene.toml")).map_err(|error| failed(&error))?;
-    let models: Result<Vec<Model>, _> = system.bodies.iter().map(|scene| Model::build(scene, |_| ())).collect();
-    let models = models.map_err(|error| failed(&error))?;
+    let models = Builder::default().models(&system, |_| ()).map_err(|error| failed(&error))?;
     let tied = tie(&system, &models).map_err(|error| failed(&error))?;
     match <[Tied; 1]>::try_from(tied) {
         Ok([tied]) => Ok(Built { models, tied }),

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use flexframe::animation::{AnimationSettings, Coloured, MAX_FRAMES, animate, animate_mode, animate_results};
 use flexframe::figures::View;
 use flexframe::outputs::{Written, outputs_of_results, outputs_of_system};
-use scene::Scene;
+use model::Needs;
 
 use crate::arguments::FileArgs;
 use crate::arguments::values::{finite, view};
@@ -79,16 +79,16 @@ impl Animate {
                 animate_results(file, &output, settings, |p| session.bar.run(p))?
             }
             None => {
-                let mut system = session.read_system(scene)?;
-                system.bodies = system.bodies.into_iter().map(Scene::without_rows).collect();
+                let system = session.read_system(scene)?;
+                let builder = session.builder.needing(Needs::without_rows());
                 outputs_of_system(&system, &session.builder, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
                 match mode {
                     Some(mode) => {
                         let mode = usize::try_from(mode).unwrap_or(usize::MAX);
-                        animate_mode(&system, &session.builder, mode, &output, settings, |p| session.bar.run(p))?;
+                        animate_mode(&system, &builder, mode, &output, settings, |p| session.bar.run(p))?;
                         None
                     }
-                    None => animate(&system, &session.builder, &output, settings, |p| session.bar.run(p))?,
+                    None => animate(&system, &builder, &output, settings, |p| session.bar.run(p))?,
                 }
             }
         };

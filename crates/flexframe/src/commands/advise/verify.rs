@@ -2,9 +2,9 @@
 
 use advice::Subject;
 use dynamics::{Effect, EffectMap, Observation, Rows, StepControl};
-use model::{Model, Variants};
+use model::{ModeCount, Model, Needs, Variants};
 use nalgebra::{Matrix3, Vector3};
-use scene::{Choice, Flexible, Large, Scene};
+use scene::Scene;
 use serde::Serialize;
 
 use crate::commands::run::{RunError, RunFailure};
@@ -35,28 +35,34 @@ pub enum Real {
 pub(super) struct Base<'a, 'b> {
     scene: &'a Scene,
     model: &'a Model,
+    needs: &'a Needs,
     builder: &'a mut Variants<'b>,
     motion: Vec<Observation>,
 }
 
 impl<'a, 'b> Base<'a, 'b> {
-    pub(super) fn new(scene: &'a Scene, model: &'a Model, builder: &'a mut Variants<'b>) -> Result<Self, RunError> {
+    pub(super) fn new(
+        scene: &'a Scene,
+        needs: &'a Needs,
+        model: &'a Model,
+        builder: &'a mut Variants<'b>,
+    ) -> Result<Self, RunError> {
         // Settled as the others are, so that nothing but the switch is between them.
-        let settled = settled(scene, model, None);
-        let motion = follow(&settled, &builder.build(&settled, |_| ())?)
+        let settled = settled(needs, scene, model, None);
+        let motion = follow(scene, needs, &builder.build(scene, &settled, |_| ())?)
             .map_err(|source| RunError::Verify { scene: scene.path.clone(), source: Box::new(source) })?;
-        Ok(Self { scene, model, builder, motion })
+        Ok(Self { scene, needs, model, builder, motion })
     }
 
     /// The difference that switching an effect or the static shapes makes.
     pub(super) fn influence(&mut self, subject: Subject) -> Real {
         let Some(on) = is_on(self.scene, self.model, subject) else { return Real::Difference(0.0) };
-        let switched = settled(self.scene, self.model, Some((subject, !on)));
-        let model = match self.builder.build(&switched, |_| ()) {
+        let switched = settled(self.needs, self.scene, self.model, Some((subject, !on)));
+        let model = match self.builder.build(self.scene, &switched, |_| ()) {
             Ok(model) => model,
             Err(error) => return Real::Fails(error.to_string()),
         };
-        match follow(&switched, &model) {
+        match follow(self.scene, self.needs, &model) {
             Ok(motion) => Real::Difference(self.difference(&motion, subject)),
             Err(failure) => Real::Fails(failure.to_string()),
         }
@@ -98,36 +104,32 @@ impl<'a, 'b> Base<'a, 'b> {
     }
 }
 
-/// The scene with all effects and static shapes as its model has them, but for one that is switched.
-pub(crate) fn settled(scene: &Scene, model: &Model, switched: Option<(Subject, bool)>) -> Scene {
-    let mut settled = scene.clone();
+/// Needs with all effects and static shapes as a model has them, but for one that is switched.
+pub(crate) fn settled(needs: &Needs, scene: &Scene, model: &Model, switched: Option<(Subject, bool)>) -> Needs {
     let natural = model.body.flexible() - model.static_shapes();
-    let count = if switched == Some((FLEXIBILITY, true)) { scene.modes.flexible.most() } else { natural };
-    settled.modes.flexible = Flexible::Count(count);
-    let choose = |subject: Subject| {
-        let on = match switched {
-            Some((of, on)) if of == subject => on,
-            _ => is_on(scene, model, subject).unwrap_or(false),
-        };
-        if on { Choice::On } else { Choice::Off }
+    let has_all = switched == Some((FLEXIBILITY, true));
+    let choose = |subject: Subject| match switched {
+        Some((of, on)) if of == subject => on,
+        _ => is_on(scene, model, subject).unwrap_or(false),
     };
-    settled.effects.choices = EffectMap::from_fn(|effect| choose(Subject::Effect(effect)));
     let large: Vec<usize> =
         model.large_modes().iter().filter(|k| model.static_answer() != Some(**k)).map(|k| k + 1).collect();
-    if !large.is_empty() {
-        settled.modes.large = Some(Large::List(large));
+    Needs {
+        flexible: Some(if has_all { ModeCount::All } else { ModeCount::Count(natural) }),
+        large: Some(large).filter(|large| !large.is_empty()),
+        static_correction: Some(choose(Subject::StaticCorrection)),
+        effects: EffectMap::from_fn(|effect| Some(choose(Subject::Effect(effect)))),
+        ..needs.clone()
     }
-    settled.modes.static_correction = choose(Subject::StaticCorrection);
-    settled
 }
 
-fn follow(scene: &Scene, model: &Model) -> Result<Vec<Observation>, RunFailure> {
+fn follow(scene: &Scene, needs: &Needs, model: &Model) -> Result<Vec<Observation>, RunFailure> {
     let control = scene.time.control;
     let interval = match control {
         StepControl::Fixed(step) => (scene.time.end / step / COMPARED).ceil() * step,
         StepControl::Tolerance(_) => scene.time.end / COMPARED,
     };
-    let method = *scene.method();
+    let method = needs.method.unwrap_or(*scene.method());
     let simulation = model.start_with(scene, method, control, Rows::Interval(interval))?;
     Ok(simulation.collect::<Result<Vec<_>, _>>()?)
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use dynamics::{Effect, Rotor, RotorError, SteadyError, SystemMotion};
-use model::Builder;
+use model::{Builder, Needs};
 use nalgebra::Vector3;
 use scene::System;
 
@@ -12,9 +12,9 @@ use super::critical::CriticalKind;
 use super::error::CampbellError;
 use super::limits::Limits;
 use super::report::{CampbellReport, SpinEffects};
-use super::{CampbellProgress, Speeds, checked, files, spinning, unit};
+use super::{CampbellProgress, Speeds, checked, files, unit};
 use crate::commands::modes::frequency_unit;
-use crate::commands::system_modes::{Rotors, TiedMotion, body_names, build, tied_motions};
+use crate::commands::system_modes::{Rotors, TiedMotion, body_names, tied_motions};
 
 /// Settings of the diagram of a system.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,10 +45,8 @@ pub fn campbell_of_system(
     mut progress: impl FnMut(CampbellProgress),
 ) -> Result<CampbellReport, CampbellError> {
     let speeds = checked(settings.speeds, &settings.orders)?;
-    let mut system = system.clone();
-    system.bodies.iter_mut().for_each(|scene| *scene = spinning(scene));
-    let models = build(&system, builder, |p| progress(CampbellProgress::Build(p)))?;
-    let motions = tied_motions(&system, &models)?;
+    let models = builder.needing(Needs::spin()).models(system, |p| progress(CampbellProgress::Build(p)))?;
+    let motions = tied_motions(system, &models)?;
     let Some(motion) = motions.first() else {
         let found = "bodies that nothing ties together".to_owned();
         return Err(CampbellError::NoAxis { scene: system.path.clone(), found, joints: Vec::new() });
@@ -100,8 +98,8 @@ pub fn campbell_of_system(
         length_unit: system.units.length.clone(),
         frequency_unit: frequency_unit(&system.units.time),
         mesh: None,
-        bodies: body_names(&system, &motion.bodies),
-        rotor: rotor.map(|rotor| body_names(&system, &motion.bodies).swap_remove(rotor.body)),
+        bodies: body_names(system, &motion.bodies),
+        rotor: rotor.map(|rotor| body_names(system, &motion.bodies).swap_remove(rotor.body)),
         no_rest: None,
         warnings: others.warnings(branches.modes.iter().flatten().map(|mode| mode.circular_frequency)),
         rotors: others.found,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use dynamics::{Coordinate, RotationShapes};
-use model::{BuildProgress, Builder, Model};
+use model::{BuildProgress, Builder, Model, Needs};
 use results::{Metadata, histories};
 use scene::{Scene, System};
 
@@ -47,9 +47,8 @@ impl FmuModel {
     /// # Errors
     /// [`FmuError`].
     pub fn new(system: System, builder: &Builder, mut progress: impl FnMut(BuildProgress)) -> Result<Self, FmuError> {
-        let scenes = system.bodies.into_iter().map(Scene::for_unknown_forces).collect();
-        let system = System { bodies: scenes, ..system };
-        let bodies = system.bodies.iter().map(|scene| FmuBody::new(scene, builder, &mut progress));
+        let builder = builder.needing(Needs::external_inputs());
+        let bodies = system.bodies.iter().map(|scene| FmuBody::new(scene, &builder, &mut progress));
         let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
         let models: Vec<&Model> = bodies.iter().map(|body| &body.model).collect();
         let beginning = Beginning::of(&system, &models);

@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use model::{BuildProgress, Builder, StartError};
+use model::{BuildProgress, Builder, Needs, StartError};
 use scene::{Body, Flexible, MeshedBody, Scene, Shared, System};
 use sealed::{Format, SealedFile};
 use serde::Serialize;
@@ -211,7 +211,7 @@ fn pack_body(
         names.push(name);
     }
     if let Some(body_file) = body_file {
-        builder.write_body(&scene.clone().for_unknown_forces(), &resources.join(&body_file), false, progress)?;
+        builder.needing(Needs::external_inputs()).write_body(scene, &resources.join(&body_file), false, progress)?;
         names.push(body_file);
     }
     Ok(PackedBody { name: scene.name.clone(), scene: scene_name })

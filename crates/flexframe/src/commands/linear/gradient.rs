@@ -13,7 +13,7 @@ mod varying;
 
 use std::path::{Path, PathBuf};
 
-use model::{BuildError, BuildProgress, Builder, Parameter, RatesOf};
+use model::{BuildError, BuildProgress, Builder, Needs, Parameter, RatesOf};
 use scene::System;
 use whole_file::write_whole;
 
@@ -22,7 +22,7 @@ pub use report::{GradientReport, ParameterReport, StaticReport};
 pub use responses::ResponseReport;
 
 use crate::commands::linear::frequencies::Frequencies;
-use crate::commands::modes::unloaded_body;
+use crate::commands::modes::lone_body;
 use crate::files::write_error::WriteError;
 use error::MAX_FREQUENCIES;
 use number::Number;
@@ -89,9 +89,9 @@ pub fn rates(
         let found = varied.rates(system, &parameters, &frequencies)?;
         return Ok(GradientReport::of_system(system, &parameters, found, frequencies));
     }
-    let scene = &unloaded_body(system).map_err(BuildError::from)?;
+    let scene = lone_body(system).map_err(BuildError::from)?;
     let parameters = Parameter::named(scene, &settings.parameters).map_err(BuildError::from)?;
-    let body = builder.varied(scene, progress)?;
+    let body = builder.needing(Needs::modes()).varied(scene, progress)?;
     let found = body.rates(body.body(), &parameters, RatesOf::All)?;
     Ok(GradientReport::new(&body, &parameters, &found, frequencies))
 }

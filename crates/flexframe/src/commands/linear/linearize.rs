@@ -20,9 +20,9 @@ use std::path::Path;
 
 use dynamics::{Initial, MotionState};
 use linear::SecondOrder;
-use model::{BuildProgress, Builder, Model};
+use model::{BuildProgress, Builder, Model, Needs};
 use nalgebra::Vector3;
-use scene::{Scene, System};
+use scene::System;
 
 pub use at_once::AtOnce;
 use at_time::{moving_modes, states_at};
@@ -54,15 +54,14 @@ pub fn linear_model(
     system: &System,
     builder: &Builder,
     settings: &LinearSettings,
-    mut progress: impl FnMut(BuildProgress),
+    progress: impl FnMut(BuildProgress),
 ) -> Result<LinearModel, LinearizeError> {
     // A motion that the scene does not call for is one that an input may: of a free body any, of a held one a vibration.
-    let scenes: Vec<Scene> = match &system.bodies[..] {
-        [scene] if scene.constraint.is_none() => vec![scene.clone().for_unknown_forces()],
-        scenes => scenes.iter().map(|scene| scene.clone().with_damping()).collect(),
-    };
-    let models: Vec<Model> =
-        scenes.iter().map(|scene| builder.build(scene, &mut progress)).collect::<Result<_, _>>()?;
+    let builder = builder.needing(match &system.bodies[..] {
+        [scene] if scene.constraint.is_none() => Needs::external_inputs(),
+        _ => Needs::vibrations(),
+    });
+    let models = builder.models(system, progress)?;
     let refuse =
         |found: &str, help| LinearizeError::Refused { scene: system.path.clone(), found: found.to_owned(), help };
     let is_free = |model: &Model| model.body.motion.is_free() && model.physics.drive.is_none();

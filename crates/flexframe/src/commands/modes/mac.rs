@@ -5,12 +5,12 @@ use std::path::Path;
 
 use faer::{Col, Mat};
 use fem_tet10::Location;
-use model::{BuildError, BuildProgress, Builder, Meshed, Model};
+use model::{BuildError, BuildProgress, Builder, Meshed, Model, Needs};
 use rayon::prelude::*;
 use scene::{Body, FileBody, MeshedBody, Scene};
 use serde::Serialize;
 
-use super::scenes::{require_flexible, unloaded};
+use super::scenes::require_flexible;
 use crate::files::given_file::GivenFile;
 
 /// Nodes at which shapes are compared, at the most.
@@ -76,7 +76,7 @@ pub fn mac(
 ) -> Result<MacReport, BuildError> {
     let own = require_flexible(scene, model)?;
     let with = scene_of(scene, other)?;
-    let other_model = builder.build(&unloaded(&with), progress)?;
+    let other_model = builder.needing(Needs::modes()).build(&with, progress)?;
     let others = require_flexible(&with, &other_model)?;
     let (own_shapes, other_shapes, distance) = at_places(own, others);
     let relative = distance / own.mesh.diagonal();

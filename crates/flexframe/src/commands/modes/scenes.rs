@@ -2,33 +2,20 @@
 
 use dynamics::Effect;
 use model::{Meshed, Model};
-use scene::{Body, Choice, Flexible, Scene, SceneError, System};
+use scene::{Body, Choice, Scene, SceneError, System};
 
-/// A scene with its modes as they are, whatever its motion would call for.
-pub(crate) fn unloaded(scene: &Scene) -> Scene {
-    let mut scene = scene.clone().without_rows();
-    scene.output.backbones = false;
-    scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
-    scene.modes.static_correction = Choice::Off;
-    scene.effects.choices[Effect::Damping] = Choice::On;
-    scene.effects.choices[Effect::GeometricStiffening] = Choice::Off;
-    // Where modes are large, the static answer to a moment takes the place of one.
-    scene.effects.choices[Effect::LargeDeflection] = Choice::Off;
-    scene
-}
-
-/// A scene of which the rates of a body alone are asked.
+/// The body of a scene of which the rates of a body alone are asked.
 ///
 /// # Errors
 /// The refusal of several bodies, and of a body that others hold.
-pub(crate) fn unloaded_body(system: &System) -> Result<Scene, SceneError> {
+pub(crate) fn lone_body(system: &System) -> Result<&Scene, SceneError> {
     let scene = system.only_body()?;
     if scene.tied {
         let found = "a body that joints, springs or bushings hold, whose frequencies are those of the whole";
         let help = "take what ties the body out of the scene, and hold it by [[constraints]]";
         return Err(scene.refuse("body", found, "a body that moves alone", help));
     }
-    Ok(unloaded(scene))
+    Ok(scene)
 }
 
 /// The mesh and the modes of a body that has flexible ones.

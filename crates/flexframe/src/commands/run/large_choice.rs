@@ -5,10 +5,10 @@
 
 use std::path::Path;
 
-use dynamics::Effect;
-use model::{Builder, Model};
+use dynamics::{Effect, EffectMap};
+use model::{Builder, Model, Needs};
 use results::Results;
-use scene::{Choice, Large, Scene, System, assign, key_path};
+use scene::{Choice, Scene, System, assign, key_path};
 use serde::Serialize;
 use toml::Value;
 
@@ -74,17 +74,18 @@ impl LargeChoice {
         let Ok(mut variants) = assembly.variants() else { return Ok(None) };
         let mut best: Option<Self> = None;
         for (large, following) in candidates {
-            let mut other = scene.clone();
-            other.effects.choices[Effect::LargeDeflection] = Choice::On;
-            other.modes.large = Some(Large::List(large.clone()));
-            other.modes.following = following;
+            let needs = Needs {
+                effects: EffectMap::from_fn(|effect| (effect == Effect::LargeDeflection).then_some(true)),
+                large: Some(large.clone()),
+                following: Some(following),
+                ..Needs::default()
+            };
             // A choice that is refused is none.
-            let Ok(built) = variants.build(&other, |_| ()) else { continue };
+            let Ok(built) = variants.build(scene, &needs, |_| ()) else { continue };
             if built.body.circular_frequencies != model.body.circular_frequencies {
                 continue;
             }
-            let other = System { bodies: vec![other], ..system.clone() };
-            let check = check_run(file, results, &other, &[built], builder, &rows, |_| ())?;
+            let check = check_run(file, results, system, &[built], builder, &rows, |_| ())?;
             let error = check.bodies.first().map_or(f64::INFINITY, |body| model_error(&body.rows));
             if error < best.as_ref().map_or(BETTER * before, |best| best.error) {
                 best = Some(Self { large, following, error, before });
@@ -190,6 +191,8 @@ fn candidates(scene: &Scene, model: &Model, swings: &[f64]) -> Vec<(Vec<usize>, 
 
 #[cfg(test)]
 mod tests {
+    use scene::Large;
+
     use super::*;
 
     #[test]

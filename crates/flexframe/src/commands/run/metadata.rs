@@ -158,5 +158,5 @@ fn parts<'a>(RunBody { scene, model }: &RunBody<'a>) -> impl Iterator<Item = &'s
     .filter_map(move |(part, has)| (is_held && has).then_some(part))
     .chain(model.supports.as_ref().map(|_| part::SUPPORTS))
     .chain((!model.base.is_empty()).then_some(part::MOVING_SUPPORT))
-    .chain(scene.output.stress.then_some(part::STRESS))
+    .chain(model.stress.as_ref().filter(|stress| stress.points() > 0).map(|_| part::STRESS))
 }

@@ -11,11 +11,12 @@ use keys::Key;
 use modal::Support;
 use nalgebra::{Matrix3, Vector3};
 use nonlinear::{Equilibrium, EquilibriumSettings, ExternalForces, FullBody, NonlinearError, equilibrium};
-use scene::{About, Choice, Scene, SceneError};
+use scene::{About, Choice, SceneError};
 
 use crate::cache::store::Store;
 use crate::error::BuildError;
 use crate::load::mesh_load::{self, Action, UnitWeight};
+use crate::needs::Needed;
 use crate::reduction::physics;
 use crate::reduction::reference::{Reference, Steady};
 
@@ -32,9 +33,8 @@ const OFF_AXIS: f64 = 0.1;
 const ALIKE: f64 = 1e-6;
 
 /// The body that is asked for.
-#[derive(Clone, Copy)]
 pub(crate) struct Asked<'a> {
-    pub scene: &'a Scene,
+    pub scene: Needed<'a>,
     pub mesh: &'a Arc<Mesh>,
     pub materials: &'a Materials,
     pub support: &'a Support,
@@ -81,8 +81,8 @@ impl Asked<'_> {
         &self,
         matrices: impl Fn() -> Result<&'m Matrices, BuildError>,
     ) -> Result<RestOfBody, BuildError> {
-        let &Self { scene, mesh, materials, support, drive, .. } = self;
-        let Some(steady) = fits(scene, support).ok().and_then(|()| steady(scene, support, drive, About::Auto).ok()?)
+        let Self { scene, mesh, materials, support, drive, .. } = self;
+        let Some(steady) = fits(scene, support).ok().and_then(|()| steady(scene, support, *drive, About::Auto).ok()?)
         else {
             return Ok(RestOfBody::NotAsked);
         };
@@ -159,7 +159,7 @@ impl Asked<'_> {
 }
 
 /// Refuses bodies of which modes about a bent one are not made.
-pub(crate) fn fits(scene: &Scene, support: &Support) -> Result<(), SceneError> {
+pub(crate) fn fits(scene: &Needed<'_>, support: &Support) -> Result<(), SceneError> {
     let refuse = |found: &str, expected: &str, help: &str| Err(scene.refuse(KEY, found, expected, help));
     if support.motion.count() > 0 && !can_turn(support) {
         let help = "clamp it; a body that slides freely has its modes about the undeformed one";
@@ -190,7 +190,7 @@ fn unstressed(strain: &FiniteStrain) -> Stresses {
 
 /// The steady spin and loads that a scene asks for; none where `"auto"` finds neither.
 pub(crate) fn steady(
-    scene: &Scene,
+    scene: &Needed<'_>,
     support: &Support,
     drive: Option<&Drive>,
     about: About,
@@ -230,7 +230,7 @@ pub(crate) fn steady(
 /// u₀ and f_int(u₀), one after the other, and after them the spin of the rest: of a body that turns about all axes, about the principal axis
 /// of the bent body.
 fn find(asked: &Asked<'_>, matrices: &Matrices, steady: Steady) -> Result<Vec<f64>, BuildError> {
-    let &Asked { scene, mesh, materials, support, .. } = asked;
+    let Asked { scene, mesh, materials, support, .. } = asked;
     let fails = |error: NonlinearError| -> BuildError {
         let help = "take less of the spin or the load, or modes about the undeformed body (remove `about`)";
         scene.refuse(KEY, error.to_string(), "an equilibrium of the bent body", help).into()
@@ -290,7 +290,7 @@ fn principal_axis(inertia: &Matrix3<f64>, omega: &Vector3<f64>) -> Vector3<f64> 
 
 /// The steady loads of a scene on the nodes of its full body.
 fn dead_forces(asked: &Asked<'_>, body: &FullBody<'_>, steady: Steady) -> Result<ExternalForces, BuildError> {
-    let &Asked { scene, mesh, support, drive, .. } = asked;
+    let Asked { scene, mesh, support, drive, .. } = asked;
     let mut dead = vec![0.0; body.dofs()];
     if !steady.loads {
         return Ok(ExternalForces::dead(dead));
@@ -305,7 +305,7 @@ fn dead_forces(asked: &Asked<'_>, body: &FullBody<'_>, steady: Steady) -> Result
             let help = "remove `about`, or replace the load by forces";
             return Err(scene.refuse(KEY, found, "forces and gravity", help).into());
         }
-        if physics::is_steady(scene, support.motion, drive, load) {
+        if physics::is_steady(scene, support.motion, *drive, load) {
             load.add_nodal_forces(&mut dead);
         }
     }

@@ -1,10 +1,11 @@
 //! Several models from one mesh.
 
 use modal::Progress;
-use model::{BuildProgress, Builder};
-use scene::{Choice, Effect, Flexible};
+use model::{Assembly, BuildProgress, Builder, Cache, ModeCount, Needs};
+use scene::{Choice, Effect};
 
-use crate::{CLAMPED, bar, build, observations};
+use super::cache::{FORCE, built_by};
+use crate::{CLAMPED, bar, observations};
 
 /// Conserved: the same frequencies and energies alone.
 #[test]
@@ -18,8 +19,9 @@ fn models_of_one_assembly_are_those_built_alone_and_its_mesh_is_read_once() {
     let mut shapes = Vec::new();
     // Fewer modes than before are the first of those, more are searched again.
     for count in [8, 4, 1, 10] {
-        scene.modes.flexible = Flexible::Count(count);
-        let (model, alone) = (variants.build(&scene, |p| heard.push(p)).unwrap(), build(&scene));
+        let needs = Needs { flexible: Some(ModeCount::Count(count)), ..Needs::default() };
+        let model = variants.build(&scene, &needs, |p| heard.push(p)).unwrap();
+        let alone = Builder::default().needing(needs).build(&scene, |_| ()).unwrap();
         for (a, b) in model.body.circular_frequencies.iter().zip(&alone.body.circular_frequencies) {
             assert!((a / b - 1.0).abs() < 1e-9, "{count}: {a} {b}");
         }
@@ -38,4 +40,32 @@ fn models_of_one_assembly_are_those_built_alone_and_its_mesh_is_read_once() {
     assert_eq!(times(|p| matches!(p, BuildProgress::Mesh)), 1);
     assert_eq!(times(|p| matches!(p, BuildProgress::Assembly)), 1);
     assert_eq!(times(|p| matches!(p, BuildProgress::Modes(Progress::Factorizing(_)))), 1);
+}
+
+/// Conserved: the same body to the last bit without the cache that commands with other needs have filled.
+#[test]
+fn commands_with_other_needs_of_one_scene_share_what_is_the_same_and_nothing_else() {
+    let output = "[output]\nstress = true\n";
+    let modes = "flexible = 3\ndamping_ratio = 0.01\nabout = { angular_velocity = [0.0, 0.0, 300.0], loads = true }";
+    let scene = bar(modes, &format!("{CLAMPED}{FORCE}{output}"), "end = 1e-4\nstep = 1e-5");
+    let needs = [
+        Needs::default(),
+        Needs::without_rows(),
+        Needs::external_inputs(),
+        Needs::modes(),
+        Needs::spin(),
+        Needs { flexible: Some(ModeCount::Count(2)), ..Needs::default() },
+        Needs { static_correction: Some(false), ..Needs::default() },
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let made_of = needs.each_ref().map(|needs| Assembly::made_of(&scene, needs));
+    for needs in &needs {
+        let (direct, _) = built_by(&Builder::default().needing(needs.clone()), &scene);
+        let cache = Cache::new(folder.path(), 1 << 30);
+        assert!(built_by(&Builder::with_cache(cache).needing(needs.clone()), &scene).0 == direct, "{needs:?}");
+    }
+    // An assembly knows how many modes there are to be, and the rest that they are about.
+    let [run, without_rows, external, modes, spin, fewer, plain] = &made_of;
+    assert!([without_rows, external, modes, plain].iter().all(|other| *other == run));
+    assert!(spin != run && fewer != run && spin != fewer);
 }

@@ -1,6 +1,6 @@
 //! How much work of the mesh's size a body takes, so that it does not grow unseen.
 
-use model::{BuildWork, Builder};
+use model::{BuildWork, Builder, Needs};
 
 use crate::bar;
 
@@ -10,7 +10,7 @@ fn work(modes: &str, effects: &str) -> BuildWork {
     let scene = bar(modes, &format!("[effects]\n{effects}\n{SPIN}"), "end = 1e-4\nstep = 1e-5");
     let assembly = Builder::default().assemble(&scene, |_| ()).unwrap();
     let mut variants = assembly.variants().unwrap();
-    variants.build(&scene, |_| ()).unwrap();
+    variants.build(&scene, &Needs::default(), |_| ()).unwrap();
     variants.work()
 }
 

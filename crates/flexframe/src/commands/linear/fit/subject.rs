@@ -1,13 +1,13 @@
 //! The subject of a fit: numbers of a body, or of a system.
 
 use fem_tet10::BodyNumber;
-use model::{BuildError, BuildProgress, Builder, Parameter, RatesOf, VariedBody};
+use model::{BuildError, BuildProgress, Builder, Needs, Parameter, RatesOf, VariedBody};
 use scene::{Measured, Shared, System};
 
 use super::error::FitError;
 use crate::commands::linear::gradient::number::Number;
 use crate::commands::linear::gradient::system::VariedSystem;
-use crate::commands::modes::unloaded_body;
+use crate::commands::modes::lone_body;
 
 /// The limits within which Poisson's ratio is searched.
 const POISSON: [f64; 2] = [-0.95, 0.499];
@@ -44,11 +44,11 @@ impl Subject {
             let parameters = Number::named(system, names)?;
             return Ok(Self::System(Box::new(VariedSystem::new(system, builder, progress)?), parameters));
         }
-        let scene = &unloaded_body(system).map_err(BuildError::from)?;
+        let scene = lone_body(system).map_err(BuildError::from)?;
         let known = Parameter::all(scene).map_err(BuildError::from)?;
         check(names, || known.iter().map(|parameter| parameter.name.clone()).collect(), measured)?;
         let parameters = Parameter::named(scene, names).map_err(BuildError::from)?;
-        Ok(Self::Body(Box::new(builder.varied(scene, progress)?), parameters))
+        Ok(Self::Body(Box::new(builder.needing(Needs::modes()).varied(scene, progress)?), parameters))
     }
 
     pub fn names(&self) -> Vec<String> {

@@ -19,7 +19,6 @@ use super::here::{Here, Varied};
 use super::number::{Number, Place};
 use super::system_responses::SystemResponses;
 use super::varying::{Varying, product};
-use crate::commands::system_modes::build;
 
 /// A pair of eigenvalues that is one parts by the root of rounding: G below this part of 2s YᵀY is singular.
 const CRITICAL: f64 = 1e-7;
@@ -43,7 +42,7 @@ impl VariedSystem {
     /// The bodies of a scene.
     pub fn new(system: &System, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, GradientError> {
         let system = system.clone();
-        let models = build(&system, builder, progress)?;
+        let models = builder.models(&system, progress)?;
         Ok(Self { system, builder: builder.clone(), models })
     }
 
@@ -56,7 +55,7 @@ impl VariedSystem {
     ) -> Result<SystemRates, GradientError> {
         let is_same = |i: usize| system.bodies[i].body == self.system.bodies[i].body;
         let anew =
-            if (0..system.bodies.len()).all(is_same) { None } else { Some(build(system, &self.builder, |_| ())?) };
+            if (0..system.bodies.len()).all(is_same) { None } else { Some(self.builder.models(system, |_| ())?) };
         let here = Here::new(system, anew.as_deref().unwrap_or(&self.models))?;
         let repeated = here.repeated();
         let varied = self.varied(&here, numbers)?;

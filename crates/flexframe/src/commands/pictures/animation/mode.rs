@@ -37,7 +37,7 @@ pub fn animate_mode(
     let no_such = |modes| AnimationError::NoSuchMode { scene: system.path.clone(), number, modes };
     let index = number.wrapping_sub(1);
     if system.has_connections() {
-        let models = system_modes::build(system, builder, |p| progress(RunProgress::Build(p)))?;
+        let models = builder.models(system, |p| progress(RunProgress::Build(p)))?;
         let found = system_modes::vibrations(system, &models)?;
         let [modes] = &found[..] else {
             return Err(AnimationError::SeveralMotions { scene: system.path.clone(), count: found.len() });

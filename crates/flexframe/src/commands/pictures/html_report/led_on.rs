@@ -28,12 +28,11 @@ pub(super) fn led_on(
     file: &Path,
     results: &Results,
     builder: &Builder,
-    mut progress: impl FnMut(BuildProgress),
+    progress: impl FnMut(BuildProgress),
 ) -> Result<Live, HtmlReportError> {
     let changed = |what| HtmlReportError::Changed { results: file.to_owned(), what };
     let system = system_of(results)?.ok_or_else(|| changed("the list of bodies"))?;
-    let models =
-        system.bodies.iter().map(|scene| builder.build(scene, &mut progress)).collect::<Result<Vec<_>, _>>()?;
+    let models = builder.models(&system, progress)?;
     let now = metadata(&system, &bodies(&system.bodies, &models));
     for (now, then) in now.bodies.iter().zip(&results.metadata.bodies) {
         let mut then = then.model.clone();
