@@ -46,6 +46,7 @@ words:
 # Links, pages, paths and functions that the documentation names are there.
 pages:
     .ci/pages
+    .ci/python-page --check
 
 # How many numbers in tests are closed forms, independent references, conserved, or regression only; --check for silent files.
 references *args:
@@ -102,9 +103,10 @@ picture: build
 first-hour:
     FLEXFRAME_ACCEPT=1 cargo test --quiet --package flexframe-cli --test program documentation
 
-# Pages of the reference that are made of the sources: commands and their options, keys of scenes.
+# Pages of the reference that are made of the sources: commands and their options, keys of scenes, columns of results, Python.
 reference:
     FLEXFRAME_ACCEPT=1 cargo test --quiet --package flexframe-cli --bin flexframe documentation
+    .ci/python-page
 
 # The price of accuracy: docs/evidence/accuracy.md and its diagrams from real runs of three scenes (some minutes).
 accuracy:
@@ -172,7 +174,7 @@ factor:
     FLEXFRAME_MESHES=$(realpath out/factor/{plate_6,plate_4.2,block_5}.msh | paste -sd :) \
         cargo test --quiet --release --package modal --features threads-in-faer --lib against_faer -- --ignored --nocapture
 
-# Layouts of small matrices in the time loop against each other and against faer: the table of docs/evidence/layouts.md (seconds, once built).
+# Layouts of small matrices in the time loop against each other and against faer: the second table of docs/evidence/factor.md (seconds, once built).
 layouts:
     cargo test --quiet --release --package dynamics --lib the_layouts_of_matrices -- --ignored --nocapture
 
@@ -195,10 +197,10 @@ random-systems *options: random-systems-python
     nice .tools/random-systems/bin/python crates/verification/random_systems/measure.py target/debug/flexframe out/random-systems \
         --page docs/evidence/systems.md {{options}}
 
-# Small systems that failed, with their right values: the table of cases in docs/evidence/systems.md; before: a program to compare with
+# Small systems that failed once, with their right values; before: a program to compare with
 # (Python packages; a few minutes).
 systems-cases *before: random-systems-python
-    .tools/random-systems/bin/python crates/verification/systems_cases/measure.py target/debug/flexframe {{before}} --page docs/evidence/systems.md
+    .tools/random-systems/bin/python crates/verification/systems_cases/measure.py target/debug/flexframe {{before}}
 
 [private]
 random-systems-python:

@@ -1,6 +1,6 @@
-"""Every scene of this folder by one or two programs, with the error against what is right: the table of docs/evidence/systems.md.
+"""Every scene of this folder by one or two programs, with the error against what is right, as a table.
 
-Usage: measure.py PROGRAM [BEFORE] [--page PAGE]
+Usage: measure.py PROGRAM [BEFORE]
 Right values are those of the reference of `random_systems`, of closed forms, or constants of the motion; each case says which.
 """
 
@@ -321,34 +321,16 @@ def cell(program, scene, measure):
 
 def main():
     words = sys.argv[1:]
-    page = None
-    if "--page" in words:
-        k = words.index("--page")
-        page = Path(words[k + 1])
-        del words[k : k + 2]
     programs = words[::-1]
     head = ["before", "found"][2 - len(programs):]
-    lines = ["| case | " + " | ".join(head) + " | measured |", "|---|" + "---|" * (len(programs) + 1)]
-    ended = []
+    print("| case | " + " | ".join(head) + " | measured |\n|---|" + "---|" * (len(programs) + 1))
     for scene in CASES:
         measure, cells, what = measure_of(scene), [], ""
         for program in programs:
             text, found = cell(program, scene, measure)
             cells.append(text.replace("|", "/").replace("\n", " "))
             what = found or what
-        line = f"| `{scene}` | " + " | ".join(cells) + f" | {what} |"
-        print(line, flush=True)
-        if cells[-1].startswith("error: "):
-            ended.append(f"`{scene}`")
-        else:
-            lines.append(line)
-    if ended:
-        lines += ["", f"Refused, or ended with a message that names the joints: {', '.join(ended)}."]
-    if page:
-        text = page.read_text()
-        before, rest_ = text.split("<!-- cases -->\n")
-        after = rest_.split("<!-- end of cases -->")[1]
-        page.write_text(before + "<!-- cases -->\n" + "\n".join(lines) + "\n<!-- end of cases -->" + after)
+        print(f"| `{scene}` | " + " | ".join(cells) + f" | {what} |", flush=True)
 
 
 if __name__ == "__main__":

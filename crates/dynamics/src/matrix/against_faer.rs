@@ -1,5 +1,5 @@
 //! Products with the matrices of a body in the two layouts, against faer and plain rows: `./dev layouts` measures them in turn and
-//! prints the table of `docs/evidence/layouts.md`.
+//! prints the table of `docs/evidence/factor.md`.
 
 use std::hint::black_box;
 use std::time::Instant;
