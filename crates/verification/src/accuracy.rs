@@ -1,6 +1,5 @@
 //! `docs/evidence/accuracy.md`: what accuracy costs on some scenes, from measured runs.
 
 mod page;
-mod spin;
 
 pub use page::accuracy_page;

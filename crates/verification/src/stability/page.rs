@@ -11,13 +11,11 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
     let mut page = String::from(
         "# Hard cases\n\n\
          Every case is run with every scheme by `./dev stability`. A cell has the largest error or drift of \
-         the whole run, and in brackets the bound that a test asserts; `crates/verification/src/stability` \
-         says why each case is hard. Errors are against closed forms where nothing else is said; attitudes \
-         are in rad; \"drift\" is that of energy and angular momentum, relative. \"Stops\" means that the \
-         body is refused, or that the run ends at its first bad step, with a message that has the words below \
-         the table in it. Nothing ends in NaN. A run ends where the start, the loads and the damping do not \
-         account for half of its energy. Runs of the paper's formulation also end where spurious angular \
-         momentum has turned the body by 1 rad.\n",
+         the whole run; tests assert bounds of them, and `crates/verification/src/stability` says why each case is hard. Errors are \
+         against closed forms where nothing else is said; attitudes are in rad; \"drift\" is that of energy and angular \
+         momentum, relative. \"Stops\" means that the body is refused, or that the run ends at its first bad step, with the words \
+         below the table in its message: where half of the energy comes from nowhere, or the paper's formulation has turned \
+         the body by 1 rad of its own. Nothing ends in NaN.\n",
     );
     let mut broken = Vec::new();
     for (title, cases) in sections() {
@@ -32,9 +30,7 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
         for case in cases {
             row(&mut page, &case, extent, &mut refusals, &mut broken, &mut progress);
         }
-        for (number, refusal) in refusals.iter().enumerate() {
-            let _ = writeln!(page, "\n{title} {}: {refusal}", number + 1);
-        }
+        below(&mut page, &refusals);
     }
     let (systems, of_systems) = of_systems(extent, &mut progress);
     broken.extend(of_systems);
@@ -65,10 +61,16 @@ pub fn of_systems(extent: Extent, progress: &mut impl FnMut(&str)) -> (String, V
         }
         let _ = writeln!(page);
     }
-    for (number, refusal) in refusals.iter().enumerate() {
-        let _ = writeln!(page, "\nSystems {}: {refusal}", number + 1);
-    }
+    below(&mut page, &refusals);
     (page, broken)
+}
+
+/// The words of refusals, by the numbers that cells have.
+fn below(page: &mut String, refusals: &[String]) {
+    let words: Vec<String> = refusals.iter().enumerate().map(|(k, words)| format!("{}: {words}", k + 1)).collect();
+    if !words.is_empty() {
+        let _ = writeln!(page, "\nStops {}.", words.join("; "));
+    }
 }
 
 fn row(
@@ -103,12 +105,11 @@ fn row(
     let _ = writeln!(page);
 }
 
-/// An outcome with its bound; words go below the table, each once.
+/// An outcome; words of refusals go below the table, each once.
 fn cell(outcome: &TrialOutcome, expected: Option<&Bound>, refusals: &mut Vec<String>) -> String {
-    let bound = expected.map_or_else(String::new, |expected| format!(" ({expected})"));
     match outcome {
-        TrialOutcome::Ran(0.0) => format!("0{bound}"),
-        TrialOutcome::Ran(error) => format!("{error:.1e}{bound}"),
+        TrialOutcome::Ran(0.0) => "0".to_owned(),
+        TrialOutcome::Ran(error) => format!("{error:.1e}"),
         TrialOutcome::Refused(message) => {
             let words = match expected {
                 Some(Bound::Refused(part)) => part,
