@@ -106,13 +106,15 @@ impl<'a> Variants<'a> {
     /// # Errors
     /// As [`Assembly::variants`], and of a body without modes.
     pub fn write_problem(&self, scene: &Scene, folder: &Path, ranks: usize) -> Result<Vec<PathBuf>, BuildError> {
-        match (self.structure(), requested(&Needed::new(scene, &Needs::default()))) {
-            (Some(structure), modes @ 1..) => structure.write_problem(modes, folder, ranks),
-            (None, _) => {
-                let help = "run the scene as it is: a rigid body has no modes";
-                Err(scene.refuse("body.rigid", "a rigid body", "a body with a mesh, or with matrices", help).into())
-            }
-            (_, 0) => Err(scene.refuse("modes.flexible", "no modes", "one or more", "ask for modes").into()),
+        let Of::Meshed(variants) = &self.0 else {
+            let help = "run the scene as it is: a rigid body has no modes";
+            return Err(scene
+                .refuse("body.rigid", "a rigid body", "a body with a mesh, or with matrices", help)
+                .into());
+        };
+        match requested(&variants.assembled.builder.needed(scene)) {
+            0 => Err(scene.refuse("modes.flexible", "no modes", "one or more", "ask for modes").into()),
+            modes => variants.structure.write_problem(modes, folder, ranks),
         }
     }
 

@@ -78,7 +78,7 @@ impl LargeChoice {
                 effects: EffectMap::from_fn(|effect| (effect == Effect::LargeDeflection).then_some(true)),
                 large: Some(large.clone()),
                 following: Some(following),
-                ..Needs::default()
+                ..builder.needs.clone()
             };
             // A choice that is refused is none.
             let Ok(built) = variants.build(scene, &needs, |_| ()) else { continue };
