@@ -61,7 +61,7 @@ pub(crate) struct BodySection {
     pub file: Option<String>,
     /// Mass and stiffness from another program, instead of a mesh.
     pub matrices: Option<MatricesSection>,
-    /// Largest size of an element where geometry is meshed, length.
+    /// Largest size of an element where geometry is meshed, length; default gmsh's.
     pub mesh_size: Option<f64>,
     /// With `true`, straight edges of first-order elements get a node in the middle.
     pub raise_order: Option<bool>,
@@ -123,7 +123,7 @@ pub(crate) struct ModesSection {
     pub damping_table: Option<Vec<[f64; 2]>>,
     /// Damping in proportion to mass and stiffness.
     pub rayleigh: Option<Rayleigh>,
-    /// Static shapes of the loads and of the centrifugal field beside the modes.
+    /// Static shapes of the loads and of the centrifugal field beside the modes; default "auto".
     #[serde(default)]
     pub static_correction: Choice,
     /// The modes that bend the body far: the number of first ones (1 to 4), or their numbers from 1.
@@ -309,9 +309,9 @@ pub(crate) struct TimeSection {
     pub step: Option<f64>,
     /// Limit of the sum of the estimated relative errors of all steps, between 0 and 1.
     pub tolerance: Option<f64>,
-    /// The equations of motion.
+    /// The equations of motion; default "conservative", with the scheme "paper" "paper".
     pub formulation: Option<Formulation>,
-    /// The way from one step to the next.
+    /// The way from one step to the next; default "exponential", of bodies in joints "radau".
     pub scheme: Option<Scheme>,
 }
 
@@ -372,9 +372,9 @@ fn one_of_names<'de, D: Deserializer<'de>>(
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct OutputSection {
-    /// Write every N-th step.
+    /// Write every N-th step; default 1, or as many as leave 5000 rows.
     pub every: Option<u64>,
-    /// Write at the multiples of this time.
+    /// Write at the multiples of this time; default, with a tolerance, `end`/500.
     pub interval: Option<f64>,
     /// Points whose motion is written, by name: positions, length, mesh axes.
     pub points: BTreeMap<String, [f64; 3]>,
