@@ -25,7 +25,7 @@ const FEWEST: usize = 3;
 /// The support of a scene's body and its drive. `mesh`, with the degrees of freedom of a node, is `None` for a rigid body
 /// without one.
 pub(crate) fn support(scene: &Scene, mesh: Option<(&Mesh, usize)>) -> Result<(Support, Option<Drive>), BuildError> {
-    let Some(constraint) = &scene.constraint else { return Ok((Support::free(), None)) };
+    let Some(constraint) = scene.reduced_constraint() else { return Ok((Support::free(), None)) };
     if let (Constraint::Support { parts }, Some((mesh, _))) = (constraint, mesh) {
         return Ok((held_directions(scene, mesh, parts)?, None));
     }
@@ -120,7 +120,13 @@ fn require_left(
     Err(scene.refuse(key, format!("{value:?}"), expected, "give what is left of it, or change [[constraints]]").into())
 }
 
-fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint, dofs: usize) -> Result<Vec<u32>, BuildError> {
+/// The nodes that a constraint holds, other than supports in some directions.
+pub(crate) fn held_nodes(
+    scene: &Scene,
+    mesh: &Mesh,
+    constraint: &Constraint,
+    dofs: usize,
+) -> Result<Vec<u32>, BuildError> {
     // A node with rotations holds the body by itself.
     let (fewest, fewest_on_axis) = if dofs == 6 { (1, 1) } else { (FEWEST, 2) };
     let tolerance = ON * mesh.diagonal();

@@ -90,7 +90,7 @@ impl Scene {
         check.units(&units)?;
         let markers = std::mem::take(&mut body.markers);
         let body = check.body(body)?;
-        let markers = check.markers(markers, &body)?;
+        let mut markers = check.markers(markers, &body)?;
         let modes = check.modes(modes, &body)?;
         check.frame(frame.as_ref())?;
         let constraint = check.constraints(constraints, &body)?;
@@ -102,8 +102,10 @@ impl Scene {
         check.fixed_effects(&effects, time.method)?;
         let (rows, output) = check.output(output, &time, &body)?;
         let tied = ties.is_some_and(|ties| ties.ties(body_text.as_ref().map_or(ONLY_BODY, |text| text.name)));
-        if !tied {
-            check.turns(&body)?;
+        match &constraint {
+            Some(constraint) if tied => check.held_markers(constraint, &mut markers),
+            _ if !tied => check.turns(&body)?,
+            _ => {}
         }
         let of_file = || Shared {
             title,

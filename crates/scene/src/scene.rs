@@ -61,7 +61,7 @@ pub struct Scene {
     pub initial: Initial,
     /// The constraint of the body; `None` is a free one.
     pub constraint: Option<Constraint>,
-    /// Places with axes, in the order of the file: the ends of joints.
+    /// Places with axes, in the order of the file: the ends of joints. Those that its constraints hold come last.
     pub markers: Vec<Marker>,
     /// True if joints, springs or bushings of the scene file hold the body: then it does not move alone.
     pub tied: bool,
@@ -71,6 +71,13 @@ pub struct Scene {
     pub output: Output,
     /// The text of a scene of this body alone, for its body file.
     pub source: String,
+}
+
+impl Scene {
+    /// The constraint that its modes respect: beside joints, springs or bushings it is a joint to the ground, and the body has free modes.
+    pub fn reduced_constraint(&self) -> Option<&Constraint> {
+        self.constraint.as_ref().filter(|_| !self.tied)
+    }
 }
 
 impl Deref for Scene {

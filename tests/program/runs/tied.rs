@@ -169,6 +169,40 @@ fn a_joint_to_the_ground_moves_a_body_as_its_constraint_does() {
     assert!(steps_tied < 10_000, "{steps_tied}");
 }
 
+/// Independent reference: the constraint taken in by the reduction, and a joint to the ground of a marker that the scene names. A spring
+/// beside a constraint makes it a joint to the ground; one without force leaves the motion as it was.
+#[test]
+fn a_constraint_stands_beside_springs_and_joints() {
+    const SPRING: &str =
+        "[ground.markers.far]\nat = [400, 0, 300]\n[[springs]]\nbetween = [\"body.tip\", \"ground.far\"]\nstiffness = ";
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/hung.toml"));
+    let short = HUNG.replace("end = 0.3", "end = 0.05").replace("tolerance = 1e-6", "tolerance = 1e-5");
+    let tip = |hold: &str| {
+        let text = short
+            .replace("{ root = { group = \"left\" } }", "{ root = { at = [0, 0, 0] }, tip = { at = [200, 0, 0] } }");
+        let (_folder, report) = ran(&format!("{text}points = {{ tip = [200, 0, 0] }}\n{hold}"), file);
+        Results::open(&report.results, &COLUMNS).unwrap().vectors::<3>("points/tip/displacement").unwrap().to_vec()
+    };
+    let off = |one: &str, other: &str| {
+        let apart =
+            |(a, b): (&[f64; 3], &[f64; 3])| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) };
+        tip(one).iter().zip(&tip(other)).map(apart).fold(0.0, f64::max)
+    };
+    let constraint = |of: &str| format!("[[constraints]]\n{of}\n");
+    // A shaft beside the axis, and nodes of a line: the tip moves by some 10 mm.
+    for held in [
+        constraint("kind = \"hinge\"\nat = [0, 0, 12]\naxis = [0, 1, 0]\ngroup = \"left\""),
+        constraint("kind = \"support\"\ndirections = [\"x\", \"y\", \"z\"]\nbox = [[0, -5, -5], [0, 5, -5]]"),
+    ] {
+        let off = off(&held, &format!("{held}{SPRING}1e-9\n"));
+        assert!(off < 2e-3, "{off:e} mm, {held}");
+    }
+    let pin = constraint("kind = \"pin\"\nat = [0, 0, 0]");
+    let joint = "[[joints]]\nkind = \"spherical\"\nbetween = [\"ground\", \"body.root\"]\n";
+    let off = off(&format!("{pin}{SPRING}0.5\n"), &format!("{joint}{SPRING}0.5\n"));
+    assert!(off < 1e-4, "{off:e} mm");
+}
+
 /// A scene that has run: the folder of its results, which goes with it, and its report.
 #[track_caller]
 fn ran(scene: &str, file: &Path) -> (tempfile::TempDir, RunReport) {

@@ -163,12 +163,14 @@ impl Assembly {
         let scene = Needed::new(scene, needs);
         let flexibility = scene.effects.choices[Effect::Flexibility];
         // Such a support is checked against what the scene begins with.
-        let initial = matches!(scene.constraint, Some(Constraint::Support { .. })).then_some(&scene.initial);
+        let initial = matches!(scene.reduced_constraint(), Some(Constraint::Support { .. })).then_some(&scene.initial);
         // So is the rest that modes are about.
         let about = scene.modes.about.map(|about| (about, &scene.loads, scene.initial.attitude, scene.time.end));
         format!(
             "{:?} {:?} {:?} {flexibility:?} {initial:?} {about:?}",
-            scene.body, scene.constraint, scene.modes.flexible
+            scene.body,
+            scene.reduced_constraint(),
+            scene.modes.flexible
         )
     }
 

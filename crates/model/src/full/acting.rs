@@ -7,6 +7,7 @@ use rigid_kin::Attitude;
 use crate::full::FullModel;
 use crate::load::mesh_load::{Action, MeshLoad};
 use crate::load::rotation::Rotation;
+use crate::tie::mesh_marker::MeshMarker;
 use crate::tie::place::Place;
 
 /// A force and a moment at a marker, global components.
@@ -34,7 +35,9 @@ impl FullModel {
         for MarkerForce { marker, part, force_global, moment_global } in joints {
             if let Some(place) = self.markers.get(*marker).and_then(|marker| marker.place(*part)) {
                 let [force, moment] = [force_global, moment_global].map(|vector| attitude.to_body(vector));
-                act_at(place, &force, moment, &mut dead, &mut others);
+                let arm =
+                    self.markers.get(*marker).filter(|_| part.is_none()).map_or_else(Vector3::zeros, MeshMarker::arm);
+                act_at(place, &force, moment + arm.cross(&force), &mut dead, &mut others);
             }
         }
         others.push(Acting::Dead(dead));

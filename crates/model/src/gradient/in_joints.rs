@@ -13,7 +13,7 @@ use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Location, MatrixRates, Mesh};
 use modal::{ModalError, Modes, Solver, StaticAccuracy, centrifugal_accelerations, side_by_side};
 use nalgebra::Vector3;
-use scene::{Scene, Tie, key_path};
+use scene::{Scene, Tie};
 
 use crate::building::assembly::AssembledMesh;
 use crate::error::{BuildError, modal};
@@ -72,7 +72,7 @@ impl VariedBody {
         }
         // The modes of such a body are combinations that keep its patches rigid: none is an eigenvector, so that (D7) is not its rate.
         if let Some(marker) = scene.markers.iter().find(|marker| marker.tie == Tie::Rigid) {
-            let key = key_path(&key_path("body.markers", &marker.name), "tie");
+            let key = marker.key_of_tie();
             let help = "give it `tie = \"nodes\"` or `tie = \"mean\"`, or name parameters of other bodies";
             let expected = "a tie that leaves the modes of the body as they are";
             return Err(scene.refuse(&key, "\"rigid\", which mixes the modes of the body", expected, help).into());

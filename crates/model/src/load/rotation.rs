@@ -57,6 +57,12 @@ impl Rotation {
 
     /// How the material is turned by the modes of a body.
     pub fn shapes(&self, dofs: usize, body: &ReducedBody, modes: &Modes) -> RotationShapes {
+        let turned = self.by_mode(dofs, body, modes);
+        RotationShapes::new(body, Mat::from_fn(3, turned.len(), |axis, k| turned[k][axis]).as_ref())
+    }
+
+    /// The rotation vector of each mode of a body.
+    pub fn by_mode(&self, dofs: usize, body: &ReducedBody, modes: &Modes) -> Vec<Vector3<f64>> {
         let shape = |first: usize, k: usize| Vector3::from_fn(|axis, _| modes.shapes[(first + axis, k)]);
         let of_mode = |k: usize| -> Vector3<f64> {
             match self {
@@ -67,8 +73,7 @@ impl Rotation {
                 Self::OfNode(node) => shape(dofs * *node as usize + 3, k),
             }
         };
-        let turned: Vec<Vector3<f64>> = (0..body.flexible()).map(of_mode).collect();
-        RotationShapes::new(body, Mat::from_fn(3, turned.len(), |axis, k| turned[k][axis]).as_ref())
+        (0..body.flexible()).map(of_mode).collect()
     }
 
     /// The turn of the nodes of a patch in the modes, however far it goes. Nodes count by their `weights`, if these are of the same

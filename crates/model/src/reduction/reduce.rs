@@ -4,7 +4,6 @@ use advice::{Advice, Backbone, Findings, advise};
 use dynamics::{Effect, ReferenceForces};
 use faer::{Mat, Scale};
 use modal::{Answer, Modes};
-use scene::key_path;
 
 use crate::error::BuildError;
 use crate::reduction::bent::answer::WithAnswer;
@@ -51,13 +50,12 @@ impl Reduction {
         if let (false, Some(marker)) =
             (decision.bent.large.is_empty(), model.markers.iter().find(|of| of.rigid_nodes().is_some()))
         {
-            let key = key_path(&key_path("body.markers", marker.name()), "tie");
             let help =
                 "tie its `\"nodes\"` to a rigid body by a fixed joint, or give `large_deflection = false` in [effects]";
             let found = "a rigid part of a body with large modes";
             return Err(model
                 .scene
-                .refuse(&key, found, "`\"mean\"` or `\"nodes\"`, whose shapes large modes know", help)
+                .refuse(marker.key_of_tie(), found, "`\"mean\"` or `\"nodes\"`, whose shapes large modes know", help)
                 .into());
         }
         let of_markers = of_markers.filter(|_| decision.keep > 0);

@@ -92,7 +92,7 @@ impl SupportRows {
 
 /// The supports of a scene that has several and whose rows have reactions.
 fn several<'a>(scene: &'a Needed<'_>) -> Option<&'a [scene::HeldDirections]> {
-    match &scene.constraint {
+    match scene.reduced_constraint() {
         Some(Constraint::Support { parts }) if parts.len() > 1 => Some(parts),
         _ => None,
     }

@@ -4,7 +4,7 @@ use dynamics::{Manifold, PointShapes, RotationShapes};
 use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody};
-use scene::{Marker, MarkerAxes, MarkerPlace, Scene};
+use scene::{Constraint, Marker, MarkerAxes, MarkerPlace, Scene};
 
 use crate::error::BuildError;
 use crate::tie::warp::Warp;
@@ -81,10 +81,16 @@ pub(crate) fn perpendicular(z: &Vector3<f64>) -> Vector3<f64> {
 /// The markers of a rigid body without a mesh.
 pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<BodyMarker>, BuildError> {
     let on_body = |marker: &Marker| {
-        let MarkerPlace::Point(at) = marker.place else {
-            let key = format!("body.markers.{}", marker.name);
-            let help = "give it a point, `at = [x, y, z]`";
-            return Err(scene.refuse(&key, "a part of a mesh", "none, since the body has no mesh", help).into());
+        let at = match &marker.place {
+            MarkerPlace::Point(at) => *at,
+            MarkerPlace::Held { constraint: Constraint::Pin { at, .. }, .. } => *at,
+            MarkerPlace::Held { constraint: Constraint::Hinge { line, .. }, .. } => line.at(),
+            MarkerPlace::Held { constraint: Constraint::Slider { .. }, .. } => body.center_of_mass.into(),
+            MarkerPlace::Held { .. } | MarkerPlace::Region(_) => {
+                let help = "give it a point, `at = [x, y, z]`";
+                let (found, expected) = ("a part of a mesh", "none, since the body has no mesh");
+                return Err(scene.refuse(&marker.key(), found, expected, help).into());
+            }
         };
         let point = BodyPoint { position_body: Vector3::from(at) - body.origin, shapes: Mat::zeros(3, 0) };
         Ok(BodyMarker {

@@ -6,11 +6,11 @@ use faer::prelude::ReborrowMut;
 use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Location, Mesh, Patch, Strip};
 use nalgebra::{Matrix3, Vector3};
-use scene::{Marker, MarkerPlace, Region, Scene, Tie, key_path};
+use scene::{Constraint, HeldDirections, Marker, MarkerPlace, Region, Scene, Tie, key_path};
 
 use crate::error::{BuildError, refuse, refuse_mesh};
 use crate::load::rotation::Rotation;
-use crate::support::region_nodes;
+use crate::support::{held_nodes, region_nodes};
 use crate::tie::body_marker::{BodyMarker, MarkerPart, UnknownTurns, axes};
 use crate::tie::patterns::patterns;
 use crate::tie::place::{Place, ShapedBody};
@@ -27,6 +27,7 @@ const MAX_NODES: usize = 100;
 /// A place with axes on a mesh.
 pub(crate) struct MeshMarker {
     name: String,
+    key_of_tie: String,
     axes: Matrix3<f64>,
     whole: Place,
     /// Where the ends of its joints are several places: these, each with its part in the whole.
@@ -35,6 +36,8 @@ pub(crate) struct MeshMarker {
     patterns: Option<Mat<f64>>,
     /// True if its parts move as one rigid body: joints then hold the whole.
     is_rigid: bool,
+    /// From the middle of a rigid part to the place that moves with it, mesh axes.
+    arm: Vector3<f64>,
     /// Its faces, where it is their mean.
     faces: Option<Vec<[u32; 6]>>,
     /// Degrees of freedom of a node.
@@ -101,15 +104,17 @@ struct Share {
 
 impl MeshMarker {
     fn new(scene: &Scene, mesh: &Mesh, dofs: usize, marker: &Marker) -> Result<Self, BuildError> {
-        let key = key_path("body.markers", &marker.name);
-        let (name, axes) = (marker.name.clone(), axes(marker.axes.as_ref()));
+        let key = marker.key();
+        let (name, key_of_tie, axes) = (marker.name.clone(), marker.key_of_tie(), axes(marker.axes.as_ref()));
         let alone = |whole: Place| Self {
             name,
+            key_of_tie,
             axes,
             whole,
             parts: Vec::new(),
             patterns: None,
             is_rigid: false,
+            arm: Vector3::zeros(),
             faces: None,
             dofs,
         };
@@ -122,6 +127,27 @@ impl MeshMarker {
                     false => None,
                 };
                 return Ok(alone(Place::of_point(nodes, weights, rotation, mesh)));
+            }
+            MarkerPlace::Held { constraint, number } => {
+                let nodes = held_by(scene, mesh, (constraint, *number), dofs)?;
+                if let [node] = nodes[..] {
+                    // A node with rotations holds the body by itself.
+                    let rotation = (dofs == 6).then_some(Rotation::OfNode(node));
+                    return Ok(alone(Place::of_point(vec![node], vec![1.0], rotation, mesh)));
+                }
+                let made = Self::of_nodes(scene, mesh, dofs, marker, nodes, alone)?;
+                let place = match constraint {
+                    Constraint::Pin { at, .. } => Vector3::from(*at),
+                    Constraint::Hinge { line, .. } => {
+                        let (at, along) = (Vector3::from(line.at()), Vector3::from(line.direction()));
+                        at + along * along.dot(&(made.whole.position - at))
+                    }
+                    Constraint::Clamp { .. } | Constraint::Slider { .. } | Constraint::Support { .. } => {
+                        made.whole.position
+                    }
+                };
+                let arm = if made.is_rigid { place - made.whole.position } else { Vector3::zeros() };
+                return Ok(Self { arm, ..made });
             }
             MarkerPlace::Region(region) => region,
         };
@@ -136,24 +162,50 @@ impl MeshMarker {
                 let parts = strips.into_iter().map(|strip| (strip.part, Place::of_patch(strip.patch, mesh))).collect();
                 Ok(Self { parts, ..alone(whole) })
             }
-            // Nodes with rotations would keep those free.
-            Tie::Rigid if dofs == 6 => {
-                let found = "a rigid part of a body whose nodes have rotations";
-                let help = "give the nodes rigid elements where the matrices are made, or leave `tie` out";
-                Err(scene.refuse(&key_path(&key, "tie"), found, "`\"mean\"` or `\"nodes\"`", help).into())
-            }
             Tie::Nodes | Tie::Rigid => {
-                let nodes = nodes(scene, mesh, region, &key, marker.tie)?;
-                let part = 1.0 / nodes.len() as f64;
-                let of_node = |node: &u32| (part, Place::of_point(vec![*node], vec![1.0], None, mesh));
-                let parts: Vec<_> = nodes.iter().map(of_node).collect();
-                let positions: Vec<_> = parts.iter().map(|(_, place)| place.position).collect();
-                let weights = vec![part; nodes.len()];
-                let whole = Place::of_patch(Patch::new(nodes, weights, mesh.positions()), mesh);
-                let is_rigid = marker.tie == Tie::Rigid;
-                Ok(Self { parts, patterns: Some(patterns(&positions)), is_rigid, ..alone(whole) })
+                let nodes = region_nodes(scene, mesh, region, &key, 1)?;
+                Self::of_nodes(scene, mesh, dofs, marker, nodes, alone)
             }
         }
+    }
+
+    /// One whose nodes are tied one by one, or move as one rigid body.
+    fn of_nodes(
+        scene: &Scene,
+        mesh: &Mesh,
+        dofs: usize,
+        marker: &Marker,
+        nodes: Vec<u32>,
+        alone: impl FnOnce(Place) -> Self,
+    ) -> Result<Self, BuildError> {
+        let is_rigid = marker.tie == Tie::Rigid;
+        let is_held = matches!(marker.place, MarkerPlace::Held { .. });
+        // Nodes with rotations would keep those free.
+        if dofs == 6 && (is_rigid || is_held) {
+            let found = "a rigid part of a body whose nodes have rotations";
+            let help = "give the nodes rigid elements where the matrices are made, and hold one of them";
+            let expected = if is_held { "one node beside joints" } else { "`\"mean\"` or `\"nodes\"`" };
+            return Err(scene.refuse(&marker.key_of_tie(), found, expected, help).into());
+        }
+        if nodes.len() > MAX_NODES {
+            let what = if is_rigid { "to move as one rigid body" } else { "to be tied one by one" };
+            let (found, expected) = (format!("{} nodes {what}", nodes.len()), format!("{MAX_NODES} nodes or fewer"));
+            let help = match is_held {
+                true => {
+                    "beside joints each held node takes three static shapes: hold fewer nodes, or say it as a joint to \"ground\" of a \
+                     marker that is the mean of the region"
+                }
+                false => "each takes three static shapes: take fewer nodes, or faces as `patches`, or `tie = \"mean\"`",
+            };
+            return Err(scene.refuse(&marker.key_of_tie(), found, expected, help).into());
+        }
+        let part = 1.0 / nodes.len() as f64;
+        let of_node = |node: &u32| (part, Place::of_point(vec![*node], vec![1.0], None, mesh));
+        let parts: Vec<_> = nodes.iter().map(of_node).collect();
+        let positions: Vec<_> = parts.iter().map(|(_, place)| place.position).collect();
+        let weights = vec![part; nodes.len()];
+        let whole = Place::of_patch(Patch::new(nodes, weights, mesh.positions()), mesh);
+        Ok(Self { parts, patterns: Some(patterns(&positions)), is_rigid, ..alone(whole) })
     }
 
     /// One of its places, or without a number the mean of all.
@@ -169,9 +221,14 @@ impl MeshMarker {
         self.is_rigid.then_some(&self.whole.nodes)
     }
 
-    /// Its name.
-    pub(crate) fn name(&self) -> &str {
-        &self.name
+    /// From the middle of its nodes to the place that it is, mesh axes; not zero only where they move as one rigid body.
+    pub(crate) fn arm(&self) -> Vector3<f64> {
+        self.arm
+    }
+
+    /// The key path of how its region carries it, in the scene of its body.
+    pub(crate) fn key_of_tie(&self) -> &str {
+        &self.key_of_tie
     }
 
     /// The places that forces act on.
@@ -223,9 +280,9 @@ impl MeshMarker {
             true => of_places[0].clone(),
             false => self.of_whole(&of_places),
         };
-        let (point, turning) = self.whole.shapes(scene, mesh, self.dofs, body, of_whole)?;
+        let (point, turning) = self.whole.shapes(scene, mesh, self.dofs, body, of_whole, &self.arm)?;
         let of_part = |((_, place), stiffness): (&(f64, Place), Vec<Mat<f64>>)| {
-            let (point, turning) = place.shapes(scene, mesh, self.dofs, body, stiffness)?;
+            let (point, turning) = place.shapes(scene, mesh, self.dofs, body, stiffness, &Vector3::zeros())?;
             Ok(MarkerPart { point, turning })
         };
         let parts = match self.is_rigid {
@@ -252,7 +309,7 @@ impl MeshMarker {
     fn of_whole(&self, of_parts: &[Vec<Mat<f64>>]) -> Vec<Mat<f64>> {
         let inverse = self.whole.inverse_inertia();
         let of_wrench = |[force, moment]: [Vector3<f64>; 2]| {
-            let turn = inverse * moment;
+            let turn = inverse * (moment + self.arm.cross(&force));
             let mut sum: Option<Mat<f64>> = None;
             for ((part, place), of_part) in self.parts.iter().zip(of_parts) {
                 let arm = place.position - self.whole.position;
@@ -363,14 +420,19 @@ pub(crate) fn faces(mesh: &Mesh, region: &Region) -> Option<Vec<[u32; 6]>> {
     }
 }
 
-/// The nodes in a part of the mesh, few enough to be tied one by one.
-fn nodes(scene: &Scene, mesh: &Mesh, region: &Region, key: &str, tie: Tie) -> Result<Vec<u32>, BuildError> {
-    let nodes = region_nodes(scene, mesh, region, key, 1)?;
-    if nodes.len() <= MAX_NODES {
-        return Ok(nodes);
+/// The nodes that a constraint holds, of supports the first part.
+fn held_by(
+    scene: &Scene,
+    mesh: &Mesh,
+    (constraint, number): (&Constraint, usize),
+    dofs: usize,
+) -> Result<Vec<u32>, BuildError> {
+    match constraint {
+        Constraint::Support { parts } => {
+            let key = format!("constraints[{number}]");
+            let nodes = |part: &HeldDirections| region_nodes(scene, mesh, &part.region, &key, 1);
+            Ok(parts.first().map(nodes).transpose()?.unwrap_or_default())
+        }
+        _ => held_nodes(scene, mesh, constraint, dofs),
     }
-    let what = if tie == Tie::Rigid { "to move as one rigid body" } else { "to be tied one by one" };
-    let found = format!("{} nodes {what}", nodes.len());
-    let help = "each takes three static shapes: take fewer nodes, or faces as `patches`, or `tie = \"mean\"`";
-    Err(scene.refuse(&key_path(key, "tie"), found, format!("{MAX_NODES} nodes or fewer"), help).into())
 }

@@ -114,7 +114,8 @@ impl Place {
     }
 
     /// How the modes move and turn it, however far with large ones. `stiffness` is that by the stress of each of the
-    /// [`Self::wrenches`]; none where it is left out.
+    /// [`Self::wrenches`]; none where it is left out. `arm` goes from it to the place that is meant, which moves with it as a rigid
+    /// body, mesh axes.
     pub fn shapes(
         &self,
         scene: &Scene,
@@ -122,8 +123,16 @@ impl Place {
         dofs: usize,
         &ShapedBody { body, modes, is_bent }: &ShapedBody<'_>,
         stiffness: Vec<Mat<f64>>,
+        arm: &Vector3<f64>,
     ) -> Result<(PointShapes, RotationShapes), BuildError> {
-        let point = modes.point(mesh.positions(), &self.nodes, &self.weights).map_err(modal(scene))?;
+        let mut point = modes.point(mesh.positions(), &self.nodes, &self.weights).map_err(modal(scene))?;
+        if let Some(rotation) = self.rotation.as_ref().filter(|_| *arm != Vector3::zeros()) {
+            point.position_body += arm;
+            for (mut shape, turned) in point.shapes.col_iter_mut().zip(rotation.by_mode(dofs, body, modes)) {
+                let moved = turned.cross(arm);
+                (0..3).for_each(|axis| shape[axis] += moved[axis]);
+            }
+        }
         let mut point = PointShapes::new(body, &point);
         let mut turning = match &self.rotation {
             Some(rotation) if is_bent => {

@@ -132,7 +132,7 @@ impl<'a> Island<'a> {
         let bodies = self.bodies.iter().map(conservative).collect::<Result<_, _>>()?;
         let of_joints = scene.joints.iter().enumerate().filter(|(_, joint)| self.has(joint.between));
         let (numbers, joints): (Vec<_>, Vec<_>) = of_joints
-            .map(|(number, joint)| Ok((number, self.joint(&format!("joints[{number}]"), joint)?)))
+            .map(|(number, joint)| Ok((number, self.joint(joint)?)))
             .collect::<Result<Vec<_>, BuildError>>()?
             .into_iter()
             .unzip();
@@ -177,8 +177,8 @@ impl<'a> Island<'a> {
         [ends[0].marker(first), ends[1].marker(second)]
     }
 
-    fn joint(&self, key: &str, joint: &Joint) -> Result<dynamics::Joint, BuildError> {
-        let Joint { name, kind, between, axis, drive, spring, motor } = joint;
+    fn joint(&self, joint: &Joint) -> Result<dynamics::Joint, BuildError> {
+        let Joint { key, name, kind, between, axis, drive, spring, motor } = joint;
         let turns = [drive.as_ref().map(|drive| drive.along), spring.map(|spring| spring.along)];
         let acts_on_turn = turns.contains(&Some(Coordinate::Turn));
         self.knows_turns(key, joint, acts_on_turn)?;
@@ -251,6 +251,8 @@ impl<'a> Island<'a> {
         };
         let by_nodes = ends.iter().any(EndAtStart::is_by_nodes);
         let (what, expected, fits) = match (by_nodes, line(&places)) {
+            // Each node is held along some axes, and turns as it will.
+            (true, _) if kind.locked().turns == [false; 3] && kind != JointKind::Spherical => return Ok(pairs),
             (true, None) if places.len() == 1 => ("a node", "spherical", kind == JointKind::Spherical),
             (true, None) => ("nodes that are not on a line, one by one", "fixed", kind == JointKind::Fixed),
             (true, Some(_)) => ("nodes on a line, one by one", "revolute", kind == JointKind::Revolute),

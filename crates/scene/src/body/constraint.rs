@@ -49,6 +49,16 @@ pub enum Constraint {
     },
 }
 
+impl Constraint {
+    /// The speed that drives it.
+    pub(crate) fn motion(&self) -> Option<&DrivenSpeed> {
+        match self {
+            Self::Hinge { motion, .. } | Self::Slider { motion, .. } => motion.as_ref(),
+            Self::Pin { .. } | Self::Clamp { .. } | Self::Support { .. } => None,
+        }
+    }
+}
+
 /// A part of the body that is held in some directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldDirections {

@@ -4,11 +4,13 @@ use nalgebra::Vector3;
 
 use super::Check;
 use super::constraint::RegionKeys;
+use crate::body::constraint::Constraint;
 use crate::document::join;
 use crate::error::SceneError;
 use crate::loads::unit_vector::unit;
 use crate::scene::Body;
 use crate::text::name::check_key;
+use crate::tie::joint::JointKind;
 use crate::tie::marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace, Tie};
 use crate::tie::section::{GroundMarkerSection, InOrder, MarkerSection, TieName};
 
@@ -23,6 +25,31 @@ impl Check<'_> {
         self.not_too_many("body.markers", sections.len(), help)?;
         let marker = |(name, section)| self.marker(name, section, body);
         sections.into_iter().map(marker).collect()
+    }
+
+    /// The markers at what constraints of a body in joints hold: ends of joints to the ground.
+    pub fn held_markers(&self, constraint: &Constraint, markers: &mut Vec<Marker>) {
+        let each: Vec<Constraint> = match constraint {
+            Constraint::Support { parts } => {
+                parts.iter().map(|part| Constraint::Support { parts: vec![part.clone()] }).collect()
+            }
+            one => vec![one.clone()],
+        };
+        for (number, constraint) in each.into_iter().enumerate() {
+            let is_taken = |name: &String| markers.iter().any(|marker| marker.name == *name);
+            let first = format!("constraint{}", number + 1);
+            let name = std::iter::successors(Some(first), |name| Some(format!("{name}_"))).find(|name| !is_taken(name));
+            let tie = match &constraint {
+                Constraint::Support { .. } => Tie::Nodes,
+                Constraint::Hinge { shaft, .. } if shaft.is_empty() => Tie::Nodes,
+                Constraint::Pin { radius: None, .. } => Tie::Mean,
+                _ => Tie::Rigid,
+            };
+            let x = matches!(constraint, Constraint::Support { .. }).then_some([1.0, 0.0, 0.0]);
+            let axes = JointKind::of_constraint(&constraint).1.map(|z| MarkerAxes { z, x });
+            let place = MarkerPlace::Held { constraint, number };
+            markers.push(Marker { name: name.unwrap_or_default(), place, tie, axes });
+        }
     }
 
     pub fn ground_markers(

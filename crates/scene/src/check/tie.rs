@@ -5,16 +5,18 @@ use std::collections::BTreeSet;
 use dynamics::{Coordinate, Effect, Friction, Stops};
 
 use super::Check;
+use crate::body::constraint::Constraint;
 use crate::body::effects::Choice;
 use crate::document::join;
 use crate::error::SceneError;
+use crate::loads::load::LoadKind;
 use crate::scene::Scene;
 use crate::text::name::{GROUND, ONLY_BODY, is_part_of_path};
 use crate::text::suggest::{nearest, one_of};
 use crate::tie::joint::{
     AlongAndAbout, Bushing, Coupling, CouplingKind, End, Joint, JointDrive, JointKind, JointSpring, Locked, Spring,
 };
-use crate::tie::marker::GroundMarker;
+use crate::tie::marker::{GroundMarker, MarkerPlace};
 use crate::tie::section::{
     BushingSection, CouplingSection, DriveSection, JointSection, JointSpringSection, SpringSection, StopsSection,
     TieSections,
@@ -54,7 +56,8 @@ impl Check<'_> {
         let ends = Ends { bodies, ground: &ground };
         let mut names = BTreeSet::new();
         let joint = |(i, section)| self.joint(&format!("joints[{i}]"), i, section, &ends, &mut names);
-        let joints = joints.into_iter().enumerate().map(joint).collect::<Result<Vec<_>, _>>()?;
+        let mut joints = joints.into_iter().enumerate().map(joint).collect::<Result<Vec<_>, _>>()?;
+        joints.extend(self.supports_as_joints(bodies, &mut names)?);
         let spring = |(i, section)| self.spring(&format!("springs[{i}]"), i, section, &ends, &mut names);
         let springs = springs.into_iter().enumerate().map(spring).collect::<Result<Vec<_>, _>>()?;
         springs.iter().enumerate().try_for_each(|(i, spring)| self.can_be_long(i, spring, &joints, &ends))?;
@@ -93,7 +96,37 @@ impl Check<'_> {
             let help = "keep `drive` for a motion that is given, or `motor` for a force or moment";
             return Err(self.document.place(&join(key, "motor")).refuse(found, "one of them", help));
         }
-        Ok(Joint { name, kind, between, axis, drive, spring, motor })
+        Ok(Joint { key: key.to_owned(), name, kind, between, axis, drive, spring, motor })
+    }
+
+    /// The joints to the ground that constraints of bodies in joints are.
+    fn supports_as_joints(&self, bodies: &[Scene], names: &mut BTreeSet<String>) -> Result<Vec<Joint>, SceneError> {
+        let mut joints = Vec::new();
+        for (body, scene) in bodies.iter().enumerate().filter(|(_, scene)| scene.tied) {
+            for (marker, of_body) in scene.markers.iter().enumerate() {
+                let MarkerPlace::Held { constraint, .. } = &of_body.place else { continue };
+                let name = match &scene.name {
+                    Some(body) => format!("{body}_{}", of_body.name),
+                    None => of_body.name.clone(),
+                };
+                if !names.insert(name.clone()) {
+                    let found = format!("a constraint whose joint to the ground has the name {name:?}, which is taken");
+                    let help = "rename the other joint, spring, bushing or coupling";
+                    return Err(scene.refuse(&of_body.key(), found, "each name once", help));
+                }
+                joints.push(Joint {
+                    key: scene.place(&of_body.key()).key.clone(),
+                    name,
+                    kind: JointKind::of_constraint(constraint).0,
+                    between: [End::Ground { marker: None }, End::Body { body, marker }],
+                    axis: None,
+                    drive: None,
+                    spring: None,
+                    motor: None,
+                });
+            }
+        }
+        Ok(joints)
     }
 
     fn kind(&self, key: &str, kind: Option<JointKind>, locked: Option<Vec<String>>) -> Result<JointKind, SceneError> {
@@ -481,12 +514,23 @@ fn number_of<'n>(name: &str, known: impl Iterator<Item = &'n str>, what: &str, t
     Err(NoEnd { found: format!("the {what}, which is not there"), expected, help })
 }
 
-/// Refuses a body in joints that is held, or effects that joints need off.
+/// Refuses a body in joints with effects off that joints need, with a support that is given a speed, or whose support moves.
 fn can_be_tied(scene: &Scene) -> Result<(), SceneError> {
     let in_joint = "of a body that joints, springs or bushings hold";
-    if scene.constraint.is_some() {
-        let help = "say it as a joint between a marker of the body and \"ground\"";
-        return Err(scene.refuse("constraints", format!("constraints {in_joint}"), "none", help));
+    if scene.constraint.as_ref().and_then(Constraint::motion).is_some() {
+        let help = "say it as a joint between a marker of the body and \"ground\" whose `drive` gives the angle or the path over time";
+        let found = format!("the speed of a constraint {in_joint}");
+        return Err(scene.refuse("constraints[0].motion", found, "a constraint without `motion`", help));
+    }
+    if let Some(number) = scene.loads.iter().position(|load| load.kind == LoadKind::BaseAcceleration) {
+        let help = "give each body of the scene a load `kind = \"gravity\"` in the opposite direction";
+        let found = format!("the acceleration of the base {in_joint}");
+        return Err(scene.refuse(
+            &format!("loads[{number}].kind"),
+            found,
+            "a body that its constraints alone hold",
+            help,
+        ));
     }
     for effect in [Effect::Translation, Effect::Rotation] {
         if scene.effects.choices[effect] == Choice::Off {

@@ -28,10 +28,7 @@ impl Scene {
     /// The histories of the loads and of what drives the body.
     fn histories(&self) -> impl Iterator<Item = &History> {
         let of_loads = self.loads.iter().map(|load| &load.history);
-        let driven = match &self.constraint {
-            Some(Constraint::Hinge { motion, .. } | Constraint::Slider { motion, .. }) => motion.as_ref(),
-            _ => None,
-        };
+        let driven = self.constraint.as_ref().and_then(Constraint::motion);
         of_loads.chain(driven.map(|motion| &motion.history))
     }
 }

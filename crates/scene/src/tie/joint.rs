@@ -4,6 +4,7 @@ use dynamics::{Coordinate, Friction, Stops};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use crate::body::constraint::Constraint;
 use crate::loads::history::History;
 
 /// An end of a joint, a spring or a bushing.
@@ -67,6 +68,20 @@ pub struct Locked {
 }
 
 impl JointKind {
+    /// The joint to the ground that a constraint is, of supports the first part, and its z axis where it has one, mesh axes.
+    pub(crate) fn of_constraint(constraint: &Constraint) -> (Self, Option<[f64; 3]>) {
+        match constraint {
+            Constraint::Pin { .. } => (Self::Spherical, None),
+            Constraint::Hinge { line, .. } => (Self::Revolute, Some(line.direction())),
+            Constraint::Clamp { .. } => (Self::Fixed, None),
+            Constraint::Slider { direction, .. } => (Self::Prismatic, Some(*direction)),
+            Constraint::Support { parts } => {
+                let displacements = parts.first().map_or([false; 3], |part| part.directions);
+                (Self::Other(Locked { displacements, turns: [false; 3] }), Some([0.0, 0.0, 1.0]))
+            }
+        }
+    }
+
     /// The name in a scene.
     pub fn name(self) -> &'static str {
         match self {
@@ -113,9 +128,11 @@ impl JointKind {
     }
 }
 
-/// A joint: one `[[joints]]` entry.
+/// A joint: one `[[joints]]` entry, or a constraint of a body that joints, springs or bushings hold, too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
+    /// Its key path in the scene file, such as `joints[2]` or `bodies.arm.constraints[0]`.
+    pub key: String,
     /// Its name, unlike that of any other joint, spring or bushing, without `.`, `/` and control characters.
     pub name: String,
     /// Key `kind`.

@@ -1,6 +1,7 @@
 //! Places with axes that bodies and the ground carry: the ends of joints.
 
-use crate::body::constraint::Region;
+use crate::body::constraint::{Constraint, Region};
+use crate::document::join;
 
 /// A place with axes on a body: `[bodies.NAME.markers.MARKER]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +41,31 @@ pub enum MarkerPlace {
     Point([f64; 3]),
     /// Faces in a part of the mesh, or its nodes.
     Region(Region),
+    /// The part that a constraint of the body holds, beside joints: the end of the joint to the ground that it is.
+    Held {
+        /// The constraint; of supports one part.
+        constraint: Constraint,
+        /// Its number among `[[constraints]]`.
+        number: usize,
+    },
+}
+
+impl Marker {
+    /// The key path of it in the scene of its body, for messages.
+    pub fn key(&self) -> String {
+        match self.place {
+            MarkerPlace::Held { number, .. } => format!("constraints[{number}]"),
+            MarkerPlace::Point(_) | MarkerPlace::Region(_) => join("body.markers", &self.name),
+        }
+    }
+
+    /// The key path of how its region carries it.
+    pub fn key_of_tie(&self) -> String {
+        match self.place {
+            MarkerPlace::Held { .. } => self.key(),
+            MarkerPlace::Point(_) | MarkerPlace::Region(_) => join(&self.key(), "tie"),
+        }
+    }
 }
 
 /// Axes of a marker.

@@ -2,7 +2,8 @@
 
 use dynamics::Coordinate;
 use scene::{
-    CouplingKind, End, JointKind, Locked, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError, System, Tie, Time,
+    CouplingKind, End, Joint, JointKind, Locked, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError, System,
+    Tie, Time,
 };
 
 const HEAD: &str = "title = 'three'\nunits = { length = 'm', mass = 'kg', time = 's' }\n";
@@ -32,6 +33,29 @@ fn three() -> String {
 
 fn parse(text: &str) -> Result<System, SceneError> {
     System::parse(text, "three.toml")
+}
+
+#[test]
+fn a_constraint_of_a_body_in_joints_is_a_joint_to_the_ground() {
+    let with = |constraints: &str| {
+        let modes = "modes = { flexible = 4 }";
+        let text = three().replacen(modes, &format!("{modes}\nconstraints = [{constraints}]"), 1);
+        let system = parse(&text).unwrap();
+        assert!(system.bodies[0].reduced_constraint().is_none());
+        let of_ground = |joint: &&Joint| joint.key.starts_with("bodies.arm.constraints");
+        system.joints.iter().filter(of_ground).cloned().collect::<Vec<_>>()
+    };
+    let [hinge] = &with("{ kind = 'hinge', at = [0, 0, 0], axis = [0, 1, 0], group = 'root' }")[..] else { panic!() };
+    assert_eq!((&*hinge.key, &*hinge.name), ("bodies.arm.constraints[0]", "arm_constraint1"));
+    assert_eq!(hinge.kind, JointKind::Revolute);
+    assert_eq!(hinge.between, [End::Ground { marker: None }, End::Body { body: 0, marker: 3 }]);
+    let part = |axis| format!("{{ kind = 'support', directions = ['{axis}'], group = 'root' }}");
+    let names: Vec<_> = with(&format!("{}, {}", part("x"), part("z"))).into_iter().map(|joint| joint.name).collect();
+    assert_eq!(names, ["arm_constraint1", "arm_constraint2"]);
+    // Without joints of its own the body keeps it.
+    let block =
+        three().replacen("[bodies.block]", "[bodies.block]\nconstraints = [{ kind = 'pin', at = [0, 0, 0] }]", 1);
+    assert!(parse(&block).unwrap().bodies[2].reduced_constraint().is_some());
 }
 
 #[test]
@@ -247,9 +271,23 @@ fn refusals_name_the_place_and_the_way_out() {
         // Bodies.
         (
             "modes = { flexible = 4 }",
-            "modes = { flexible = 4 }\nconstraints = [{ kind = 'pin', at = [0, 0, 0] }]",
-            "bodies.arm.constraints",
-            "\"ground\"",
+            "modes = { flexible = 4 }\nconstraints = [{ kind = 'slider', direction = [1, 0, 0], group = 'g', motion = { amplitude = 1 } }]",
+            "bodies.arm.constraints[0].motion",
+            "whose `drive` gives",
+        ),
+        (
+            "modes = { flexible = 4 }",
+            "modes = { flexible = 4 }\nconstraints = [{ kind = 'pin', at = [0, 0, 0] }]\n\
+             loads = [{ kind = 'base-acceleration', direction = [1, 0, 0], amplitude = 1 }]",
+            "bodies.arm.loads[0].kind",
+            "`kind = \"gravity\"` in the opposite direction",
+        ),
+        (
+            "modes = { flexible = 4 }\n",
+            "modes = { flexible = 4 }\nconstraints = [{ kind = 'pin', at = [0, 0, 0] }]\n[[couplings]]\nname = 'arm_constraint1'\n\
+             kind = 'screw'\njoint = 'joint2'\nlead = 1\n",
+            "couplings[0].name",
+            "each name once",
         ),
         (
             "modes = { flexible = 4 }",

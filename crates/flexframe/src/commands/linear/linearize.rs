@@ -58,7 +58,7 @@ pub fn linear_model(
 ) -> Result<LinearModel, LinearizeError> {
     // A motion that the scene does not call for is one that an input may: of a free body any, of a held one a vibration.
     let builder = builder.needing(match &system.bodies[..] {
-        [scene] if scene.constraint.is_none() => Needs::external_inputs(),
+        [scene] if scene.reduced_constraint().is_none() => Needs::external_inputs(),
         _ => Needs::vibrations(),
     });
     let models = builder.models(system, progress)?;

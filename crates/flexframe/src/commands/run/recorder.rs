@@ -202,8 +202,11 @@ impl<'a> Recorder<'a> {
 
     /// The report of an island of tied bodies.
     fn tied_report(&self, island: &Island) -> Option<TiedReport> {
-        let names = island.bodies.iter().map(|body| self.bodies[*body].of.name().to_owned());
-        TiedReport::new(&island.motion, names.collect())
+        let bodies = island.bodies.iter().map(|body| &self.bodies[*body].of);
+        let constrained = bodies.clone().filter(|of| of.scene.constraint.is_some());
+        let [names, constrained] =
+            [bodies.map(|of| of.name().to_owned()).collect(), constrained.map(|of| of.name().to_owned()).collect()];
+        TiedReport::new(&island.motion, names, constrained)
     }
 
     /// Name of a body among several, for messages.

@@ -26,6 +26,9 @@ pub struct TiedReport {
     pub bodies: Vec<String>,
     /// Names of the joints.
     pub joints: Vec<String>,
+    /// Bodies whose constraints are joints to the ground, since joints, springs or bushings hold them, too.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constrained: Vec<String>,
     /// Rows of the joints.
     pub rows: usize,
     /// Degrees of freedom that they leave rigid bodies at the beginning.
@@ -120,7 +123,7 @@ pub struct AssembledReport {
 
 impl TiedReport {
     /// The report of a run in progress; `None` without joints.
-    pub(super) fn new(simulation: &Simulation, bodies: Vec<String>) -> Option<Self> {
+    pub(super) fn new(simulation: &Simulation, bodies: Vec<String>, constrained: Vec<String>) -> Option<Self> {
         let (run, motion) = (simulation.system()?, simulation.system_motion()?);
         let (system, size) = (motion.system(), run.size());
         let speed = size / simulation.end();
@@ -150,6 +153,7 @@ impl TiedReport {
             held: held.filter(|of| of.time > HELD * simulation.end()).collect(),
             flexible_stops: stops.map(|joint| joint.name.clone()).collect(),
             joints: system.joints().iter().map(|joint| joint.name.clone()).collect(),
+            constrained,
             rows: system.joints().iter().map(|joint| joint.row_count()).sum(),
             rigid_dofs: run.rigid_dofs(),
             redundant: run.redundant().to_vec(),
@@ -216,6 +220,14 @@ impl fmt::Display for TiedReport {
             s(joints.len()),
             s(*rigid_dofs),
         )?;
+        if !self.constrained.is_empty() {
+            writeln!(
+                f,
+                "           constraints of {} are joints to the ground, for joints, springs or bushings hold the body, too: its modes and \
+                 their damping are those of the free body",
+                self.constrained.join(", ")
+            )?;
+        }
         if !redundant.is_empty() {
             let list: Vec<String> = redundant.iter().map(|(joint, rows)| format!("{joint} ({rows})")).collect();
             writeln!(
