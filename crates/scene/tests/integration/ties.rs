@@ -271,14 +271,14 @@ fn refusals_name_the_place_and_the_way_out() {
         // Bodies.
         (
             "modes = { flexible = 4 }",
-            "modes = { flexible = 4 }\nconstraints = [{ kind = 'slider', direction = [1, 0, 0], group = 'g', motion = { amplitude = 1 } }]",
+            "modes = { flexible = 4 }\nconstraints = [{ kind = 'slider', direction = [1, 0, 0], group = 'g', motion = { amplitude = 1, history = { kind = 'constant' } } }]",
             "bodies.arm.constraints[0].motion",
             "whose `drive` gives",
         ),
         (
             "modes = { flexible = 4 }",
             "modes = { flexible = 4 }\nconstraints = [{ kind = 'pin', at = [0, 0, 0] }]\n\
-             loads = [{ kind = 'base-acceleration', direction = [1, 0, 0], amplitude = 1 }]",
+             loads = [{ kind = 'base-acceleration', direction = [1, 0, 0], amplitude = 1, history = { kind = 'constant' } }]",
             "bodies.arm.loads[0].kind",
             "`kind = \"gravity\"` in the opposite direction",
         ),
