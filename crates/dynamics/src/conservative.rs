@@ -52,7 +52,7 @@
 //! About a bent reference X stands for the nodes of the bent body, Λ for its stiffness, and p' has −g − Bq
 //! ([`ReferenceForces`](crate::ReferenceForces)).
 
-mod body;
+pub(crate) mod body;
 mod build;
 mod coordinates;
 mod energy;

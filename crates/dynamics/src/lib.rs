@@ -99,7 +99,7 @@ pub use system::run::second_order::Branching;
 pub use system::run::setup::{Assembled, ShapeLimit, SystemSetup};
 pub use tolerance::allowance::ErrorEstimate;
 pub use tolerance::{ErrorKinds, ErrorMeasure, StatedError};
-pub use vibration::loaded::{LoadedError, LoadedMode};
+pub use vibration::loaded::{AtRest, LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 pub use vibration::system::{
     BodyStiffening, CommonSpin, Linearization, ReactionRows, Rotor, RotorError, ScaledEquations, Spring, SteadyError,

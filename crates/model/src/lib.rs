@@ -56,7 +56,6 @@ pub use gradient::varied::VariedBody;
 pub use load::mesh_load::BaseAcceleration;
 pub use mesh::doubt::{Doubt, doubts};
 pub use mesh::given::MatrixChecks;
-pub use model::rest::{Answer, AtRest, HeldSlopes};
 pub use model::{Meshed, Model};
 pub use needs::{ModeCount, Needs};
 pub use stress::about::stress_about;

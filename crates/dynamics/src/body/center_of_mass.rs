@@ -20,6 +20,11 @@ impl CenterOfMass {
         Self { undeformed_body: body.center_of_mass - body.origin, columns }
     }
 
+    /// Part of each flexible mode; none for a free body.
+    pub(crate) fn columns(&self) -> &[Vector3<f64>] {
+        &self.columns
+    }
+
     /// Part of flexible modal coordinates, or of their rates.
     pub fn deformation(&self, flexible: &[f64]) -> Vector3<f64> {
         self.columns.iter().zip(flexible).map(|(column, q)| column * *q).sum()

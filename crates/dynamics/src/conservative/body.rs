@@ -1,5 +1,6 @@
 //! A body with its loads, as the conservative form has it.
 
+use faer::Mat;
 use keys::{Key, Keyed};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
@@ -32,6 +33,16 @@ pub(super) enum Translation {
     Driven(Vector3<f64>),
 }
 
+/// The stress of a drive: a unit of its acceleration stiffens the modes by −K, and the deformed body draws it in.
+#[derive(Debug, Clone)]
+pub(crate) struct Drawn {
+    /// Velocity of the origin and angular velocity by a unit of the drive's speed.
+    pub along: [Vector3<f64>; 2],
+    /// K q, and K (nf×nf).
+    pub momenta: Vec<f64>,
+    pub stiffness: Mat<f64>,
+}
+
 /// A body with its loads in the conservative form.
 #[derive(Debug, Clone)]
 pub struct ConservativeBody {
@@ -51,7 +62,7 @@ pub struct ConservativeBody {
     pub(super) axis_columns: Matrix3<f64>,
     /// True if the turning is driven.
     pub(super) turn_driven: bool,
-    pub(super) drive: Option<Drive>,
+    pub(crate) drive: Option<Drive>,
     /// J₀ in the axes of rotation; 1 on the diagonal of axes that are missing.
     pub(super) inertia: Matrix3<f64>,
     pub(super) inverse_inertia: Matrix3<f64>,
@@ -94,7 +105,7 @@ pub struct ConservativeBody {
     /// Manifold of a body with large modes.
     pub(crate) manifold: Option<Manifold>,
     /// Forces of the bent body that the modes are about.
-    pub(super) reference: Option<Reference>,
+    pub(crate) reference: Option<Reference>,
     /// Constants of a body that something holds.
     pub(super) held: Option<Held>,
 }
@@ -154,6 +165,23 @@ impl ConservativeBody {
     /// Numbers of the components of π that the body turns freely with: none of a driven one.
     pub(crate) fn free_turns(&self) -> std::ops::Range<usize> {
         0..if self.turn_driven { 0 } else { self.axes.len() }
+    }
+
+    /// The motion of its frame that is driven: velocity of the origin and angular velocity, by a unit of the speed.
+    pub(crate) fn driven(&self) -> Option<[Vector3<f64>; 2]> {
+        match (self.translation, &self.axes[..]) {
+            (Translation::Driven(direction), _) => Some([direction, Vector3::zeros()]),
+            (_, [axis]) if self.turn_driven => Some([Vector3::zeros(), *axis]),
+            _ => None,
+        }
+    }
+
+    /// The stress of its drive at some modal displacements.
+    pub(crate) fn drawn(&self, q: &[f64]) -> Option<Drawn> {
+        let (along, of_drive) = (self.driven()?, self.drive_stiffness.as_ref()?);
+        let mut momenta = vec![0.0; q.len()];
+        of_drive.multiply(q, &mut momenta);
+        Some(Drawn { along, momenta, stiffness: of_drive.dense() })
     }
 
     /// Its mass.

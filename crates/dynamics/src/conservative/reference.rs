@@ -27,6 +27,11 @@ impl Reference {
         &self.force
     }
 
+    /// B.
+    pub fn stiffness(&self) -> Mat<f64> {
+        self.stiffness.dense()
+    }
+
     /// Subtracts g + B q from the modal forces.
     pub fn subtract_force(&self, q: &[f64], out: &mut [f64]) {
         self.stiffness.each_block(q, |first, rows| {

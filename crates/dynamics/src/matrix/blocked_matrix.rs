@@ -39,6 +39,18 @@ impl BlockedMatrix {
         self.rows * self.columns
     }
 
+    /// All its entries.
+    pub(crate) fn dense(&self) -> Mat<f64> {
+        let mut dense = Mat::zeros(self.rows, self.columns);
+        for j in 0..self.columns {
+            let unit: Vec<f64> = (0..self.columns).map(|k| f64::from(u8::from(k == j))).collect();
+            self.each_block(&unit, |first, rows| {
+                rows.iter().enumerate().for_each(|(i, x)| dense[(first + i, j)] = *x);
+            });
+        }
+        dense
+    }
+
     /// xᵀM x of as many rows as columns.
     pub(crate) fn quadratic(&self, x: &[f64]) -> f64 {
         let mut sum = 0.0;

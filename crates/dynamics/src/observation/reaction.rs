@@ -64,18 +64,18 @@ impl Reaction {
 /// The constants of the momenta of a body that is held, about all three axes through its origin.
 #[derive(Debug, Clone)]
 pub(crate) struct Held {
-    mass: f64,
-    inertia: Matrix3<f64>,
+    pub mass: f64,
+    pub inertia: Matrix3<f64>,
     /// c_ij (6, or none without terms that follow the deformation).
-    first: Vec<Vec<f64>>,
+    pub first: Vec<Vec<f64>>,
     /// N_ij of the same (nf × nf each).
-    second: Vec<BlockedMatrix>,
+    pub second: Vec<BlockedMatrix>,
     /// K_ij of the modes; none without the stress of the spin.
-    stress: Vec<BlockedMatrix>,
+    pub stress: Vec<BlockedMatrix>,
     /// b_i (nf each).
-    coupling: [Vec<f64>; 3],
+    pub coupling: [Vec<f64>; 3],
     /// G_i (nf × nf each, or none without Coriolis terms).
-    gyroscopic: Vec<BlockedMatrix>,
+    pub gyroscopic: Vec<BlockedMatrix>,
 }
 
 /// A motion, body components; ξ, ν and ν' of the shapes of the constants.

@@ -15,15 +15,18 @@
 //!
 //! f are the modal forces of a body that does not move. Without large modes f is linear and A the same everywhere.
 
-use faer::linalg::solvers::Solve;
+use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, c64};
+use nalgebra::Vector3;
 
 use crate::body::initial::Initial;
 use crate::conservative::ConservativeBody;
-use crate::equations::{Equations, Evaluation, Oscillators};
-use crate::error::StepError;
-use crate::state::State;
+use crate::equations::Equations;
+use crate::error::{SetupError, StepError};
 use crate::vibration::steady_spin::EigenError;
+use crate::vibration::system::body::BodyTerms;
+use crate::vibration::system::configuration::BodyConfiguration;
+use crate::vibration::system::tie::stiffnesses;
 
 /// A part of the frequency that growth must exceed to be more than rounding.
 const ROUNDING: f64 = 1e-7;
@@ -53,7 +56,7 @@ pub enum LoadedError {
     Eigen(#[from] EigenError),
     /// The start is none of this body.
     #[error("{0}")]
-    Setup(#[from] crate::error::SetupError),
+    Setup(#[from] SetupError),
     /// A body with large modes does not come to rest under its loads.
     #[error(
         "the model finds no rest under its steady loads: they bend it further than its large modes hold; make the loads smaller or the body stiffer, or take modes about the bent rest (`about` in [modes])"
@@ -61,101 +64,78 @@ pub enum LoadedError {
     NoRest,
 }
 
-impl ConservativeBody {
-    /// A of the body at rest in the attitude of `initial` about the modal displacements `rest` (nf), with its loads as they
-    /// are at a time (nf×nf). It is the central difference between displacements by ±`amplitudes` (nf); without large modes
-    /// that is exact for the loads of this crate.
-    ///
-    /// # Errors
-    /// [`LoadedError`].
-    pub fn loaded_stiffness(
-        &self,
-        initial: &Initial,
-        rest: &[f64],
-        amplitudes: &[f64],
-        time: f64,
-    ) -> Result<Mat<f64>, LoadedError> {
-        let nf = self.flexible();
-        let mut stiffness = Mat::zeros(nf, nf);
-        for (k, amplitude) in amplitudes.iter().copied().enumerate().take(nf) {
-            for sign in [1.0, -1.0] {
-                let mut q = rest.to_vec();
-                q[k] += sign * amplitude;
-                for (i, force) in self.forces_at_rest(initial, q, time)?.into_iter().enumerate() {
-                    stiffness[(i, k)] -= sign * 0.5 * force / amplitude;
-                }
-            }
-        }
-        Ok(stiffness)
-    }
+/// First order of a body about rest in its frame, M ξ̈ + C ξ̇ + K ξ = forces: ξ are a displacement and a turn of the frame along the axes of the
+/// body, and changes of the modes. Where something holds the frame, the first six rows are those of its reaction.
+#[derive(Debug, Clone)]
+pub struct AtRest {
+    /// Modal displacements at rest.
+    pub modal_displacement: Vec<f64>,
+    /// M, C and K ((6+nf)×(6+nf) each).
+    pub mass: Mat<f64>,
+    /// C.
+    pub damping: Mat<f64>,
+    /// K.
+    pub stiffness: Mat<f64>,
+    /// Forces (6+nf) of each load where its history is 1, as [`ConservativeBody::unit_forces`].
+    pub unit_forces: Vec<Vec<f64>>,
+    /// The motion of the frame that a unit of the drive's speed is.
+    pub driven: Option<[f64; 6]>,
+    /// Forces that are left on the frame, and none on the modes.
+    forces: Vec<f64>,
+}
 
-    /// The modal displacements (nf) at which the body is at rest under its loads as they are at a time, in the attitude of
+impl ConservativeBody {
+    /// First order about the rest of the body in its frame under its loads and its drive as they are at a time, in the attitude of
     /// `initial`, by Newton's iteration from the undeformed body. `amplitudes` (nf) are small displacements.
     ///
     /// # Errors
     /// [`LoadedError::NoRest`] where it comes to none.
-    pub fn loaded_rest(&self, initial: &Initial, amplitudes: &[f64], time: f64) -> Result<Vec<f64>, LoadedError> {
+    pub fn at_rest(&self, initial: &Initial, amplitudes: &[f64], time: f64) -> Result<AtRest, LoadedError> {
         let nf = self.flexible();
         let mut q = vec![0.0; nf];
         for _ in 0..MOST {
-            let force = self.forces_at_rest(initial, q.clone(), time)?;
-            let force = Mat::from_fn(nf, 1, |i, _| force[i]);
-            let way = self.loaded_stiffness(initial, &q, amplitudes, time)?.partial_piv_lu().solve(&force);
+            let there = self.still_at(initial, &q, time)?;
+            let force = Mat::from_fn(nf, 1, |i, _| there.forces[6 + i]);
+            let way = of_modes(&there.stiffness).partial_piv_lu().solve(&force);
             let size = (0..nf).map(|k| (way[(k, 0)] / amplitudes[k]).abs()).fold(0.0, f64::max);
             if !size.is_finite() {
                 break;
             }
+            if size <= AT_REST {
+                return Ok(there);
+            }
             let part = (STRIDE / size).min(1.0);
             q.iter_mut().enumerate().for_each(|(k, q)| *q += part * way[(k, 0)]);
-            if size <= AT_REST {
-                return Ok(q);
-            }
         }
         Err(LoadedError::NoRest)
     }
 
-    /// p' of the body that is at rest with some modal displacements.
-    fn forces_at_rest(
-        &self,
-        initial: &Initial,
-        modal_displacement: Vec<f64>,
-        time: f64,
-    ) -> Result<Vec<f64>, LoadedError> {
-        let at = Initial { attitude: initial.attitude, modal_displacement, ..Initial::at_rest(self.flexible()) };
-        let [_, force] = self.mode_rates(&self.start_at(&at, time)?)?;
-        Ok(force)
-    }
-
-    /// M⁻¹ (nf×nf) at some modal displacements: the modal velocities of unit momenta.
-    fn inverse_mass(&self, initial: &Initial, modal_displacement: &[f64]) -> Result<Mat<f64>, LoadedError> {
+    /// First order where the body has some modal displacements and does not move but as its drive does.
+    fn still_at(&self, initial: &Initial, q: &[f64], time: f64) -> Result<AtRest, LoadedError> {
         let nf = self.flexible();
-        let at = Initial {
-            attitude: initial.attitude,
-            modal_displacement: modal_displacement.to_vec(),
-            ..Initial::at_rest(nf)
-        };
-        let mut state = self.start(&at)?;
-        let mut inverse = Mat::zeros(nf, nf);
-        let [_, first_p] = self.first_modes();
-        for k in 0..nf {
-            state.values[first_p..first_p + nf].fill(0.0);
-            state.values[first_p + k] = 1.0;
-            let [velocity, _] = self.mode_rates(&state)?;
-            for (i, velocity) in velocity.into_iter().enumerate() {
-                inverse[(i, k)] = velocity;
-            }
+        let still = Initial::at_rest(nf);
+        let still = Initial { attitude: initial.attitude, origin: initial.origin, ..still };
+        let state = self.start_at(&Initial { modal_displacement: q.to_vec(), ..still }, time)?;
+        let mut at = BodyConfiguration::still(self, &state);
+        if let (Some(drive), Some([velocity, omega])) = (&self.drive, self.driven()) {
+            let (speed, acceleration) = (drive.speed_at(time, time), drive.acceleration_at(time, time));
+            (at.velocity, at.omega) = (velocity * speed, omega * speed);
+            (at.velocity_rate, at.omega_rate) = (velocity * acceleration, omega * acceleration);
         }
-        Ok(inverse)
-    }
-
-    /// q' and p' at a state.
-    fn mode_rates(&self, state: &State) -> Result<[Vec<f64>; 2], StepError> {
-        let mut e = self.evaluation();
-        e.place_mut().copy_from_slice(&state.values);
-        self.rates([state.time; 2], &self.frame(state), &mut e).map_err(|error| error.in_step(state.time, 0.0))?;
-        self.add_linear(&mut e);
-        let rates = e.rates();
-        Ok(self.first_modes().map(|first| rates[first..first + self.flexible()].to_vec()))
+        let BodyTerms { mass, damping, mut stiffness, forces, .. } = BodyTerms::new(self, &at, time);
+        stiffnesses(self).enumerate().for_each(|(k, square)| stiffness[(6 + k, 6 + k)] += square);
+        let motion = self.motion_state(&state).map_err(|error| error.in_step(time, 0.0))?;
+        Ok(AtRest {
+            modal_displacement: q.to_vec(),
+            mass,
+            damping,
+            stiffness,
+            unit_forces: self.unit_forces(&motion),
+            driven: self
+                .driven()
+                .map(|[velocity, omega]| std::array::from_fn(|i| if i < 3 { velocity[i] } else { omega[i - 3] })),
+            forces,
+        })
     }
 
     /// The vibrations about the rest under the loads, slowest first. `amplitudes` (nf) are small modal displacements.
@@ -164,10 +144,10 @@ impl ConservativeBody {
     /// [`LoadedError`].
     pub fn loaded_modes(&self, initial: &Initial, amplitudes: &[f64]) -> Result<Vec<LoadedMode>, LoadedError> {
         let squares = if self.manifold.is_some() {
-            let rest = self.loaded_rest(initial, amplitudes, 0.0)?;
-            self.inverse_mass(initial, &rest)? * self.loaded_stiffness(initial, &rest, amplitudes, 0.0)?
+            let rest = self.at_rest(initial, amplitudes, 0.0)?;
+            self.inverse_mass(&rest.mass) * of_modes(&rest.stiffness)
         } else {
-            self.loaded_stiffness(initial, &vec![0.0; self.flexible()], amplitudes, 0.0)?
+            of_modes(&self.still_at(initial, &vec![0.0; self.flexible()], 0.0)?.stiffness)
         };
         let eigenvalues: Vec<c64> = squares.eigenvalues().map_err(|_| EigenError { size: self.flexible() })?;
         let mut modes: Vec<LoadedMode> = eigenvalues
@@ -185,4 +165,22 @@ impl ConservativeBody {
         modes.sort_by(|a, b| a.circular_frequency.total_cmp(&b.circular_frequency));
         Ok(modes)
     }
+
+    /// M⁻¹ of the modes (nf×nf) of a body that turns as it is free to.
+    fn inverse_mass(&self, mass: &Mat<f64>) -> Mat<f64> {
+        let (turns, nf) = (self.free_turns().len(), self.flexible());
+        let axis = |k: usize| -> &Vector3<f64> { &self.axes[k] };
+        let left = Mat::from_fn(6 + nf, turns + nf, |i, k| match (i, k < turns) {
+            (3..6, true) => axis(k)[i - 3],
+            (6.., false) => f64::from(u8::from(i - 6 == k - turns)),
+            _ => 0.0,
+        });
+        let inverse = (left.transpose() * mass * &left).partial_piv_lu().inverse();
+        inverse.get(turns.., turns..).to_owned()
+    }
+}
+
+/// The part of a matrix over the modes.
+fn of_modes(matrix: &Mat<f64>) -> Mat<f64> {
+    matrix.get(6.., 6..).to_owned()
 }

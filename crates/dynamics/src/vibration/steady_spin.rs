@@ -66,11 +66,6 @@ impl SteadySpin {
         Self { circular_frequencies: body.circular_frequencies.clone(), gyroscopic, softening }
     }
 
-    /// Stiffness and damping that the spin adds at a speed in rad per time: −Ω² (N_aa − K_aa) and 2Ω G_a (nf×nf each).
-    pub fn added(&self, speed: f64) -> [Mat<f64>; 2] {
-        [&self.softening * faer::Scale(-speed * speed), &self.gyroscopic * faer::Scale(2.0 * speed)]
-    }
-
     /// The vibrations at a spin speed in rad per time, slowest first.
     ///
     /// # Errors

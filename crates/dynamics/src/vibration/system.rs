@@ -10,7 +10,7 @@
 //! ```
 
 mod blocks;
-mod body;
+pub(crate) mod body;
 pub(crate) mod configuration;
 pub(crate) mod error;
 mod graded;

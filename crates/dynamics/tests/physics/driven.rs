@@ -1,10 +1,14 @@
 //! Bodies whose held part is driven.
 
-use dynamics::{Drive, DrivenMotion, DrivenSpeed, Effect, History, Rows, StepControl};
+use dynamics::{
+    ConservativeBody, Drive, DrivenMotion, DrivenSpeed, Effect, Equations, History, Initial, MotionState, Physics,
+    Rows, Signal, StepControl,
+};
+use faer::Mat;
 use nalgebra::Vector3;
 use reduced_body::RigidMotion;
 
-use crate::sample::{EXPONENTIAL, RKMK4, Run, body};
+use crate::sample::{EXPONENTIAL, RKMK4, Run, body, dead_force, point, start};
 
 fn clamped() -> reduced_body::ReducedBody {
     body(RigidMotion::clamp(Vector3::zeros()), &[5.0, 8.0, 13.0])
@@ -132,5 +136,71 @@ fn a_jump_of_the_driven_speed_does_its_work_at_once() {
         let start = rows.next().unwrap().unwrap();
         let jump = rows.next().unwrap().unwrap();
         assert!((jump.energy_balance() - start.energy_balance()).abs() < 1e-6 * jump.energy(), "{motion:?}");
+    }
+}
+
+/// Independent reference: differences of the accelerations and the reaction in the motion, over modes, their rates and the speed and the acceleration of
+/// the drive, about a rest that a drive which gains speed bends: the laws are of second degree.
+#[test]
+fn the_first_order_of_a_driven_body_is_that_of_differences() {
+    let body = clamped();
+    let (nf, time, size) = (body.flexible(), 0.7, 1e-2);
+    let added = Signal::held(0.0);
+    let initial = Initial { attitude: start(nf).attitude, ..Initial::at_rest(nf) };
+    for motion in motions() {
+        let physics = Physics {
+            drive: Some(Drive { added: Some(added.clone()), ..drive(motion) }),
+            drive_stiffness: Some(Mat::from_fn(nf, nf, |i, j| 0.1 * (1 + i + j) as f64)),
+            ..Physics::default()
+        };
+        let push = dead_force(point(&body, [0.3, 0.2, 0.1]), Vector3::new(1.0, -2.0, 0.5), History::Constant);
+        let body = ConservativeBody::new(&body, &[0.03; 3], vec![push], &physics).unwrap();
+        let rest = body.at_rest(&initial, &[size; 3], time).unwrap();
+        let at = |place: &[f64], rates: &[f64]| -> Vec<f64> {
+            let motion = MotionState {
+                time,
+                modal_displacement: rest.modal_displacement.iter().zip(place).map(|(q, by)| q + by).collect(),
+                modal_velocity: rates.to_vec(),
+                ..body.motion_state(&body.start(&initial).unwrap()).unwrap()
+            };
+            let seen = body.observed_at(&motion, &[]).unwrap();
+            let reaction = seen.reaction.force_body.iter().chain(&seen.reaction.moment_body).copied();
+            reaction.chain(seen.modal_acceleration.iter().copied()).collect()
+        };
+        let zeros = vec![0.0; nf];
+        let still = at(&zeros, &zeros);
+        assert!(still[6..].iter().all(|x| x.abs() < 1e-9), "{still:?}");
+        assert!(rest.modal_displacement.iter().any(|q| q.abs() > 1e-2));
+        let unit = |k: usize, by: f64| (0..nf).map(|i| if i == k { by } else { 0.0 }).collect::<Vec<f64>>();
+        let slope = |ahead: Vec<f64>, back: Vec<f64>, size: f64| -> Vec<f64> {
+            ahead.iter().zip(&back).map(|(ahead, back)| (ahead - back) / (2.0 * size)).collect()
+        };
+        // M ξ̈ + C ξ̇ + K ξ of the frame is the reaction, of the modes zero.
+        let check = |slope: &[f64], column: &dyn Fn(usize) -> f64| {
+            for i in 0..6 + nf {
+                let by_modes: f64 = (0..nf).map(|k| rest.mass[(i, 6 + k)] * slope[6 + k]).sum();
+                let found = by_modes + column(i);
+                let expected = if i < 6 { slope[i] } else { 0.0 };
+                assert!((found - expected).abs() < 1e-8 * (1.0 + expected.abs()), "{motion:?} {i}: {found} {expected}");
+            }
+        };
+        for k in 0..nf {
+            let by_place = slope(at(&unit(k, size), &zeros), at(&unit(k, -size), &zeros), size);
+            check(&by_place, &|i| rest.stiffness[(i, 6 + k)]);
+            let by_rate = slope(at(&zeros, &unit(k, size)), at(&zeros, &unit(k, -size)), size);
+            check(&by_rate, &|i| rest.damping[(i, 6 + k)]);
+        }
+        let along = rest.driven.unwrap();
+        let of_drive = |matrix: &Mat<f64>, i: usize| (0..6).map(|k| matrix[(i, k)] * along[k]).sum::<f64>();
+        let by = |set: &dyn Fn(f64)| {
+            let [ahead, back] = [size, -size].map(|by| {
+                set(by);
+                at(&zeros, &zeros)
+            });
+            added.hold(0.0);
+            slope(ahead, back, size)
+        };
+        check(&by(&|by| added.hold(by)), &|i| of_drive(&rest.damping, i));
+        check(&by(&|by| added.ramp(time, 0.0, by)), &|i| of_drive(&rest.mass, i));
     }
 }

@@ -6,6 +6,7 @@ use reduced_body::ReducedBody;
 use rigid_kin::cross_matrix;
 
 use crate::conservative::ConservativeBody;
+use crate::conservative::body::Drawn;
 use crate::conservative::manifold::BentShape;
 use crate::vibration::system::configuration::BodyConfiguration;
 use crate::vibration::system::load::load_forces;
@@ -35,14 +36,19 @@ impl BodyTerms {
         let (q, omega) = (&at.q, &at.omega);
         let inertia = body.inertia_where(at);
         let cross = cross_matrix(omega);
-        let mass = Mat::from_fn(n, n, |i, j| match (i, j) {
-            (0..3, _) | (_, 0..3) => {
+        let moment = cross_matrix(&inertia.moment);
+        let mut mass = Mat::from_fn(n, n, |i, j| match (i, j) {
+            (0..3, 0..3) => {
                 if i == j {
                     body.mass()
                 } else {
                     0.0
                 }
             }
+            (0..3, 3..6) => -moment[(i, j - 3)],
+            (3..6, 0..3) => moment[(i - 3, j)],
+            (0..3, _) => inertia.translation[j - 6][i],
+            (_, 0..3) => inertia.translation[i - 6][j],
             (3..6, 3..6) => inertia.whole[(i - 3, j - 3)],
             (3..6, _) => inertia.coupling[i - 3][j - 6],
             (_, 3..6) => inertia.coupling[j - 3][i - 6],
@@ -57,16 +63,24 @@ impl BodyTerms {
         let (mut by_velocity, mut by_q) = (Mat::zeros(n, n), Mat::zeros(n, nf));
         let damping = body.circular_frequencies.iter().zip(&body.damping_ratios).map(|(w, zeta)| 2.0 * zeta * w);
         for (k, damping) in damping.enumerate() {
-            let turned = 2.0 * inertia.slope(k) * omega;
-            (0..3).for_each(|i| by_velocity[(6 + k, 3 + i)] = turned[i]);
+            (0..n).for_each(|j| by_velocity[(6 + k, j)] = by_modes[(j, k)]);
             for j in 0..nf {
-                by_velocity[(6 + k, 6 + j)] = by_modes[(6 + j, k)];
                 by_q[(6 + k, j)] = omega.dot(&(inertia.curvature(k, j) * omega));
             }
             by_velocity[(6 + k, 6 + k)] -= damping;
         }
-        // y' + ω×y = forces, with momenta y of the rigid motion.
-        let momentum = at.velocity * body.mass();
+        // What draws its drive in counts as mass.
+        let drawn = body.drawn(q);
+        if let Some(Drawn { along, momenta, .. }) = &drawn {
+            for (k, i) in (0..nf).flat_map(|k| (0..6).map(move |i| (k, i))) {
+                let less = momenta[k] * along[i / 3][i % 3];
+                mass[(i, 6 + k)] -= less;
+                mass[(6 + k, i)] -= less;
+            }
+        }
+        // y' + ω×y = forces, with momenta y of the rigid motion: a body that is held away from its center of mass turns about its origin, or
+        // moves along a line.
+        let momentum = at.velocity * body.mass() + omega.cross(&inertia.moment);
         let angular_momentum = inertia.whole * omega + at.own_momentum;
         let turning = |x: &Mat<f64>| {
             let columns = x.ncols();
@@ -98,6 +112,14 @@ impl BodyTerms {
             let strain = body.circular_frequencies[k] * body.circular_frequencies[k] * q[k];
             forces[6 + k] = omega.dot(&(inertia.slope(k) * omega)) - strain;
         }
+        if let Some(reference) = &body.reference {
+            reference.subtract_force(q, &mut forces[6..]);
+            add_to_modes(&mut stiffness, 1.0, &reference.stiffness());
+        }
+        if let Some(Drawn { along: [direction, axis], stiffness: of_drive, .. }) = &drawn {
+            let acceleration = direction.dot(&at.velocity_rate) + axis.dot(&at.omega_rate);
+            add_to_modes(&mut stiffness, -acceleration, of_drive);
+        }
         if let Some(bent) = at.bent.as_ref().map(BentShape::place) {
             bent.subtract_force(&mut forces[6..]);
             let terms = bent.terms();
@@ -124,7 +146,11 @@ impl BodyTerms {
         put(&mut convection_rate, [3, 3], &cross_matrix(omega));
         self.accelerated = &self.mass * &convection_rate;
         self.stiffness += &self.accelerated;
-        let by_modes = inertia.change_of_momenta(omega);
+        let mut by_modes = inertia.change_of_momenta(omega);
+        for (k, translation) in inertia.translation.iter().enumerate() {
+            let moment = translation.cross(velocity);
+            (0..3).for_each(|i| by_modes[(3 + i, k)] += moment[i]);
+        }
         for (i, k) in (0..n - 6).flat_map(|k| (0..n).map(move |i| (i, k))) {
             self.stiffness[(i, 6 + k)] += by_modes[(i, k)];
         }
@@ -150,6 +176,9 @@ impl BodyTerms {
 struct InertiaWhere {
     /// J.
     whole: Matrix3<f64>,
+    /// Mass times the place of the center of mass from the origin, and its slopes over the modes.
+    moment: Vector3<f64>,
+    translation: Vec<Vector3<f64>>,
     /// S, a list (nf) for each axis.
     coupling: [Vec<f64>; 3],
     /// ∂S/∂q of each axis: G_i, but with large modes.
@@ -171,7 +200,7 @@ impl InertiaWhere {
     fn change_of_momenta(&self, omega: &Vector3<f64>) -> Mat<f64> {
         let nf = self.first[0].len();
         Mat::from_fn(6 + nf, nf, |i, k| match i {
-            0..3 => 0.0,
+            0..3 => omega.cross(&self.translation[k])[i],
             3..6 => (2.0 * self.slope(k) * omega)[i - 3],
             _ => (0..3).map(|axis| omega[axis] * self.gyroscopic[axis][(i - 6, k)]).sum(),
         })
@@ -199,7 +228,8 @@ impl ConservativeBody {
         let z = bent.map_or(&at.q[..], |bent| bent.z);
         let product = |matrix: &Mat<f64>, i: usize| z.iter().enumerate().map(|(j, z)| matrix[(i, j)] * z).sum::<f64>();
         let of_coordinates = |matrix: &Mat<f64>| (0..z.len()).map(|i| product(matrix, i)).collect::<Vec<f64>>();
-        let mut whole = *self.undeformed_inertia();
+        let (mut whole, mut moment) = (constants.inertia, constants.moment);
+        constants.translation.iter().zip(z).for_each(|(translation, z)| moment += translation * *z);
         let mut first = constants.first;
         whole += symmetric(|pair| {
             let bent = of_coordinates(&constants.second[pair]);
@@ -209,10 +239,14 @@ impl ConservativeBody {
         for (first, second) in first.iter_mut().zip(&constants.second) {
             first.iter_mut().zip(of_coordinates(second)).for_each(|(c, n_z)| *c += n_z);
         }
-        let coupling = constants.gyroscopic.each_ref().map(of_coordinates);
+        let mut coupling = constants.gyroscopic.each_ref().map(of_coordinates);
+        for (s, b) in coupling.iter_mut().flatten().zip(constants.coupling.iter().flatten()) {
+            *s += b;
+        }
+        let translation = constants.translation;
         let (gyroscopic, second) = (constants.gyroscopic, constants.second);
         let Some(bent) = bent else {
-            return InertiaWhere { whole, coupling, gyroscopic, first, second, of_modes: None };
+            return InertiaWhere { whole, moment, translation, coupling, gyroscopic, first, second, of_modes: None };
         };
         // Of lists y and matrices A over z, Bᵀy and BᵀA B + Σ y ∂²z/∂q².
         let slopes = bent.slopes();
@@ -225,12 +259,24 @@ impl ConservativeBody {
         };
         InertiaWhere {
             whole,
+            moment,
+            translation: slopes
+                .col_iter()
+                .map(|slope| slope.iter().zip(&translation).map(|(slope, translation)| translation * *slope).sum())
+                .collect(),
             gyroscopic: std::array::from_fn(|axis| changed(&gyroscopic[axis], &coupling[axis])),
             second: std::array::from_fn(|pair| changed(&second[pair], &first[pair])),
             coupling: coupling.each_ref().map(on_modes),
             first: first.each_ref().map(on_modes),
             of_modes: Some(bent.mass()),
         }
+    }
+}
+
+/// Adds a multiple of a matrix over the modes.
+fn add_to_modes(to: &mut Mat<f64>, factor: f64, of_modes: &Mat<f64>) {
+    for (i, j) in (0..of_modes.ncols()).flat_map(|j| (0..of_modes.nrows()).map(move |i| (i, j))) {
+        to[(6 + i, 6 + j)] += factor * of_modes[(i, j)];
     }
 }
 

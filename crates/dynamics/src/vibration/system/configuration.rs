@@ -3,9 +3,11 @@
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
+use crate::conservative::ConservativeBody;
 use crate::conservative::frame::Frame;
 use crate::conservative::manifold::BentShape;
 use crate::conservative::{get, part};
+use crate::state::State;
 use crate::system::description::System;
 use crate::system::marker::{BodyPlace, Marker, MarkerPlace};
 use crate::system::radau::SystemMotion;
@@ -41,6 +43,27 @@ pub(crate) struct BodyConfiguration {
     /// V' and ω', the rates of their components; zero in a steady spin.
     pub velocity_rate: Vector3<f64>,
     pub omega_rate: Vector3<f64>,
+}
+
+impl BodyConfiguration {
+    /// Where a body is in a state, at rest.
+    pub fn still(body: &ConservativeBody, state: &State) -> Self {
+        let list = body.list(state);
+        Self {
+            bent: BentShape::of(body, list.q()),
+            origin: get(list.slow(), part::POSITION),
+            frame: body.frame,
+            carried: Vector3::zeros(),
+            attitude: list.attitude(),
+            body_from_global: list.attitude().global_to_body(),
+            q: list.q().to_vec(),
+            velocity: Vector3::zeros(),
+            omega: Vector3::zeros(),
+            own_momentum: Vector3::zeros(),
+            velocity_rate: Vector3::zeros(),
+            omega_rate: Vector3::zeros(),
+        }
+    }
 }
 
 /// A turn about an axis that does not move, at a steady speed.
@@ -98,26 +121,10 @@ impl Configuration {
 
     fn still(motion: &SystemMotion) -> Self {
         let system = motion.system();
-        let of_body = |(body, state): (&crate::ConservativeBody, &crate::state::State)| {
-            let list = body.list(state);
-            BodyConfiguration {
-                bent: BentShape::of(body, list.q()),
-                origin: get(list.slow(), part::POSITION),
-                frame: body.frame,
-                carried: Vector3::zeros(),
-                attitude: list.attitude(),
-                body_from_global: list.attitude().global_to_body(),
-                q: list.q().to_vec(),
-                velocity: Vector3::zeros(),
-                omega: Vector3::zeros(),
-                own_momentum: Vector3::zeros(),
-                velocity_rate: Vector3::zeros(),
-                omega_rate: Vector3::zeros(),
-            }
-        };
+        let bodies = system.bodies.iter().zip(&motion.bodies);
         Self {
             time: motion.time(),
-            bodies: system.bodies.iter().zip(&motion.bodies).map(of_body).collect(),
+            bodies: bodies.map(|(body, state)| BodyConfiguration::still(body, state)).collect(),
             turns: (0..system.joints().len()).map(|joint| motion.joint_coordinates(joint).turn).collect(),
         }
     }

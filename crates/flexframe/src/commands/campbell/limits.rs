@@ -30,33 +30,24 @@ enum Limit {
 }
 
 impl Limit {
+    /// The number that is zero at the limit.
+    fn distance(self, mode: &SpinMode, speed: f64) -> f64 {
+        match self {
+            Self::Order(order) => mode.circular_frequency - order * speed,
+            Self::Growth => mode.growth,
+            Self::Swing => mode.circular_frequency,
+        }
+    }
+
+    /// True if that number is smooth there: others are zero on one side, and like a root on the other.
+    fn is_smooth(self) -> bool {
+        matches!(self, Self::Order(_))
+    }
+
     /// The side of a vibration at a speed; `None` for a motion that nothing resists, which has none.
     fn side(self, mode: &SpinMode, speed: f64) -> Option<bool> {
-        if mode.circular_frequency == 0.0 && mode.growth == 0.0 {
-            return None;
-        }
-        Some(match self {
-            Self::Order(order) => mode.circular_frequency > order * speed,
-            Self::Growth => mode.growth > 0.0,
-            Self::Swing => mode.circular_frequency > 0.0,
-        })
-    }
-
-    /// The number that is zero at the limit, if it is smooth there.
-    fn distance(self, mode: &SpinMode, speed: f64) -> Option<f64> {
-        match self {
-            Self::Order(order) => Some(mode.circular_frequency - order * speed),
-            // They are zero on one side, and like a root on the other.
-            Self::Growth | Self::Swing => None,
-        }
-    }
-
-    /// Difference of two vibrations in the number that is looked at.
-    fn apart(self, one: &SpinMode, other: &SpinMode) -> f64 {
-        match self {
-            Self::Growth => (one.growth - other.growth).abs(),
-            Self::Order(_) | Self::Swing => (one.circular_frequency - other.circular_frequency).abs(),
-        }
+        let resists = mode.circular_frequency != 0.0 || mode.growth != 0.0;
+        resists.then(|| self.distance(mode, speed) > 0.0)
     }
 }
 
@@ -125,7 +116,8 @@ impl<E, F: Fn(f64) -> Result<Vec<SpinMode>, E>> Search<'_, F> {
             let [below, above] = self.bracket([low, high], place, limit)?;
             let [one, other] = [&below, &above].map(|here| &here.modes[place]);
             let size = |here: &Here| here.modes[place].circular_frequency.hypot(here.modes[place].growth);
-            if limit.apart(one, other) > STEADY * size(low).max(size(high)) {
+            let apart = (limit.distance(one, 0.0) - limit.distance(other, 0.0)).abs();
+            if apart > STEADY * size(low).max(size(high)) {
                 if parts > 0 {
                     self.step(low, &below, parts - 1, found)?;
                     return self.step(&above, high, parts - 1, found);
@@ -143,7 +135,7 @@ impl<E, F: Fn(f64) -> Result<Vec<SpinMode>, E>> Search<'_, F> {
     /// the end that stays counts half (the Illinois method), and by halves.
     fn bracket(&self, [low, high]: [&Here; 2], place: usize, limit: Limit) -> Result<[Here; 2], E> {
         let side = |here: &Here| limit.side(&here.modes[place], here.speed);
-        let distance = |here: &Here| limit.distance(&here.modes[place], here.speed);
+        let distance = |here: &Here| limit.is_smooth().then(|| limit.distance(&here.modes[place], here.speed));
         let before = side(low);
         let mut distances = distance(low).zip(distance(high));
         let [mut low, mut high] = [low.clone(), high.clone()];

@@ -4,21 +4,22 @@ mod base;
 mod driven;
 mod rigid;
 
-use dynamics::{DrivenMotion, Initial, SteadySpin};
+use dynamics::{AtRest, DrivenMotion, Initial};
 use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
-use model::{AtRest, Model};
+use model::Model;
 use nalgebra::Vector3;
 use scene::Scene;
 
 use super::channels::{
     Channels, base_accelerations, input_channels, point_outputs, relative_outputs, stress_outputs, unit_of_coordinate,
+    wrench_channels,
 };
 use super::error::LinearizeError;
 use super::settings::LinearSettings;
 use super::state::{State, damping_in_words};
 use crate::commands::linear::names::is_asked;
-use base::{Held, TRANSLATIONS, at_point, base_channels};
+use base::{TRANSLATIONS, at_point, base_channels};
 use driven::Driven;
 use rigid::{acts_on, rigid_motions};
 
@@ -45,7 +46,8 @@ pub(super) fn of_held(
         return refuse("a body with large modes", "give `large_deflection = false` in [effects]");
     }
     let failed = |source| LinearizeError::Rest { scene: scene.path.clone(), source: Box::new(source) };
-    let AtRest { unit_forces, mut stiffness } = model.at_rest(initial, time).map_err(failed)?;
+    let rest = model.at_rest(initial, time).map_err(failed)?;
+    let AtRest { unit_forces, modal_displacement, .. } = &rest;
     // Rigid motions that are left: none of a drive, which is given.
     let rigid = if model.physics.drive.is_none() { rigid_motions(model) } else { Vec::new() };
     if unit_forces.iter().zip(model.loads()).any(|(unit, load)| acts_on(&rigid, unit, &**load, time)) {
@@ -54,29 +56,18 @@ pub(super) fn of_held(
             "say the support as a joint to the ground ([[joints]]), whose linear model has it",
         );
     }
-    let nf = stiffness.nrows();
-    let mut damping = Mat::from_fn(nf, nf, |i, j| {
-        if i == j { 2.0 * model.damping_ratios()[i] * model.body.circular_frequencies[i] } else { 0.0 }
-    });
+    let nf = modal_displacement.len();
     let drive = Driven::new(model, time);
     let mut omega_global = Vector3::zeros();
     if let Some(Driven { motion: DrivenMotion::Turn { axis }, speed, .. }) = &drive {
-        let [of_spin, gyroscopic] = SteadySpin::new(&model.body, axis, &model.physics.effects).added(*speed);
-        stiffness += of_spin;
-        damping += gyroscopic;
         omega_global = initial.attitude.global_to_body().transpose() * axis * *speed;
     }
-    // The slopes need a body that only its modes move.
-    let slopes = match rigid.is_empty() {
-        true => Some(model.held_slopes(initial, time).map_err(failed)?),
-        false => None,
-    };
     let asked_drive = drive.filter(|_| settings.inputs.iter().any(|asked| is_asked(Driven::INPUT, asked)));
     let (r, d) = (rigid.len(), usize::from(asked_drive.is_some()));
     let n = r + nf + d;
     let of_modes = |matrix: &Mat<f64>| {
         let is_mode = |i: usize| (r..r + nf).contains(&i);
-        Mat::from_fn(n, n, |i, j| if is_mode(i) && is_mode(j) { matrix[(i - r, j - r)] } else { 0.0 })
+        Mat::from_fn(n, n, |i, j| if is_mode(i) && is_mode(j) { matrix[(6 + i - r, 6 + j - r)] } else { 0.0 })
     };
     let mut columns: Vec<Vec<f64>> = unit_forces
         .iter()
@@ -100,7 +91,7 @@ pub(super) fn of_held(
     let names = (1..=r).map(|k| format!("rigid{k}")).chain((1..=nf).map(|k| format!("mode{k}")));
     let unit = unit_of_coordinate(scene);
     let mut coordinates: Vec<Channel> = names.map(|name| Channel::new(name, unit.clone())).collect();
-    let (stiffness, mut damping) = (of_modes(&stiffness), of_modes(&damping));
+    let (stiffness, mut damping) = (of_modes(&rest.stiffness), of_modes(&rest.damping));
     let (mut outputs, mut relative) = (Vec::new(), Vec::new());
     let mut arms = Vec::new();
     for (name, point) in &model.points {
@@ -111,8 +102,7 @@ pub(super) fn of_held(
         if has_base && !in_spin {
             relative.extend(relative_outputs(scene, name, &shapes));
         }
-        let q = slopes.as_ref().map_or_else(|| vec![0.0; nf], |slopes| slopes.modal_displacement.clone());
-        arms.push(model.arm(point, &q));
+        arms.push(model.arm(point, modal_displacement));
     }
     let motions = outputs.len();
     let of_stress = model.stress.as_ref().map_or(&[][..], |stress| stress.of_points());
@@ -128,51 +118,40 @@ pub(super) fn of_held(
     outputs.extend(relative);
     let mut accelerations: Vec<Moved> = by_loads.into_iter().map(Moved::Along).collect();
 
-    // Reactions, by input; base and drive.
-    let mut direct: Vec<[f64; 6]> = Vec::new();
+    // Of a body that only its modes move: base and drive, and the reaction, which the rows of the frame are.
     let mut more_inputs = Vec::new();
-    if let Some(slopes) = &slopes {
-        let held = Held { model, slopes };
-        let momenta = held.momenta();
-        // What a force on the modes gives the support by their accelerations, less what a load gives it itself.
-        let by_modes = |column: &[f64], i: usize| -> f64 {
-            column[r..r + nf].iter().zip(&momenta).map(|(force, momentum)| force * momentum[i]).sum()
-        };
-        for (unit, column) in unit_forces.iter().zip(&columns) {
-            direct.push(std::array::from_fn(|i| by_modes(column, i) - unit[i]));
-        }
+    if rigid.is_empty() {
+        let AtRest { mass, damping: rates, stiffness: places, driven: along, .. } = &rest;
+        let mut direct: Vec<[f64; 6]> = unit_forces.iter().map(|unit| std::array::from_fn(|i| -unit[i])).collect();
         // A base that tilts a spin changes more than accelerations.
         let known = if in_spin { TRANSLATIONS } else { base.len() };
         for (motion, channel) in base.into_iter().enumerate().take(known) {
-            let mut column = vec![0.0; n];
-            column[r..r + nf].iter_mut().zip(&momenta).for_each(|(force, momentum)| *force = -momentum[motion]);
-            let whole = held.rigid(motion);
-            direct.push(std::array::from_fn(|i| whole[i] + by_modes(&column, i)));
+            columns.push((0..n).map(|k| if k < nf { -mass[(6 + k, motion)] } else { 0.0 }).collect());
+            direct.push(std::array::from_fn(|i| mass[(i, motion)]));
             accelerations.push(if in_spin { Moved::Along(Vector3::zeros()) } else { Moved::Base(motion) });
-            columns.push(column);
             inputs.push(channel);
         }
-        if let (Some(driven), Some([by_speed, by_rate])) = (&asked_drive, &slopes.by_drive) {
-            (0..nf).for_each(|k| damping[(r + k, r + nf)] = -by_speed.0[k]);
-            let mut column = vec![0.0; n];
-            column[r..r + nf].copy_from_slice(&by_rate.0);
-            column[r + nf] = 1.0;
-            columns.push(column);
-            direct.push(by_rate.1);
+        let of_drive = |matrix: &Mat<f64>, i: usize| -> f64 {
+            along.iter().flatten().enumerate().map(|(k, part)| matrix[(i, k)] * part).sum()
+        };
+        if let Some(driven) = &asked_drive {
+            (0..nf).for_each(|k| damping[(k, nf)] = of_drive(rates, 6 + k));
+            columns.push((0..n).map(|k| if k < nf { -of_drive(mass, 6 + k) } else { 1.0 }).collect());
+            direct.push(std::array::from_fn(|i| of_drive(mass, i)));
             accelerations.push(Moved::Driven);
             let [input, coordinate] = driven.channels(scene);
             inputs.push(input);
             let mut row = vec![0.0; n];
-            row[r + nf] = 1.0;
+            row[nf] = 1.0;
             outputs.push(Output::new(coordinate.clone(), Rate::Place, row));
             coordinates.push(coordinate);
         }
-        outputs.extend(held.reactions(scene, [r, d], &direct));
-        if let (Some(_), Some([by_speed, _])) = (&asked_drive, &slopes.by_drive) {
-            let first = outputs.len() - 6;
-            for (i, output) in outputs[first..].iter_mut().enumerate() {
-                output.rows[1][r + nf] = by_speed.1[i];
-            }
+        for (i, channel) in wrench_channels(scene, "reaction").into_iter().enumerate() {
+            let row = |matrix: &Mat<f64>, of_drive: f64| -> Vec<f64> {
+                (0..n).map(|k| if k < nf { matrix[(i, 6 + k)] } else { of_drive }).collect()
+            };
+            let rows = [row(places, 0.0), row(rates, of_drive(rates, i)), row(mass, 0.0)];
+            outputs.push(Output { channel, rows, direct: direct.iter().map(|of_input| of_input[i]).collect() });
         }
     }
     // Accelerations are absolute: base and drive add theirs; those relative to the support have none of the base.
