@@ -4,4 +4,4 @@ mod beginning;
 pub(crate) mod described;
 
 pub(crate) use beginning::begin_tied;
-pub use beginning::{BeginError, Beginning, BodyForces, JointForces, MarkerForces, OwnEquation, begin};
+pub use beginning::{BeginError, BodyForces, JointForces, MarkerForces, OwnEquation, StartSettings, begin};

@@ -9,7 +9,7 @@ use flexframe::dynamics::{
 };
 use flexframe::fmu::{FmuBody, FmuModel, Input, InputKind, Source};
 use flexframe::model::Model;
-use flexframe::motion::{Beginning, BodyForces, JointForces, begin};
+use flexframe::motion::{BodyForces, JointForces, StartSettings, begin};
 use flexframe::nalgebra::Vector3;
 use flexframe::row::{BodyRow, Row};
 use self_cell::self_cell;
@@ -299,7 +299,7 @@ impl JointLaw for Motor {
 fn run(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Run, Error> {
     let models: Vec<&Model> = fmu.bodies.iter().map(|body| &body.model).collect();
     let rows = Rows::EverySteps(u64::MAX);
-    let mut beginning = Beginning { rows, ..Beginning::of(&fmu.system, &models) };
+    let mut beginning = StartSettings { rows, ..StartSettings::of(&fmu.system, &models) };
     beginning.end = stop.unwrap_or(0.0).max(beginning.end);
     for (number, (body, forces)) in fmu.bodies.iter().zip(&mut beginning.bodies).enumerate() {
         connect(body, forces, inputs.iter().filter(|channel| channel.input.body == number));

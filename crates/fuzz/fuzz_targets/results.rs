@@ -44,7 +44,9 @@ fuzz_target!(|bytes: &[u8]| {
         assert!(
             matches!(
                 error,
-                FileError::Sealed(SealedError::NoSeal { .. } | SealedError::OtherVersion { .. } | SealedError::Damaged { .. })
+                FileError::Sealed(
+                    SealedError::NoSeal { .. } | SealedError::OtherVersion { .. } | SealedError::Damaged { .. }
+                )
             ),
             "{error}"
         );

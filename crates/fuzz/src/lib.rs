@@ -10,25 +10,25 @@ use results::{
 
 /// A row.
 #[derive(Debug)]
-pub struct Row {
-    bodies: Vec<Body>,
+pub struct SampleRow {
+    bodies: Vec<SampleBody>,
 }
 
 /// A body in a row.
 #[derive(Debug)]
-pub struct Body {
+pub struct SampleBody {
     modes: Vec<f64>,
     points: usize,
 }
 
-impl SystemRow for Row {
-    type Body = Body;
+impl SystemRow for SampleRow {
+    type Body = SampleBody;
 
     fn time(&self) -> f64 {
         0.5
     }
 
-    fn bodies(&self) -> &[Body] {
+    fn bodies(&self) -> &[SampleBody] {
         &self.bodies
     }
 
@@ -42,16 +42,16 @@ impl SystemRow for Row {
 const VELOCITY: (Dimension, &str) = (Dimension::Velocity, "global");
 
 /// A column of each kind.
-pub static COLUMNS: [Column<Row>; 5] = [
+pub static COLUMNS: [Column<SampleRow>; 5] = [
     Column::of_system(["", "number"], VELOCITY, "a number", Number(|_| 0.25)),
     Column::of_body(["", "attitude"], VELOCITY, "a quaternion", Quaternion(|_| [1.0, 0.0, 0.0, 0.0])),
     Column::of_body(["", "velocity"], VELOCITY, "a vector", Vector(|_| [1.0; 3])),
-    Column::of_modes("velocity", VELOCITY.0, "modal coordinates", |body: &Body| &body.modes),
+    Column::of_modes("velocity", VELOCITY.0, "modal coordinates", |body: &SampleBody| &body.modes),
     Column::of_points(
         "velocity",
         VELOCITY,
         "a vector of each point",
-        Quantities::Vectors(|body: &Body, i| (i < body.points).then_some([2.0; 3])),
+        Quantities::Vectors(|body: &SampleBody, i| (i < body.points).then_some([2.0; 3])),
     ),
 ];
 
@@ -82,7 +82,7 @@ pub fn write_results(
     };
     let mut writer =
         Writer::create(path, &metadata, &[], &COLUMNS, Expected { overwrite: true, ..Expected::default() })?;
-    let row = Row { bodies: (0..bodies).map(|_| Body { modes: vec![0.5; modes], points }).collect() };
+    let row = SampleRow { bodies: (0..bodies).map(|_| SampleBody { modes: vec![0.5; modes], points }).collect() };
     (0..rows).try_for_each(|_| writer.push(&row))?;
     if finish { writer.finish() } else { Ok(()) }
 }

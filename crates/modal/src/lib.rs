@@ -47,7 +47,7 @@ pub use progress::{EnginePhase, Progress};
 pub use rates::{ModeRates, repeated};
 pub use reduction::fields::{acceleration_fields, centrifugal_accelerations, centrifugal_fields, turning_field};
 pub use solve::{Modes, SolveStats, Solver};
-pub use statics::answered::Answer;
+pub use statics::answered::StaticAnswer;
 pub use statics::large_shapes::LargeShapes;
 pub use statics::mass_left_out::mass_left_out;
 pub use statics::response::StaticAccuracy;

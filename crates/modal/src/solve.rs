@@ -21,7 +21,7 @@ use crate::matrix::symmetry::check_symmetric;
 use crate::memory_estimate::MemoryEstimate;
 use crate::multigrid::{CycledBody, Cycles, NoCycles, are_faster};
 use crate::progress::Progress;
-use crate::statics::answered::Answer;
+use crate::statics::answered::StaticAnswer;
 use crate::support::constraints::Constraints;
 use crate::support::held::Support;
 use crate::support::held_problem::HeldProblem;
@@ -57,7 +57,7 @@ pub struct Modes {
     /// this in the lowest modes of fine meshes.
     pub force_residuals: Vec<f64>,
     /// The static answer among the shapes ([`Modes::with_answer`]), if there is one.
-    pub answer: Option<Answer>,
+    pub answer: Option<StaticAnswer>,
     /// Counts of the work, and its times.
     pub stats: SolveStats,
 }

@@ -12,8 +12,8 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use report::{
-    Balance, Body, Chart, Compared, Component, Curve, Effect, Fact, History, Motion, Report, Responses, RunState,
-    SceneText, Shape, ShapeKind, StressField, Surface, Trust, TrustLine, Units,
+    Chart, Compared, Component, Curve, Effect, Fact, PageBalance, PageBody, PageHistory, PageMotion, PageStress,
+    PageSurface, PageTrustLine, PageUnits, Report, Responses, RunState, SceneText, Shape, ShapeKind, Trust,
 };
 
 const LENGTH: f64 = 1000.0;
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Points of a box: top and bottom of the plate, each a grid, with a rim between them.
-fn surface(along: usize, across: usize) -> Surface {
+fn surface(along: usize, across: usize) -> PageSurface {
     let mut vertices = Vec::new();
     let mut triangles = Vec::new();
     let mut edges = Vec::new();
@@ -92,7 +92,7 @@ fn surface(along: usize, across: usize) -> Surface {
     sheet(along, 2, &|a, b| [l * (0.5 - a), w / 2.0, t * (b - 0.5)]);
     sheet(across, 2, &|a, b| [l / 2.0, w * (a - 0.5), t * (b - 0.5)]);
     sheet(across, 2, &|a, b| [-l / 2.0, w * (0.5 - a), t * (b - 0.5)]);
-    Surface { vertices, triangles, edges }
+    PageSurface { vertices, triangles, edges }
 }
 
 /// Lays the origin into the end of the plate and leaves it there, so that the middle of the plate goes around it.
@@ -108,7 +108,7 @@ fn hinge(report: &mut Report) {
 fn patch() -> Report {
     let mut report = plate(2, 2, 0, 3, "Patch");
     let body = &mut report.bodies[0];
-    body.surface = Some(Surface {
+    body.surface = Some(PageSurface {
         vertices: vec![[-500.0, -500.0, 0.0], [500.0, -500.0, 0.0], [500.0, 500.0, 0.0], [-500.0, 500.0, 0.0]],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         edges: vec![[0, 1], [1, 2], [2, 3], [3, 0]],
@@ -116,7 +116,7 @@ fn patch() -> Report {
     let kind = ShapeKind::Natural { frequency: 1.0, damping_ratio: 0.0 };
     let shape = |name: &str, u: [f32; 3]| Shape { name: name.into(), kind, displacement: vec![u; 4] };
     body.shapes = vec![shape("tension", [3.0, 4.0, 0.0]), shape("shear", [0.0, 0.0, 2.0])];
-    body.stress = Some(StressField {
+    body.stress = Some(PageStress {
         unit: "MPa".into(),
         shapes: vec![
             vec![[100.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 4],
@@ -162,7 +162,7 @@ fn several() -> Report {
 fn compared() -> Report {
     let mut report = plate(120, 8, 6, 501, "Two runs of a plate");
     let Report { times, mut bodies, .. } = plate(60, 4, 2, 301, "");
-    let Motion { origins, coordinates, .. } = &mut bodies[0].motion;
+    let PageMotion { origins, coordinates, .. } = &mut bodies[0].motion;
     origins.iter_mut().for_each(|[_, y, _]| *y += 200.0);
     coordinates.iter_mut().for_each(|q| *q *= 0.5);
     let half = |name: String, of: &Component| Component { name, values: of.values.iter().map(|x| 0.5 * x).collect() };
@@ -170,8 +170,11 @@ fn compared() -> Report {
         .into_iter()
         .flat_map(|history| {
             let difference = history.components.iter().map(|of| half(of.name.clone(), of)).collect();
-            let difference =
-                History { name: format!("{}: difference", history.name), components: difference, ..history.clone() };
+            let difference = PageHistory {
+                name: format!("{}: difference", history.name),
+                components: difference,
+                ..history.clone()
+            };
             let theirs: Vec<_> = history.components.iter().map(|of| half(format!("{} (slow)", of.name), of)).collect();
             let mut both = history;
             both.components.extend(theirs);
@@ -183,7 +186,7 @@ fn compared() -> Report {
 }
 
 /// Bending like that of a bar between supports: w = cos(k π (x/L + 1/2)), with its rotation and stress.
-fn shape(number: usize, kind: ShapeKind, name: String, surface: &Surface) -> (Shape, Vec<[f32; 6]>) {
+fn shape(number: usize, kind: ShapeKind, name: String, surface: &PageSurface) -> (Shape, Vec<[f32; 6]>) {
     let wave = number as f64 * PI / LENGTH;
     let displacement = |[x, _, z]: [f64; 3]| {
         let angle = wave * (x + LENGTH / 2.0);
@@ -219,7 +222,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
         20.0 / (1.0 + k as f64).powi(3) * (-0.05 * omega * t).exp() * (omega * t).sin()
     };
     let angle = |t: f64| 7.0 * t;
-    let motion = Motion {
+    let motion = PageMotion {
         origins: times.iter().map(|t| [400.0 * t, -90.0 * t, 700.0 * t - 500.0 * t * t]).collect(),
         attitudes: times.iter().map(|t| [(angle(*t) / 2.0).cos(), 0.0, (angle(*t) / 2.0).sin(), 0.0]).collect(),
         coordinates: times.iter().flat_map(|t| (0..modes).map(move |k| coordinate(k, *t))).collect(),
@@ -228,7 +231,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
         name: name.to_owned(),
         values: times.iter().map(|t| value(*t)).collect(),
     };
-    let vector = |group: &str, name: &str, unit: &str, value: &dyn Fn(f64) -> [f64; 3]| History {
+    let vector = |group: &str, name: &str, unit: &str, value: &dyn Fn(f64) -> [f64; 3]| PageHistory {
         group: group.to_owned(),
         name: name.to_owned(),
         unit: unit.to_owned(),
@@ -257,7 +260,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
     }
     let strain = |t: f64| 0.1 * bending(t).powi(2);
     let balances = vec![
-        Balance {
+        PageBalance {
             group: String::new(),
             name: "Energy".into(),
             law: "kinetic + strain energy − work of the loads + dissipation is constant".into(),
@@ -266,7 +269,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
             terms: vec![course("kinetic", &|t| 60.0 - strain(t)), course("strain", &strain), course("work", &|_| 60.0)],
             errors: vec![course("", &|t| 2e-9 * (400.0 * t).sin())],
         },
-        Balance {
+        PageBalance {
             group: String::new(),
             name: "Linear momentum".into(),
             law: "momentum − impulse of the loads is constant".into(),
@@ -286,16 +289,16 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
         title: title.to_owned(),
         program: "flexframe 0.1.0".to_owned(),
         state: RunState::Complete,
-        units: Units { length: "mm".into(), time: "s".into(), frequency: "Hz".into() },
+        units: PageUnits { length: "mm".into(), time: "s".into(), frequency: "Hz".into() },
         facts: vec![Fact::new("Time", format!("{DURATION} s in {rows} rows"))],
-        bodies: vec![Body {
+        bodies: vec![PageBody {
             name: "body".to_owned(),
             facts: vec![
                 Fact::new("Mass", "9.35 kg"),
                 Fact::new("Surface", format!("{} vertices", surface.vertices.len())),
                 Fact::new("Shapes", modes.to_string()),
             ],
-            stress: (modes > 0).then(|| StressField { unit: "MPa".into(), shapes: stresses, products: Vec::new() }),
+            stress: (modes > 0).then(|| PageStress { unit: "MPa".into(), shapes: stresses, products: Vec::new() }),
             surface: Some(surface),
             shapes,
             motion,
@@ -326,7 +329,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
 
 /// A card with an error that calls for something, one that is not known, and small ones.
 fn trust() -> Trust {
-    let line = |place: &str, error: Option<f64>, meaning: &str, known: &str, next: &str| TrustLine {
+    let line = |place: &str, error: Option<f64>, meaning: &str, known: &str, next: &str| PageTrustLine {
         place: place.into(),
         body: String::new(),
         error,

@@ -1,7 +1,7 @@
 //! Sizes and numbers of a report, checked before anything is written.
 
 use crate::ReportError;
-use crate::report::{Body, Compared, Component, Control, Motion, Report, Surface};
+use crate::report::{Compared, Component, Control, PageBody, PageMotion, PageSurface, Report};
 
 /// Shapes that a page can draw: layers of a texture that every graphics processor has.
 const MAX_SHAPES: usize = 256;
@@ -42,7 +42,7 @@ pub(crate) fn check(report: &Report) -> Result<(), ReportError> {
     Ok(())
 }
 
-fn check_bodies(times: &[f64], bodies: &[Body]) -> Result<(), ReportError> {
+fn check_bodies(times: &[f64], bodies: &[PageBody]) -> Result<(), ReportError> {
     check_times(times)?;
     if bodies.is_empty() {
         return Err(ReportError::Empty { what: "body".to_owned() });
@@ -69,8 +69,8 @@ fn check_times(times: &[f64]) -> Result<(), ReportError> {
     }
 }
 
-fn check_motion(motion: &Motion, rows: usize, shapes: usize) -> Result<(), ReportError> {
-    let Motion { origins, attitudes, coordinates } = motion;
+fn check_motion(motion: &PageMotion, rows: usize, shapes: usize) -> Result<(), ReportError> {
+    let PageMotion { origins, attitudes, coordinates } = motion;
     length("positions", origins.len(), rows)?;
     length("attitudes", attitudes.len(), rows)?;
     length("coordinates", coordinates.len(), rows * shapes)?;
@@ -86,7 +86,7 @@ fn check_motion(motion: &Motion, rows: usize, shapes: usize) -> Result<(), Repor
     Ok(())
 }
 
-fn check_surface(surface: &Surface) -> Result<(), ReportError> {
+fn check_surface(surface: &PageSurface) -> Result<(), ReportError> {
     let count = surface.vertices.len();
     if surface.vertices.is_empty() {
         return Err(ReportError::Empty { what: "vertices".to_owned() });
@@ -101,7 +101,7 @@ fn check_surface(surface: &Surface) -> Result<(), ReportError> {
     Ok(())
 }
 
-fn check_shapes(body: &Body) -> Result<(), ReportError> {
+fn check_shapes(body: &PageBody) -> Result<(), ReportError> {
     let vertices = body.surface.as_ref().map_or(0, |surface| surface.vertices.len());
     for shape in &body.shapes {
         let what = format!("shape \"{}\"", shape.name);

@@ -8,8 +8,8 @@ use crate::numbers::Numbers;
 use crate::packed::packed;
 use crate::peak::{length, peak, von_mises};
 use crate::report::{
-    Body, Compared, Component, Control, Fact, Live, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface,
-    Trust,
+    Compared, Component, Control, Fact, Live, PageBody, PageMotion, PageStress, PageSurface, Report, RunState, Shape,
+    ShapeKind, Trust,
 };
 use crate::thin::{Thinning, spread};
 
@@ -29,7 +29,7 @@ pub(crate) struct Data<'a> {
     program: &'a str,
     /// Reason of an incomplete run.
     unfinished: Option<&'a str>,
-    units: Units<'a>,
+    units: PageUnits<'a>,
     facts: Vec<[&'a str; 2]>,
     /// Rows of the run, before any was left out.
     rows: usize,
@@ -87,7 +87,7 @@ struct BodyData<'a> {
 }
 
 #[derive(Debug, Serialize)]
-struct Units<'a> {
+struct PageUnits<'a> {
     length: &'a str,
     time: &'a str,
     frequency: &'a str,
@@ -169,7 +169,11 @@ impl<'a> Data<'a> {
                 RunState::Complete => None,
                 RunState::Unfinished(words) => Some(words),
             },
-            units: Units { length: &report.units.length, time: &report.units.time, frequency: &report.units.frequency },
+            units: PageUnits {
+                length: &report.units.length,
+                time: &report.units.time,
+                frequency: &report.units.frequency,
+            },
             facts: facts(&report.facts),
             rows,
             times: Numbers::double(kept.iter().map(|row| times[*row])),
@@ -245,8 +249,8 @@ fn facts(facts: &[Fact]) -> Vec<[&str; 2]> {
 }
 
 /// The rows of the motion that the page has, evenly spread.
-fn motion_rows(times: &[f64], bodies: &[Body]) -> Vec<usize> {
-    let of_body = |body: &Body| (3 + 4 + body.shapes.len()) * size_of::<f32>();
+fn motion_rows(times: &[f64], bodies: &[PageBody]) -> Vec<usize> {
+    let of_body = |body: &PageBody| (3 + 4 + body.shapes.len()) * size_of::<f32>();
     let bytes = size_of::<f64>() + bodies.iter().map(of_body).sum::<usize>();
     spread(times.len(), MOTION_BYTES / bytes)
 }
@@ -272,7 +276,7 @@ fn greatest(components: &[Component]) -> f64 {
 }
 
 impl<'a> BodyData<'a> {
-    fn new(body: &'a Body, kept: &[usize]) -> Self {
+    fn new(body: &'a PageBody, kept: &[usize]) -> Self {
         let displacements: Vec<&[[f32; 3]]> = body.shapes.iter().map(|shape| &*shape.displacement).collect();
         let effects = body.effects.iter();
         Self {
@@ -289,7 +293,7 @@ impl<'a> BodyData<'a> {
 }
 
 impl SurfaceData {
-    fn new(surface: &Surface) -> Self {
+    fn new(surface: &PageSurface) -> Self {
         let count = surface.vertices.len();
         Self {
             vertices: Numbers::single(surface.vertices.as_flattened().iter().map(|x| f64::from(*x)), 3),
@@ -312,7 +316,7 @@ impl<'a> ShapeData<'a> {
 }
 
 impl<'a> StressData<'a> {
-    fn new(stress: &'a StressField, motion: &Motion) -> Self {
+    fn new(stress: &'a PageStress, motion: &PageMotion) -> Self {
         let shapes: Vec<&[[f32; 6]]> = stress.shapes.iter().map(Vec::as_slice).collect();
         let rows = motion.coordinates.chunks_exact((shapes.len() - stress.products.len()).max(1));
         let products = |q: &[f64]| {
@@ -329,7 +333,7 @@ impl<'a> StressData<'a> {
 }
 
 impl MotionData {
-    fn new(motion: &Motion, shapes: usize, kept: &[usize]) -> Self {
+    fn new(motion: &PageMotion, shapes: usize, kept: &[usize]) -> Self {
         Self {
             origins: Numbers::single(kept.iter().flat_map(|row| motion.origins[*row]), 3),
             attitudes: Numbers::single(kept.iter().flat_map(|row| motion.attitudes[*row]), 4),

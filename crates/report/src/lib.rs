@@ -21,7 +21,7 @@ mod thin;
 pub use error::ReportError;
 pub use page::{html, write};
 pub use report::{
-    Balance, Body, Compared, Component, Control, Effect, Fact, History, Live, LiveBody, Motion, Report, RunState,
-    SceneText, Shape, ShapeKind, StressField, Surface, Trust, TrustLine, Units,
+    Compared, Component, Control, Effect, Fact, Live, LiveBody, PageBalance, PageBody, PageHistory, PageMotion,
+    PageStress, PageSurface, PageTrustLine, PageUnits, Report, RunState, SceneText, Shape, ShapeKind, Trust,
 };
 pub use responses::{Chart, Curve, Responses};

@@ -12,17 +12,17 @@ pub struct Report {
     /// State of the run: complete or not.
     pub state: RunState,
     /// Names of units.
-    pub units: Units,
+    pub units: PageUnits,
     /// Lines for the top of the page, such as the time and the scheme.
     pub facts: Vec<Fact>,
     /// Time of each row of the run, increasing.
     pub times: Vec<f64>,
     /// The bodies, at least one.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<PageBody>,
     /// Courses over the rows.
-    pub histories: Vec<History>,
+    pub histories: Vec<PageHistory>,
     /// Balances of energy and momentum.
-    pub balances: Vec<Balance>,
+    pub balances: Vec<PageBalance>,
     /// The scene.
     pub scene: SceneText,
     /// Warnings of the run, each a sentence or more.
@@ -39,14 +39,14 @@ pub struct Report {
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Trust {
     /// A line for each place, the worst first; none is not shown.
-    pub lines: Vec<TrustLine>,
+    pub lines: Vec<PageTrustLine>,
     /// Limits of the list.
     pub unseen: String,
 }
 
 /// A place where the answer may be wrong.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct TrustLine {
+pub struct PageTrustLine {
     /// The place, such as "mesh".
     pub place: String,
     /// The body that it is worst in; empty for all.
@@ -69,7 +69,7 @@ pub struct Compared {
     /// Time of each of its rows, increasing.
     pub times: Vec<f64>,
     /// Its bodies.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<PageBody>,
 }
 
 /// A run that the page leads on by itself.
@@ -111,19 +111,19 @@ pub struct Control {
 
 /// A body of a run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Body {
+pub struct PageBody {
     /// Its name; that of a single one is not shown.
     pub name: String,
     /// Lines about it, such as its mass and the size of its mesh.
     pub facts: Vec<Fact>,
     /// Surface or nodes of the undeformed body; none where the results file has none.
-    pub surface: Option<Surface>,
+    pub surface: Option<PageSurface>,
     /// Shapes of the body, in the order of the coordinates.
     pub shapes: Vec<Shape>,
     /// Stresses of the shapes.
-    pub stress: Option<StressField>,
+    pub stress: Option<PageStress>,
     /// Its rows.
-    pub motion: Motion,
+    pub motion: PageMotion,
     /// Which effects were on, and why.
     pub effects: Vec<Effect>,
 }
@@ -139,7 +139,7 @@ pub enum RunState {
 
 /// Names of units, as they stand after a number.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Units {
+pub struct PageUnits {
     /// Unit of lengths, such as mm.
     pub length: String,
     /// Unit of times, such as s.
@@ -166,7 +166,7 @@ impl Fact {
 
 /// Surface of the undeformed body, or its nodes alone where nothing is known of a surface: then there are no triangles.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Surface {
+pub struct PageSurface {
     /// Vertices in the reference shape, body axes, from the origin of the body frame.
     pub vertices: Vec<[f32; 3]>,
     /// Triangles by indices of vertices, counter-clockwise seen from outside.
@@ -204,7 +204,7 @@ pub enum ShapeKind {
 
 /// Stresses on the surface: the sum over the shapes, each times its coordinate, and over products of two or three coordinates.
 #[derive(Debug, Clone, PartialEq)]
-pub struct StressField {
+pub struct PageStress {
     /// Unit of stress, such as MPa.
     pub unit: String,
     /// For each shape, and then for each product, the stress of each vertex where the coordinate or the product is 1: xx, yy,
@@ -216,7 +216,7 @@ pub struct StressField {
 
 /// The rows of a body. A vertex X is at `origin` + attitude (X + Σ coordinate × shape).
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Motion {
+pub struct PageMotion {
     /// Position of the origin of the body frame, global axes.
     pub origins: Vec<[f64; 3]>,
     /// Attitudes as unit quaternions (w, x, y, z), which take body components to global ones.
@@ -227,7 +227,7 @@ pub struct Motion {
 
 /// A quantity over the rows of the motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct History {
+pub struct PageHistory {
     /// The group it belongs to, such as "point P1", or "point ring.P1" of one of several bodies. Histories of a group are shown
     /// together.
     pub group: String,
@@ -252,7 +252,7 @@ pub struct Component {
 
 /// A balance that holds in exact motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Balance {
+pub struct PageBalance {
     /// The group it belongs to, such as the name of a body. Balances of a group are shown together.
     pub group: String,
     /// Name, such as "energy".

@@ -4,8 +4,8 @@ mod data;
 
 use data::{bytes, data};
 use report::{
-    Balance, Body, Component, History, Motion, Report, ReportError, RunState, SceneText, Shape, ShapeKind, StressField,
-    Surface, Trust, Units, html, write,
+    Component, PageBalance, PageBody, PageHistory, PageMotion, PageStress, PageSurface, PageUnits, Report, ReportError,
+    RunState, SceneText, Shape, ShapeKind, Trust, html, write,
 };
 use serde_json::Value;
 
@@ -20,7 +20,7 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
     let times: Vec<f64> = (0..rows).map(|row| 1e-4 * row as f64).collect();
     let course =
         |name: &str| Component { name: name.to_owned(), values: times.iter().map(|t| (50.0 * t).sin()).collect() };
-    let history = |i: usize| History {
+    let history = |i: usize| PageHistory {
         group: format!("point {i}"),
         name: "displacement".to_owned(),
         unit: "mm".to_owned(),
@@ -31,25 +31,25 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
         title: "strip".to_owned(),
         program: "test".to_owned(),
         state: RunState::Complete,
-        units: Units { length: "mm".to_owned(), time: "s".to_owned(), frequency: "Hz".to_owned() },
+        units: PageUnits { length: "mm".to_owned(), time: "s".to_owned(), frequency: "Hz".to_owned() },
         facts: Vec::new(),
-        bodies: vec![Body {
+        bodies: vec![PageBody {
             name: "body".to_owned(),
             facts: Vec::new(),
-            surface: Some(Surface {
+            surface: Some(PageSurface {
                 vertices: (0..vertices).map(|i| [i as f32, (i % 2) as f32, 0.0]).collect(),
                 triangles: (2..vertices as u32).map(|i| [i - 2, i - 1, i]).collect(),
                 edges: vec![[0, 1]],
             }),
             shapes: (0..modes).map(shape).collect(),
-            stress: Some(StressField {
+            stress: Some(PageStress {
                 unit: "MPa".to_owned(),
                 shapes: (0..modes)
                     .map(|k| (0..vertices).map(|i| [wave(k, i), 0.0, 0.0, 0.0, 0.0, 0.0]).collect())
                     .collect(),
                 products: Vec::new(),
             }),
-            motion: Motion {
+            motion: PageMotion {
                 origins: vec![[0.0; 3]; rows],
                 attitudes: vec![[1.0, 0.0, 0.0, 0.0]; rows],
                 coordinates: times.iter().flat_map(|t| (0..modes).map(move |k| (t * (k + 1) as f64).cos())).collect(),
@@ -58,7 +58,7 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
         }],
         times: times.clone(),
         histories: (0..components).map(history).collect(),
-        balances: vec![Balance {
+        balances: vec![PageBalance {
             group: String::new(),
             name: "energy".to_owned(),
             law: "constant".to_owned(),
@@ -170,7 +170,7 @@ fn what_does_not_fit_together_is_refused_with_its_place() {
     };
     let message = |change: &dyn Fn(&mut Report)| refused(change).to_string();
     assert!(message(&|r| r.times.clear()).contains("no rows"));
-    assert!(message(&|r| r.bodies[0].motion = Motion::default()).contains("positions has 0 entries where 3"));
+    assert!(message(&|r| r.bodies[0].motion = PageMotion::default()).contains("positions has 0 entries where 3"));
     assert!(message(&|r| r.bodies.clear()).contains("no body"));
     assert!(message(&|r| r.bodies[0].motion.coordinates.truncate(5)).contains("coordinates has 5 entries where 6"));
     assert!(

@@ -47,7 +47,7 @@ use crate::files::identity::{contents, identity_of_files};
 use crate::files::outputs::outputs_of_system;
 pub use crate::files::results_path::results_path;
 use crate::files::scene_file;
-use crate::motion::{Beginning, begin};
+use crate::motion::{StartSettings, begin};
 use crate::plausible;
 use crate::rows::columns::COLUMNS;
 use crate::rows::row::Row;
@@ -294,7 +294,7 @@ pub(crate) fn system_of(results: &Results) -> Result<Option<System>, SceneError>
 /// The run of a system from its start.
 fn begin_run(system: &System, models: &[Model]) -> Result<Run, RunError> {
     let models: Vec<&Model> = models.iter().collect();
-    let beginning = Beginning::of(system, &models);
+    let beginning = StartSettings::of(system, &models);
     Ok(begin(system, &models, &beginning).map_err(|error| error.at_key(system))?)
 }
 

@@ -53,7 +53,7 @@ pub struct OwnEquation {
 
 /// How the motions of a scene begin: at first as the scene says.
 #[derive(Debug, Clone)]
-pub struct Beginning {
+pub struct StartSettings {
     /// Formulation and scheme. Tied bodies move by its scheme of joints, where it has one, else by the default; bodies that nothing ties by
     /// [`Method::without_joints`].
     pub method: Method,
@@ -77,7 +77,7 @@ pub struct Beginning {
     pub together: bool,
 }
 
-impl Beginning {
+impl StartSettings {
     /// Beginning of a scene with a model of each body.
     pub fn of(system: &System, models: &[&Model]) -> Self {
         let forces = |model: &&Model| BodyForces {
@@ -109,7 +109,7 @@ impl Beginning {
 ///
 /// # Errors
 /// [`BuildError`], or the scene of a body whose motion cannot start, and why.
-pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Run, BeginError> {
+pub fn begin(system: &System, models: &[&Model], beginning: &StartSettings) -> Result<Run, BeginError> {
     let mut islands = Vec::new();
     let tied = tied(system, models, beginning)?;
     for (number, (scene, model)) in system.bodies.iter().zip(models).enumerate() {
@@ -129,12 +129,21 @@ pub fn begin(system: &System, models: &[&Model], beginning: &Beginning) -> Resul
 ///
 /// # Errors
 /// As [`begin`].
-pub(crate) fn begin_tied(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Vec<Island>, BeginError> {
+pub(crate) fn begin_tied(
+    system: &System,
+    models: &[&Model],
+    beginning: &StartSettings,
+) -> Result<Vec<Island>, BeginError> {
     let tied = tied(system, models, beginning)?;
     tied.into_iter().map(|tied| begin_island(system, models, tied, beginning)).collect()
 }
 
-fn begin_island(system: &System, models: &[&Model], tied: Tied, beginning: &Beginning) -> Result<Island, BeginError> {
+fn begin_island(
+    system: &System,
+    models: &[&Model],
+    tied: Tied,
+    beginning: &StartSettings,
+) -> Result<Island, BeginError> {
     let (bodies, joints, elements) = (tied.bodies.clone(), tied.joints.clone(), elements_in_rows(system, &tied));
     let motion = run_of_system(system, models, tied, beginning).begin().map_err(StartError::from);
     let motion = motion.map_err(|source| {
@@ -157,8 +166,8 @@ fn elements_in_rows(system: &System, tied: &Tied) -> Vec<usize> {
 ///
 /// # Errors
 /// [`BuildError`], also for laws and equations at joints and markers that are not there.
-pub(super) fn tied(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Vec<Tied>, BuildError> {
-    let Beginning { laws, equations, marker_laws, together, .. } = beginning;
+pub(super) fn tied(system: &System, models: &[&Model], beginning: &StartSettings) -> Result<Vec<Tied>, BuildError> {
+    let StartSettings { laws, equations, marker_laws, together, .. } = beginning;
     let all = tie_models(system, models, *together || !marker_laws.is_empty())?;
     let mut named = laws.iter().map(|law| law.joint).chain(equations.iter().map(|own| own.joint));
     if let Some(joint) = named.find(|joint| all.iter().all(|tied| !tied.joints.contains(joint))) {
@@ -228,7 +237,7 @@ fn points(model: &Model) -> Vec<PointShapes> {
     model.points.iter().map(|(_, point)| point.clone()).collect()
 }
 
-fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> Result<Simulation, StartError> {
+fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &StartSettings) -> Result<Simulation, StartError> {
     StartError::refuse_tied(scene)?;
     if let Some(refusal) = model.refusal.filter(|_| scene.effects.refuse) {
         return Err(refusal.into());
@@ -260,7 +269,7 @@ fn described_body(scene: &Scene, model: &Model, forces: &BodyForces) -> Describe
 }
 
 /// The run of a body that nothing ties, as data have it: all but the reference points of the paper's formulation.
-pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of: &Beginning) -> RunDescription {
+pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of: &StartSettings) -> RunDescription {
     RunDescription {
         bodies: vec![described_body(scene, model, forces)],
         joints: Vec::new(),
@@ -276,7 +285,7 @@ pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of:
 }
 
 /// The run of tied bodies.
-pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: &Beginning) -> RunDescription {
+pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: &StartSettings) -> RunDescription {
     RunDescription {
         bodies: {
             let described = |number: &usize| {

@@ -4,7 +4,7 @@ use live::{LiveMotion, LiveRun};
 use model::{BuildError, Model};
 use scene::System;
 
-use super::beginning::{Beginning, run_of_body, run_of_system, tied};
+use super::beginning::{StartSettings, run_of_body, run_of_system, tied};
 
 /// The motions of a scene, and what data do not hold of them.
 pub(crate) struct Described {
@@ -14,7 +14,7 @@ pub(crate) struct Described {
 }
 
 /// All that the motions of [`begin`](super::begin) begin with: there is a model of each body.
-pub(crate) fn describe(system: &System, models: &[&Model], beginning: &Beginning) -> Result<Described, BuildError> {
+pub(crate) fn describe(system: &System, models: &[&Model], beginning: &StartSettings) -> Result<Described, BuildError> {
     let tied = tied(system, models, beginning)?;
     let is_alone = |number: &usize| tied.iter().all(|tied| !tied.bodies.contains(number));
     let alone = (0..models.len()).filter(is_alone).map(|number| {

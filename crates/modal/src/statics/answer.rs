@@ -14,7 +14,7 @@ use crate::error::ModalError;
 use crate::input::check_finite_entries;
 use crate::memory_estimate::of_vectors;
 use crate::solve::Modes;
-use crate::statics::answered::Answer;
+use crate::statics::answered::StaticAnswer;
 
 impl Modes {
     /// The same motions by other coordinates: the modes `kept` in their places; in the first place that is left, the part that a static
@@ -64,7 +64,7 @@ impl Modes {
             // Those of eigenvectors, which most of these are not.
             residuals: Vec::new(),
             force_residuals: Vec::new(),
-            answer: Some(Answer { place, coupling, natural: self.natural() }),
+            answer: Some(StaticAnswer { place, coupling, natural: self.natural() }),
             stats: self.stats,
         }))
     }
@@ -74,7 +74,7 @@ impl Modes {
     pub fn uncoupled(&self, list: &[usize]) -> Mat<f64> {
         let mut shapes = Mat::from_fn(self.shapes.nrows(), list.len(), |i, j| self.shapes[(i, list[j])]);
         let place = self.answer.as_ref().and_then(|answer| list.iter().position(|k| *k == answer.place));
-        if let (Some(Answer { coupling, .. }), Some(column)) = (&self.answer, place) {
+        if let (Some(StaticAnswer { coupling, .. }), Some(column)) = (&self.answer, place) {
             for (k, (between, eigenvalue)) in coupling.iter().zip(&self.eigenvalues).enumerate() {
                 if *between != 0.0 && !list.contains(&k) {
                     let mut column = shapes.col_mut(column);
@@ -97,7 +97,7 @@ impl Modes {
     /// ΨᵀKΨ (nf×nf).
     pub(crate) fn stiffness(&self) -> Mat<f64> {
         let size = self.eigenvalues.len();
-        let mut stiffness = self.answer.as_ref().map_or_else(|| Mat::zeros(size, size), Answer::stiffness);
+        let mut stiffness = self.answer.as_ref().map_or_else(|| Mat::zeros(size, size), StaticAnswer::stiffness);
         self.eigenvalues.iter().enumerate().for_each(|(k, eigenvalue)| stiffness[(k, k)] = *eigenvalue);
         stiffness
     }

@@ -4,7 +4,7 @@ use faer::Mat;
 
 /// A static answer among shapes, the one of them that is not K-orthogonal to the others.
 #[derive(Debug, Clone)]
-pub struct Answer {
+pub struct StaticAnswer {
     /// Its place, numbered from 0.
     pub place: usize,
     /// Its stiffness with each shape, beside that with itself (nf).
@@ -13,7 +13,7 @@ pub struct Answer {
     pub natural: usize,
 }
 
-impl Answer {
+impl StaticAnswer {
     /// Among the first shapes only; `None` where it is none of them.
     pub(crate) fn truncated(&self, shapes: usize) -> Option<Self> {
         let Self { place, coupling, natural } = self;

@@ -3,7 +3,7 @@
 use advice::{Advice, Backbone, Findings, advise};
 use dynamics::{Effect, ReferenceForces};
 use faer::{Mat, Scale};
-use modal::{Answer, Modes};
+use modal::{Modes, StaticAnswer};
 
 use crate::error::BuildError;
 use crate::reduction::bent::answer::WithAnswer;
@@ -134,7 +134,7 @@ impl Reduction {
             }
             None => None,
         };
-        let coupling = modes.answer.as_ref().map(Answer::stiffness);
+        let coupling = modes.answer.as_ref().map(StaticAnswer::stiffness);
         let of_markers = match &of_markers {
             Some(responses) if physics::may_stress(model.scene) => match &large {
                 // As of loads: the manifold has the stress along the modes that bend the body, and between them.

@@ -8,7 +8,7 @@ use flexframe::dynamics::{
 };
 use flexframe::failure::{Details, Kind};
 use flexframe::model::{Model, StartError};
-use flexframe::motion::{Beginning, BodyForces, begin};
+use flexframe::motion::{BodyForces, StartSettings, begin};
 use flexframe::results::Metadata;
 use flexframe::row::BodyRow;
 use flexframe::run::{RunBody, RunError, Watch};
@@ -326,7 +326,7 @@ impl Simulation {
         let of_run: Vec<RunBody<'_>> =
             system.bodies.iter().zip(&of_models).map(|(scene, model)| RunBody { scene, model }).collect();
         let mut metadata = flexframe::run::metadata_of_system(&system, &of_run);
-        let mut beginning = Beginning { together: is_system, ..Beginning::of(&system, &of_models) };
+        let mut beginning = StartSettings { together: is_system, ..StartSettings::of(&system, &of_models) };
         let faults = Faults::default();
         let loads = loads_of_bodies(py, loads, &system.bodies, is_system)?;
         for (number, loads) in loads.into_iter().enumerate() {

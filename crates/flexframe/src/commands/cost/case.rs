@@ -6,7 +6,7 @@ use scene::{Scene, System};
 
 use super::run::Scales;
 use crate::commands::run::{RunBody, RunFailure};
-use crate::motion::{BeginError, Beginning, begin};
+use crate::motion::{BeginError, StartSettings, begin};
 
 /// Times at which runs are compared; runs with longer steps are compared at a divisor of this.
 const COMPARED: u64 = 100;
@@ -51,8 +51,8 @@ impl<'a> PreparedScene<'a> {
 
     fn try_begin(&self, method: Method, control: StepControl) -> Result<Run, BeginError> {
         let rows = Rows::Interval(self.end() / self.intervals(control) as f64);
-        let beginning = Beginning::of(&self.system, &self.models);
-        begin(&self.system, &self.models, &Beginning { method, control, rows, ..beginning })
+        let beginning = StartSettings::of(&self.system, &self.models);
+        begin(&self.system, &self.models, &StartSettings { method, control, rows, ..beginning })
     }
 
     /// Equal parts of the run at whose ends it is compared: the most that leave the steps as long as asked.

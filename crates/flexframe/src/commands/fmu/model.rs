@@ -12,7 +12,7 @@ use super::manifest::Manifest;
 use super::si_unit::seconds;
 use super::variables::{Variable, variables};
 use crate::commands::run::{self, RunBody};
-use crate::motion::{BeginError, Beginning, begin};
+use crate::motion::{BeginError, StartSettings, begin};
 use crate::rows::columns::{COLUMNS, part};
 use crate::rows::row::Row;
 
@@ -51,7 +51,7 @@ impl FmuModel {
         let bodies = system.bodies.iter().map(|scene| FmuBody::new(scene, &builder, &mut progress));
         let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
         let models: Vec<&Model> = bodies.iter().map(|body| &body.model).collect();
-        let beginning = Beginning::of(&system, &models);
+        let beginning = StartSettings::of(&system, &models);
         begin(&system, &models, &beginning).map_err(|error| match error.at_key(&system) {
             BeginError::Build(source) => FmuError::Build(source),
             BeginError::Start { scene, source, .. } => FmuError::Start { scene, source },

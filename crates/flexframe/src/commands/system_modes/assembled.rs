@@ -5,7 +5,7 @@ use model::Model;
 use scene::System;
 
 use super::error::SystemModesError;
-use crate::motion::{Beginning, begin_tied};
+use crate::motion::{StartSettings, begin_tied};
 
 /// Bodies that are tied together, at one time.
 pub(crate) struct TiedMotion {
@@ -22,7 +22,7 @@ pub(crate) struct TiedMotion {
 /// All bodies of a scene that are tied together, by systems, at the start.
 pub(crate) fn tied_motions(system: &System, models: &[Model]) -> Result<Vec<TiedMotion>, SystemModesError> {
     // No step is taken.
-    let at_start = |of| Beginning { control: StepControl::Tolerance(1e-3), relaxed: false, ..of };
+    let at_start = |of| StartSettings { control: StepControl::Tolerance(1e-3), relaxed: false, ..of };
     motions(system, models, at_start, |_| Ok(()))
 }
 
@@ -43,11 +43,12 @@ pub(crate) fn tied_motions_at(
 fn motions(
     system: &System,
     models: &[Model],
-    begun: impl FnOnce(Beginning) -> Beginning,
+    begun: impl FnOnce(StartSettings) -> StartSettings,
     lead: impl Fn(&mut Simulation) -> Result<(), StepError>,
 ) -> Result<Vec<TiedMotion>, SystemModesError> {
     let models: Vec<&Model> = models.iter().collect();
-    let beginning = begun(Beginning { rows: Rows::Interval(system.time.end), ..Beginning::of(system, &models) });
+    let beginning =
+        begun(StartSettings { rows: Rows::Interval(system.time.end), ..StartSettings::of(system, &models) });
     let springs = system.springs.iter().map(|spring| &spring.name);
     let names: Vec<&String> = springs.chain(system.bushings.iter().map(|bushing| &bushing.name)).collect();
     let mut motions = Vec::new();

@@ -5,7 +5,7 @@ use model::Model;
 use scene::System;
 
 use super::error::LinearizeError;
-use crate::motion::{self, Beginning};
+use crate::motion::{self, StartSettings};
 
 /// Steps that are taken at once.
 const STEPS: u64 = 1000;
@@ -19,7 +19,7 @@ pub(super) fn states_at(system: &System, models: &[Model], time: f64) -> Result<
         return Err(LinearizeError::Time { scene: system.path.clone(), time, end });
     }
     let references: Vec<&Model> = models.iter().collect();
-    let beginning = Beginning::of(system, &references);
+    let beginning = StartSettings::of(system, &references);
     let mut states: Vec<Option<MotionState>> = vec![None; models.len()];
     let failed = |source| LinearizeError::Run { scene: system.path.clone(), source: Box::new(source) };
     let mut run = motion::begin(system, &references, &beginning).map_err(Box::new)?;

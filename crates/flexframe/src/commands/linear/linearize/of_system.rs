@@ -13,7 +13,7 @@ use super::settings::LinearSettings;
 use super::state::{State, damping_in_words};
 use super::system_spin::SystemSpin;
 use crate::commands::linear::names::is_asked;
-use crate::motion::{self, Beginning};
+use crate::motion::{self, StartSettings};
 use crate::rows::units::UnitLabels;
 
 /// An acceleration beside ω² times the size of the bodies that is more than rounding.
@@ -33,7 +33,7 @@ pub(super) fn of_system(
     let refuse =
         |found: &str, help| LinearizeError::Refused { scene: system.path.clone(), found: found.to_owned(), help };
     let no_body = || refuse("no body", "name a body in the scene");
-    let beginning = Beginning { together: true, ..Beginning::of(system, &references) };
+    let beginning = StartSettings { together: true, ..StartSettings::of(system, &references) };
     let mut run = motion::begin(system, &references, &beginning).map_err(Box::new)?;
     let Some(Island { motion, joints, bodies, .. }) = run.islands_mut().first_mut() else { return Err(no_body()) };
     if let Some(states) = states {

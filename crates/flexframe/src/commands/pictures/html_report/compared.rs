@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use report::{Balance, Compared, Component, Fact, History, Motion, Report};
+use report::{Compared, Component, Fact, PageBalance, PageHistory, PageMotion, Report};
 
 use crate::report::quantity;
 
@@ -53,8 +53,8 @@ pub(super) fn compared(mut first: Report, other: Report, name: &str) -> Option<R
 }
 
 /// The course of both runs, and their difference; `None` where the other has no such course.
-fn beside(history: &History, times: &[f64], other: &Report, name: &str) -> Option<[History; 2]> {
-    let is_same = |of: &&History| of.group == history.group && of.name == history.name && of.unit == history.unit;
+fn beside(history: &PageHistory, times: &[f64], other: &Report, name: &str) -> Option<[PageHistory; 2]> {
+    let is_same = |of: &&PageHistory| of.group == history.group && of.name == history.name && of.unit == history.unit;
     let found = other.histories.iter().find(is_same)?;
     let [mut theirs, mut differences] = [Vec::new(), Vec::new()];
     for component in &history.components {
@@ -71,7 +71,7 @@ fn beside(history: &History, times: &[f64], other: &Report, name: &str) -> Optio
     }
     both.components.extend(theirs);
     let difference =
-        History { name: format!("{}: difference", history.name), components: differences, ..history.clone() };
+        PageHistory { name: format!("{}: difference", history.name), components: differences, ..history.clone() };
     Some([both, difference])
 }
 
@@ -91,13 +91,13 @@ fn clip(report: &mut Report, rows: Range<usize>) {
     report.times = report.times[rows.clone()].to_vec();
     for body in &mut report.bodies {
         let shapes = body.shapes.len();
-        let Motion { origins, attitudes, coordinates } = &mut body.motion;
+        let PageMotion { origins, attitudes, coordinates } = &mut body.motion;
         *origins = origins[rows.clone()].to_vec();
         *attitudes = attitudes[rows.clone()].to_vec();
         *coordinates = coordinates[rows.start * shapes..rows.end * shapes].to_vec();
     }
     let of_histories = report.histories.iter_mut().map(|history| &mut history.components);
-    let of_balances = report.balances.iter_mut().flat_map(|Balance { terms, errors, .. }| [terms, errors]);
+    let of_balances = report.balances.iter_mut().flat_map(|PageBalance { terms, errors, .. }| [terms, errors]);
     for component in of_histories.chain(of_balances).flatten() {
         component.values = component.values[rows.clone()].to_vec();
     }

@@ -5,8 +5,8 @@ use std::path::Path;
 use fem_tet10::von_mises;
 use nalgebra::Vector3;
 use report::{
-    Balance, Body, Component, Effect, Fact, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
-    Surface, Trust, TrustLine, Units,
+    Component, Effect, Fact, PageBalance, PageBody, PageMotion, PageStress, PageSurface, PageTrustLine, PageUnits,
+    Report, RunState, SceneText, Shape, ShapeKind, Trust,
 };
 use results::kind::{NATURAL_MODE, STATIC_SHAPE};
 use results::{
@@ -36,7 +36,11 @@ pub(super) fn contents(file: &Path, results: &Results, drawn: Vec<DrawnBody>) ->
         title: run.title.clone(),
         program: format!("flexframe {}", run.program_version),
         state: state(file, results)?,
-        units: Units { length: units.length.clone(), time: units.time.clone(), frequency: frequency_unit(&units.time) },
+        units: PageUnits {
+            length: units.length.clone(),
+            time: units.time.clone(),
+            frequency: frequency_unit(&units.time),
+        },
         facts: facts(results)?,
         times: results.numbers("time")?.to_vec(),
         bodies: bodies.collect::<Option<_>>()?,
@@ -53,10 +57,10 @@ pub(super) fn contents(file: &Path, results: &Results, drawn: Vec<DrawnBody>) ->
     })
 }
 
-fn body(of: BodyResults<'_>, shapes: Option<Shapes>, results: &Results) -> Option<Body> {
+fn body(of: BodyResults<'_>, shapes: Option<Shapes>, results: &Results) -> Option<PageBody> {
     let model = &of.metadata.model;
     let surface = shapes.map(surface::Surface::new);
-    Some(Body {
+    Some(PageBody {
         name: of.metadata.name.clone(),
         facts: facts_of_body(model, surface.is_some(), &results.metadata.units),
         surface: surface.as_ref().map(|surface| reference(surface, model)),
@@ -139,9 +143,9 @@ fn shapes_in_words(body: &BodyProperties) -> String {
     if all.is_empty() { "rigid body".to_owned() } else { all.join(", ") }
 }
 
-fn reference(surface: &surface::Surface, body: &BodyProperties) -> Surface {
+fn reference(surface: &surface::Surface, body: &BodyProperties) -> PageSurface {
     let from_origin = |x: &[f64; 3]| (Vector3::from(*x) - Vector3::from(body.origin)).map(|x| x as f32).into();
-    Surface {
+    PageSurface {
         vertices: surface.shapes.positions.iter().map(from_origin).collect(),
         triangles: surface.triangles.clone(),
         edges: surface.edges.clone(),
@@ -168,7 +172,7 @@ fn described(shapes: &Shapes, body: &BodyProperties) -> Vec<Shape> {
 
 /// The stress of each shape, and of each product of large modes and of those that follow; at a node between materials, of the one whose von Mises
 /// stress is largest in all rows.
-fn stress(shapes: &Shapes, of: BodyResults<'_>, results: &Results) -> Option<StressField> {
+fn stress(shapes: &Shapes, of: BodyResults<'_>, results: &Results) -> Option<PageStress> {
     let stress = shapes.stress.as_ref().filter(|_| !shapes.displacements.is_empty())?;
     let modal = of.table("modal/displacement")?;
     let rows: Vec<_> = (0..results.rows()).filter_map(|row| Some(shapes.stress_coordinates(modal.row(row)?))).collect();
@@ -178,7 +182,7 @@ fn stress(shapes: &Shapes, of: BodyResults<'_>, results: &Results) -> Option<Str
     let products =
         shapes.factors.iter().map(|factors| factors.iter().map(|k| *k as usize).filter(is_coordinate).collect());
     let results::Units { length, mass, time } = &results.metadata.units;
-    Some(StressField {
+    Some(PageStress {
         unit: UnitLabels { length, mass, time }.stress(),
         shapes: stress.shapes.iter().map(|shape| sites.iter().map(|i| shape[*i].map(|s| s as f32)).collect()).collect(),
         products: products.collect(),
@@ -203,12 +207,12 @@ fn most_stressed(stress: &StressShapes, rows: &[Vec<f64>]) -> Vec<usize> {
     places.chunk_by(|a, b| stress.nodes[*a] == stress.nodes[*b]).filter_map(of_node).collect()
 }
 
-fn motion(of: BodyResults<'_>, rows: usize, shapes: Option<&Shapes>) -> Option<Motion> {
+fn motion(of: BodyResults<'_>, rows: usize, shapes: Option<&Shapes>) -> Option<PageMotion> {
     let modal = of.table("modal/displacement")?;
     // Without a surface there are no shapes to be seen.
     let of_row = |q: &[f64]| shapes.map_or_else(Vec::new, |shapes| shapes.coordinates(q));
     let coordinates: Option<Vec<_>> = (0..rows).map(|row| Some(of_row(modal.row(row)?))).collect();
-    Some(Motion {
+    Some(PageMotion {
         origins: of.vectors::<3>("origin")?.to_vec(),
         attitudes: of.vectors::<4>("attitude")?.to_vec(),
         coordinates: coordinates?.concat(),
@@ -229,7 +233,7 @@ fn prefix(history: History<Row>, run: &Metadata) -> String {
 }
 
 /// A history as courses: one, or one for each point.
-fn courses(history: History<Row>, results: &Results, quantities: &Quantities<'_>) -> Vec<report::History> {
+fn courses(history: History<Row>, results: &Results, quantities: &Quantities<'_>) -> Vec<report::PageHistory> {
     let (run, column) = (&results.metadata, history.column);
     let (unit, least_range) = (quantities.unit(column), quantities.least_range(history));
     let frame = if column.frame == "none" { String::new() } else { format!(" ({})", column.frame) };
@@ -242,7 +246,7 @@ fn courses(history: History<Row>, results: &Results, quantities: &Quantities<'_>
             })
             .collect::<Vec<_>>();
         let (name, unit) = (format!("{}{frame}", column.name.replace('_', " ")), unit.clone());
-        (!components.is_empty()).then_some(report::History { group, name, unit, least_range, components })
+        (!components.is_empty()).then_some(report::PageHistory { group, name, unit, least_range, components })
     };
     let places = match column.scope() {
         Scope::Point => "point",
@@ -279,7 +283,7 @@ fn component_name(history: History<Row>, k: usize, run: &Metadata) -> String {
 const ENERGIES: [&str; 4] = ["kinetic", "strain", "work", "dissipation"];
 
 /// The balances of each body, and the energy of several together: their terms, and their change since the first row.
-fn balances(results: &Results, quantities: &Quantities<'_>) -> Option<Vec<Balance>> {
+fn balances(results: &Results, quantities: &Quantities<'_>) -> Option<Vec<PageBalance>> {
     let energy = ("Energy", "kinetic + strain energy − work of the loads + dissipation is constant");
     let linear = ("Linear momentum", "momentum less the impulse of the loads is constant (global axes)");
     let angular = (
@@ -318,7 +322,7 @@ fn balance(
     (name, law): (&str, &str),
     terms: Vec<History<Row>>,
     error: History<Row>,
-) -> Option<Balance> {
+) -> Option<PageBalance> {
     let run = &results.metadata;
     let components = |history: History<Row>, name: &str, from_first: bool| -> Option<Vec<Component>> {
         let table = results.table(&history.path(run))?;
@@ -334,7 +338,7 @@ fn balance(
     // A single term needs no name.
     let name_of = |term: &History<Row>| if terms.len() > 1 { term.column.name } else { "" };
     let of_terms = terms.iter().map(|term| components(*term, name_of(term), false)).collect::<Option<Vec<_>>>()?;
-    Some(Balance {
+    Some(PageBalance {
         group: prefix(error, run).trim_end_matches(": ").to_owned(),
         name: name.to_owned(),
         law: law.to_owned(),
@@ -353,7 +357,7 @@ fn effect(effect: &EffectProperties) -> Effect {
 /// The trust card of the run.
 fn trust(file: &Path, run: &Metadata) -> Trust {
     let TrustCard { lines, unseen } = TrustCard::of_file(run, &file.file_name().unwrap_or_default().to_string_lossy());
-    let line = |results::TrustLine { place, body, error, meaning, known, next }| TrustLine {
+    let line = |results::TrustLine { place, body, error, meaning, known, next }| PageTrustLine {
         place,
         body: body.unwrap_or_default(),
         error,

@@ -12,7 +12,7 @@ use scene::Load;
 
 use super::error::HtmlReportError;
 use crate::commands::run::{bodies, metadata, system_of};
-use crate::motion::Beginning;
+use crate::motion::StartSettings;
 use crate::motion::described::{Described, describe};
 use crate::rows::units::UnitLabels;
 
@@ -42,7 +42,7 @@ pub(super) fn led_on(
         }
     }
     let of_models: Vec<&Model> = models.iter().collect();
-    let beginning = Beginning::of(&system, &of_models);
+    let beginning = StartSettings::of(&system, &of_models);
     let Described { run, elements } = describe(&system, &of_models, &beginning)?;
     let names: Vec<&str> = results.metadata.bodies.iter().map(|body| &*body.name).collect();
     let mut controls = Vec::new();
