@@ -105,7 +105,7 @@ impl SystemMotion {
             };
             let mass: f64 = of(part::POSITION).map(|(_, mass)| mass).sum();
             let center = of(part::POSITION).map(|(place, mass)| place * mass).sum::<Vector3<f64>>() / mass;
-            let frame = bodies[island.bodies[0]].frame;
+            let Some(frame) = island.bodies.first().map(|body| bodies[*body].frame) else { continue };
             let spread = of(part::POSITION).map(|(place, _)| (place - center).norm()).fold(0.0, f64::max);
             let size = island.bodies.iter().map(|b| sizes[*b]).fold(spread, f64::max);
             let strayed = center - frame.center();

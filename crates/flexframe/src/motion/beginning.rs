@@ -148,7 +148,7 @@ fn begin_island(
     let motion = run_of_system(system, models, tied, beginning).begin().map_err(StartError::from);
     let motion = motion.map_err(|source| {
         // At the body that is meant, where it is one.
-        let number = source.body_of_system().map_or(bodies[0], |number| bodies[number]);
+        let number = bodies[source.body_of_system().unwrap_or(0)];
         BeginError::start(number, &system.bodies[number], source)
     })?;
     Ok(Island { motion, bodies, joints, elements })

@@ -17,13 +17,13 @@ use crate::systems::run::Built;
 /// # Errors
 /// An eigenproblem that fails.
 pub fn frequencies(built: &Built, origins: [Vector3<f64>; 2]) -> Result<Vec<f64>, SolidError> {
-    let bodies = [0, 1].map(|k| &built.models[k].body);
-    let first = [0, 6 + bodies[0].flexible()];
-    let count = first[1] + 6 + bodies[1].flexible();
+    let [one, other] = [0, 1].map(|k| &built.models[k].body);
+    let first = [0, 6 + one.flexible()];
+    let count = first[1] + 6 + other.flexible();
     // In coordinates whose mass is one: translations and rotations over roots of mass and inertia.
     let mut root = Mat::<f64>::zeros(count, count);
     let mut stiffness = Mat::<f64>::zeros(count, count);
-    for (body, at) in bodies.iter().zip(first) {
+    for (body, at) in [one, other].iter().zip(first) {
         let mass = nalgebra::SymmetricEigen::new(body.inertia);
         let inverse = mass.eigenvectors * nalgebra::Matrix3::from_diagonal(&mass.eigenvalues.map(|j| j.sqrt().recip()));
         for i in 0..3 {

@@ -27,7 +27,8 @@ impl<'a> Posture<'a> {
         attitudes: &'a [Matrix3<f64>],
         ends: &'a [Vec<End>],
     ) -> Self {
-        let offset = |b: usize| system.bodies[b].frame.offset_from(&system.bodies[0].frame);
+        let first = system.bodies.first().map(|body| &body.frame);
+        let offset = |b: usize| first.map_or_else(Vector3::zeros, |first| system.bodies[b].frame.offset_from(first));
         let of_joint = |(joint, point): (&Joint, Vector3<f64>)| {
             let body = joint.markers.iter().find_map(|marker| marker.body());
             point + body.map_or_else(Vector3::zeros, offset)
