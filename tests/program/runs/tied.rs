@@ -191,7 +191,9 @@ fn a_constraint_stands_beside_springs_and_joints() {
     let constraint = |of: &str| format!("[[constraints]]\n{of}\n");
     // A shaft beside the axis, and nodes of a line: the tip moves by some 3 mm.
     for held in [
-        constraint("kind = \"hinge\"\nat = [0, 0, 12]\naxis = [0, 1, 0]\ngroup = \"left\""),
+        constraint(
+            "kind = \"hinge\"\nat = [0, 0, 12]\naxis = [0, 1, 0]\ngroup = \"left\"\n[initial]\nangular_velocity = [0, 5, 0]",
+        ),
         constraint("kind = \"support\"\ndirections = [\"x\", \"y\", \"z\"]\nbox = [[0, -5, -5], [0, 5, -5]]"),
     ] {
         let off = off(&held, &format!("{held}{SPRING}1e-9\n"));
