@@ -13,7 +13,7 @@ mod chart;
 mod document;
 mod error;
 
-pub use body::animation::{Animation, Frame};
+pub use body::animation::{Animation, FilmFrame};
 pub use body::shapes::{Panel, ShapeGrid};
 pub use body::surface::{facets, sharp_edges};
 pub use body::view::View;

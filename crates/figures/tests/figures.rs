@@ -412,13 +412,13 @@ fn a_tumbling_plate_is_a_small_animation() {
     let block = Block::new([1000.0, 50.0, 10.0], [100, 5, 1]);
     let triangles = facets(&block.outer_faces());
     let edges = sharp_edges(&block.points, &block.outer_faces());
-    let frames: Vec<Frame> = (0..60)
+    let frames: Vec<FilmFrame> = (0..60)
         .map(|i| {
             let time = i as f64 / 60.0;
             let (points, values) = mode(&block, 0, 40.0 * (2.0 * PI * 3.0 * time).sin());
             let (sin, cos) = (2.0 * PI * time).sin_cos();
             let place = |p: &[f64; 3]| [cos * p[0] + sin * p[2] + 300.0 * time, p[1], cos * p[2] - sin * p[0]];
-            Frame { points: points.iter().map(place).collect(), values, caption: format!("t = {time:.3} s") }
+            FilmFrame { points: points.iter().map(place).collect(), values, caption: format!("t = {time:.3} s") }
         })
         .collect();
     let animation = Animation {
@@ -468,7 +468,7 @@ fn a_body_without_extent_is_drawn() {
         view: View::default(),
     };
     figure.save(folder().join("point")).unwrap();
-    let frames = vec![Frame { points, values: vec![0.0; 3], caption: String::new() }; 2];
+    let frames = vec![FilmFrame { points, values: vec![0.0; 3], caption: String::new() }; 2];
     let animation = Animation {
         title: String::new(),
         value_label: String::new(),

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 use dynamics::{Method, Observation, Rows, StepControl};
-use flexframe::cost::{CostReport, CostSettings, LadderRun, Line, Measured, Outcome, Setting, price_list};
+use flexframe::cost::{CostReport, CostSettings, LadderRun, Line, MeasuredRun, Outcome, Setting, price_list};
 use model::{Builder, Model};
 use scene::{METHODS, Scene, System};
 
@@ -54,7 +54,7 @@ fn line(method: Method, controlled: bool) -> &'static Line {
     list().0.lines.iter().find(is_it).unwrap()
 }
 
-fn runs(line: &Line) -> Vec<(f64, &Measured)> {
+fn runs(line: &Line) -> Vec<(f64, &MeasuredRun)> {
     line.rows.iter().filter_map(|row| Some((row.setting.value(), row.measured()?))).collect()
 }
 
@@ -107,7 +107,7 @@ fn the_reference_is_closer_than_all_that_is_ranked() {
 #[test]
 fn nothing_on_the_front_is_beaten() {
     let all: Vec<&LadderRun> = list().0.lines.iter().flat_map(|line| &line.rows).collect();
-    let front: Vec<&Measured> = all.iter().filter(|row| row.on_front).map(|row| row.measured().unwrap()).collect();
+    let front: Vec<&MeasuredRun> = all.iter().filter(|row| row.on_front).map(|row| row.measured().unwrap()).collect();
     assert!(front.len() > 2);
     for run in all.iter().filter_map(|row| row.measured()) {
         assert!(!front.iter().any(|best| run.error < best.error && run.seconds < best.seconds));
@@ -355,14 +355,14 @@ fn of_several_bodies_an_error_is_that_of_the_worst_and_work_is_that_of_all() {
         let name = scene.name.clone().unwrap();
         priced(&scene.into(), &name)
     });
-    let rows = |report: &CostReport| -> Vec<(&'static str, f64, Measured)> {
+    let rows = |report: &CostReport| -> Vec<(&'static str, f64, MeasuredRun)> {
         let lines = report.lines.iter().filter(|line| line.formulation == "conservative" && !line.controlled);
         lines.flat_map(|line| runs(line).into_iter().map(|(step, run)| (line.scheme, step, run.clone()))).collect()
     };
     let [slow, fast] = [slow, fast].map(|report| rows(&report));
     let mut compared = 0;
     for (scheme, step, run) in rows(&both) {
-        let alone = |rows: &[(&str, f64, Measured)]| {
+        let alone = |rows: &[(&str, f64, MeasuredRun)]| {
             rows.iter().find(|row| (row.0, row.1) == (scheme, step)).map(|row| row.2.clone())
         };
         let (Some(slow), Some(fast)) = (alone(&slow), alone(&fast)) else { continue };

@@ -33,7 +33,7 @@ const WHITE: RGBColor = RGBColor(255, 255, 255);
 
 /// The body at one moment.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Frame {
+pub struct FilmFrame {
     /// Places of the points.
     pub points: Vec<[f64; 3]>,
     /// A value per point, shown as colour.
@@ -56,7 +56,7 @@ pub struct Animation<'a> {
     /// Edges drawn as lines, by indices of points.
     pub edges: &'a [[u32; 2]],
     /// The frames in the order of time.
-    pub frames: &'a [Frame],
+    pub frames: &'a [FilmFrame],
     /// How long each is shown, in milliseconds (in steps of ten).
     pub frame_milliseconds: u32,
     /// From where the body is seen.

@@ -30,7 +30,7 @@ pub use answer::Answer;
 pub use body::CostBody;
 pub use error::CostError;
 pub use files::files;
-pub use ladder::{LadderRun, Line, Measured, Outcome, Stopped};
+pub use ladder::{LadderRun, Line, MeasuredRun, Outcome, Stopped};
 pub use machine::Machine;
 pub use modes::{ModesRow, modes_warning};
 pub use reference::ReferenceReport;

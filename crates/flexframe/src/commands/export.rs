@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 pub use csv::{csv_text, export_csv};
 pub use error::ExportError;
-pub use motion::Motion;
+pub use motion::DrawnMotion;
 pub use paraview::{export_modes, export_vtkhdf, export_vtu};
 pub use rows::ExportRows;
 

@@ -12,7 +12,7 @@ use crate::tie::place::Place;
 
 /// A force and a moment at a marker, global components.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MarkerForce {
+pub struct TieForce {
     /// Its number among the markers of the body.
     pub marker: usize,
     /// One of its places, where it is several; `None` for their mean.
@@ -25,14 +25,14 @@ pub struct MarkerForce {
 
 impl FullModel {
     /// The loads at a time in an attitude of the body, and the forces of joints.
-    pub fn forces(&self, time: f64, attitude: &Attitude, joints: &[MarkerForce]) -> ExternalForces {
+    pub fn forces(&self, time: f64, attitude: &Attitude, joints: &[TieForce]) -> ExternalForces {
         let nodes = self.assembled.mesh.positions().len();
         let mut dead = vec![0.0; 3 * nodes];
         let mut others = Vec::new();
         for load in &self.loads {
             act(load, time, attitude, &mut dead, &mut others);
         }
-        for MarkerForce { marker, part, force_global, moment_global } in joints {
+        for TieForce { marker, part, force_global, moment_global } in joints {
             if let Some(place) = self.markers.get(*marker).and_then(|marker| marker.place(*part)) {
                 let [force, moment] = [force_global, moment_global].map(|vector| attitude.to_body(vector));
                 let arm =

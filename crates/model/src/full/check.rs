@@ -9,7 +9,7 @@ use scene::Scene;
 use serde::Serialize;
 
 use crate::error::refuse;
-use crate::full::acting::MarkerForce;
+use crate::full::acting::TieForce;
 use crate::full::mends::{ErrorPart, Mend, mend_of_drift, mends, parts};
 use crate::full::stress::{StressCheck, stress_check};
 use crate::full::{FullError, FullModel};
@@ -142,7 +142,7 @@ impl<'a> Checker<'a> {
     pub fn check(
         &self,
         motion: &MotionState,
-        joints: &[MarkerForce],
+        joints: &[TieForce],
         settings: &StateErrorSettings,
         frequencies: bool,
     ) -> Result<StateCheck, FullError> {
@@ -235,7 +235,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// [`FullError`].
-    pub fn state(&self, observed: &Observation, joints: &[MarkerForce]) -> Result<FullState, FullError> {
+    pub fn state(&self, observed: &Observation, joints: &[TieForce]) -> Result<FullState, FullError> {
         let forces = self.full.forces(observed.time, &observed.attitude, joints);
         let without_mesh =
             || nonlinear::NonlinearError::NotFinite { what: "the displacement of a body without a mesh" };
@@ -244,10 +244,10 @@ impl<'a> Checker<'a> {
 
     /// The model's equations with the forces of joints as loads. They are without damping, which the full body does not have: its
     /// force would be taken for an error.
-    fn moving(&self, joints: &[MarkerForce]) -> Result<ConservativeBody, FullError> {
+    fn moving(&self, joints: &[TieForce]) -> Result<ConservativeBody, FullError> {
         let Model { body, loads, physics, markers, .. } = self.model;
         let mut loads = loads.clone();
-        for MarkerForce { marker, part, force_global, moment_global } in joints {
+        for TieForce { marker, part, force_global, moment_global } in joints {
             let Some(marker) = markers.get(*marker) else { continue };
             let part = part.and_then(|part| marker.parts.get(part));
             let (point, turning) = part.map_or((&marker.point, &marker.turning), |part| (&part.point, &part.turning));

@@ -12,14 +12,14 @@ use crate::stress::shapes::{BodyStress, StressPeak, larger};
 #[derive(Debug, Clone, Serialize)]
 pub struct StressCheck {
     /// The points of the output, where the scene asks for their stress.
-    pub points: Vec<PointStress>,
+    pub points: Vec<CheckedStress>,
     /// The whole body, where the scene asks for its largest stress.
     pub body: Option<BodyStressCheck>,
 }
 
 /// The von Mises stress at a point.
 #[derive(Debug, Clone, Serialize)]
-pub struct PointStress {
+pub struct CheckedStress {
     /// Its name.
     pub name: String,
     /// Stress of the full body, force per area.
@@ -63,7 +63,7 @@ pub(crate) fn stress_check(
     };
     let of_points = points.iter().zip(stress.at_points(modal_displacement)).map(|((name, location), model)| {
         let full = at(location);
-        PointStress { name: name.clone(), full: von_mises(&full), error: von_mises(&difference(&model, &full)) }
+        CheckedStress { name: name.clone(), full: von_mises(&full), error: von_mises(&difference(&model, &full)) }
     });
     let of_body = peak.and_then(|peak| {
         let model = stress.at_sites(modal_displacement)?;

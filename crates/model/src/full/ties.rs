@@ -4,7 +4,7 @@ use dynamics::{Marker, MarkerWrench, MotionState, PointShapes, RotationShapes, S
 use nalgebra::Matrix3;
 
 use crate::full::FullError;
-use crate::full::acting::MarkerForce;
+use crate::full::acting::TieForce;
 use crate::model::Model;
 use crate::tie::body_marker::carried;
 use crate::tie::tied::Tied;
@@ -21,17 +21,17 @@ impl Tied {
         model: &Model,
         states: &[MotionState],
         turns: &[f64],
-    ) -> Result<Vec<MarkerForce>, FullError> {
+    ) -> Result<Vec<TieForce>, FullError> {
         let mut motion = SystemMotion::new(self.system.clone(), states)?.with_turns(turns);
         let time = motion.time();
         motion.find_reactions().map_err(|error| dynamics::LoadedError::from(error.in_step(time, 0.0)))?;
-        let mut forces: Vec<MarkerForce> = Vec::new();
+        let mut forces: Vec<TieForce> = Vec::new();
         motion.each_wrench(|marker, MarkerWrench { force_global, moment_global }| {
             if marker.body() != Some(body) {
                 return;
             }
             if let Some((marker, part)) = numbers(model, body, marker) {
-                forces.push(MarkerForce { marker, part, force_global, moment_global });
+                forces.push(TieForce { marker, part, force_global, moment_global });
             }
         });
         Ok(forces)

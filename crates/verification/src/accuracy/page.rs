@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use flexframe::cost::{
-    self, CostError, CostReport, CostSettings, LadderRun, Line, Measured, duration, price_list, setting,
+    self, CostError, CostReport, CostSettings, LadderRun, Line, MeasuredRun, duration, price_list, setting,
 };
 use flexframe::model::Builder;
 use flexframe::modes::frequency_unit;
@@ -229,7 +229,7 @@ fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
     Ok(())
 }
 
-type Found<'a> = (&'a Line, &'a LadderRun, &'a Measured);
+type Found<'a> = (&'a Line, &'a LadderRun, &'a MeasuredRun);
 
 fn measured(lines: &[Line]) -> impl Iterator<Item = Found<'_>> {
     lines.iter().flat_map(|line| line.rows.iter().filter_map(move |row| Some((line, row, row.measured()?))))

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use figures::{LineChart, Scale, Series, Stroke};
-use verification::nonlinear::cases::{Curve, pendulum, spinning_l};
+use verification::nonlinear::cases::{TimeCurve, pendulum, spinning_l};
 use whole_file::Outputs;
 
 const STIFFENED: &str = "[effects]\nlarge_deflection = false\nrefuse = false";
@@ -44,7 +44,7 @@ fn curves(directory: &Path, overwrite: bool) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn save(path: &Path, title: &str, y_label: &str, courses: &[Curve]) -> Result<(), Box<dyn Error>> {
+fn save(path: &Path, title: &str, y_label: &str, courses: &[TimeCurve]) -> Result<(), Box<dyn Error>> {
     let names =
         [("nonlinear elements", Stroke::Dashed), ("stiffened modes", Stroke::Solid), ("large modes", Stroke::Solid)];
     let series = names.into_iter().zip(courses).map(|((label, stroke), course)| Series {

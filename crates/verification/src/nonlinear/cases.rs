@@ -58,14 +58,14 @@ pub fn peaks(shape: &[f64], axis: usize) -> [f64; 2] {
 
 /// A quantity over time.
 #[derive(Debug, Clone, Default)]
-pub struct Curve {
+pub struct TimeCurve {
     /// Times.
     pub times: Vec<f64>,
     /// Values.
     pub values: Vec<f64>,
 }
 
-impl Curve {
+impl TimeCurve {
     /// Largest size.
     pub fn peak(&self) -> f64 {
         self.values.iter().fold(0.0, |peak, value| value.abs().max(peak))
@@ -107,7 +107,7 @@ pub fn the_l(rest: &str) -> Result<(Scene, Model), SolidError> {
 ///
 /// # Errors
 /// Errors that stop a run.
-pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<Curve>), SolidError> {
+pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<TimeCurve>), SolidError> {
     let (_, model) = the_l("static_correction = false\n[time]\nend = 1e-3\nstep = 1e-3")?;
     let first = in_plane(&model)[0];
     let omega = model.body.circular_frequencies[first];
@@ -126,7 +126,7 @@ pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<C
     let start = NodalState { time: 0.0, u: vec![0.0; v.len()], v };
     let steps = (100.0 * periods).ceil();
     let mut motion = SolidMotion::new(&solid, start, end / steps, |_, u| vec![0.0; u.len()]);
-    let mut course = Curve { times: vec![0.0], values: vec![0.0] };
+    let mut course = TimeCurve { times: vec![0.0], values: vec![0.0] };
     for _ in 0..steps as usize {
         motion.advance()?;
         course.times.push(motion.state.time);
@@ -143,7 +143,7 @@ pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<C
         let rows = rows(&scene, &model)?;
         // Modes may come with either sign.
         let sign = dot(&shape(&model, first), &momentum).signum();
-        courses.push(Curve {
+        courses.push(TimeCurve {
             times: rows.iter().map(|row| row.time).collect(),
             values: rows.iter().map(|row| sign * row.modal_displacement[first]).collect(),
         });
@@ -152,7 +152,7 @@ pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<C
 }
 
 /// Frequency of a course in cycles per time; of a `step` of the midpoint rule, which is slow by a known amount, or of none.
-pub fn cycles(course: &Curve, omega: f64, step: Option<f64>) -> f64 {
+pub fn cycles(course: &TimeCurve, omega: f64, step: Option<f64>) -> f64 {
     let found = signal::frequency(&course.times, &course.values, omega, 3);
     let exact = step.map_or(found, |h| 2.0 / h * (0.5 * found * h).tan());
     exact / std::f64::consts::TAU
@@ -180,7 +180,7 @@ pub fn static_energy(solid: &Solid, model: &Model, mode: usize, q: f64) -> Resul
 ///
 /// # Errors
 /// Errors that stop a run.
-pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> Result<Vec<Curve>, SolidError> {
+pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> Result<Vec<TimeCurve>, SolidError> {
     let material = crate::nonlinear::bodies::soft(young_modulus);
     let solid = Solid::new(crate::nonlinear::bodies::mesh("rod")?, material, |x| x.x.abs() < 1e-9 && x.z.abs() < 1e-9)?;
     let down: Vec<f64> = (0..solid.dofs()).map(|k| if k % 3 == 2 { -9.81 } else { 0.0 }).collect();
@@ -190,7 +190,7 @@ pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> R
     let rest = vec![0.0; solid.dofs()];
     let start = NodalState { time: 0.0, u: rest.clone(), v: rest };
     let mut motion = SolidMotion::new(&solid, start, end / steps as f64, |_, _| weight.clone());
-    let mut course = Curve { times: vec![0.0], values: vec![0.0] };
+    let mut course = TimeCurve { times: vec![0.0], values: vec![0.0] };
     for _ in 0..steps {
         motion.advance()?;
         course.times.push(motion.state.time);
@@ -206,7 +206,7 @@ pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> R
         );
         let (scene, model) = built("rod", material, &text)?;
         let rows = rows(&scene, &model)?;
-        courses.push(Curve {
+        courses.push(TimeCurve {
             times: rows.iter().map(|row| row.time).collect(),
             values: rows
                 .iter()
@@ -279,7 +279,7 @@ pub fn pressed(
     // Short enough for the tangent, which is without that of the pressure, where the rod turns about itself.
     let h = std::f64::consts::TAU / omega / 200.0;
     let mut motion = SolidMotion::new(&solid, NodalState { time: 0.0, u, v: vec![0.0; phi.len()] }, h, |_, u| force(u));
-    let mut course = Curve::default();
+    let mut course = TimeCurve::default();
     for _ in 0..800 {
         motion.advance()?;
         course.times.push(motion.state.time);

@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use nonlinear::{EquilibriumSettings, ExternalForces, FullBody, StateErrorSettings, equilibrium};
 use reduced_body::RigidMotion;
 use verification::nonlinear::bodies::{COLUMN, COLUMN_BENDING};
-use verification::nonlinear::cases::{self, Curve};
+use verification::nonlinear::cases::{self, TimeCurve};
 use verification::nonlinear::{NodalState, Solid, SolidMotion, bodies};
 
 /// Deflection of the tip over the length under a dead end force α EI/L²: θ'' = −α cos θ from the root, θ'(1) = 0, by
@@ -163,7 +163,7 @@ fn let_go(part: f64) -> [f64; 3] {
     let initial = format!("[initial]\nmodal_displacement = {start:?}\n");
     let (scene, model) = cases::built("column", COLUMN, &text(LARGE, &initial, end, end / 4000.0)).unwrap();
     let rows = cases::rows(&scene, &model).unwrap();
-    let large = Curve {
+    let large = TimeCurve {
         times: rows.iter().step_by(10).map(|row| row.time).collect(),
         values: rows.iter().step_by(10).map(|row| row.modal_displacement[0]).collect(),
     };
@@ -172,7 +172,7 @@ fn let_go(part: f64) -> [f64; 3] {
     let steps = 480;
     let state = NodalState { time: 0.0, u, v: vec![0.0; phi.len()] };
     let mut motion = SolidMotion::new(&solid, state, end / f64::from(steps), |_, u| vec![0.0; u.len()]);
-    let mut course = Curve { times: vec![0.0], values: vec![q] };
+    let mut course = TimeCurve { times: vec![0.0], values: vec![q] };
     for _ in 0..steps {
         motion.advance().unwrap();
         course.times.push(motion.state.time);

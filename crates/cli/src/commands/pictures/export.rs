@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
-use flexframe::export::{self, ExportRows, Exported, Motion};
+use flexframe::export::{self, DrawnMotion, ExportRows, Exported};
 use flexframe::given_file::GivenFile;
 use flexframe::run::RunProgress;
 
@@ -71,7 +71,7 @@ impl Export {
             done.push(export::export_csv(&file, &csv, &columns, &rows)?);
         }
         if vtkhdf.is_some() || vtu.is_some() || modes.is_some() {
-            let motion = Motion::open(&file, volume)?;
+            let motion = DrawnMotion::open(&file, volume)?;
             let mut moved = |part: f64| session.bar.run(RunProgress::Motion(part));
             if let Some(vtkhdf) = vtkhdf {
                 done.push(export::export_vtkhdf(&file, &motion, &vtkhdf, &rows, &mut moved)?);

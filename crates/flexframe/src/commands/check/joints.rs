@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use model::{BuildError, MarkerForce, Model, Tied, tie};
+use model::{BuildError, Model, TieForce, Tied, tie};
 use results::Results;
 use scene::System;
 
@@ -25,7 +25,7 @@ impl Ties {
         (results, system, models): (&Results, &System, &[Model]),
         body: usize,
         row: usize,
-    ) -> Result<Vec<MarkerForce>, CheckError> {
+    ) -> Result<Vec<TieForce>, CheckError> {
         let Some(tied) = self.0.iter().find(|tied| tied.bodies.contains(&body)) else { return Ok(Vec::new()) };
         let states: Option<Vec<_>> = tied.bodies.iter().map(|body| rows::motion(results, *body, row)).collect();
         let states = states.ok_or_else(|| CheckError::NoRows { file: file.to_owned() })?;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use model::{BodyStressCheck, Mend, PointStress, StateCheck};
+use model::{BodyStressCheck, CheckedStress, Mend, StateCheck};
 use nalgebra::Vector3;
 use serde::Serialize;
 
@@ -155,7 +155,7 @@ impl RowCheck {
         }
         if let Some(stress) = &state.stress {
             let unit = UnitLabels { length, mass: &units[1], time }.stress();
-            for PointStress { name, full, error } in &stress.points {
+            for CheckedStress { name, full, error } in &stress.points {
                 write!(f, "\n    stress at {name}: wrong by {error:.1e} of {full:.4e} {unit}")?;
             }
             if let Some(body) = stress.body {

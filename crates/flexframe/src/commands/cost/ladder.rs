@@ -72,7 +72,7 @@ pub struct LadderRun {
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// It came to its end.
-    Ran(Box<Measured>),
+    Ran(Box<MeasuredRun>),
     /// It failed, and why.
     Failed(String),
     /// It was stopped: it takes longer than the patience.
@@ -96,7 +96,7 @@ impl fmt::Display for Stopped {
 
 /// A run that came to its end.
 #[derive(Debug, Clone, Serialize)]
-pub struct Measured {
+pub struct MeasuredRun {
     /// The largest of the errors against the reference, or, if that is larger, three times the reference's own error.
     #[serde(serialize_with = "json::number")]
     pub error: f64,
@@ -136,7 +136,7 @@ pub struct Measured {
 
 impl LadderRun {
     /// The measurement, if the run came to its end.
-    pub fn measured(&self) -> Option<&Measured> {
+    pub fn measured(&self) -> Option<&MeasuredRun> {
         match &self.outcome {
             Outcome::Ran(measured) => Some(measured),
             Outcome::Failed(_) | Outcome::OutOfPatience(_) => None,
@@ -173,7 +173,7 @@ impl Evaluator<'_> {
         case: &PreparedScene<'_>,
         method: Method,
         control: StepControl,
-    ) -> Result<Measured, RunFailure> {
+    ) -> Result<MeasuredRun, RunFailure> {
         let begun = case.begin(method, control)?;
         let run = Trajectory::follow(begun.clone(), self.settings.patience)?;
         let timing = Timing::of(&begun, self.settings.timed_for, self.settings.patience)?;
@@ -181,7 +181,7 @@ impl Evaluator<'_> {
         let least = RANKED_ABOVE * self.reference.error.largest();
         let limit = self.limit(method).map(|limit| &limit.trajectory);
         let spin = |against: &Trajectory| run.spin_against(against);
-        Ok(Measured {
+        Ok(MeasuredRun {
             error: errors.largest().max(least),
             at_reference: errors.largest() <= least,
             errors,
@@ -201,7 +201,7 @@ impl Evaluator<'_> {
 
     /// True if shorter steps cannot bring a run closer to the reference, as far as can be told: the reference cannot
     /// tell, or the error is that of the formulation, or of rounding.
-    fn is_at_the_end(&self, method: Method, before: Option<&Measured>, now: &Measured) -> bool {
+    fn is_at_the_end(&self, method: Method, before: Option<&MeasuredRun>, now: &MeasuredRun) -> bool {
         let own = self.limit(method).map_or(0.0, |limit| RANKED_ABOVE * limit.error.largest());
         now.at_reference
             || now.step_errors.is_some_and(|errors| errors.largest() <= own.max(OUTWEIGHED * now.error))
@@ -228,7 +228,7 @@ pub(super) fn refine_line(
         method,
     };
     // The last run, and its work relative to the first setting.
-    let mut before: Option<(f64, Measured)> = None;
+    let mut before: Option<(f64, MeasuredRun)> = None;
     for (control, work) in refinements(case, method, controlled) {
         if let Some((work_before, run)) = &before {
             let more = work / work_before;
@@ -392,7 +392,7 @@ mod tests {
     use super::*;
 
     fn row(step: f64, error: f64, seconds: f64) -> LadderRun {
-        let measured = Measured {
+        let measured = MeasuredRun {
             error,
             at_reference: false,
             errors: Errors { attitude: error, ..Errors::default() },

@@ -14,7 +14,7 @@ use crate::drawn::{Drawn, DrawnBody, Part};
 
 /// The rows of a results file, and the meshes of its bodies.
 #[derive(Debug)]
-pub struct Motion {
+pub struct DrawnMotion {
     pub(super) results: Results,
     /// The bodies that have a surface, or elements where these are asked for.
     pub(super) bodies: Vec<DrawnSurface>,
@@ -42,7 +42,7 @@ pub(super) struct Placed {
     pub von_mises: Vec<f64>,
 }
 
-impl Motion {
+impl DrawnMotion {
     /// Reads a results file, finished or not, with the shapes of its bodies on the surface, which it carries, or in the whole
     /// volume, which is in body files.
     ///
@@ -103,11 +103,11 @@ impl DrawnSurface {
     }
 
     /// Everything of it that does not change with time.
-    pub fn metadata<'m>(&self, motion: &'m Motion) -> &'m BodyMetadata {
+    pub fn metadata<'m>(&self, motion: &'m DrawnMotion) -> &'m BodyMetadata {
         &motion.results.metadata.bodies[self.number]
     }
 
-    fn results<'m>(&self, motion: &'m Motion) -> Option<BodyResults<'m>> {
+    fn results<'m>(&self, motion: &'m DrawnMotion) -> Option<BodyResults<'m>> {
         motion.results.bodies().nth(self.number)
     }
 
@@ -125,7 +125,7 @@ impl DrawnSurface {
     }
 
     /// Positions of the points at a row, `r + Aᵀ (X + Ψ ξ)`, and their stress.
-    pub fn place(&self, motion: &Motion, row: usize, out: &mut Placed) {
+    pub fn place(&self, motion: &DrawnMotion, row: usize, out: &mut Placed) {
         let results = self.results(motion);
         let history = |path: &str| results.and_then(|results| results.table(path)?.row(row)).unwrap_or_default();
         let vector = |path: &str| Vector3::from_iterator(history(path).iter().copied().chain([0.0; 3]));

@@ -8,13 +8,13 @@ use results::{Block, Field, PvdEntry, VtkHdf, write_pvd, write_vtu};
 use super::Exported;
 use super::error::ExportError;
 use super::fields::fields;
-use super::motion::{DrawnSurface, Motion, Placed};
+use super::motion::{DrawnMotion, DrawnSurface, Placed};
 use super::rows::ExportRows;
 use crate::commands::modes::frequency_unit;
 use crate::files::outputs::{OutputError, Written, outputs_of_results};
 use crate::files::write_error::WriteError;
 
-impl Motion {
+impl DrawnMotion {
     /// The rows to export and their times.
     fn chosen(&self, file: &Path, rows: &ExportRows) -> Result<(Vec<usize>, Vec<f64>), ExportError> {
         let times = self.results.numbers("time").unwrap_or_default();
@@ -52,7 +52,7 @@ impl Motion {
 /// [`ExportError`]; nothing has been written then.
 pub fn export_vtkhdf(
     file: &Path,
-    motion: &Motion,
+    motion: &DrawnMotion,
     to: &Path,
     rows: &ExportRows,
     mut progress: impl FnMut(f64),
@@ -81,7 +81,7 @@ pub fn export_vtkhdf(
 /// [`ExportError`]; without the PVD file, what there is of the others is a part.
 pub fn export_vtu(
     file: &Path,
-    motion: &Motion,
+    motion: &DrawnMotion,
     folder: &Path,
     rows: &ExportRows,
     mut progress: impl FnMut(f64),
@@ -125,7 +125,7 @@ pub fn export_vtu(
 ///
 /// # Errors
 /// [`ExportError`]; nothing has been written then.
-pub fn export_modes(file: &Path, motion: &Motion, to: &Path, rows: &ExportRows) -> Result<Exported, ExportError> {
+pub fn export_modes(file: &Path, motion: &DrawnMotion, to: &Path, rows: &ExportRows) -> Result<Exported, ExportError> {
     let with_modes = motion.bodies.iter().filter(|body| !body.metadata(motion).model.frequencies.is_empty());
     let unit = frequency_unit(&motion.results.metadata.units.time);
     let described: Vec<_> = with_modes.map(|body| (body, fields_of_modes(body, motion, &unit))).collect();
@@ -148,7 +148,7 @@ pub fn export_modes(file: &Path, motion: &Motion, to: &Path, rows: &ExportRows) 
 }
 
 /// A field for each shape, and then one for the stress of each.
-fn fields_of_modes(body: &DrawnSurface, motion: &Motion, unit: &str) -> Vec<Field> {
+fn fields_of_modes(body: &DrawnSurface, motion: &DrawnMotion, unit: &str) -> Vec<Field> {
     let model = &body.metadata(motion).model;
     let digits = model.frequencies.len().to_string().len();
     let name = |(k, (kind, frequency)): (usize, (&str, &f64))| match kind {

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::Path;
 
 use dynamics::{Observation, Reached, Simulation, StepError};
-use figures::{Animation, Frame};
+use figures::{Animation, FilmFrame};
 use model::{BuildError, Builder};
 use nalgebra::Vector3;
 use results::{BodyResults, Shapes, Units};
@@ -174,7 +174,7 @@ struct Picture<'a> {
     settings: AnimationSettings,
     /// Longest time from frame to frame.
     interval: f64,
-    frames: Vec<Frame>,
+    frames: Vec<FilmFrame>,
     /// Largest spin at a frame.
     fastest: f64,
 }
@@ -231,7 +231,7 @@ impl<'a> Picture<'a> {
             values.extend(body.values(q, &u, self.settings.coloured));
         }
         let decimals = decimals(self.interval);
-        self.frames.push(Frame { points, values, caption: format!("t = {time:.decimals$} {}", self.units.time) });
+        self.frames.push(FilmFrame { points, values, caption: format!("t = {time:.decimals$} {}", self.units.time) });
     }
 
     /// Writes it. Returns a warning where the frames are too few to show the spin.

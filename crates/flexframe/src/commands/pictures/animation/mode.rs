@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use figures::{Animation, Frame};
+use figures::{Animation, FilmFrame};
 use model::Builder;
 use nalgebra::Vector3;
 use scene::{Shared, System};
@@ -121,10 +121,10 @@ impl Swinging<'_> {
         let largest = shapes.iter().map(|(shape, _)| greatest(shape.iter().map(Vector3::norm).collect()));
         let scale = settings.magnification * DRAWN * self.diagonal / largest.fold(f64::MIN_POSITIVE, f64::max);
         let highest = shapes.iter().map(|shape| greatest(values(shape))).fold(f64::MIN_POSITIVE, f64::max);
-        let frames: Vec<Frame> = shapes
+        let frames: Vec<FilmFrame> = shapes
             .iter()
             .zip(&phases)
-            .map(|(shape, phase)| Frame {
+            .map(|(shape, phase)| FilmFrame {
                 points: self.points.iter().zip(&shape.0).map(|(x, u)| (Vector3::from(*x) + u * scale).into()).collect(),
                 values: values(shape).into_iter().map(|value| value / highest).collect(),
                 caption: format!("{:.2} of a period", phase / TAU),
