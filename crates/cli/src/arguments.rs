@@ -2,16 +2,12 @@
 
 pub mod values;
 
-use std::error::Error;
-
 use clap::Args;
-use flexframe::campbell::CampbellError;
+use diagnostic::{Diagnosis, Failure, Kind};
 use flexframe::linearize::LinearSettings;
-use model::BuildError;
-use scene::{Flexible, SceneError, System};
+use scene::{Flexible, System};
 
 use crate::arguments::values::{angular_velocity, finite, mode_count};
-use crate::cli_error::CliError;
 use crate::scene_input::SceneInput;
 
 #[derive(Debug, Args)]
@@ -39,14 +35,14 @@ impl ModeCountArgs {
     }
 
     /// The refusal of a number of modes, at the option where that has replaced what the scene says.
-    pub fn refusal(self, error: CampbellError) -> Box<dyn Error> {
-        match (error, self.flexible) {
-            (CampbellError::Build(BuildError::Scene(SceneError::Invalid { at, found, expected, help })), Some(_))
-                if at.key == "modes.flexible" =>
-            {
-                CliError::Option { option: "--flexible", found, expected, help }.into()
+    pub fn refusal(self, error: Failure) -> Failure {
+        let known = error.diagnosis();
+        match known.key.as_deref() {
+            Some("modes.flexible") if self.flexible.is_some() => {
+                Diagnosis { kind: Kind::Usage, file: None, line: None, key: Some("--flexible".to_owned()), ..known }
+                    .into()
             }
-            (error, _) => error.into(),
+            _ => error,
         }
     }
 }

@@ -1,11 +1,12 @@
 //! The command line: options of the program, and its commands.
 
-use std::error::Error;
 use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
-use flexframe::failure::{Details, FailureReport, Kind};
+use diagnostic::Failure;
+use diagnostic::Kind;
+use flexframe::failure::FailureReport;
 use model::{Builder, Cache};
 use toml::Value;
 
@@ -100,10 +101,10 @@ pub fn main() -> ExitCode {
         Err(error) if error.use_stderr() => {
             let text = error.render().to_string();
             let message = text.trim().strip_prefix("error: ").unwrap_or(text.trim());
-            Err(FailureReport::new(Kind::Usage, message, Details::default()))
+            Err(FailureReport::new(message, Kind::Usage.alone()))
         }
         // The help or the version was asked for.
-        Err(asked) => output::written(asked.print()).map_err(|error| error.report()),
+        Err(asked) => output::written(asked.print()).map_err(|error| FailureReport::of(&error)),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -120,7 +121,7 @@ fn values_set(matches: &ArgMatches) -> Vec<(String, Value)> {
     of_command.into_iter().flatten().cloned().collect()
 }
 
-fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Error>> {
+fn execute(cli: Cli, json: bool) -> Result<(), Failure> {
     let cache = if cli.no_cache { Cache::none() } else { Cache::of_user() };
     let builder = Builder { trust_geometry: cli.trust_geometry, ..Builder::with_cache(cache.clone()) };
     let done = command(cli, json, builder);
@@ -130,7 +131,7 @@ fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Error>> {
     done
 }
 
-fn command(cli: Cli, json_errors: bool, builder: Builder) -> Result<(), Box<dyn Error>> {
+fn command(cli: Cli, json_errors: bool, builder: Builder) -> Result<(), Failure> {
     let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
     threads::start(cli.threads)?;
     let session = Session { builder, signals, bar: Bar::new(json_errors), json_errors };

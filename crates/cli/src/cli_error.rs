@@ -4,7 +4,8 @@ use std::error::Error;
 use std::io;
 use std::iter::successors;
 
-use flexframe::failure::{Details, FailureReport, Kind};
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+use flexframe::failure::FailureReport;
 use scene::{SceneError, text_of};
 use toml::Value;
 
@@ -49,15 +50,14 @@ pub enum CliError {
 }
 
 /// The failure of any error that ends a command, in which values were set on the command line.
-pub fn report(error: &(dyn Error + 'static), set: &[(String, Value)]) -> FailureReport {
-    let known = || of_set_value(error, set).unwrap_or_else(|| FailureReport::of(error));
-    error.downcast_ref::<CliError>().map_or_else(known, CliError::report)
+pub fn report(error: &dyn Diagnostic, set: &[(String, Value)]) -> FailureReport {
+    of_set_value(error, set).unwrap_or_else(|| FailureReport::of(error))
 }
 
 /// The failure of a scene in which values were set: at the option, where it is one of them, and at the line that the scene file has.
-fn of_set_value(error: &(dyn Error + 'static), set: &[(String, Value)]) -> Option<FailureReport> {
-    let refused =
-        successors(Some(error), |&error| error.source()).find_map(|error| error.downcast_ref::<SceneError>())?;
+fn of_set_value(error: &dyn Diagnostic, set: &[(String, Value)]) -> Option<FailureReport> {
+    let sources = successors(Some(error as &(dyn Error + 'static)), |&error| error.source());
+    let refused = sources.filter_map(|error| error.downcast_ref::<SceneError>()).next()?;
     let place = refused.place()?;
     let is_at =
         |key: &str| place.key.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
@@ -69,34 +69,29 @@ fn of_set_value(error: &(dyn Error + 'static), set: &[(String, Value)]) -> Optio
             (Some(found), Some(expected)) => format!("found {found}, expected {expected}"),
         };
         let cure = help.as_ref().map_or_else(String::new, |help| format!("\n = {help}"));
-        let details = Details { key: Some(place.key.clone()), found, expected, help, ..Details::of_file(&place.file) };
-        return Some(FailureReport::new(Kind::Input, format!("--set {key}={value}: {words}{cure}"), details));
+        return Some(FailureReport::new(
+            format!("--set {key}={value}: {words}{cure}"),
+            Diagnosis { line: None, ..refused.diagnosis() },
+        ));
     }
     let moved = refused.at_line_of(&text_of(&place.file).ok().filter(|_| !set.is_empty())?)?;
     let whole = FailureReport::of(error);
     Some(whole.with_message(|message| message.replacen(&refused.to_string(), &moved.to_string(), 1), moved.line()))
 }
 
-impl CliError {
-    /// As a failure.
-    pub fn report(&self) -> FailureReport {
-        let (kind, details) = match self {
+impl Diagnostic for CliError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
             Self::Option { option, found, expected, help } => {
-                let key = Some((*option).to_owned());
-                let (found, expected) = (Some(found.clone()), Some(expected.clone()));
-                (Kind::Usage, Details { key, found, expected, help: Some(help.clone()), ..Details::default() })
+                Kind::Usage.alone().key(*option).found(found).expected(expected).help(help)
             }
             Self::ThreadsVariable { found, most } => {
-                let key = Some("RAYON_NUM_THREADS".to_owned());
-                let (found, expected) = (Some(found.clone()), Some(format!("a number from 1 to {most}")));
-                (Kind::Usage, Details { key, found, expected, ..Details::default() })
+                let expected = format!("a number from 1 to {most}");
+                Kind::Usage.alone().key("RAYON_NUM_THREADS").found(found).expected(expected)
             }
-            Self::Output(_) => (Kind::Io, Details::of_file("standard output")),
-            Self::Threads { .. } | Self::Signals(_) | Self::Port { .. } | Self::Folder(_) => {
-                (Kind::Io, Details::default())
-            }
-            Self::Json(_) => (Kind::Run, Details::default()),
-        };
-        FailureReport::new(kind, self.to_string(), details)
+            Self::Output(_) => Kind::Io.of("standard output"),
+            Self::Threads { .. } | Self::Signals(_) | Self::Port { .. } | Self::Folder(_) => Kind::Io.alone(),
+            Self::Json(_) => Kind::Run.alone(),
+        }
     }
 }

@@ -1,11 +1,11 @@
 //! Standard output and standard error, either of which may be full or closed.
 
 use std::borrow::Cow;
-use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use flexframe::failure::FailureReport;
 use flexframe::run::Estimate;
 use model::CacheNotes;
@@ -30,7 +30,7 @@ fn for_terminal(text: &str) -> Cow<'_, str> {
 }
 
 /// Prints a summary.
-pub fn print<R: Serialize + Display>(report: &R, json: bool) -> Result<(), Box<dyn Error>> {
+pub fn print<R: Serialize + Display>(report: &R, json: bool) -> Result<(), Failure> {
     let report = if json { serde_json::to_string_pretty(report).map_err(CliError::from)? } else { report.to_string() };
     if json {
         text(&format!("{report}\n"))?
@@ -81,12 +81,12 @@ pub fn show_estimate(estimate: &Estimate) {
 }
 
 /// Prints the names of files.
-pub fn list(files: &[PathBuf]) -> Result<(), Box<dyn Error>> {
+pub fn list(files: &[PathBuf]) -> Result<(), Failure> {
     files.iter().try_for_each(|file| Ok(line(&format!("  wrote    {}", file.display()))?))
 }
 
 /// Prints what should be known of files.
-pub fn warn(warning: Option<&str>) -> Result<(), Box<dyn Error>> {
+pub fn warn(warning: Option<&str>) -> Result<(), Failure> {
     Ok(warning.map_or(Ok(()), |warning| line(&format!("  warning  {warning}")))?)
 }
 

@@ -1,9 +1,9 @@
 //! The scene of a command: a file or standard input, with values set on the command line.
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::fmu::scene_of_body;
 use flexframe::given_file::GivenFile;
 use scene::{AssignError, Scene, System, assign, text_from, text_of};
@@ -33,7 +33,7 @@ pub struct SceneInput {
 
 impl SceneInput {
     /// As [`Self::read_system`], of a body file, too: then it is the scene that it was made of.
-    pub fn read_system_or_body(self) -> Result<System, Box<dyn Error>> {
+    pub fn read_system_or_body(self) -> Result<System, Failure> {
         if !self.scene.extension().is_some_and(|extension| extension == "h5" || extension == "hdf5") {
             return self.read_system();
         }
@@ -58,14 +58,14 @@ impl SceneInput {
     }
 
     /// Reads the scene of one body, sets the values, and checks it.
-    pub fn read(self) -> Result<Scene, Box<dyn Error>> {
+    pub fn read(self) -> Result<Scene, Failure> {
         let body = self.body.clone();
         let (text, path) = self.text()?;
         Ok(Scene::parse_body(&text, path, body.as_deref())?)
     }
 
     /// Reads all bodies with what ties them together, or the one that was named.
-    pub fn read_system(self) -> Result<System, Box<dyn Error>> {
+    pub fn read_system(self) -> Result<System, Failure> {
         if self.body.is_some() {
             return Ok(self.read()?.into());
         }
@@ -74,7 +74,7 @@ impl SceneInput {
     }
 
     /// The text with the values set, and where it comes from.
-    fn text(self) -> Result<(String, PathBuf), Box<dyn Error>> {
+    fn text(self) -> Result<(String, PathBuf), Failure> {
         let (text, path) = if self.scene == Path::new(STANDARD_INPUT) {
             let path = PathBuf::from(NAME);
             (text_from(std::io::stdin().lock(), &path)?, path)

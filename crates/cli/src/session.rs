@@ -1,8 +1,8 @@
 //! Means that every command has: where bodies come from, signals and the progress bar.
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use flexframe::modes;
 use flexframe::outputs::{OutputError, Written, outputs_of_scene};
 use flexframe::plausible;
@@ -28,7 +28,7 @@ pub struct Session {
 
 impl Session {
     /// The scene of one body, after doubts about it have been told.
-    pub fn read(&self, input: SceneInput) -> Result<Scene, Box<dyn Error>> {
+    pub fn read(&self, input: SceneInput) -> Result<Scene, Failure> {
         let scene = input.read()?;
         if !self.json_errors {
             output::doubts(plausible::doubts_of_scene(&scene));
@@ -37,14 +37,14 @@ impl Session {
     }
 
     /// As [`Self::read`], of any number of bodies.
-    pub fn read_system(&self, input: SceneInput) -> Result<System, Box<dyn Error>> {
+    pub fn read_system(&self, input: SceneInput) -> Result<System, Failure> {
         let system = input.read_system()?;
         self.tell_doubts(&system);
         Ok(system)
     }
 
     /// A scene of one body, or of bodies in joints; of several that nothing ties one has to be named.
-    pub fn read_one(&self, input: SceneInput, modes: ModeCountArgs) -> Result<System, Box<dyn Error>> {
+    pub fn read_one(&self, input: SceneInput, modes: ModeCountArgs) -> Result<System, Failure> {
         let mut system = input.clone().read_system()?;
         if !system.has_connections() && system.bodies.len() > 1 {
             system = input.read()?.into();
@@ -65,7 +65,7 @@ impl Session {
     }
 
     /// Writes the modes that a scene asks for as a problem for SLEPc.
-    pub fn write_only(mut self, scene: &Scene, to: &WriteOnly, overwrite: bool) -> Result<(), Box<dyn Error>> {
+    pub fn write_only(mut self, scene: &Scene, to: &WriteOnly, overwrite: bool) -> Result<(), Failure> {
         Written::FOLDER.check(&to.folder).map_err(OutputError::from)?;
         outputs_of_scene(scene, &self.builder, overwrite).claim(&files_of_folder(&to.folder))?;
         let files = modes::write_problem(scene, &self.builder, &to.folder, to.ranks, |p| self.bar.build(p))?;

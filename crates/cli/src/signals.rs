@@ -12,7 +12,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use flexframe::failure::{Details, FailureReport, Kind};
+use diagnostic::Kind;
+use flexframe::failure::FailureReport;
 use flexframe::run::RunProgress;
 use signal_hook::consts::{SIGABRT, SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU};
 use signal_hook::{iterator, low_level};
@@ -62,7 +63,7 @@ impl Signals {
                     Answer::Wait => {}
                     Answer::End { told } => {
                         if !told {
-                            output::report(&FailureReport::new(Kind::Stopped, "stopped", Details::default()), json);
+                            output::report(&FailureReport::new("stopped", Kind::Stopped.alone()), json);
                         }
                         let _none = remove_temporaries();
                         // Without handlers at exit, which would close files that others are writing.

@@ -4,6 +4,8 @@ use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 use crate::vibration::system::error::SteadyError;
 
 /// A body of a system, as messages name it.
@@ -306,5 +308,26 @@ impl RateError {
             Self::Switch { law } => StepError::Switch { time, law },
             Self::Custom(error) => StepError::Custom { time, error },
         }
+    }
+}
+
+impl Diagnostic for SetupError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::FormulaTooFast { .. }
+            | Self::StepBeyondLimit { .. }
+            | Self::StepBeyondBody { .. }
+            | Self::StepBeyondSpin { .. }
+            | Self::MotionLeft { .. }
+            | Self::CollinearPoints(_)
+            | Self::Inertia(_) => Kind::Refused.alone(),
+            _ => Kind::Input.alone(),
+        }
+    }
+}
+
+impl Diagnostic for StepError {
+    fn diagnosis(&self) -> Diagnosis {
+        Kind::Run.alone()
     }
 }

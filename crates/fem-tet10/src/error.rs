@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 /// Where in a mesh file something was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FilePosition {
@@ -274,4 +276,24 @@ pub enum AssemblyFault {
     /// A displacement that is not a number. `row`: 3·node + axis, from 0.
     #[error("the {what} have {found} in row {row}, column {column}; every displacement must be a finite number")]
     FieldNotFinite { what: &'static str, row: usize, column: usize, found: f64 },
+}
+
+impl Diagnostic for MeshError {
+    fn diagnosis(&self) -> Diagnosis {
+        let known = match &self.fault {
+            MeshFault::Memory(_) | MeshFault::Io(_) => Kind::Io.alone(),
+            MeshFault::Syntax { expected, found, .. } => {
+                Kind::Input.alone().found(found.clone()).expected(expected.clone())
+            }
+            _ => Kind::Input.alone(),
+        };
+        Diagnosis { line: self.line(), ..known.in_file(&self.mesh) }
+    }
+}
+
+impl Diagnostic for AssemblyError {
+    fn diagnosis(&self) -> Diagnosis {
+        let kind = if matches!(self.fault, AssemblyFault::Memory(_)) { Kind::Io } else { Kind::Input };
+        self.mesh.as_ref().map_or_else(|| kind.alone(), |mesh| kind.of(mesh))
+    }
 }

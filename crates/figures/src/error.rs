@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use plotters::drawing::DrawingAreaErrorKind;
 
 /// An error of a figure.
@@ -55,5 +56,11 @@ impl FigureError {
 impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for FigureError {
     fn from(error: DrawingAreaErrorKind<E>) -> Self {
         Self::Draw { reason: error.to_string() }
+    }
+}
+
+impl Diagnostic for FigureError {
+    fn diagnosis(&self) -> Diagnosis {
+        if let Self::Write { path, .. } = self { Kind::Io.of(path) } else { Kind::Run.alone() }
     }
 }

@@ -8,6 +8,5 @@ mod solid;
 mod stored;
 
 pub(crate) use of_model::{shapes_of, surface_shapes_of};
-pub use opened::DrawnError;
 pub(crate) use opened::{Drawn, DrawnBody, Part, body_files};
 pub(crate) use stored::{mesh_properties, not_stored, stored_bytes, stored_shapes};

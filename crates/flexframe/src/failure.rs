@@ -1,128 +1,64 @@
-//! Failure of a command: its kind, its exit code, and the details of the fault.
+//! Failure of a command, with its exit code and its form in JSON.
 
-mod kinds;
-
+use std::error::Error;
 use std::fmt;
-use std::path::Path;
+use std::io;
+use std::iter::successors;
 
+use diagnostic::{CURE, Diagnosis, Diagnostic, Kind};
 use serde::Serialize;
+use whole_file::{NoTemporaryFolder, cure_of_temporaries};
 
-pub use kinds::known;
-
-/// Failures of commands, in the classes that a script tells apart. Each has an exit code of its own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Kind {
-    /// The arguments of the command are wrong.
-    Usage,
-    /// A scene, mesh, table or results file says something that cannot be right.
-    Input,
-    /// The model is understood, but known to give wrong answers or none.
-    Refused,
-    /// The computation did not come to its end.
-    Run,
-    /// The system refused a file, standard output or a thread.
-    Io,
-    /// A signal stopped the program.
-    Stopped,
-}
-
-impl Kind {
-    /// All of them, by exit code.
-    pub const ALL: [Self; 6] = [Self::Usage, Self::Input, Self::Refused, Self::Run, Self::Io, Self::Stopped];
-
-    /// The exit code of the program.
-    pub fn exit_code(self) -> u8 {
-        match self {
-            Self::Usage => 2,
-            Self::Input => 3,
-            Self::Refused => 4,
-            Self::Run => 5,
-            Self::Io => 6,
-            // As shells have it of a program that ctrl-C has ended.
-            Self::Stopped => 130,
-        }
-    }
-
-    /// Meaning in a few words.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            Self::Usage => "wrong arguments",
-            Self::Input => "bad input: a scene, mesh, table or results file is wrong",
-            Self::Refused => "refused model: its answers would be wrong, or it has none",
-            Self::Run => "failed run: the computation did not come to its end",
-            Self::Io => "input or output: the system refused a file, standard output or a thread",
-            Self::Stopped => "stopped by a signal (ctrl-C, SIGTERM, SIGHUP)",
-        }
-    }
-}
-
-/// Details of a fault beside its message. Those that are not known are left out of the JSON.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
-pub struct Details {
-    /// The file that is at fault, or could not be read or written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub file: Option<String>,
-    /// Line in it, from 1.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub line: Option<usize>,
-    /// Path of keys in the scene, such as `loads[0].history.duration`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub key: Option<String>,
-    /// The value that stands there.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub found: Option<String>,
-    /// The value that should stand there.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub expected: Option<String>,
-    /// Help for the user.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub help: Option<String>,
-}
-
-impl Details {
-    /// A file, of which nothing more is known. A name that is not UTF-8 is shown as well as that goes.
-    pub fn of_file(file: impl AsRef<Path>) -> Self {
-        Self { file: Some(file.as_ref().display().to_string()), ..Self::default() }
-    }
-
-    /// Its own, and what others know besides.
-    fn or(self, others: Self) -> Self {
-        Self {
-            file: self.file.or(others.file),
-            line: self.line.or(others.line),
-            key: self.key.or(others.key),
-            found: self.found.or(others.found),
-            expected: self.expected.or(others.expected),
-            help: self.help.or(others.help),
-        }
-    }
-}
-
-/// The beginning of the line of a message that says what to do.
-const CURE: &str = "\n = ";
-
-/// The object that stands for a failure under `--json`.
+/// The object that stands for a failure under `--json`. Details that are not known are left out.
 #[derive(Debug, Serialize)]
 pub struct FailureReport {
-    kind: Kind,
+    kind: &'static str,
     exit_code: u8,
     message: String,
-    #[serde(flatten)]
-    details: Details,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    key: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    found: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    expected: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    help: Option<String>,
 }
 
 impl FailureReport {
-    /// A failure of a kind, with a message. A cure that only the message has, in its last line after ` = `, is help, too.
-    pub fn new(kind: Kind, message: impl Into<String>, mut details: Details) -> Self {
+    /// A failure with a message. A cure that only the message has, in its last line after ` = `, is help, too.
+    pub fn new(message: impl Into<String>, diagnosis: Diagnosis) -> Self {
         let message = message.into();
-        details.help = details.help.or_else(|| Some(message.rsplit_once(CURE)?.1.to_owned()));
-        Self { kind, exit_code: kind.exit_code(), message, details }
+        let Diagnosis { kind, file, line, key, found, expected, help } = diagnosis;
+        let help = help.or_else(|| Some(message.rsplit_once(CURE)?.1.to_owned()));
+        Self { kind: kind.name(), exit_code: kind.exit_code(), message, file, line, key, found, expected, help }
+    }
+
+    /// The failure of an error.
+    pub fn of(error: &dyn Diagnostic) -> Self {
+        let message = error.to_string();
+        let mut sources = successors(Some(error as &(dyn Error + 'static)), |&error| error.source())
+            .filter_map(|error| error.downcast_ref::<io::Error>());
+        let none = |source: &io::Error| Some(source.get_ref()?.downcast_ref::<NoTemporaryFolder>()?.to_string());
+        if let Some(none) = sources.find_map(none) {
+            return Self::new(none, Kind::Io.of(std::env::temp_dir()));
+        }
+        match cure_of_temporaries(error, &message) {
+            Some(cure) => {
+                let full = Diagnosis { kind: Kind::Io, ..error.diagnosis() };
+                Self::new(format!("{message}{CURE}{cure}"), full)
+            }
+            None => Self::new(message, error.diagnosis()),
+        }
     }
 
     /// The same with another message and another line.
     pub fn with_message(self, message: impl FnOnce(&str) -> String, line: Option<usize>) -> Self {
-        Self { message: message(&self.message), details: Details { line, ..self.details }, ..self }
+        Self { message: message(&self.message), line, ..self }
     }
 
     /// The exit code of the program.
@@ -135,5 +71,31 @@ impl FailureReport {
 impl fmt::Display for FailureReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "error: {}", self.message)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use dynamics::SetupError;
+    use mesh_import::ImportError;
+    use modal::ModalError;
+    use model::BuildError;
+    use slepc::SlepcError;
+
+    use super::*;
+    use crate::commands::run::RunError;
+
+    #[test]
+    fn kind_and_place_are_of_the_innermost_error_that_knows_them() {
+        let of = |error: RunError| error.diagnosis();
+        let scene = || "a.toml".into();
+        let mesh = fem_tet10::parse_msh(b"$MeshFormat\n4.1 x", "a.msh").unwrap_err();
+        let known = of(BuildError::from(Box::new(ImportError::from(mesh))).into());
+        assert_eq!((known.kind, known.file.as_deref(), known.line), (Kind::Input, Some("a.msh"), Some(2)));
+        let stopped = ModalError::Engine(SlepcError::Stopped { command: "mpirun".to_owned() }.into());
+        assert_eq!(of(BuildError::Modal { scene: scene(), source: stopped }.into()), Kind::Stopped.of("a.toml"));
+        let source = SetupError::StepBeyondSpin { step: 1.0, limit: 0.1, spin: 2.0 };
+        let known = of(RunError::Setup { scene: scene(), source: Box::new(source.into()) });
+        assert_eq!(known, Kind::Refused.of("a.toml"));
     }
 }

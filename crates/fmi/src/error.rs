@@ -2,7 +2,6 @@
 
 use flexframe::advice::AdviceError;
 use flexframe::dynamics::{CheckpointError, StepError};
-use flexframe::fmu::FmuError;
 use flexframe::forked::NoThreads;
 
 use crate::phase::Phase;
@@ -11,7 +10,7 @@ use crate::phase::Phase;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]
-    Fmu(#[from] FmuError),
+    Fmu(#[from] diagnostic::Failure),
     #[error(transparent)]
     Threads(#[from] NoThreads),
     #[error(

@@ -1,5 +1,7 @@
 //! Errors of linear models.
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 /// A linear model that has no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LinearError {
@@ -77,4 +79,10 @@ pub enum LinearError {
         /// Its size.
         size: usize,
     },
+}
+
+impl Diagnostic for LinearError {
+    fn diagnosis(&self) -> Diagnosis {
+        Kind::Refused.alone()
+    }
 }

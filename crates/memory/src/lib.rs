@@ -10,6 +10,8 @@
 mod bytes;
 mod left;
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 pub use bytes::Bytes;
 pub use left::Left;
 
@@ -87,6 +89,12 @@ pub fn with_capacity<T>(what: &'static str, length: usize) -> Result<Vec<T>, Out
     let mut room = Vec::new();
     room.try_reserve_exact(length).map_err(|_| OutOfMemory { what, wanted: bytes, left: Left::of_process() })?;
     Ok(room)
+}
+
+impl Diagnostic for OutOfMemory {
+    fn diagnosis(&self) -> Diagnosis {
+        Kind::Io.alone()
+    }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::io;
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use fem_tet10::MeshError;
 use foreign_program::ProgramError;
 
@@ -46,6 +47,16 @@ impl ImportError {
             | Self::Failed { source_name, .. }
             | Self::TooMuch { source_name, .. }
             | Self::Io { source_name, .. } => source_name,
+        }
+    }
+}
+
+impl Diagnostic for ImportError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Mesh(error) => error.diagnosis(),
+            Self::NoReader { .. } | Self::Io { .. } => Kind::Io.of(self.source_name()),
+            _ => Kind::Input.of(self.source_name()),
         }
     }
 }

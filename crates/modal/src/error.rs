@@ -1,9 +1,8 @@
 //! Errors of the search for modes.
 
-use std::error::Error;
-
+use diagnostic::{Diagnosis, Diagnostic, Failure, Kind};
 /// Failure of an engine, in its own words.
-pub type EngineError = Box<dyn Error + Send + Sync>;
+pub type EngineError = Failure;
 
 /// Faults of the matrices, or of a request.
 #[derive(Debug, thiserror::Error)]
@@ -165,4 +164,26 @@ pub enum ModalError {
         "a dense eigenvalue problem of size {size} did not converge: are masses or stiffnesses of the body many powers of ten too small or too large in the units of the scene?"
     )]
     DenseEigen { size: usize },
+}
+
+impl Diagnostic for ModalError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Memory(error) => return error.diagnosis(),
+            Self::Engine(error) => return error.diagnosis(),
+            Self::TooManyModes { .. }
+            | Self::HeldNode { .. }
+            | Self::HeldFreedom { .. }
+            | Self::Body(reduced_body::BodyError::NotUnit { .. }) => Kind::Input,
+            Self::WrongAnswers { .. }
+            | Self::Ordering { .. }
+            | Self::Factorization { .. }
+            | Self::NotConverged { .. }
+            | Self::StaticNotConverged { .. }
+            | Self::NotPositiveDefinite { .. }
+            | Self::DenseEigen { .. } => Kind::Run,
+            _ => Kind::Refused,
+        }
+        .alone()
+    }
 }

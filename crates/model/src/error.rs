@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use advice::{AdviceError, Refusal};
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use dynamics::{LoadedError, SetupError};
 use fem_tet10::{AssemblyError, AssemblyFault, MeshError, MeshFault};
 use mesh_import::ImportError;
@@ -225,4 +226,35 @@ pub(crate) fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
 /// Adds the scene file to errors of the modal analysis, which know no file.
 pub(crate) fn modal<E: Into<ModalError>>(scene: &Scene) -> impl Fn(E) -> BuildError {
     |source| BuildError::Modal { scene: scene.path.clone(), source: source.into() }
+}
+
+impl Diagnostic for BuildError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Scene(error) => error.diagnosis(),
+            Self::Mesh(error) => error.diagnosis(),
+            Self::Import(error) => error.diagnosis(),
+            Self::Assembly(error) => error.diagnosis(),
+            Self::Modal { scene, source } => source.diagnosis().in_file(scene),
+            Self::BodyFile(error) => error.diagnosis(),
+            Self::Advice(error) => error.diagnosis(),
+            Self::Refused { scene, .. } => Kind::Refused.of(scene),
+            Self::Load(error) => error.diagnosis(),
+            Self::Loaded { scene, source } => source.diagnosis().in_file(scene),
+        }
+    }
+}
+
+impl Diagnostic for StartError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Setup(error) => error.diagnosis(),
+            Self::Refused(_) => Kind::Refused.alone(),
+            Self::Step { at, found, expected, help } => {
+                let refused = Kind::Refused.of(&at.file).line(at.line).key(&at.key);
+                refused.found(found).expected(expected).help(*help)
+            }
+            Self::Tied { at } | Self::Point { at, .. } => Kind::Refused.of(&at.file).line(at.line).key(&at.key),
+        }
+    }
 }

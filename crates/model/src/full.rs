@@ -13,6 +13,7 @@ pub(crate) mod ties;
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use diagnostic::{Diagnosis, Diagnostic};
 use nonlinear::{FullBody, NonlinearError};
 use scene::Scene;
 
@@ -83,5 +84,17 @@ impl FullModel {
         };
         let materials = self.assembled.materials()?;
         Ok(FullBody::new(Arc::clone(mesh), materials, Cow::Borrowed(matrices), support)?)
+    }
+}
+
+impl Diagnostic for FullError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Build(error) => error.diagnosis(),
+            Self::Nonlinear(error) => error.diagnosis(),
+            Self::Motion(error) => error.diagnosis(),
+            Self::Assembly(error) => error.diagnosis(),
+            Self::Setup(error) => error.diagnosis(),
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Errors of the full body.
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use fem_tet10::{AssemblyError, MeshError};
 use modal::ModalError;
 
@@ -34,4 +35,15 @@ pub enum NonlinearError {
         /// Its name.
         what: &'static str,
     },
+}
+
+impl Diagnostic for NonlinearError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Assembly(error) => error.diagnosis(),
+            Self::Mesh(error) => error.diagnosis(),
+            Self::Modal(error) => error.diagnosis(),
+            Self::Singular | Self::NoEquilibrium { .. } | Self::NotFinite { .. } => Kind::Run.alone(),
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! The class Body.
 
-use std::error::Error;
 use std::sync::Arc;
 
+use diagnostic::Failure;
 use flexframe::faer::{ColRef, MatRef};
 use flexframe::model::{Assembly, BuildError, BuildProgress, Meshed, Model, Needs};
 use flexframe::modes::frequency_unit;
@@ -257,7 +257,7 @@ impl Body {
 }
 
 /// Does the work of building for a scene in a thread, and tells as warnings what is doubtful.
-pub(crate) fn built<T: Send + 'static, E: Error + Send + 'static>(
+pub(crate) fn built<T: Send + 'static, E: Into<Failure> + Send + 'static>(
     py: Python<'_>,
     scene: &Py<Scene>,
     build: impl FnOnce(&mut dyn FnMut(BuildProgress)) -> Result<T, E> + Send + 'static,
@@ -280,5 +280,5 @@ pub(crate) fn built<T: Send + 'static, E: Error + Send + 'static>(
         return Err(error);
     }
     warn(py, doubts.into_iter().chain(scene.get().builder().cache.notes().warnings))?;
-    result.map_err(|error| exception(py, &error))
+    result.map_err(|error| exception(py, &*error.into()))
 }

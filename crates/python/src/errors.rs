@@ -1,9 +1,8 @@
 //! Errors as exceptions: of the class of their kind, with the message of the program.
 
-use std::error::Error;
 use std::ffi::CString;
 
-use flexframe::failure::{self, Details, Kind};
+use diagnostic::{Diagnosis, Diagnostic, Kind, Refusal};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,39 +11,29 @@ use pyo3::types::PyDict;
 const MODULE: &str = "flexframe.errors";
 
 /// The exception of an error.
-pub(crate) fn exception(py: Python<'_>, error: &(dyn Error + 'static)) -> PyErr {
-    let (kind, details) = failure::known(error);
-    exception_of(py, kind, &error.to_string(), &details)
+pub(crate) fn exception(py: Python<'_>, error: &dyn Diagnostic) -> PyErr {
+    exception_of(py, &error.to_string(), &error.diagnosis())
 }
 
-/// The exception of a kind.
-pub(crate) fn exception_of(py: Python<'_>, kind: Kind, message: &str, details: &Details) -> PyErr {
-    let class = match kind {
+/// The exception of a kind, with a message.
+pub(crate) fn exception_of(py: Python<'_>, message: &str, diagnosis: &Diagnosis) -> PyErr {
+    let class = match diagnosis.kind {
         Kind::Usage | Kind::Input => "InputError",
         Kind::Refused => "RefusedError",
         Kind::Run => "RunError",
         Kind::Io => "FileError",
         Kind::Stopped => return PyKeyboardInterrupt::new_err(message.to_owned()),
     };
-    made(py, class, message, details).unwrap_or_else(|error| error)
+    made(py, class, message, diagnosis).unwrap_or_else(|error| error)
 }
 
 /// Error for an argument of a function that is not of its kind: its name, the value found, the one expected, and help.
 pub(crate) fn wrong_input(py: Python<'_>, what: &str, found: &str, expected: &str, help: &str) -> PyErr {
-    let message = format!("{what}: found {found}, expected {expected}\n = {help}");
-    let text = |text: &str| Some(text.to_owned());
-    let details = Details {
-        key: text(what),
-        found: text(found),
-        expected: text(expected),
-        help: text(help),
-        ..Details::default()
-    };
-    exception_of(py, Kind::Input, &message, &details)
+    exception(py, &Refusal::from(Kind::Input.alone().key(what).found(found).expected(expected).help(help)))
 }
 
-fn made(py: Python<'_>, class: &str, message: &str, details: &Details) -> PyResult<PyErr> {
-    let Details { file, line, key, found, expected, help } = details;
+fn made(py: Python<'_>, class: &str, message: &str, diagnosis: &Diagnosis) -> PyResult<PyErr> {
+    let Diagnosis { file, line, key, found, expected, help, .. } = diagnosis;
     let known = PyDict::new(py);
     known.set_item("file", file)?;
     known.set_item("line", line)?;

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 /// A report that cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -35,4 +37,10 @@ pub enum ReportError {
     /// The file could not be written.
     #[error("{}: cannot write the report: {source}; check the folder and the room on its disk", path.display())]
     Write { path: PathBuf, source: io::Error },
+}
+
+impl Diagnostic for ReportError {
+    fn diagnosis(&self) -> Diagnosis {
+        if let Self::Write { path, .. } = self { Kind::Io.of(path) } else { Kind::Run.alone() }
+    }
 }

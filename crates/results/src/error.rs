@@ -1,5 +1,6 @@
 //! Errors of a results file.
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use sealed::SealedError;
 use std::path::{Path, PathBuf};
 
@@ -105,5 +106,23 @@ impl FileError {
             | Self::ConstantNotFinite { path, .. }
             | Self::Link { path, .. } => path,
         }
+    }
+}
+
+impl Diagnostic for FileError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Sealed(error) => return error.diagnosis(),
+            Self::Busy { .. }
+            | Self::Exists { .. }
+            | Self::Unfinished { .. }
+            | Self::NotResults { .. }
+            | Self::Link { .. }
+            | Self::NothingToResume { .. } => Kind::Io,
+            Self::NotFinite { .. } => Kind::Run,
+            // A fault of a file's content, or of the names in it.
+            _ => Kind::Input,
+        }
+        .of(self.path())
     }
 }

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 use crate::document::{Document, NotToml, OF_A_BODY};
 use crate::text::example::example;
 use crate::text::place::Place;
@@ -227,5 +229,19 @@ fn syntax_help(message: &str) -> &'static str {
     match message {
         "duplicate key" => "keep one of the two",
         _ => "correct it; a line is `key = value` or `[section]`, and text stands in quotes",
+    }
+}
+
+impl Diagnostic for SceneError {
+    fn diagnosis(&self) -> Diagnosis {
+        let kind = if matches!(self, Self::Unreadable { .. }) { Kind::Io } else { Kind::Input };
+        Diagnosis {
+            line: self.line(),
+            key: self.place().map(|place| place.key.clone()).filter(|key| !key.is_empty()),
+            found: self.found(),
+            expected: self.expected(),
+            help: self.help(),
+            ..kind.of(self.file())
+        }
     }
 }

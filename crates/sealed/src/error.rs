@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 use crate::format::Format;
 
 /// An error of the writer or the reader.
@@ -101,5 +103,13 @@ impl SealedError {
             };
             Self::System { path, action: action.into(), source }
         }
+    }
+}
+
+impl Diagnostic for SealedError {
+    fn diagnosis(&self) -> Diagnosis {
+        // A fault of a file's content, or of the names in it, is one of the input.
+        let kind = if matches!(self, Self::Hdf5 { .. } | Self::System { .. }) { Kind::Io } else { Kind::Input };
+        Diagnosis { help: self.help().map(str::to_owned), ..kind.of(self.path()) }
     }
 }

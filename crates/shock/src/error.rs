@@ -1,5 +1,7 @@
 //! Errors of shock response spectra.
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 /// A spectrum or a sum that has no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ShockError {
@@ -45,7 +47,7 @@ pub enum ShockError {
     },
     /// A frequency that swings too often in a base motion.
     #[error(
-        "frequency {frequency}: found {cycles:.3e} cycles in the base motion, expected at most {most:.0e}; help: cut the base motion \
+        "frequency {frequency}: found {cycles:.3e} cycles in the base motion, expected at most {most:.0e}\n = cut the base motion \
          or end the spectrum lower"
     )]
     Cycles {
@@ -58,7 +60,7 @@ pub enum ShockError {
     },
     /// A frequency outside of a spectrum.
     #[error(
-        "frequency {frequency}: found a spectrum from {from} to {to} cycles per time, which does not cover it; help: make the spectrum \
+        "frequency {frequency}: found a spectrum from {from} to {to} cycles per time, which does not cover it\n = make the spectrum \
          over all modes, or keep fewer of them"
     )]
     NotCovered {
@@ -69,4 +71,13 @@ pub enum ShockError {
         /// Last frequency of the spectrum.
         to: f64,
     },
+}
+
+impl Diagnostic for ShockError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Rows { .. } | Self::Rates { .. } | Self::Row { .. } => Kind::Input.alone(),
+            Self::Value { .. } | Self::Cycles { .. } | Self::NotCovered { .. } => Kind::Usage.alone(),
+        }
+    }
 }

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 /// Errors of SLEPc.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -51,5 +53,20 @@ impl SlepcError {
     pub(crate) fn io(path: impl Into<PathBuf>, action: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.into();
         move |source| Self::Io { path, action, source }
+    }
+}
+
+impl Diagnostic for SlepcError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::NotInstalled { found, help } => Kind::Io.alone().found(found).help(help),
+            Self::Refused { found, help } => Kind::Run.alone().found(found).help(help),
+            Self::Failed { status, help, .. } => Kind::Run.alone().found(status).help(help),
+            Self::Stopped { .. } => Kind::Stopped.alone(),
+            Self::Io { path, .. } | Self::NotFinished { folder: path, .. } => Kind::Io.of(path),
+            Self::Damaged { path, .. } | Self::OtherMatrices { folder: path } | Self::FewModes { folder: path, .. } => {
+                Kind::Input.of(path)
+            }
+        }
     }
 }

@@ -5,6 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 use crate::same::is_same;
 use crate::written::{OtherEnding, Written};
 
@@ -101,6 +103,20 @@ impl Outputs {
         match self.inputs.iter().find(|input| is_same(path, input)) {
             Some(input) => Err(OutputError::IsInput { path: path.to_owned(), input: input.clone() }),
             None => Ok(()),
+        }
+    }
+}
+
+impl Diagnostic for OutputError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::IsInput { path, .. } => Kind::Usage.of(path),
+            Self::OtherEnding(error) => error.diagnosis(),
+            Self::Exists { path }
+            | Self::Folder { path }
+            | Self::LostLink { path }
+            | Self::Device { path, .. }
+            | Self::NoFolder { path, .. } => Kind::Io.of(path),
         }
     }
 }

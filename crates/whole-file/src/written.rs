@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 /// Endings that say what is in a file, and what that is.
 const ENDINGS: [(&[&str], &str); 12] = [
     (&["toml"], "a scene or a sweep"),
@@ -36,6 +38,12 @@ pub struct OtherEnding {
     pub expected: &'static str,
     /// How its name ends; none of a folder.
     pub ending: Option<&'static str>,
+}
+
+impl Diagnostic for OtherEnding {
+    fn diagnosis(&self) -> Diagnosis {
+        Kind::Usage.of(&self.path).found(self.found).expected(self.expected)
+    }
 }
 
 /// A kind of output. A name may end otherwise, but not as that of another kind.

@@ -3,7 +3,7 @@
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-use flexframe::failure::Kind;
+use diagnostic::Kind;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -29,7 +29,7 @@ fn failure(kind: Kind, arguments: &[&str]) -> Value {
     assert!(output.stdout.is_empty());
     assert_eq!(text.lines().count(), 1, "{text}");
     let object: Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(object["kind"], serde_json::to_value(kind).unwrap());
+    assert_eq!(object["kind"], kind.name());
     assert_eq!(object["exit_code"], kind.exit_code());
     assert!(!object["message"].as_str().unwrap().is_empty());
     assert!(!object["message"].as_str().unwrap().starts_with("error"), "{text}");
@@ -83,6 +83,10 @@ fn wrong_arguments_are_an_object_too() {
     let object = failure(Kind::Usage, &["modes", "examples/ring.toml", "-n", "100000", "--json"]);
     assert_says(&object["key"], &["--flexible"]);
     assert_says(&object["expected"], &["at most 6105"]);
+    let ring = Ring::new();
+    let pulse = ring.file("pulse.csv", "0,0\n1,1\n");
+    let object = failure(Kind::Usage, &["srs", &pulse, "--frequencies", "1:9:3", "-o", "srs.csv", "--json"]);
+    assert_says(&object["found"], &["a table of text"]);
     let axis = ["--axis", "z", "--speeds", "5:1:3", "--json"];
     failure(Kind::Usage, &[&["campbell", "examples/ring.toml"], &axis[..]].concat());
 }
@@ -244,8 +248,7 @@ fn the_exit_codes_are_documented() {
     for kind in Kind::ALL {
         let (code, meaning) = (kind.exit_code(), kind.meaning());
         assert!(help.contains(&format!("{code:>3}  {meaning}")), "{help}");
-        let name = serde_json::to_value(kind).unwrap();
-        assert!(page.contains(&format!("| {code} | `{}` | {meaning} |", name.as_str().unwrap())), "{code}");
+        assert!(page.contains(&format!("| {code} | `{}` | {meaning} |", kind.name())), "{code}");
     }
     let mut codes = Kind::ALL.map(Kind::exit_code);
     codes.sort_unstable();

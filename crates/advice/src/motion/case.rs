@@ -1,5 +1,6 @@
 //! Data of a run that are known before it.
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use dynamics::{Drive, History, Initial, Manifold, SharedLoad};
 use faer::Mat;
 use nalgebra::Vector3;
@@ -153,5 +154,11 @@ impl Case<'_> {
             }
         }
         Ok(())
+    }
+}
+
+impl Diagnostic for AdviceError {
+    fn diagnosis(&self) -> Diagnosis {
+        if matches!(self, Self::Eigen(_)) { Kind::Run.alone() } else { Kind::Input.alone() }
     }
 }

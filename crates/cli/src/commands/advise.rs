@@ -1,8 +1,7 @@
 //! `flexframe advise`.
 
-use std::error::Error;
-
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::advise;
 use flexframe::report::OfBodies;
 use flexframe::system_modes::{self, AdviceOnSystems};
@@ -25,7 +24,7 @@ pub struct Advise {
 }
 
 impl Advise {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, verify } = self;
         let system = session.read_system(scene)?;
         let mut reports = Vec::new();

@@ -1,9 +1,9 @@
 //! `flexframe campbell`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::campbell::{self, AboutRest, CampbellSettings, Speeds, SystemCampbellSettings};
 use flexframe::outputs::outputs_of_system;
 
@@ -58,7 +58,7 @@ pub struct Campbell {
 }
 
 impl Campbell {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, axis, joint, speeds, orders, about_rest, modes, output, files } =
             self;
         output::require_file("--output", output.as_deref())?;

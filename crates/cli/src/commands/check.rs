@@ -1,9 +1,9 @@
 //! `flexframe check`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::check::{self, CheckRows};
 use flexframe::given_file::GivenFile;
 
@@ -28,7 +28,7 @@ pub struct Check {
 }
 
 impl Check {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { file, rows, write, json } = self;
         GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
         if write {

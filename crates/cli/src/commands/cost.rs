@@ -1,10 +1,10 @@
 //! `flexframe cost`.
 
-use std::error::Error;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::cost::{self, CostSettings};
 use flexframe::outputs::outputs_of_system;
 
@@ -32,7 +32,7 @@ pub struct Cost {
 }
 
 impl Cost {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, output, files, target, patience } = self;
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;

@@ -1,9 +1,9 @@
 //! `flexframe fmu`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::fmu::{self, FmuSettings};
 use flexframe::outputs::{Written, outputs_of_system};
 use flexframe::plausible;
@@ -31,7 +31,7 @@ pub struct Fmu {
 }
 
 impl Fmu {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, output, files, library } = self;
         output::require_file("--output", Some(&output))?;
         let system = scene.read_system_or_body()?;

@@ -1,9 +1,9 @@
 //! `flexframe modes`.
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::modes::{self, ModesReport};
 use flexframe::outputs::{OutputError, Written, outputs_of_system};
 use flexframe::report::OfBodies;
@@ -47,7 +47,7 @@ pub struct Modes {
 }
 
 impl Modes {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         output::require_file("--output", self.output.as_deref())?;
         let mut system = session.read_system(self.scene.scene.clone())?;
         self.check_one_body(&system)?;
@@ -88,7 +88,7 @@ impl Modes {
         &self,
         system: &System,
         session: &mut Session,
-    ) -> Result<(OfBodies<ModesReport>, Vec<PathBuf>), Box<dyn Error>> {
+    ) -> Result<(OfBodies<ModesReport>, Vec<PathBuf>), Failure> {
         let scenes = &system.bodies;
         let picture = |folder: &Path, scene: &Scene| match &scene.name {
             Some(body) => folder.join(format!("modes.{body}")),
@@ -115,7 +115,7 @@ impl Modes {
         Ok((OfBodies(reports), pictures))
     }
 
-    fn of_body(&self, scene: &Scene, session: &mut Session) -> Result<(Model, ModesReport), Box<dyn Error>> {
+    fn of_body(&self, scene: &Scene, session: &mut Session) -> Result<(Model, ModesReport), Failure> {
         modes::modes(scene, &session.builder, self.about, |p| session.bar.build(p))
             .map_err(|error| self.modes.refusal(error.into()))
     }
@@ -125,7 +125,7 @@ impl Modes {
         &self,
         system: &System,
         session: &mut Session,
-    ) -> Result<(ModesOfSystems, Vec<PathBuf>), Box<dyn Error>> {
+    ) -> Result<(ModesOfSystems, Vec<PathBuf>), Failure> {
         let models = session
             .builder
             .models(system, |p| session.bar.build(p))

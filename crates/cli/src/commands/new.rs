@@ -1,9 +1,9 @@
 //! `flexframe new`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::given_file::GivenFile;
 use flexframe::new_scene;
 
@@ -32,7 +32,7 @@ pub struct New {
 }
 
 impl New {
-    pub fn execute(self, session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, session: Session) -> Result<(), Failure> {
         let Self { mesh, output, mesh_size, raise_order, files } = self;
         let settings = new_scene::ImportSettings {
             mesh_size,

@@ -1,9 +1,9 @@
 //! `flexframe paper`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::outputs::outputs_of_scene;
 use flexframe::paper;
 use flexframe::run::RunSettings;
@@ -25,7 +25,7 @@ pub struct Paper {
 }
 
 impl Paper {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, output, files } = self;
         output::require_file("--output", output.as_deref())?;
         let scene = session.read(scene)?;

@@ -1,9 +1,9 @@
 //! `flexframe reduce`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::hand_over::{self, Form};
 use flexframe::modes;
 use flexframe::outputs::{Written, outputs_of_scene};
@@ -35,7 +35,7 @@ pub struct Reduce {
 }
 
 impl Reduce {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, output, files, solver, matrices, stress } = self;
         output::require_file("--output", Some(&output))?;
         let scene = session.read(scene)?;

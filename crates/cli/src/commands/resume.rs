@@ -1,9 +1,9 @@
 //! `flexframe resume`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::given_file::GivenFile;
 use flexframe::run::{self, RunSettings};
 
@@ -28,7 +28,7 @@ pub struct Resume {
 }
 
 impl Resume {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { file, files, no_check, json } = self;
         GivenFile::expect(&file, &[GivenFile::Results], "the unfinished results file of a run")?;
         let settings = RunSettings { check: !no_check, ..session.settings(files.overwrite) };

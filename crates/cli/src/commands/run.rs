@@ -1,9 +1,9 @@
 //! `flexframe run`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::run::{self, RunSettings};
 
 use crate::arguments::{FileArgs, SceneArgs};
@@ -35,7 +35,7 @@ pub struct Run {
 }
 
 impl Run {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, output, files, large, no_check, solver } = self;
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;

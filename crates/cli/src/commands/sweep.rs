@@ -1,10 +1,10 @@
 //! `flexframe sweep`.
 
-use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::given_file::GivenFile;
 use flexframe::sweep::{self, Shard, SweepSettings};
 
@@ -43,7 +43,7 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { sweep: file, output, shard, merge, slurm, files: FileArgs { overwrite }, large, json } = self;
         GivenFile::expect(&file, &[GivenFile::Sweep], "the file of a sweep (docs/reference/cli.md)")?;
         output::require_file("--output", output.as_deref())?;

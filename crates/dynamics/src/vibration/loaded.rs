@@ -15,6 +15,7 @@
 //!
 //! f are the modal forces of a body that does not move. Without large modes f is linear and A the same everywhere.
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, c64};
 use nalgebra::Vector3;
@@ -183,4 +184,14 @@ impl ConservativeBody {
 /// The part of a matrix over the modes.
 fn of_modes(matrix: &Mat<f64>) -> Mat<f64> {
     matrix.get(6.., 6..).to_owned()
+}
+
+impl Diagnostic for LoadedError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Setup(error) => error.diagnosis(),
+            Self::NoRest => Kind::Refused.alone(),
+            Self::Rates(_) | Self::Eigen(_) => Kind::Run.alone(),
+        }
+    }
 }

@@ -7,6 +7,7 @@
 //! G_a, N_aa and K_aa are those of the spin axis a (see [`reduced_body::ReducedBody`]). It is the conservative form with ω = Ω a
 //! given, without damping, about the undeformed body.
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use faer::{Mat, Side, c64};
 use nalgebra::Vector3;
 use reduced_body::ReducedBody;
@@ -156,4 +157,10 @@ impl SteadySpin {
 
 fn delta(i: usize, j: usize) -> f64 {
     f64::from(u8::from(i == j))
+}
+
+impl Diagnostic for EigenError {
+    fn diagnosis(&self) -> Diagnosis {
+        Kind::Run.alone()
+    }
 }

@@ -10,7 +10,6 @@ mod bent;
 mod branches;
 mod critical;
 mod diagram;
-mod error;
 mod files;
 mod limits;
 mod report;
@@ -19,7 +18,8 @@ mod table;
 
 use std::path::Path;
 
-use dynamics::{Effect, SteadySpin};
+use diagnostic::{Diagnostic, Failure, Kind};
+use dynamics::{Effect, EigenError, SteadySpin};
 use model::{BuildError, BuildProgress, Builder, Needs};
 use nalgebra::Vector3;
 use scene::Scene;
@@ -27,7 +27,6 @@ use scene::Scene;
 pub use bent::AboutRest;
 pub use branches::Branch;
 pub use critical::{Critical, CriticalKind, SwingLimit};
-pub use error::CampbellError;
 pub use files::files;
 pub use report::{CampbellReport, SpinEffects};
 pub use system::{SystemCampbellSettings, campbell_of_system};
@@ -36,7 +35,9 @@ use crate::commands::modes::{frequency_unit, require_flexible};
 use crate::report::MeshReport;
 use bent::BentSpin;
 use branches::Branches;
-use error::MAX_SPEEDS;
+
+/// Each speed takes an eigenvalue problem, and a row of a table.
+const MAX_SPEEDS: usize = 10_000;
 
 /// How far a diagram has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,10 +65,14 @@ pub struct Speeds {
 }
 
 impl Speeds {
-    fn values(&self) -> Result<Vec<f64>, CampbellError> {
+    fn values(&self) -> Result<Vec<f64>, Failure> {
         let &Self { start, end, count } = self;
         if !(start >= 0.0 && end > start && end.is_finite() && (2..=MAX_SPEEDS).contains(&count)) {
-            return Err(CampbellError::Speeds { start, end, count });
+            let expected =
+                format!("start:end:count, radians per time, with 0 ≤ start < end and a count of 2 to {MAX_SPEEDS}");
+            let wrong = Kind::Usage.alone().found(format!("{start}:{end}:{count}")).expected(&expected);
+            let words = format!("speeds {start}:{end}:{count}: expected {expected}");
+            return Err(wrong.help("give a range, such as 0:200:50").says(words));
         }
         let last = (count - 1) as f64;
         Ok((0..count).map(|i| ((last - i as f64) * start + i as f64 * end) / last).collect())
@@ -88,17 +93,21 @@ pub struct CampbellSettings {
 }
 
 /// The speeds, where they and the orders are in range.
-fn checked(speeds: Speeds, orders: &[f64]) -> Result<Vec<f64>, CampbellError> {
+fn checked(speeds: Speeds, orders: &[f64]) -> Result<Vec<f64>, Failure> {
     if let Some(&order) = orders.iter().find(|order| !(**order > 0.0 && order.is_finite())) {
-        return Err(CampbellError::Order { order });
+        let wrong = Kind::Usage.alone().key("orders").found(order.to_string());
+        return Err(wrong.expected("positive numbers of times a turn").help("give some, such as 1, 2 or 0.5").into());
     }
     speeds.values()
 }
 
 /// A unit vector along an axis.
-fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, CampbellError> {
+fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, Failure> {
     let unit = Vector3::from(axis).try_normalize(0.0).filter(|axis| (axis.norm() - 1.0).abs() < 1e-12);
-    unit.ok_or(CampbellError::Axis { axis })
+    unit.ok_or_else(|| {
+        let expected = "three finite numbers that are not all zero, in the axes of the mesh";
+        Kind::Usage.alone().key("axis").found(format!("{axis:?}")).expected(expected).into()
+    })
 }
 
 /// Computes the diagram of a scene, and writes `campbell.csv`, `critical_speeds.csv`, and `campbell` as SVG, PDF and PNG
@@ -108,14 +117,14 @@ fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, CampbellError> {
 /// most there may be).
 ///
 /// # Errors
-/// [`CampbellError`].
+/// [`Failure`].
 pub fn campbell(
     scene: &Scene,
     builder: &Builder,
     folder: &Path,
     settings: &CampbellSettings,
     mut progress: impl FnMut(CampbellProgress),
-) -> Result<CampbellReport, CampbellError> {
+) -> Result<CampbellReport, Failure> {
     let axis = unit(settings.axis)?;
     let speeds = checked(settings.speeds, &settings.orders)?;
     // The rest at each speed is found here.
@@ -130,12 +139,16 @@ pub fn campbell(
         stiffening: effects[Effect::GeometricStiffening],
     };
     if settings.about_rest == AboutRest::Always && !effects.all() {
-        return Err(CampbellError::WithoutEffect { scene: scene.path.clone() });
+        let found =
+            "an effect of the spin that is off, `coriolis`, `deformed_inertia` or `geometric_stiffening` in [effects]";
+        let expected = "all of them with `--about-rest always`, since the full body has them";
+        let wrong = Kind::Usage.of(&scene.path).found(found).expected(expected);
+        return Err(wrong.help("leave them on, or give `--about-rest never`").into());
     }
     let spin = SteadySpin::new(&model.body, &axis, &model.physics.effects);
     let total = speeds.len();
     let done = |done| progress(CampbellProgress::Speeds { done, total });
-    let failed = |source| CampbellError::Eigen { scene: scene.path.clone(), source };
+    let failed = |source: EigenError| source.in_file(&scene.path);
     let highest = settings.speeds.end;
     let deflection = || bent::deflection(&model, &axis, highest);
     let may_be_bent = match settings.about_rest {

@@ -4,18 +4,17 @@
 
 pub(crate) mod checked_rows;
 mod cost;
-pub(crate) mod error;
 mod joints;
 pub(crate) mod report;
 pub(crate) mod rows;
 
 use std::path::Path;
 
+use diagnostic::{Failure, Kind};
 use model::Builder;
 use results::{FileError, Results};
 
 pub use checked_rows::{CheckProgress, check_run};
-pub use error::CheckError;
 pub use report::{BodyCheck, CheckReport, RowCheck};
 pub use rows::CheckRows;
 
@@ -26,15 +25,21 @@ use crate::trust;
 /// Checks a results file, finished or not.
 ///
 /// # Errors
-/// [`CheckError`].
+/// [`Failure`].
 pub fn check(
     file: &Path,
     builder: &Builder,
     rows: &CheckRows,
     mut progress: impl FnMut(CheckProgress),
-) -> Result<CheckReport, CheckError> {
+) -> Result<CheckReport, Failure> {
     let results = Results::open(file, &COLUMNS)?;
-    let changed = |what| CheckError::Changed { file: file.to_owned(), what };
+    let changed = |what| {
+        let words = format!(
+            "{what} has changed since the run (a changed mesh or table, another version of flexframe, or another machine): a check needs \
+             the body of the run"
+        );
+        Kind::Input.of(file).help("put the mesh back, or run the scene again").says(words)
+    };
     let system = system_of(&results)?.ok_or_else(|| changed("the list of bodies"))?;
     let models = builder.models(&system, |p| progress(CheckProgress::Build(p)))?;
     let of = bodies(&system.bodies, &models);

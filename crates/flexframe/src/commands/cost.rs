@@ -7,7 +7,6 @@
 mod answer;
 mod body;
 mod case;
-mod error;
 mod files;
 mod ladder;
 mod machine;
@@ -22,13 +21,13 @@ mod short;
 use std::path::Path;
 
 use advice::Subject;
+use diagnostic::{Diagnostic, Failure};
 use dynamics::{Method, SystemScheme};
 use model::{BuildError, BuildProgress, Builder, ModeCount, Model, Needs};
 use scene::{METHODS, Scene, System};
 
 pub use answer::Answer;
 pub use body::CostBody;
-pub use error::CostError;
 pub use files::files;
 pub use ladder::{LadderRun, Line, MeasuredRun, Outcome, Stopped};
 pub use machine::Machine;
@@ -67,14 +66,14 @@ pub enum CostProgress {
 /// `folder`. An error is that of the worst body, a time that of all of them.
 ///
 /// # Errors
-/// [`CostError`]. A run that fails is a row that says so.
+/// [`Failure`]. A run that fails is a row that says so.
 pub fn price_list(
     system: &System,
     builder: &Builder,
     folder: &Path,
     settings: CostSettings,
     mut progress: impl FnMut(CostProgress),
-) -> Result<CostReport, CostError> {
+) -> Result<CostReport, Failure> {
     let builder = &builder.needing(Needs::without_rows());
     let built = system.bodies.iter().map(|scene| Built::new(scene, builder, |p| progress(CostProgress::Build(p))));
     let built = built.collect::<Result<Vec<_>, _>>()?;
@@ -95,8 +94,12 @@ pub fn price_list(
     };
     step(0);
     let finest = if is_tied { Method::of_joints(SystemScheme::default()) } else { Method::EXPONENTIAL };
-    let reference = converge(&case, finest, settings.budget(20), 0.0)
-        .map_err(|(steps, source)| CostError::Reference { scene: system.path.clone(), steps, source })?;
+    let reference = converge(&case, finest, settings.budget(20), 0.0).map_err(|(steps, source)| {
+        let words =
+            format!("no reference can be made: a run of {steps} steps of the exponential scheme failed: {source}");
+        let known = source.diagnosis().in_file(&system.path);
+        known.help("make the run shorter, or give more time with --patience").says(words)
+    })?;
     step(1);
     // The paper's formulation has a limit of its own, to which its schemes converge.
     let limit = (!is_tied).then(|| converge(&case, frames_rk4::LIMIT, settings.budget(5), 0.0));

@@ -5,7 +5,6 @@
 //! the library that runs it make their list of [`Variable`]s of the same [`FmuModel`], so that numbers of variables agree.
 
 mod description;
-mod error;
 mod library;
 mod manifest;
 mod model;
@@ -14,7 +13,6 @@ mod packed_scene;
 mod si_unit;
 mod variables;
 
-pub use error::FmuError;
 pub use library::{library_path, marker};
 pub use manifest::{MANIFEST, Manifest, PackedBody};
 pub use model::{FmuBody, FmuModel};

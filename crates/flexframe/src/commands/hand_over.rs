@@ -1,7 +1,6 @@
 //! Reduced bodies in the files of other programs: the ending of a file names its form.
 
 mod craig_bampton;
-mod error;
 mod flex42;
 mod gltf;
 mod interface;
@@ -13,13 +12,13 @@ mod sid;
 
 use std::path::Path;
 
+use diagnostic::Failure;
 use model::{BuildProgress, Builder, Model};
 use scene::Scene;
 use whole_file::{Written, write_whole};
 
 use craig_bampton::matrices;
-pub use error::HandOverError;
-use reduced::Reduced;
+pub use reduced::Reduced;
 
 use crate::commands::modes::ModesReport;
 use crate::files::write_error::WriteError;
@@ -68,14 +67,14 @@ impl Form {
 /// markers as nodes.
 ///
 /// # Errors
-/// [`HandOverError`].
+/// [`Failure`].
 pub fn hand_over(
     scene: &Scene,
     builder: &Builder,
     form: Form,
     path: &Path,
     progress: impl FnMut(BuildProgress),
-) -> Result<ModesReport, HandOverError> {
+) -> Result<ModesReport, Failure> {
     let model = builder.build(scene, progress)?;
     let notes = write(scene, &model, form, path)?;
     let mut report = ModesReport::new(scene, &model);
@@ -85,7 +84,7 @@ pub fn hand_over(
 
 /// Writes the file, where its form holds what the body is about. Notes where its coordinates are others than markers ask for, and where turns
 /// are not known.
-fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<Vec<String>, HandOverError> {
+fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<Vec<String>, Failure> {
     let is_bent = model.meshed.as_ref().is_some_and(|meshed| meshed.reference.is_some());
     if is_bent && matches!(form, Form::Mbdyn | Form::Flex42 | Form::Sid) {
         let found = "modes about a bent rest, whose internal forces this form does not hold: its loads would bend the body a second time";
@@ -96,7 +95,7 @@ fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<Vec<St
     let mut body = || {
         let body = Reduced::new(scene, model)?;
         of_turns = without_turns(&body.nodes_without_turns);
-        Ok::<_, HandOverError>(body)
+        Ok::<_, Failure>(body)
     };
     let mut of_markers = None;
     let mut named = |body: &Reduced<'_>| {

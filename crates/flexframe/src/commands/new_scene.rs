@@ -4,35 +4,19 @@ use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use fem_tet10::{AssemblyError, Material, Materials, Mesh, centroid_lumped_inertia};
 pub use mesh_import::ImportSettings;
-use mesh_import::{Beside, DeckMass, DeckTie, ImportError, Imported, MeshFile};
+use mesh_import::{Beside, DeckMass, DeckTie, Imported, MeshFile};
 use modal::TiedPoint;
 use nalgebra::Vector3;
 use whole_file::write_whole;
 
-use crate::files::outputs::{OutputError, Written, outputs_of_mesh};
+use crate::files::outputs::{Written, outputs_of_mesh};
 use crate::files::scene_file::from_root;
 use crate::files::write_error::WriteError;
 use crate::report::rounded;
 use crate::rows::units::UnitLabels;
-
-/// A scene that could not be made of a mesh.
-#[derive(Debug, thiserror::Error)]
-pub enum NewSceneError {
-    /// The mesh cannot be read.
-    #[error("{0}")]
-    Mesh(#[from] ImportError),
-    /// The mesh has no mass properties.
-    #[error("{0}")]
-    Assembly(#[from] AssemblyError),
-    /// A file with the name of the scene is there.
-    #[error("{0}")]
-    Output(#[from] OutputError),
-    /// The scene cannot be written.
-    #[error("{0}")]
-    Write(#[from] WriteError),
-}
 
 /// Consistent units, and steel in them.
 #[derive(Clone, Copy)]
@@ -152,13 +136,13 @@ fn system_of(mesh: &Mesh, given: Option<&GivenMaterials>, beside: &Beside) -> (S
 /// `.toml`), and what of the mesh was left out or should be known of it.
 ///
 /// # Errors
-/// [`NewSceneError`].
+/// [`Failure`].
 pub fn new_scene(
     mesh: &Path,
     settings: &ImportSettings,
     scene: Option<&Path>,
     overwrite: bool,
-) -> Result<(PathBuf, Vec<String>), NewSceneError> {
+) -> Result<(PathBuf, Vec<String>), Failure> {
     // Before a file is refused that has the name of the scene.
     let file = MeshFile::read(mesh, settings)?;
     let path = scene.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
@@ -173,8 +157,8 @@ pub fn new_scene(
 /// The same scene as a text, for whoever reads it from standard input in this folder; and what of the mesh was left out.
 ///
 /// # Errors
-/// [`NewSceneError`].
-pub fn scene_text(mesh: &Path, settings: &ImportSettings) -> Result<(String, Vec<String>), NewSceneError> {
+/// [`Failure`].
+pub fn scene_text(mesh: &Path, settings: &ImportSettings) -> Result<(String, Vec<String>), Failure> {
     let mut read = MeshFile::read(mesh, settings)?.mesh()?;
     let text = text(&mut read, settings, &from_folder_of(Path::new("stdin"), mesh))?;
     Ok((text, read.notes))

@@ -1,7 +1,6 @@
 //! `flexframe paper`: the paper's plate, each figure and number beside the paper's.
 
 mod comparison;
-mod error;
 mod figures;
 mod page;
 mod rigid_plate;
@@ -10,6 +9,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use diagnostic::{Failure, Kind};
 use results::Results;
 use scene::Scene;
 use serde::Serialize;
@@ -17,11 +17,10 @@ use whole_file::write_whole;
 
 use crate::commands::run::{RunProgress, RunReport, RunSettings, run};
 use crate::files::json;
+use crate::files::write_error::WriteError;
 use crate::rows::columns::COLUMNS;
 use comparison::Comparison;
 use rigid_plate::WATCHED_POINT;
-
-pub use error::PaperError;
 
 /// Report of `flexframe paper`.
 #[derive(Debug, Clone, Serialize)]
@@ -52,19 +51,24 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
 /// beside them.
 ///
 /// # Errors
-/// [`PaperError`].
+/// [`Failure`].
 pub fn reproduce(
     scene: &Scene,
     folder: &Path,
     settings: &RunSettings,
     progress: impl FnMut(RunProgress),
-) -> Result<PaperReport, PaperError> {
-    let only_plates = || PaperError::NotThePlate { scene: scene.path.clone() };
+) -> Result<PaperReport, Failure> {
+    let only_plates = || {
+        let words = "the paper has a free body with a mesh under dead half-sine forces";
+        Kind::Input.of(&scene.path).help("use `flexframe run` for others").says(words)
+    };
     if !scene.body.bends_far() {
         return Err(only_plates());
     }
     if !scene.output.points.contains_key(WATCHED_POINT) {
-        return Err(PaperError::MissingPoint { scene: scene.path.clone(), point: WATCHED_POINT });
+        let help = "add it under [output.points], as in examples/plate.toml";
+        let words = format!("the paper's figures need the output point {WATCHED_POINT}");
+        return Err(Kind::Input.of(&scene.path).help(help).says(words));
     }
     let (models, mut run) = run(&scene.clone().into(), folder, settings, progress)?;
     let ([model], [of_plate]) = (&models[..], &run.bodies[..]) else { return Err(only_plates()) };
@@ -79,8 +83,7 @@ pub fn reproduce(
     let figures = figures::draw(scene, model, &results, &rigid, folder)?;
     run.times.add("figures", started.elapsed());
     let path = folder.join(PAGE);
-    write_whole(&path, page::page(scene, &run, &comparison))
-        .map_err(|source| PaperError::Report { path: path.clone(), source })?;
+    write_whole(&path, page::page(scene, &run, &comparison)).map_err(WriteError::of(&path))?;
     Ok(PaperReport { run, report: path, figures, comparison })
 }
 

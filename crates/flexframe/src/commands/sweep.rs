@@ -3,7 +3,6 @@
 //! Scenes with the same body share it: it is assembled and factored once. The models are made one after the other, and their
 //! runs go on at once, as many as there are threads.
 
-mod error;
 mod plan;
 mod shard;
 mod table;
@@ -17,6 +16,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
+use diagnostic::{Failure, Kind};
 use keys::Hash;
 use model::{Assembly, BuildError, BuildProgress, Builder, Model, Needs, Variants};
 use results::{ColumnTable, Results};
@@ -26,7 +26,7 @@ use whole_file::{FileLock, TemporaryFolder, cure_of_temporaries};
 
 use crate::commands::run::{self, RunSettings};
 use crate::files::json;
-use crate::files::outputs::{OutputError, Outputs, Written};
+use crate::files::outputs::{Outputs, Written};
 use crate::files::write_error::WriteError;
 use crate::rows::columns::COLUMNS;
 use crate::{modes, plausible};
@@ -34,8 +34,6 @@ use plan::{Asked, Plan};
 use table::{Done, RowState, Table};
 use text::{Shown, write_csv};
 
-pub(crate) use error::SWEEP_CURE;
-pub use error::SweepError;
 pub use shard::{Shard, slurm_script};
 
 /// The table is written again so often.
@@ -109,11 +107,12 @@ impl SweepReport {
     /// The failure of a sweep none of whose rows is done, though some were run.
     ///
     /// # Errors
-    /// [`SweepError::AllFailed`].
-    pub fn require_a_row(&self) -> Result<(), SweepError> {
+    /// [`Failure`].
+    pub fn require_a_row(&self) -> Result<(), Failure> {
         match self.failures.iter().next() {
             Some((row, words)) if self.done == 0 => {
-                Err(SweepError::AllFailed { path: self.output.clone(), row: *row, words: words.clone() })
+                let words = format!("all rows that were run have failed; row {row}: {words}");
+                Err(Kind::Run.of(&self.output).says(words))
             }
             _ => Ok(()),
         }
@@ -142,13 +141,13 @@ impl SweepReport {
 /// Runs a sweep and writes its table to `output`, or that of its shard beside it. Rows that are in it already are kept.
 ///
 /// # Errors
-/// [`SweepError`]; what fails in one row is in the table.
+/// [`Failure`]; what fails in one row is in the table.
 pub fn sweep(
     path: &Path,
     output: &Path,
     settings: &SweepSettings,
     mut progress: impl FnMut(SweepProgress),
-) -> Result<SweepReport, SweepError> {
+) -> Result<SweepReport, Failure> {
     let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
     // Rows find what earlier rows have asked of the mesh.
     let cache = match &settings.builder.cache {
@@ -162,7 +161,7 @@ pub fn sweep(
     let csv = settings.shard.is_none().then(|| output.with_extension("csv"));
     let outputs = outputs(&plan, path, &builder, settings.overwrite);
     csv.iter().map(PathBuf::as_path).chain([output]).try_for_each(|file| outputs.spare(file))?;
-    Written::SWEEP.check(output).map_err(OutputError::from)?;
+    Written::SWEEP.check(output)?;
     if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     }
@@ -237,15 +236,15 @@ pub fn sweep(
 /// shard that was cut off is run again and merged again, or the sweep goes on without shards.
 ///
 /// # Errors
-/// [`SweepError`]: the sweep cannot be read, or a table is of another one.
-pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Result<SweepReport, SweepError> {
+/// [`Failure`]: the sweep cannot be read, or a table is of another one.
+pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Result<SweepReport, Failure> {
     let plan = Plan::read(path)?;
     let shards = Shard::all(count).map(|shard| shard.table(output));
     let csv = output.with_extension("csv");
     let outputs =
         shards.fold(outputs(&plan, path, &Builder::default(), overwrite), |outputs, shard| outputs.and_input(&shard));
     [output, &csv].into_iter().try_for_each(|file| outputs.spare(file))?;
-    Written::SWEEP.check(output).map_err(OutputError::from)?;
+    Written::SWEEP.check(output)?;
     let _alone = lock(output)?;
     // Rows that the table has already stay, and one of another sweep is not lost.
     let mut table = Table::open(output, &plan, overwrite)?;
@@ -257,7 +256,11 @@ pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Resul
         let found = Table::read(&shard.table(output), &plan)?;
         has_tables |= found.is_some();
         if let Some(Table { stale: rows @ 1.., .. }) = found {
-            return Err(SweepError::OtherFiles { path: shard.table(output), rows });
+            let words = format!(
+                "{rows} of its rows were computed from files that have changed since: a mesh, what it includes, or a table of a load"
+            );
+            let help = "run this shard again, which computes them anew, and then merge";
+            return Err(Kind::Io.of(shard.table(output)).help(help).says(words));
         }
         for (row, state) in table.rows.iter_mut().enumerate().filter(|(row, _)| shard.has(*row)) {
             if *state == RowState::Open
@@ -272,23 +275,28 @@ pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Resul
     }
     if !has_tables {
         let first = Shard::all(count).next().map(|shard| shard.table(output)).unwrap_or_default();
-        return Err(SweepError::NoShard { first, count });
+        let help = format!(
+            "run the shards first (--shard 1/{count} and so on), with the same -o, or merge as many as there are"
+        );
+        let words = format!("there is no such table, nor one of the other shards of {count}");
+        return Err(Kind::Io.of(first).help(help).says(words));
     }
     finish(&mut table, &plan, output, Some(&csv))?;
     Ok(SweepReport { unfinished, ..SweepReport::of(plan, output, Some(csv), &table, kept) })
 }
 
 /// Refuses to replace a CSV file that was not written with the table.
-fn claim_csv(csv: &Path, table: &Table, overwrite: bool) -> Result<(), SweepError> {
+fn claim_csv(csv: &Path, table: &Table, overwrite: bool) -> Result<(), Failure> {
     let is_ours = || Hash::of_file(csv).is_ok_and(|hash| hash.to_string() == table.csv);
     if overwrite || !csv.exists() || is_ours() {
         return Ok(());
     }
-    Err(SweepError::OtherCsv { path: csv.to_owned() })
+    let help = "move it away, choose another name for the table with -o, or replace both with --overwrite";
+    Err(Kind::Io.of(csv).help(help).says("the sweep writes its numbers here, too, and has not written what is there"))
 }
 
 /// Writes the table for the last time, and its numbers as CSV.
-fn finish(table: &mut Table, plan: &Plan, output: &Path, csv: Option<&Path>) -> Result<(), SweepError> {
+fn finish(table: &mut Table, plan: &Plan, output: &Path, csv: Option<&Path>) -> Result<(), Failure> {
     if let Some(csv) = csv {
         write_csv(csv, plan, table).map_err(WriteError::of(csv))?;
         table.csv = Hash::of_file(csv).map_err(WriteError::of(csv))?.to_string();
@@ -312,9 +320,12 @@ fn outputs(plan: &Plan, sweep: &Path, builder: &Builder, overwrite: bool) -> Out
 }
 
 /// Keeps other sweeps from writing the table.
-fn lock(table: &Path) -> Result<FileLock, SweepError> {
+fn lock(table: &Path) -> Result<FileLock, Failure> {
     let lock = FileLock::of(table).map_err(WriteError::of(table))?;
-    lock.ok_or_else(|| SweepError::Busy { path: table.to_owned() })
+    lock.ok_or_else(|| {
+        let help = "wait for its end, or choose another file with -o";
+        Kind::Io.of(table).help(help).says("another sweep is writing this table")
+    })
 }
 
 /// Runs some rows of one body, and tells what became of each.
@@ -324,8 +335,8 @@ fn run_rows(
     variants: &[Mutex<Variants<'_>>],
     folder: &Path,
     (threads, settings): (usize, &RunSettings),
-    mut tell: impl FnMut(usize, RowState) -> Result<(), SweepError>,
-) -> Result<(), SweepError> {
+    mut tell: impl FnMut(usize, RowState) -> Result<(), Failure>,
+) -> Result<(), Failure> {
     let next = AtomicUsize::new(0);
     std::thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();

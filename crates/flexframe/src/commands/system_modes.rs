@@ -3,12 +3,12 @@
 mod advice;
 mod assembled;
 mod draw;
-mod error;
 mod report;
 mod rotors;
 mod shape;
 mod stiffening;
 
+use diagnostic::{Diagnostic, Failure};
 use dynamics::{CommonSpin, SteadyError, SteadyState};
 use model::{BuildProgress, Builder, Model};
 use nalgebra::Vector3;
@@ -18,8 +18,7 @@ use crate::commands::modes::CarriedReport;
 pub use advice::{AdviceOnSystems, SystemAdvice};
 use assembled::tied_motions_at;
 pub(crate) use assembled::{TiedMotion, tied_motions};
-pub use draw::{FieldsError, draw, write_fields};
-pub use error::SystemModesError;
+pub use draw::{draw, write_fields};
 pub(crate) use report::body_names;
 pub use report::{ModesOfSystems, Share, SystemModeReport, SystemModes, SystemModesReport};
 pub(crate) use rotors::Rotors;
@@ -33,13 +32,13 @@ pub use stiffening::{StiffenedBody, StiffenedFrequency};
 /// for effective moments of inertia, are `about` a global point, or about the first place that the ground holds.
 ///
 /// # Errors
-/// [`SystemModesError`].
+/// [`Failure`].
 pub fn system_modes(
     system: &System,
     models: &[Model],
     time: Option<f64>,
     about: Option<[f64; 3]>,
-) -> Result<Vec<SystemModes>, SystemModesError> {
+) -> Result<Vec<SystemModes>, Failure> {
     let of_system = |motion: &TiedMotion| {
         let (mut modes, steady) = of_motion(system, motion)?;
         let found = steady.participation(motion.run.motion(), about.map(Vector3::from));
@@ -54,13 +53,13 @@ pub fn system_modes(
 /// The vibrations of a scene as [`system_modes`] has them, without what they carry: for pictures.
 ///
 /// # Errors
-/// [`SystemModesError`].
-pub(crate) fn vibrations(system: &System, models: &[Model]) -> Result<Vec<SystemModes>, SystemModesError> {
+/// [`Failure`].
+pub(crate) fn vibrations(system: &System, models: &[Model]) -> Result<Vec<SystemModes>, Failure> {
     let of_system = |motion: &TiedMotion| of_motion(system, motion).map(|(modes, _)| modes);
     motions_at(system, models, None)?.iter().map(of_system).collect()
 }
 
-fn motions_at(system: &System, models: &[Model], time: Option<f64>) -> Result<Vec<TiedMotion>, SystemModesError> {
+fn motions_at(system: &System, models: &[Model], time: Option<f64>) -> Result<Vec<TiedMotion>, Failure> {
     match time {
         Some(time) if time > 0.0 => tied_motions_at(system, models, time),
         _ => tied_motions(system, models),
@@ -70,12 +69,12 @@ fn motions_at(system: &System, models: &[Model], time: Option<f64>) -> Result<Ve
 /// Advice on the systems of a scene: by their vibrations at rest, and by what the forces of the start do to these.
 ///
 /// # Errors
-/// [`SystemModesError`].
+/// [`Failure`].
 pub fn system_advice(
     system: &System,
     builder: &Builder,
     progress: impl FnMut(BuildProgress),
-) -> Result<Vec<SystemAdvice>, SystemModesError> {
+) -> Result<Vec<SystemAdvice>, Failure> {
     let models = builder.models(system, progress)?;
     let of_system = |motion: &TiedMotion| {
         let (modes, _) = of_motion(system, motion)?;
@@ -91,7 +90,7 @@ pub fn system_advice(
     tied_motions(system, &models)?.iter().map(of_system).collect()
 }
 
-fn of_motion(system: &System, motion: &TiedMotion) -> Result<(SystemModes, SteadyState), SystemModesError> {
+fn of_motion(system: &System, motion: &TiedMotion) -> Result<(SystemModes, SteadyState), Failure> {
     let failed = |source| failed(system, source);
     let of_motion = motion.run.motion();
     let rotors = Rotors::of(of_motion, |_| false);
@@ -101,6 +100,6 @@ fn of_motion(system: &System, motion: &TiedMotion) -> Result<(SystemModes, Stead
     Ok((SystemModes { bodies: motion.bodies.clone(), states: steady.states(), vibrations, report }, steady))
 }
 
-fn failed(system: &System, source: SteadyError) -> SystemModesError {
-    SystemModesError::Steady { scene: system.path.clone(), source }
+fn failed(system: &System, source: SteadyError) -> Failure {
+    source.in_file(&system.path)
 }

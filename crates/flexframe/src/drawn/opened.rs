@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use results::{BodyMetadata, FileError, MeshProperties, Results, Shapes};
-use sealed::{Format, SealedError, SealedFile};
+use diagnostic::{Failure, Kind};
+use results::{BodyMetadata, MeshProperties, Results, Shapes};
+use sealed::{Format, SealedFile};
 
 use super::{hash, of_body_file};
 use crate::files::scene_file;
@@ -37,41 +38,12 @@ pub(crate) enum Part {
     Volume,
 }
 
-/// A body that cannot be drawn.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // the message of a variant says what its fields are
-pub enum DrawnError {
-    /// The results file cannot be read.
-    #[error("{0}")]
-    File(#[from] FileError),
-    /// The body file cannot be read.
-    #[error("{0}")]
-    BodyFile(#[from] SealedError),
-    /// The results file does not have the shapes, and the body file is not there. `what`: the part that it lacks;
-    /// `places`: where the body file was looked for.
-    #[error(
-        "{}: {what}, and the body file with them is not there: looked for {}\n = put it there, or make it: flexframe reduce {scene} --stress -o {}",
-        results.display(),
-        places.iter().map(|place| place.display().to_string()).collect::<Vec<_>>().join(" and "),
-        places.last().unwrap_or(results).display()
-    )]
-    NoBodyFile { results: PathBuf, what: &'static str, places: Vec<PathBuf>, scene: String },
-    /// The body file is that of another body.
-    #[error(
-        "{}: this body file does not have the shapes of the run in {} (another mesh, other modes, or another machine); make it of the scene of the run: flexframe reduce {scene} --stress -o {}",
-        body_file.display(),
-        results.display(),
-        body_file.display()
-    )]
-    OtherBody { results: PathBuf, body_file: PathBuf, scene: String },
-}
-
 impl Drawn {
     /// Reads a results file, finished or not, and the shapes of its bodies from there, or from the body files that it names.
     ///
     /// # Errors
-    /// [`DrawnError`].
-    pub fn open(file: &Path, part: Part) -> Result<Self, DrawnError> {
+    /// [`Failure`].
+    pub fn open(file: &Path, part: Part) -> Result<Self, Failure> {
         let (results, carried) = Results::open_with_shapes(file, &COLUMNS)?;
         let bodies = results.metadata.bodies.iter().zip(carried);
         let scene = |body: &BodyMetadata| match results.metadata.only_body() {
@@ -91,7 +63,7 @@ impl DrawnBody {
         body: &BodyMetadata,
         carried: Option<Shapes>,
         scene: impl Fn() -> String,
-    ) -> Result<Self, DrawnError> {
+    ) -> Result<Self, Failure> {
         let mesh = body.model.mesh.as_ref().filter(|mesh| !mesh.body_file.is_empty());
         let from_body_file = match (part, mesh) {
             (Part::Volume, Some(mesh)) => Some((mesh, "it has the surface of the body, and not its inside")),
@@ -105,11 +77,24 @@ impl DrawnBody {
         };
         let places = body_files(file, mesh);
         let Some(found) = places.iter().find(|place| place.exists()).cloned() else {
-            return Err(DrawnError::NoBodyFile { results: file.to_owned(), what, places, scene: scene() });
+            let shown: Vec<String> = places.iter().map(|place| place.display().to_string()).collect();
+            let last = places.last().map_or(file, PathBuf::as_path).display();
+            let help = format!("put it there, or make it: flexframe reduce {} --stress -o {last}", scene());
+            let words = format!("{what}, and the body file with them is not there: looked for {}", shown.join(" and "));
+            return Err(Kind::Input.of(file).help(help).says(words));
         };
         let body_file = SealedFile::open(&found, Format::BODY)?;
         if hash::of_file(&body_file).as_ref() != Some(&mesh.shapes_hash) {
-            return Err(DrawnError::OtherBody { results: file.to_owned(), body_file: found, scene: scene() });
+            let help = format!(
+                "make it of the scene of the run: flexframe reduce {} --stress -o {}",
+                scene(),
+                found.display()
+            );
+            let words = format!(
+                "this body file does not have the shapes of the run in {} (another mesh, other modes, or another machine)",
+                file.display()
+            );
+            return Err(Kind::Input.of(&found).help(help).says(words));
         }
         let (shapes, tetrahedra) = of_body_file::read(&body_file, part == Part::Volume)?;
         Ok(Self { shapes: Some(shapes), tetrahedra, body_file: Some(found) })

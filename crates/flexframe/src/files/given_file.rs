@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use mesh_import::{ImportSettings, Reader, reader_of};
 
 /// Bytes of a text in which it is looked for what it is: as many as a scene may have.
@@ -128,4 +129,11 @@ impl GivenFile {
 /// Surfaces of triangles: `flexframe new` says what they lack.
 fn is_surface(ending: &str) -> bool {
     ["stl", "obj", "ply", "off"].contains(&ending)
+}
+
+impl Diagnostic for OtherFile {
+    fn diagnosis(&self) -> Diagnosis {
+        let wrong = Kind::Input.of(&self.path).found(self.found.in_words()).expected(self.expected);
+        wrong.help(self.found.taken_by(&self.path))
+    }
 }

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 /// A file or folder that the system does not let be written.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: cannot be written: {source}\n = {}", path.display(), help_of_writing(source))]
@@ -35,5 +37,11 @@ pub(crate) fn help_of_writing(source: &io::Error) -> &'static str {
             "make room on its disk, or name a place on another"
         }
         _ => "check its folder and the room on its disk, or name another place",
+    }
+}
+
+impl Diagnostic for WriteError {
+    fn diagnosis(&self) -> Diagnosis {
+        Kind::Io.of(&self.path)
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use diagnostic::{Diagnosis, Diagnostic};
 use dynamics::{
     Coordinate, DescribedBody, ForceElement, Island, JointEquation, JointLaw, MarkerForce, MarkerLaw, Method, Physics,
     PointShapes, RowTimes, Rows, Run, RunDescription, Setup, SetupError, SharedLoad, Simulation, StepControl,
@@ -304,5 +305,14 @@ pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: 
         control: of.control,
         end: of.end,
         rows: of.row_times().of_systems(),
+    }
+}
+
+impl Diagnostic for BeginError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Build(error) => error.diagnosis(),
+            Self::Start { scene, source, .. } => source.diagnosis().in_file(scene),
+        }
     }
 }

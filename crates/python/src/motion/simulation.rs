@@ -2,11 +2,11 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
+use diagnostic::Kind;
 use flexframe::columns::part;
 use flexframe::dynamics::{
     self, Crossing, EffectMap, Event, Island, JointObservation, Observation, StepError, SystemObservation,
 };
-use flexframe::failure::{Details, Kind};
 use flexframe::model::{Model, StartError};
 use flexframe::motion::{BodyForces, StartSettings, begin};
 use flexframe::results::Metadata;
@@ -204,7 +204,7 @@ impl Simulation {
             "the run is at its end, time {}; take a scene with a later `time.end`, or set the state to an earlier time",
             running.island.motion.end()
         );
-        Err(exception_of(py, Kind::Run, &message, &Details::default()))
+        Err(exception_of(py, &message, &Kind::Run.alone()))
     }
 
     /// All rows from here to the end, into `rows`.
@@ -236,7 +236,7 @@ impl Simulation {
             // A step that fails after the model has come to mean nothing fails for that.
             if let Some((time, refusal)) = watches.iter().find_map(Watch::refusal) {
                 let message = format!("at time {time:.6}: {refusal}");
-                return Err(exception_of(py, Kind::Refused, &message, &Details::default()));
+                return Err(exception_of(py, &message, &Kind::Refused.alone()));
             }
             match reached? {
                 dynamics::Reached::Row => record(running, watches)?,
@@ -296,7 +296,7 @@ fn loads_of_bodies<'py>(
 }
 
 fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
-    exception(py, &flexframe::run::RunFailure::Step(error.clone()))
+    exception(py, error)
 }
 
 #[pymethods]

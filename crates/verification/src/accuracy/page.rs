@@ -4,9 +4,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use flexframe::cost::{
-    self, CostError, CostReport, CostSettings, LadderRun, Line, MeasuredRun, duration, price_list, setting,
-};
+use diagnostic::Failure;
+use flexframe::cost::{self, CostReport, CostSettings, LadderRun, Line, MeasuredRun, duration, price_list, setting};
 use flexframe::model::Builder;
 use flexframe::modes::frequency_unit;
 use flexframe::outputs::outputs_of_scene;
@@ -22,14 +21,14 @@ const DECADES: [i32; 6] = [1, 2, 4, 6, 8, 10];
 /// measured.
 ///
 /// # Errors
-/// [`CostError`].
+/// [`Failure`].
 pub fn accuracy_page(
     scenes: &[Scene],
     path: &Path,
     lists: &Path,
     patience: Duration,
     overwrite: bool,
-) -> Result<Vec<PathBuf>, CostError> {
+) -> Result<Vec<PathBuf>, Failure> {
     let pictures = path.with_extension("");
     let picture_of = |scene: &Path| pictures.join(format!("{}.svg", name_of(scene)));
     for scene in scenes {

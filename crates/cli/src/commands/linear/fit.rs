@@ -1,10 +1,10 @@
 //! `flexframe fit`.
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use flexframe::fit::{self, FitError, FitSettings};
+use diagnostic::Failure;
+use flexframe::fit::{self, FitSettings};
 use flexframe::outputs::{Written, outputs_of_system};
 use scene::{Measured, Shared};
 
@@ -43,7 +43,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, measured, parameters, deviation, modes, output, files } = self;
         output::require_file("--output", output.as_deref())?;
         let system = session.read_one(scene, modes)?;
@@ -57,11 +57,8 @@ impl Fit {
         }
         let measured = measured.as_deref().map(Measured::read).transpose()?;
         let settings = FitSettings { parameters, measured, deviation };
-        let mut report =
-            fit::fit(&system, &session.builder, &settings, |p| session.bar.build(p)).map_err(|error| match error {
-                FitError::Build(error) => modes.refusal(error.into()),
-                error => error.into(),
-            })?;
+        let mut report = fit::fit(&system, &session.builder, &settings, |p| session.bar.build(p))
+            .map_err(|error| modes.refusal(error))?;
         if let Some(output) = &output {
             report.write_scene(output)?;
         }

@@ -1,9 +1,9 @@
 //! `flexframe frf`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::frequencies::Frequencies;
 use flexframe::frf::{self, FrfSettings};
 use flexframe::outputs::outputs_of_system;
@@ -40,7 +40,7 @@ pub struct Frf {
 }
 
 impl Frf {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, about, frequencies, log, structural, output, files } = self;
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;

@@ -1,11 +1,11 @@
 //! `flexframe gradient`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::frequencies::Frequencies;
-use flexframe::gradient::{self, GradientError, GradientSettings};
+use flexframe::gradient::{self, GradientSettings};
 use flexframe::outputs::outputs_of_system;
 
 use crate::arguments::values::frequencies;
@@ -41,7 +41,7 @@ pub struct Gradient {
 }
 
 impl Gradient {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, parameters, frequencies, modes, output, files } = self;
         output::require_file("--output", output.as_deref())?;
         let system = session.read_one(scene, modes)?;
@@ -49,10 +49,7 @@ impl Gradient {
         let settings = GradientSettings { parameters, frequencies };
         outputs_of_system(&system, &session.builder, files.overwrite).claim(&gradient::files(&folder, &settings))?;
         let report = gradient::gradient(&system, &session.builder, &folder, &settings, |p| session.bar.build(p));
-        let report = report.map_err(|error| match error {
-            GradientError::Build(error) => modes.refusal(error.into()),
-            error => error.into(),
-        })?;
+        let report = report.map_err(|error| modes.refusal(error))?;
         drop(session.bar);
         output::print(&report, json)
     }

@@ -1,9 +1,9 @@
 //! `flexframe linearize`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::linearize::{self, Reduction};
 use flexframe::outputs::outputs_of_system;
 
@@ -34,7 +34,7 @@ pub struct Linearize {
 }
 
 impl Linearize {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, about, reduce, output, files } = self;
         output::require_file("--output", output.as_deref())?;
         let system = session.read_system(scene)?;

@@ -1,9 +1,9 @@
 //! `flexframe psd`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::given_file::GivenFile;
 use flexframe::outputs::outputs_of_system;
 use flexframe::psd::{self, PsdSettings};
@@ -44,7 +44,7 @@ pub struct Psd {
 }
 
 impl Psd {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, spectra, about, outputs, band, structural, output, files } = self;
         GivenFile::expect(
             &spectra,

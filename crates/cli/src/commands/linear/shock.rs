@@ -1,9 +1,9 @@
 //! `flexframe shock`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::given_file::GivenFile;
 use flexframe::shock;
 use scene::Interpolation;
@@ -38,7 +38,7 @@ pub struct Shock {
 }
 
 impl Shock {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, table, interpolation, input, about, outputs } = self;
         GivenFile::expect(&table, &[GivenFile::Table], "a CSV file of times and values (docs/reference/cli.md)")?;
         let system = session.read_system(scene)?;

@@ -1,9 +1,9 @@
 //! `flexframe srs`.
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::frequencies::Frequencies;
 use flexframe::given_file::GivenFile;
 use flexframe::outputs::{Outputs, Written};
@@ -44,7 +44,7 @@ pub struct Srs {
 }
 
 impl Srs {
-    pub fn execute(self, session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, session: Session) -> Result<(), Failure> {
         let Self { table, frequencies, interpolation, damping, output, files, json } = self;
         GivenFile::expect(
             &table,

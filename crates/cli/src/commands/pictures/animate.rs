@@ -1,9 +1,9 @@
 //! `flexframe animate`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use diagnostic::Failure;
 use flexframe::animation::{AnimationSettings, Coloured, MAX_FRAMES, animate, animate_mode, animate_results};
 use flexframe::figures::View;
 use flexframe::outputs::{Written, outputs_of_results, outputs_of_system};
@@ -55,7 +55,7 @@ pub struct Animate {
 }
 
 impl Animate {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene, output, files, frames, from, to, mode, colour, view, magnify } = self;
         output::require_file("--output", Some(&output))?;
         let coloured = match colour {

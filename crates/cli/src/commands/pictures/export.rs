@@ -1,10 +1,10 @@
 //! `flexframe export`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
-use flexframe::export::{self, DrawnMotion, ExportRows, Exported};
+use diagnostic::Failure;
+use flexframe::export::{self, ExportRows, Exported, DrawnMotion};
 use flexframe::given_file::GivenFile;
 use flexframe::run::RunProgress;
 
@@ -52,7 +52,7 @@ pub struct Export {
 }
 
 impl Export {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { file, csv, columns, vtkhdf, vtu, modes, volume, from, to, every, files } = self;
         GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
         output::require_file("--vtkhdf", vtkhdf.as_deref())?;

@@ -1,8 +1,7 @@
 //! `flexframe play`.
 
-use std::error::Error;
-
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::html_report;
 use flexframe::run::{self, RunSettings};
 use whole_file::TemporaryFolder;
@@ -24,7 +23,7 @@ pub struct Play {
 }
 
 impl Play {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene, port } = self;
         let system = session.read_system(scene)?;
         let served = Served::new(port)?;

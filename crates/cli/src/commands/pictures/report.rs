@@ -1,9 +1,9 @@
 //! `flexframe report`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::Failure;
 use flexframe::given_file::GivenFile;
 use flexframe::html_report;
 use flexframe::outputs::{Written, outputs_of_results};
@@ -33,7 +33,7 @@ pub struct Report {
 }
 
 impl Report {
-    pub fn execute(self, mut session: Session) -> Result<(), Box<dyn Error>> {
+    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { file, output, live, compare, files } = self;
         for file in [&file].into_iter().chain(&compare) {
             GivenFile::expect(file, &[GivenFile::Results], RESULTS)?;

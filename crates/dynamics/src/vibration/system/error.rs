@@ -1,5 +1,7 @@
 //! Errors of steady states and of linearised equations.
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
+
 /// Errors of steady states.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SteadyError {
@@ -30,4 +32,10 @@ pub enum SteadyError {
         /// Passes that were made.
         passes: usize,
     },
+}
+
+impl Diagnostic for SteadyError {
+    fn diagnosis(&self) -> Diagnosis {
+        Kind::Run.alone()
+    }
 }

@@ -8,6 +8,7 @@
 //!
 //! since its inertia looks the same however far it has turned. Eq. (L13) of `docs/method/systems.md`.
 
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use faer::c64;
 use nalgebra::{Matrix3, Vector3};
 
@@ -277,5 +278,11 @@ impl SystemMotion {
             all += weight * (real.norm_squared() + imaginary.norm_squared());
         }
         if all > 0.0 { forwards / all } else { 0.0 }
+    }
+}
+
+impl Diagnostic for RotorError {
+    fn diagnosis(&self) -> Diagnosis {
+        Kind::Refused.alone()
     }
 }

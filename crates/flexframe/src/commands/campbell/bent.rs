@@ -2,15 +2,16 @@
 
 use std::cell::RefCell;
 
+use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{SpinMode, SteadySpin};
 use faer::{Mat, c64};
 use model::{Builder, FullModel, Model};
 use nalgebra::Vector3;
-use nonlinear::{EquilibriumSettings, ExternalForces, FullBody, SpinVibration, equilibrium, spin_vibrations};
+use nonlinear::{
+    EquilibriumSettings, ExternalForces, FullBody, NonlinearError, SpinVibration, equilibrium, spin_vibrations,
+};
 use reduced_body::ReducedBody;
 use scene::Scene;
-
-use super::error::CampbellError;
 
 /// Deflection over the length, by the linear answer to the spin, below which a body is not bent.
 const STRAIGHT: f64 = 1e-3;
@@ -31,14 +32,15 @@ pub enum AboutRest {
 }
 
 /// The full body of a scene, where it has one.
-pub(super) fn full(scene: &Scene, builder: &Builder) -> Result<FullModel, CampbellError> {
+pub(super) fn full(scene: &Scene, builder: &Builder) -> Result<FullModel, Failure> {
     let full = builder.full(scene, |_| ())?;
     full.ok_or_else(|| no_full_body(scene))
 }
 
-fn no_full_body(scene: &Scene) -> CampbellError {
+fn no_full_body(scene: &Scene) -> Failure {
     let found = scene.body.not_by_elements().unwrap_or("a body without elements");
-    CampbellError::NoFullBody { scene: scene.path.clone(), found }
+    let expected = "one with a mesh, whose rest at each speed can be found";
+    Kind::Usage.of(&scene.path).found(found).expected(expected).help("leave `--about-rest` out").into()
 }
 
 /// Deflection over the length, by the linear answer to a spin; none where it does not bend the body.
@@ -77,15 +79,9 @@ struct AtSpeed {
 }
 
 impl<'a> BentSpin<'a> {
-    pub fn new(
-        scene: &'a Scene,
-        full: &'a FullModel,
-        model: &'a Model,
-        axis: &Vector3<f64>,
-    ) -> Result<Self, CampbellError> {
+    pub fn new(scene: &'a Scene, full: &'a FullModel, model: &'a Model, axis: &Vector3<f64>) -> Result<Self, Failure> {
         let Some(meshed) = &model.meshed else { return Err(no_full_body(scene)) };
-        let failed = |source| CampbellError::Full { scene: scene.path.clone(), source: Box::new(source) };
-        let body = full.body().map_err(failed)?;
+        let body = full.body().map_err(|source| source.in_file(&scene.path))?;
         Ok(Self {
             scene,
             axis: *axis,
@@ -99,11 +95,15 @@ impl<'a> BentSpin<'a> {
     }
 
     /// The vibrations at a speed, slowest first.
-    pub fn modes(&self, speed: f64) -> Result<Vec<SpinMode>, CampbellError> {
+    pub fn modes(&self, speed: f64) -> Result<Vec<SpinMode>, Failure> {
         if let Some(known) = self.known(speed) {
             return Ok(known.modes);
         }
-        let failed = |source| CampbellError::Bent { scene: self.scene.path.clone(), speed, source: Box::new(source) };
+        let failed = |source: NonlinearError| {
+            let help = "end the speeds before this one, or take vibrations about the undeformed body with `--about-rest never`";
+            let known = source.diagnosis().in_file(&self.scene.path).help(help);
+            known.says(format!("at {speed} rad per time: {source}"))
+        };
         let (omega, settings) = (self.axis * speed, EquilibriumSettings::default());
         let rest = equilibrium(&self.body, &ExternalForces::default(), &omega, None, &settings).map_err(failed)?;
         let size = |u: &[f64]| Vector3::from_column_slice(u).norm();
@@ -157,9 +157,8 @@ impl<'a> BentSpin<'a> {
     }
 
     /// True if a low frequency at a speed is off about the undeformed body, or the body has no rest there.
-    pub fn differs(&self, spin: &SteadySpin, speed: f64) -> Result<bool, CampbellError> {
-        let failed = |source| CampbellError::Eigen { scene: self.scene.path.clone(), source };
-        let linear = spin.modes(speed).map_err(failed)?;
+    pub fn differs(&self, spin: &SteadySpin, speed: f64) -> Result<bool, Failure> {
+        let linear = spin.modes(speed).map_err(|source| source.in_file(&self.scene.path))?;
         let Ok(bent) = self.modes(speed) else { return Ok(true) };
         let size = |mode: &SpinMode| mode.circular_frequency.powi(2) - mode.growth.powi(2);
         let mut pairs = linear.iter().zip(&bent).take(COMPARED);

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use whole_file::write_whole;
 
 use super::critical::Critical;
 use super::diagram::draw;
-use super::error::CampbellError;
 use super::report::CampbellReport;
 use crate::files::write_error::WriteError;
 
@@ -22,7 +22,7 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Writes `campbell.csv`, `critical_speeds.csv`, and `campbell` as SVG, PDF and PNG.
-pub(super) fn write(report: &CampbellReport, folder: &Path, orders: &[f64]) -> Result<Vec<PathBuf>, CampbellError> {
+pub(super) fn write(report: &CampbellReport, folder: &Path, orders: &[f64]) -> Result<Vec<PathBuf>, Failure> {
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let mut files = Vec::new();
     for (name, text) in [(BRANCHES, branches(report)), (CRITICAL_SPEEDS, critical_speeds(report))] {

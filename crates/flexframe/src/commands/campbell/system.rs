@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{Effect, Rotor, RotorError, SteadyError, SystemMotion};
 use model::{Builder, Needs};
 use nalgebra::Vector3;
@@ -9,7 +10,6 @@ use scene::System;
 
 use super::branches::Branches;
 use super::critical::CriticalKind;
-use super::error::CampbellError;
 use super::limits::Limits;
 use super::report::{CampbellReport, SpinEffects};
 use super::{CampbellProgress, Speeds, checked, files, unit};
@@ -36,33 +36,29 @@ pub struct SystemCampbellSettings {
 /// Other rotors spin as they do at the start of the scene.
 ///
 /// # Errors
-/// [`CampbellError`].
+/// [`Failure`].
 pub fn campbell_of_system(
     system: &System,
     builder: &Builder,
     folder: &Path,
     settings: &SystemCampbellSettings,
     mut progress: impl FnMut(CampbellProgress),
-) -> Result<CampbellReport, CampbellError> {
+) -> Result<CampbellReport, Failure> {
     let speeds = checked(settings.speeds, &settings.orders)?;
     let models = builder.needing(Needs::spin()).models(system, |p| progress(CampbellProgress::Build(p)))?;
     let motions = tied_motions(system, &models)?;
     let Some(motion) = motions.first() else {
-        let found = "bodies that nothing ties together".to_owned();
-        return Err(CampbellError::NoAxis { scene: system.path.clone(), found, joints: Vec::new() });
+        return Err(no_axis(&system, "bodies that nothing ties together", &[]));
     };
     let of_motion = motion.run.motion();
     let Axis { direction: axis, point, joint } = axis_of(motion, settings).map_err(|found| match found {
-        Found::Nothing(found) => CampbellError::NoAxis {
-            scene: system.path.clone(),
-            found,
-            joints: of_motion.system().joints().iter().map(|joint| joint.name.clone()).collect(),
-        },
+        Found::Nothing(found) => no_axis(&system, &found, of_motion.system().joints()),
         Found::NoDirection(error) => error,
     })?;
     let rotor = joint.map(|joint| rotor_of(of_motion, joint)).transpose().map_err(|source| {
         let joint = joint.map_or_else(String::new, |joint| of_motion.system().joints()[joint].name.clone());
-        CampbellError::Rotor { scene: system.path.clone(), joint, source: Box::new(source) }
+        let known = source.diagnosis().in_file(&system.path);
+        known.says(format!("joint {joint:?}, whose other bodies are held: {source}"))
     })?;
     let rotor = rotor.flatten();
     // Rotors beside the one that is asked for spin as the scene has them; in a common spin, joints on the ground turn by it.
@@ -73,7 +69,9 @@ pub fn campbell_of_system(
         joint == Some(other) || is_meant
     });
     let find = |speed: f64| {
-        let failed = |source: SteadyError| CampbellError::Steady { scene: system.path.clone(), speed, source };
+        let failed = |source: SteadyError| {
+            source.diagnosis().in_file(&system.path).says(format!("at {speed} rad per time: {source}"))
+        };
         let modes = match &rotor {
             Some(rotor) => of_motion.rotor_modes(rotor, speed, &others.spinning),
             None => of_motion.spin_modes(&axis, point, speed, &others.spinning),
@@ -122,10 +120,20 @@ pub fn campbell_of_system(
     Ok(report)
 }
 
+/// The refusal of a system whose axis of the spin is not known.
+fn no_axis(system: &System, found: &str, joints: &[dynamics::Joint]) -> Failure {
+    let names: Vec<&str> = joints.iter().map(|joint| &*joint.name).collect();
+    let expected = format!(
+        "--axis, an axis through the center of mass, or --joint, whose axis it is: one of {}",
+        names.join(", ")
+    );
+    Kind::Usage.of(&system.path).found(found).expected(expected).help("name one").into()
+}
+
 /// Reason that there is no axis.
 enum Found {
     Nothing(String),
-    NoDirection(CampbellError),
+    NoDirection(Failure),
 }
 
 /// The body that a joint spins alone, where something keeps the bodies from a common spin about its axis.

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use model::{BuildProgress, Builder, Checker, Model};
+use diagnostic::{Diagnostic, Failure};
+use model::{BuildProgress, Builder, Checker, FullError, Model};
 use nonlinear::StateErrorSettings;
 use results::Results;
 use scene::{Scene, System};
 
-use super::error::CheckError;
 use super::joints::Ties;
 use super::report::{BodyCheck, CheckReport, DEAR, RIGID, RowCheck};
 use super::rows::{self, CheckRows};
@@ -34,7 +34,7 @@ fn without_elements(scene: &Scene) -> String {
 /// Checks the rows of a run whose models are there.
 ///
 /// # Errors
-/// [`CheckError`].
+/// [`Failure`].
 pub fn check_run(
     file: &Path,
     results: &Results,
@@ -43,10 +43,10 @@ pub fn check_run(
     builder: &Builder,
     rows: &CheckRows,
     mut progress: impl FnMut(CheckProgress),
-) -> Result<CheckReport, CheckError> {
+) -> Result<CheckReport, Failure> {
     let bodies = || system.bodies.iter().zip(models).zip(&results.metadata.bodies);
     if results.rows() == 0 {
-        return Err(CheckError::NoRows { file: file.to_owned() });
+        return Err(rows::no_rows(file));
     }
     let ties = Ties::new(system, models)?;
     let of_body = |(number, ((_, model), _))| rows::chosen(file, results, number, model, rows);
@@ -75,14 +75,14 @@ pub fn check_run(
             checked.push(not_checked(&without_elements(scene)));
             continue;
         };
-        let in_scene = |source| CheckError::Full { scene: scene.path.clone(), source: Box::new(source) };
+        let in_scene = |source: FullError| source.in_file(&scene.path);
         let body = full.body().map_err(in_scene)?;
         progress(CheckProgress::Rows { done, total });
         let checker = Checker::new(&full, scene, model, &body).map_err(in_scene)?;
         let checker = checker.against(rows::course(results, number));
         let mut of_rows = Vec::with_capacity(rows_of_body.len());
         for (row, why) in rows_of_body {
-            let motion = rows::motion(results, number, row).ok_or(CheckError::NoRows { file: file.to_owned() })?;
+            let motion = rows::motion(results, number, row).ok_or_else(|| rows::no_rows(file))?;
             let forces = ties.forces(file, (results, system, models), number, row)?;
             let state = checker.check(&motion, &forces, &StateErrorSettings::default(), true).map_err(in_scene)?;
             of_rows.push(RowCheck { row, why, state });

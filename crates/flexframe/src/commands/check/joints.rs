@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use model::{BuildError, Model, TieForce, Tied, tie};
+use diagnostic::{Diagnostic, Failure};
+use model::{BuildError, TieForce, Model, Tied, tie};
 use results::Results;
 use scene::System;
 
-use super::error::CheckError;
 use super::rows;
 
 /// The bodies of a run that are tied.
@@ -25,10 +25,10 @@ impl Ties {
         (results, system, models): (&Results, &System, &[Model]),
         body: usize,
         row: usize,
-    ) -> Result<Vec<TieForce>, CheckError> {
+    ) -> Result<Vec<TieForce>, Failure> {
         let Some(tied) = self.0.iter().find(|tied| tied.bodies.contains(&body)) else { return Ok(Vec::new()) };
         let states: Option<Vec<_>> = tied.bodies.iter().map(|body| rows::motion(results, *body, row)).collect();
-        let states = states.ok_or_else(|| CheckError::NoRows { file: file.to_owned() })?;
+        let states = states.ok_or_else(|| rows::no_rows(file))?;
         let turn = |joint: &usize| {
             let angles = results.numbers(&format!("joints/{}/angle", system.joints[*joint].name));
             angles.and_then(|angles| angles.get(row)).copied().unwrap_or_default()
@@ -36,6 +36,6 @@ impl Ties {
         let turns: Vec<f64> = tied.joints.iter().map(turn).collect();
         let number = tied.bodies.iter().position(|other| *other == body).unwrap_or_default();
         let forces = tied.forces_on(number, &models[body], &states, &turns);
-        forces.map_err(|source| CheckError::Full { scene: system.bodies[body].path.clone(), source: Box::new(source) })
+        forces.map_err(|source| source.in_file(&system.bodies[body].path))
     }
 }

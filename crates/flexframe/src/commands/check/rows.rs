@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use diagnostic::{Failure, Kind};
 use dynamics::MotionState;
 use model::{Course, Model};
 use results::{BodyResults, Results};
 use rigid_kin::Attitude;
 
 use super::cost::affordable;
-use super::error::CheckError;
 
 /// Which rows are checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,14 +28,17 @@ pub(super) fn chosen(
     body: usize,
     model: &Model,
     rows: &CheckRows,
-) -> Result<Vec<(usize, Vec<&'static str>)>, CheckError> {
+) -> Result<Vec<(usize, Vec<&'static str>)>, Failure> {
     let count = results.rows();
     if let CheckRows::Given(asked) = rows {
         return asked
             .iter()
             .map(|asked| match *asked < count {
                 true => Ok((*asked, vec!["asked for"])),
-                false => Err(CheckError::NoRow { file: file.to_owned(), asked: *asked, rows: count }),
+                false => {
+                    let wrong = Kind::Usage.of(file).key("--rows").found(asked.to_string());
+                    Err(wrong.expected(format!("a number from 0 to {}", count - 1)).into())
+                }
             })
             .collect();
     }
@@ -113,4 +116,9 @@ pub(super) fn motion(results: &Results, body: usize, row: usize) -> Option<Motio
         modal_displacement: list("modal/displacement")?,
         modal_velocity: list("modal/velocity")?,
     })
+}
+
+/// The refusal of a file that has nothing to check.
+pub(super) fn no_rows(file: &Path) -> Failure {
+    Kind::Input.of(file).help("let the run come to its first row").says("it has no rows")
 }

@@ -3,10 +3,10 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use figures::{FigureError, LineChart, Scale, Series, Stroke};
 use whole_file::write_whole;
 
-use super::error::CostError;
 use super::ladder::{Line, Outcome};
 use super::report::CostReport;
 use super::setting::Setting;
@@ -51,7 +51,7 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Writes `cost.csv`, and `work_precision` as SVG, PDF and PNG.
-pub(super) fn write(report: &CostReport, folder: &Path) -> Result<Vec<PathBuf>, CostError> {
+pub(super) fn write(report: &CostReport, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let path = folder.join(TABLE);
     write_whole(&path, csv(report)).map_err(WriteError::of(&path))?;

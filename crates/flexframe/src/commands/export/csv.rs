@@ -3,12 +3,12 @@
 use std::io::Write;
 use std::path::Path;
 
+use diagnostic::{Failure, Kind};
 use results::kind::NATURAL_MODE;
 use results::{Components, History, Metadata, Results, SystemRow, histories};
 use whole_file::WholeFile;
 
 use super::Exported;
-use super::error::ExportError;
 use super::rows::ExportRows;
 use crate::files::csv::quoted;
 use crate::files::outputs::{OutputError, Written, outputs_of_results};
@@ -28,8 +28,8 @@ struct Part {
 /// The table of an unfinished run begins with a line that says so, after a `#`.
 ///
 /// # Errors
-/// [`ExportError`].
-pub fn export_csv(file: &Path, to: &Path, columns: &[String], rows: &ExportRows) -> Result<Exported, ExportError> {
+/// [`Failure`].
+pub fn export_csv(file: &Path, to: &Path, columns: &[String], rows: &ExportRows) -> Result<Exported, Failure> {
     let table = Table::new(file, columns, rows)?;
     let (path, folder) = match to.extension() {
         Some(extension) if extension.eq_ignore_ascii_case("csv") => (to.to_owned(), None),
@@ -58,8 +58,8 @@ pub fn export_csv(file: &Path, to: &Path, columns: &[String], rows: &ExportRows)
 /// The same table as a text, and what should be known of it.
 ///
 /// # Errors
-/// [`ExportError`].
-pub fn csv_text(file: &Path, columns: &[String], rows: &ExportRows) -> Result<(String, Option<String>), ExportError> {
+/// [`Failure`].
+pub fn csv_text(file: &Path, columns: &[String], rows: &ExportRows) -> Result<(String, Option<String>), Failure> {
     let table = Table::new(file, columns, rows)?;
     let mut text = Vec::new();
     table.write(&mut text).map_err(WriteError::of(file))?;
@@ -76,7 +76,7 @@ struct Table {
 }
 
 impl Table {
-    fn new(file: &Path, columns: &[String], rows: &ExportRows) -> Result<Self, ExportError> {
+    fn new(file: &Path, columns: &[String], rows: &ExportRows) -> Result<Self, Failure> {
         let results = Results::open(file, &COLUMNS)?;
         let parts = chosen(file, &results, columns)?;
         let rows = rows.of(file, &results)?;
@@ -103,7 +103,7 @@ impl Table {
     }
 }
 
-fn chosen(file: &Path, results: &Results, columns: &[String]) -> Result<Vec<Part>, ExportError> {
+fn chosen(file: &Path, results: &Results, columns: &[String]) -> Result<Vec<Part>, Failure> {
     let metadata = &results.metadata;
     let time = Part { path: "time".to_owned(), heads: vec![format!("time [{}]", metadata.units.time)] };
     let all: Vec<Part> = histories(&COLUMNS, metadata).flat_map(|history| parts(history, metadata)).collect();
@@ -113,8 +113,10 @@ fn chosen(file: &Path, results: &Results, columns: &[String]) -> Result<Vec<Part
     };
     let is_known = |asked: &String| std::iter::once(&time).chain(&all).any(|part| is_of(part, asked));
     if let Some(found) = columns.iter().find(|asked| !is_known(asked)) {
-        let columns = std::iter::once(time).chain(all).map(|part| part.path).collect();
-        return Err(ExportError::NoColumn { path: file.to_owned(), found: found.clone(), columns });
+        let columns: Vec<String> = std::iter::once(time).chain(all).map(|part| part.path).collect();
+        let help = format!("name some of these, or beginnings of their paths: {}", columns.join(", "));
+        let wrong = Kind::Usage.of(file).found(found).help(help);
+        return Err(wrong.says(format!("there is no column \"{found}\"")));
     }
     let is_chosen = |part: &Part| columns.is_empty() || columns.iter().any(|asked| is_of(part, asked));
     Ok(std::iter::once(time).chain(all.into_iter().filter(is_chosen)).collect())

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
+use diagnostic::Failure;
 use fem_tet10::von_mises;
 use figures::facets;
 use nalgebra::{Matrix3, Vector3};
 use results::{BodyMetadata, BodyResults, CellKind, Grid, Results, Shapes, StressShapes};
 use rigid_kin::Attitude;
 
-use super::error::ExportError;
 use super::rows::ExportRows;
+use super::rows::no_elements;
 use crate::drawn::{Drawn, DrawnBody, Part};
 
 /// The rows of a results file, and the meshes of its bodies.
@@ -47,15 +48,15 @@ impl DrawnMotion {
     /// volume, which is in body files.
     ///
     /// # Errors
-    /// [`ExportError`]; also where no body has elements or a surface.
-    pub fn open(file: &Path, volume: bool) -> Result<Self, ExportError> {
+    /// [`Failure`]; also where no body has elements or a surface.
+    pub fn open(file: &Path, volume: bool) -> Result<Self, Failure> {
         let part = if volume { Part::Volume } else { Part::Surface };
         let Drawn { results, bodies } = Drawn::open(file, part)?;
         let bodies: Vec<DrawnSurface> = (bodies.into_iter().enumerate())
             .filter_map(|(number, body)| DrawnSurface::new(number, body, volume))
             .collect();
         if bodies.is_empty() {
-            return Err(ExportError::NoElements { path: file.to_owned() });
+            return Err(no_elements(file));
         }
         Ok(Self { results, bodies })
     }

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use diagnostic::{Failure, Kind};
 use results::kind::NATURAL_MODE;
 use results::{Block, Field, PvdEntry, VtkHdf, write_pvd, write_vtu};
 
 use super::Exported;
-use super::error::ExportError;
 use super::fields::fields;
 use super::motion::{DrawnMotion, DrawnSurface, Placed};
 use super::rows::ExportRows;
@@ -16,7 +16,7 @@ use crate::files::write_error::WriteError;
 
 impl DrawnMotion {
     /// The rows to export and their times.
-    fn chosen(&self, file: &Path, rows: &ExportRows) -> Result<(Vec<usize>, Vec<f64>), ExportError> {
+    fn chosen(&self, file: &Path, rows: &ExportRows) -> Result<(Vec<usize>, Vec<f64>), Failure> {
         let times = self.results.numbers("time").unwrap_or_default();
         let chosen = rows.of(file, &self.results)?;
         let times = chosen.iter().map(|row| times[*row]).collect();
@@ -30,7 +30,7 @@ impl DrawnMotion {
         bodies: &[(&DrawnSurface, Vec<Field>)],
         times: Option<&[f64]>,
         overwrite: bool,
-    ) -> Result<VtkHdf, ExportError> {
+    ) -> Result<VtkHdf, Failure> {
         let created = match bodies {
             [(body, fields)] if self.is_single() => VtkHdf::create(to, &body.grid, times, fields, overwrite),
             _ => {
@@ -49,14 +49,14 @@ impl DrawnMotion {
 /// names. `progress` hears the part that is done, 0 to 1.
 ///
 /// # Errors
-/// [`ExportError`]; nothing has been written then.
+/// [`Failure`]; nothing has been written then.
 pub fn export_vtkhdf(
     file: &Path,
     motion: &DrawnMotion,
     to: &Path,
     rows: &ExportRows,
     mut progress: impl FnMut(f64),
-) -> Result<Exported, ExportError> {
+) -> Result<Exported, Failure> {
     let (chosen, times) = motion.chosen(file, rows)?;
     outputs_of_results(file, rows.overwrite).claim_as(&Written::VTKHDF, to)?;
     let described: Vec<_> = motion.bodies.iter().map(|body| (body, fields(&body.shapes).1)).collect();
@@ -78,14 +78,14 @@ pub fn export_vtkhdf(
 /// before 5.12.
 ///
 /// # Errors
-/// [`ExportError`]; without the PVD file, what there is of the others is a part.
+/// [`Failure`]; without the PVD file, what there is of the others is a part.
 pub fn export_vtu(
     file: &Path,
     motion: &DrawnMotion,
     folder: &Path,
     rows: &ExportRows,
     mut progress: impl FnMut(f64),
-) -> Result<Exported, ExportError> {
+) -> Result<Exported, Failure> {
     let (chosen, times) = motion.chosen(file, rows)?;
     Written::FOLDER.check(folder).map_err(OutputError::from)?;
     let stem = file.file_stem().unwrap_or("results".as_ref()).to_string_lossy().into_owned();
@@ -124,13 +124,14 @@ pub fn export_vtu(
 /// then the stress of each. They are numbered as everywhere: from 1. Bodies without modes are left out.
 ///
 /// # Errors
-/// [`ExportError`]; nothing has been written then.
-pub fn export_modes(file: &Path, motion: &DrawnMotion, to: &Path, rows: &ExportRows) -> Result<Exported, ExportError> {
+/// [`Failure`]; nothing has been written then.
+pub fn export_modes(file: &Path, motion: &DrawnMotion, to: &Path, rows: &ExportRows) -> Result<Exported, Failure> {
     let with_modes = motion.bodies.iter().filter(|body| !body.metadata(motion).model.frequencies.is_empty());
     let unit = frequency_unit(&motion.results.metadata.units.time);
     let described: Vec<_> = with_modes.map(|body| (body, fields_of_modes(body, motion, &unit))).collect();
     if described.is_empty() {
-        return Err(ExportError::NoModes { path: file.to_owned() });
+        let help = "leave --modes out, or run its scene again with flexible modes ([modes] flexible = 10)";
+        return Err(Kind::Input.of(file).help(help).says("the body has no flexible modes to export"));
     }
     outputs_of_results(file, rows.overwrite).claim_as(&Written::VTKHDF, to)?;
     let out = motion.create(to, &described, None, rows.overwrite)?;

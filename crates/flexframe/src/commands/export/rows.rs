@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
+use diagnostic::{Failure, Kind};
 use results::Results;
-
-use super::error::ExportError;
 
 /// Every N-th row from one time to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,9 +25,23 @@ impl Default for ExportRows {
     }
 }
 
+/// The refusal of times that no row is within; `times` are of the first and the last row.
+pub(crate) fn no_rows(file: &Path, [first, last]: [f64; 2]) -> Failure {
+    let help = "give --from and --to within them, or leave them out";
+    let words = format!("no row is within the times asked for; its rows are from time {first} to {last}");
+    Kind::Usage.of(file).help(help).says(words)
+}
+
+/// The refusal of a body that has nodes, but no elements.
+pub(crate) fn no_elements(file: &Path) -> Failure {
+    let help = "export a table, --csv TABLE.csv, or give the body a mesh";
+    let words = "no elements to show: a body of matrices has none, nor a surface, and a rigid body without a mesh has a surface alone";
+    Kind::Input.of(file).help(help).says(words)
+}
+
 impl ExportRows {
     /// Their numbers, one at least.
-    pub(super) fn of(&self, file: &Path, results: &Results) -> Result<Vec<usize>, ExportError> {
+    pub(super) fn of(&self, file: &Path, results: &Results) -> Result<Vec<usize>, Failure> {
         let times = results.numbers("time").unwrap_or_default();
         // Times of rows are sums of steps.
         let slack = 1e-9 * times.last().copied().unwrap_or_default().abs();
@@ -38,7 +51,7 @@ impl ExportRows {
         let chosen: Vec<usize> = within.step_by(self.every.max(1)).collect();
         if chosen.is_empty() {
             let times = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
-            return Err(ExportError::NoRows { path: file.to_owned(), times });
+            return Err(no_rows(file, times));
         }
         Ok(chosen)
     }

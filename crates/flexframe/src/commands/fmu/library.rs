@@ -3,9 +3,11 @@
 use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Failure, Kind};
 use foreign_program::read_at_most;
 
-use super::error::{FmuError, LIBRARY_VARIABLE};
+/// The environment variable that names the library for FMUs.
+const LIBRARY_VARIABLE: &str = "FLEXFRAME_FMU_LIBRARY";
 
 /// Bytes that tell which version the library is of. The program has them in it, too: what the library alone has is the name
 /// of a function of FMI.
@@ -37,15 +39,27 @@ pub(super) struct Library {
 
 impl Library {
     /// Reads the library at its [`library_path`].
-    pub fn find(asked: Option<&Path>) -> Result<Self, FmuError> {
+    pub fn find(asked: Option<&Path>) -> Result<Self, Failure> {
         let folder = match (OS, ARCH) {
             ("linux", "x86_64") => "linux64",
             ("windows", "x86_64") => "win64",
             ("macos", "x86_64") => "darwin64",
-            _ => return Err(FmuError::Platform { machine: format!("{OS}, {ARCH}") }),
+            _ => {
+                let help = "pack it on 64-bit Linux, Windows or macOS, with a processor of the x86 family";
+                return Err(Kind::Refused
+                    .alone()
+                    .help(help)
+                    .says(format!("FMI 2.0 has no name for this machine ({OS}, {ARCH})")));
+            }
         };
         let path = library_path(asked);
-        let refuse = |found: String| FmuError::Library { path: path.clone(), found };
+        let refuse = |found: String| {
+            let help = format!(
+                "build it (./dev build, or cargo build --release -p fmi), and name it with --library or {LIBRARY_VARIABLE} where it is not \
+                 beside the program"
+            );
+            Kind::Io.of(&path).help(help).says(found)
+        };
         let bytes = read_at_most(&path, LARGEST)
             .map_err(|error| refuse(format!("the library for FMUs cannot be read ({error})")))?;
         let has = |text: &str| bytes.windows(text.len()).any(|bytes| bytes == text.as_bytes());

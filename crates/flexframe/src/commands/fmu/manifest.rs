@@ -1,13 +1,13 @@
 //! List of the resources of an FMU, so that missing and damaged ones are found.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::path::Path;
 
+use diagnostic::{Failure, Kind};
 use keys::{Digest, Hash};
 use scene::{Scene, System};
 use serde::{Deserialize, Serialize};
-
-use super::error::FmuError;
 
 /// Its name among the resources.
 pub const MANIFEST: &str = "manifest.json";
@@ -42,13 +42,13 @@ impl Manifest {
         folder: &Path,
         names: &[String],
         (bodies, system): (Vec<PackedBody>, Option<String>),
-    ) -> Result<Self, FmuError> {
+    ) -> Result<Self, Failure> {
         let mut files = BTreeMap::new();
         let program_version = env!("CARGO_PKG_VERSION").to_owned();
         let mut digest = Digest::new().text(&program_version);
         for name in names {
             let path = folder.join(name);
-            let hash = Hash::of_file(&path).map_err(|source| FmuError::Unreadable { path, source })?;
+            let hash = Hash::of_file(&path).map_err(unreadable(&path))?;
             digest = digest.text(name).hash(&hash);
             files.insert(name.clone(), hash.to_string());
         }
@@ -64,34 +64,59 @@ impl Manifest {
     /// Reads the manifest of an unpacked FMU, and checks every file that it names.
     ///
     /// # Errors
-    /// [`FmuError`] for a folder without a manifest, an FMU of another version, and files that are missing or have changed.
-    pub fn checked(resources: &Path) -> Result<Self, FmuError> {
+    /// [`Failure`] for a folder without a manifest, an FMU of another version, and files that are missing or have changed.
+    pub fn checked(resources: &Path) -> Result<Self, Failure> {
         let path = resources.join(MANIFEST);
-        let text = std::fs::read_to_string(&path).map_err(|source| FmuError::Missing { path: path.clone(), source })?;
-        let manifest: Self = serde_json::from_str(&text).map_err(|_| FmuError::Damaged { path: path.clone() })?;
+        let text = std::fs::read_to_string(&path).map_err(missing(&path))?;
+        let manifest: Self = serde_json::from_str(&text).map_err(|_| damaged(&path))?;
         if manifest.program_version != env!("CARGO_PKG_VERSION") {
-            return Err(FmuError::Version { found: manifest.program_version });
+            let (found, own) = (&manifest.program_version, env!("CARGO_PKG_VERSION"));
+            let words = format!("the resources of this FMU are those of flexframe {found}, its library is of {own}");
+            return Err(Kind::Input
+                .alone()
+                .found(found)
+                .expected(own)
+                .help("pack it again: flexframe fmu")
+                .says(words));
         }
         for (name, expected) in &manifest.files {
             let path = resources.join(name);
-            let found = Hash::of_file(&path).map_err(|source| FmuError::Missing { path: path.clone(), source })?;
+            let found = Hash::of_file(&path).map_err(missing(&path))?;
             if found.to_string() != *expected {
-                return Err(FmuError::Damaged { path });
+                return Err(damaged(&path));
             }
         }
         Ok(manifest)
     }
 
     /// The bodies, and what ties them together.
-    pub(super) fn system(&self, resources: &Path) -> Result<System, FmuError> {
+    pub(super) fn system(&self, resources: &Path) -> Result<System, Failure> {
         if let Some(file) = &self.system {
             return Ok(System::read(resources.join(file))?);
         }
-        let scene = |PackedBody { name, scene }: &PackedBody| -> Result<Scene, FmuError> {
+        let scene = |PackedBody { name, scene }: &PackedBody| -> Result<Scene, Failure> {
             Ok(Scene { name: name.clone(), ..Scene::read(resources.join(scene))? })
         };
-        let bodies = self.bodies.iter().map(scene).collect::<Result<Vec<Scene>, FmuError>>()?;
-        let first = bodies.first().ok_or(FmuError::NoBody)?.clone();
+        let bodies = self.bodies.iter().map(scene).collect::<Result<Vec<Scene>, Failure>>()?;
+        let first = bodies
+            .first()
+            .ok_or_else(|| Kind::Input.alone().help("give one or more").says("there is no body to pack"))?
+            .clone();
         Ok(System { bodies, ..first.into() })
     }
+}
+
+/// The error of a file that cannot be read.
+pub(super) fn unreadable(path: &Path) -> impl FnOnce(io::Error) -> Failure {
+    move |error| Kind::Io.of(path).help("check its name and its permissions").says(format!("cannot be read: {error}"))
+}
+
+fn missing(path: &Path) -> impl FnOnce(io::Error) -> Failure {
+    let help = "unpack the whole FMU again, or pack it again: flexframe fmu";
+    move |error| Kind::Io.of(path).help(help).says(format!("a resource of the FMU cannot be read: {error}"))
+}
+
+fn damaged(path: &Path) -> Failure {
+    let help = "unpack the FMU again, or pack it again: flexframe fmu";
+    Kind::Input.of(path).help(help).says("this resource of the FMU has been changed or damaged")
 }

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
+use diagnostic::Failure;
 use dynamics::{Coordinate, RotationShapes};
 use model::{BuildProgress, Builder, Model, Needs};
 use results::{Metadata, histories};
 use scene::{Scene, System};
 
-use super::error::FmuError;
 use super::manifest::Manifest;
 use super::si_unit::seconds;
 use super::variables::{Variable, variables};
 use crate::commands::run::{self, RunBody};
-use crate::motion::{BeginError, StartSettings, begin};
+use crate::motion::{StartSettings, begin};
 use crate::rows::columns::{COLUMNS, part};
 use crate::rows::row::Row;
 
@@ -45,17 +45,14 @@ impl FmuModel {
     /// The model of the bodies of a scene, with the effects that forces from outside may call for.
     ///
     /// # Errors
-    /// [`FmuError`].
-    pub fn new(system: System, builder: &Builder, mut progress: impl FnMut(BuildProgress)) -> Result<Self, FmuError> {
+    /// [`Failure`].
+    pub fn new(system: System, builder: &Builder, mut progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
         let builder = builder.needing(Needs::external_inputs());
         let bodies = system.bodies.iter().map(|scene| FmuBody::new(scene, &builder, &mut progress));
         let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
         let models: Vec<&Model> = bodies.iter().map(|body| &body.model).collect();
         let beginning = StartSettings::of(&system, &models);
-        begin(&system, &models, &beginning).map_err(|error| match error.at_key(&system) {
-            BeginError::Build(source) => FmuError::Build(source),
-            BeginError::Start { scene, source, .. } => FmuError::Start { scene, source },
-        })?;
+        begin(&system, &models, &beginning).map_err(|error| error.at_key(&system))?;
         let of_run: Vec<_> = bodies.iter().map(|FmuBody { scene, model, .. }| RunBody { scene, model }).collect();
         let mut metadata = run::metadata_of_system(&system, &of_run);
         add_motors(&system, &mut metadata);
@@ -66,8 +63,8 @@ impl FmuModel {
     /// The model in the resources of an FMU, which have been [checked](Manifest::checked).
     ///
     /// # Errors
-    /// [`FmuError`].
-    pub fn open(resources: &Path, manifest: &Manifest) -> Result<Self, FmuError> {
+    /// [`Failure`].
+    pub fn open(resources: &Path, manifest: &Manifest) -> Result<Self, Failure> {
         Self::new(manifest.system(resources)?, &Builder::default(), |_| ())
     }
 
@@ -79,7 +76,7 @@ impl FmuModel {
 }
 
 impl FmuBody {
-    fn new(scene: &Scene, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, FmuError> {
+    fn new(scene: &Scene, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
         let model = builder.build(scene, progress)?;
         let rotations = model.point_rotations(scene)?;
         Ok(Self { scene: scene.clone(), model, rotations })

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Diagnostic, Failure, Kind};
 use model::{BuildProgress, Builder, Needs, StartError};
 use scene::{Body, Flexible, MeshedBody, Scene, Shared, System};
 use sealed::{Format, SealedFile};
@@ -13,11 +14,12 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::description::describe;
-use super::error::FmuError;
 use super::library::Library;
+use super::manifest::unreadable;
 use super::manifest::{MANIFEST, Manifest, PackedBody};
 use super::model::FmuModel;
 use super::packed_scene::PackedScene;
+use super::packed_scene::cannot_pack;
 use super::variables::Source;
 use crate::files::json;
 use crate::files::write_error::WriteError;
@@ -79,28 +81,31 @@ impl FmuReport {
 /// The scene that a body file was made of, with its body from there.
 ///
 /// # Errors
-/// [`FmuError`] for a file that is no body file of this version, and for a scene that breaks a rule.
-pub fn scene_of_body(file: &Path) -> Result<Scene, FmuError> {
+/// [`Failure`] for a file that is no body file of this version, and for a scene that breaks a rule.
+pub fn scene_of_body(file: &Path) -> Result<Scene, Failure> {
     let body = SealedFile::open(file, Format::BODY)?;
-    let text = body.text("scene").ok_or_else(|| FmuError::NoScene { path: file.to_owned() })?;
-    let mut scene: toml::Table = toml::from_str(text).map_err(|error| FmuError::Text(error.to_string()))?;
+    let text = body.text("scene").ok_or_else(|| {
+        let help = "make it again: flexframe reduce SCENE -o FILE";
+        Kind::Input.of(file).help(help).says("no scene is in this file")
+    })?;
+    let mut scene: toml::Table = toml::from_str(text).map_err(cannot_pack)?;
     let name = std::path::absolute(file).unwrap_or_else(|_| file.to_owned()).display().to_string();
     scene.insert("body".to_owned(), toml::Table::from_iter([("file".to_owned(), toml::Value::from(name))]).into());
-    let text = toml::to_string(&scene).map_err(|error| FmuError::Text(error.to_string()))?;
+    let text = toml::to_string(&scene).map_err(cannot_pack)?;
     Ok(Scene::parse(&text, file)?)
 }
 
 /// Packs the bodies of a scene as an FMU, whole or not at all.
 ///
 /// # Errors
-/// [`FmuError`].
+/// [`Failure`].
 pub fn pack(
     system: &System,
     builder: &Builder,
     output: &Path,
     settings: &FmuSettings,
     mut progress: impl FnMut(BuildProgress),
-) -> Result<FmuReport, FmuError> {
+) -> Result<FmuReport, Failure> {
     let scenes = &system.bodies[..];
     scenes.iter().try_for_each(check)?;
     let is_tied = system.has_ties();
@@ -108,7 +113,7 @@ pub fn pack(
         // One of several that are tied.
         let tied = scenes.iter().find_map(|scene| Some((scene, StartError::refuse_tied(scene).err()?)));
         if let Some((scene, source)) = tied {
-            return Err(FmuError::Start { scene: scene.path.clone(), source: Box::new(source) });
+            return Err(source.in_file(&scene.path));
         }
     }
     let library = Library::find(settings.library.as_deref())?;
@@ -134,7 +139,7 @@ pub fn pack(
         opened.source.clone_from(&given.source);
     }
     let fmu = FmuModel::new(opened, &Builder::default(), progress)?;
-    let text = serde_json::to_string_pretty(&manifest).map_err(|error| FmuError::Text(error.to_string()))?;
+    let text = serde_json::to_string_pretty(&manifest).map_err(cannot_pack)?;
     std::fs::write(resources.join(MANIFEST), text).map_err(WriteError::of(&resources.join(MANIFEST)))?;
     names.push(MANIFEST.to_owned());
 
@@ -146,7 +151,7 @@ pub fn pack(
 }
 
 /// Refuses a body that cannot be packed.
-fn check(scene: &Scene) -> Result<(), FmuError> {
+fn check(scene: &Scene) -> Result<(), Failure> {
     if let (true, Body::Meshed(body)) = (scene.tied, &scene.body)
         && body.mesh.extension().is_none_or(|ending| ending != "msh")
     {
@@ -176,7 +181,7 @@ fn check(scene: &Scene) -> Result<(), FmuError> {
 }
 
 /// Writes the scene of bodies that are tied together, its tables and meshes into the resources, and adds their names.
-fn pack_system(scene: &Shared, resources: &Path, names: &mut Vec<String>) -> Result<String, FmuError> {
+fn pack_system(scene: &Shared, resources: &Path, names: &mut Vec<String>) -> Result<String, Failure> {
     let folder = scene.path.parent().unwrap_or(Path::new(""));
     let packed = PackedScene::of_system(&scene.text, folder)?;
     let name = "scene.toml".to_owned();
@@ -184,7 +189,7 @@ fn pack_system(scene: &Shared, resources: &Path, names: &mut Vec<String>) -> Res
     std::fs::write(&place, &packed.text).map_err(WriteError::of(&place))?;
     names.push(name.clone());
     for (from, name) in packed.tables {
-        std::fs::copy(&from, resources.join(&name)).map_err(|source| FmuError::Unreadable { path: from, source })?;
+        std::fs::copy(&from, resources.join(&name)).map_err(unreadable(&from))?;
         names.push(name);
     }
     Ok(name)
@@ -197,7 +202,7 @@ fn pack_body(
     prefix: &str,
     names: &mut Vec<String>,
     progress: &mut impl FnMut(BuildProgress),
-) -> Result<PackedBody, FmuError> {
+) -> Result<PackedBody, Failure> {
     let [scene_name, body_name] = ["scene.toml", "body.h5"].map(|name| format!("{prefix}{name}"));
     let body_file = (!matches!(scene.body, Body::Rigid(_))).then_some(body_name);
     let folder = scene.path.parent().unwrap_or(Path::new(""));
@@ -207,7 +212,7 @@ fn pack_body(
     names.push(scene_name.clone());
     for (from, name) in packed.tables {
         let to = resources.join(&name);
-        std::fs::copy(&from, to).map_err(|source| FmuError::Unreadable { path: from, source })?;
+        std::fs::copy(&from, to).map_err(unreadable(&from))?;
         names.push(name);
     }
     if let Some(body_file) = body_file {

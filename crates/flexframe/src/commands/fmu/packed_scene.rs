@@ -1,10 +1,16 @@
 //! The text of a scene for an FMU, which names no file outside of it.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Failure, Kind};
 use toml::{Table, Value};
 
-use super::error::FmuError;
+/// The refusal of a scene whose text could not be changed to the text that the FMU holds.
+pub(super) fn cannot_pack(error: impl fmt::Display) -> Failure {
+    let help = "run it by `flexframe run`, and correct what that says; if it runs, please report this";
+    Kind::Input.alone().help(help).says(format!("the scene cannot be written for the FMU: {error}"))
+}
 
 /// A scene that finds everything in its own folder.
 pub(super) struct PackedScene {
@@ -16,8 +22,8 @@ pub(super) struct PackedScene {
 impl PackedScene {
     /// The packed form of a scene in a folder. With a `body_file`, the body becomes that of it; names of tables begin with
     /// `prefix`.
-    pub fn new(text: &str, folder: &Path, body_file: Option<&str>, prefix: &str) -> Result<Self, FmuError> {
-        let mut scene: Table = toml::from_str(text).map_err(|error| FmuError::Text(error.to_string()))?;
+    pub fn new(text: &str, folder: &Path, body_file: Option<&str>, prefix: &str) -> Result<Self, Failure> {
+        let mut scene: Table = toml::from_str(text).map_err(cannot_pack)?;
         if let Some(file) = body_file {
             let body = Table::from_iter([("file".to_owned(), Value::from(file))]);
             scene.insert("body".to_owned(), Value::Table(body));
@@ -26,13 +32,13 @@ impl PackedScene {
         for (_, value) in scene.iter_mut().filter(|(key, _)| *key != "body") {
             take_tables(value, folder, prefix, &mut tables);
         }
-        let text = toml::to_string(&scene).map_err(|error| FmuError::Text(error.to_string()))?;
+        let text = toml::to_string(&scene).map_err(cannot_pack)?;
         Ok(Self { text, tables })
     }
 
     /// The packed form of a scene of bodies that are tied together: with their meshes, since body files have no markers.
-    pub fn of_system(text: &str, folder: &Path) -> Result<Self, FmuError> {
-        let mut scene: Table = toml::from_str(text).map_err(|error| FmuError::Text(error.to_string()))?;
+    pub fn of_system(text: &str, folder: &Path) -> Result<Self, Failure> {
+        let mut scene: Table = toml::from_str(text).map_err(cannot_pack)?;
         let mut files = Vec::new();
         scene.iter_mut().for_each(|(_, value)| take_tables(value, folder, "", &mut files));
         if let Some(body) = scene.get_mut("body") {
@@ -41,7 +47,7 @@ impl PackedScene {
         if let Some(Value::Table(bodies)) = scene.get_mut("bodies") {
             bodies.iter_mut().for_each(|(_, body)| take_mesh(body, folder, &mut files));
         }
-        let text = toml::to_string(&scene).map_err(|error| FmuError::Text(error.to_string()))?;
+        let text = toml::to_string(&scene).map_err(cannot_pack)?;
         Ok(Self { text, tables: files })
     }
 }

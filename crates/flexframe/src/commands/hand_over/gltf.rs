@@ -2,13 +2,13 @@
 //!
 //! Positions are in the unit of the scene and the axes of the mesh. A weight of 1 is a displacement that is seen, not one of the motion.
 
+use diagnostic::Failure;
 use model::Model;
 use nalgebra::Vector3;
 use results::kind::NATURAL_MODE;
 use scene::Scene;
 use serde_json::{Value, json};
 
-use super::error::HandOverError;
 use crate::commands::modes::{require_flexible, require_surface};
 use crate::report::kinds;
 use crate::surface::Surface;
@@ -70,7 +70,7 @@ impl Buffer {
 }
 
 /// The bytes of the file.
-pub fn bytes(scene: &Scene, model: &Model) -> Result<Vec<u8>, HandOverError> {
+pub fn bytes(scene: &Scene, model: &Model) -> Result<Vec<u8>, Failure> {
     require_surface(scene)?;
     let meshed = require_flexible(scene, model)?;
     let surface = Surface::of_model(model);

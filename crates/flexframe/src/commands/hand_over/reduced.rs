@@ -1,12 +1,12 @@
 //! The numbers of a reduced body that other programs ask for, Eq. (M17) of `docs/method/modes.md`.
 
+use diagnostic::Failure;
 use dynamics::{PointShapes, RotationShapes};
 use faer::Mat;
 use model::{BodyMarker, MarkerPart, Model, UnknownTurns};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use scene::{Scene, key_path};
 
-use super::error::HandOverError;
 use super::interface::Place;
 use crate::commands::modes::require_flexible;
 
@@ -16,7 +16,9 @@ const RIGID: usize = 6;
 /// A body with flexible modes of modal mass 1. Positions are from its origin: the center of mass of a free body, the support of one that
 /// is held.
 pub struct Reduced<'a> {
+    /// Title of the scene.
     pub title: &'a str,
+    /// Its mass.
     pub mass: f64,
     /// Center of mass.
     pub center: Vector3<f64>,
@@ -64,7 +66,7 @@ pub struct Node {
 
 impl<'a> Reduced<'a> {
     /// The numbers of a model, with points of the output and then markers as nodes.
-    pub fn new(scene: &'a Scene, model: &'a Model) -> Result<Self, HandOverError> {
+    pub fn new(scene: &'a Scene, model: &'a Model) -> Result<Self, Failure> {
         require_flexible(scene, model)?;
         if !model.large_modes().is_empty() {
             let help = "set `large_deflection = false` in [effects] for the linear body";

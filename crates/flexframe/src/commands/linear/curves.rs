@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use figures::{FigureError, LineChart, Scale, Series, Stroke};
-use report::{ReportError, Responses};
+use diagnostic::Failure;
+use figures::{LineChart, Scale, Series, Stroke};
+use report::Responses;
 use whole_file::write_whole;
 
 use crate::files::write_error::WriteError;
@@ -30,11 +31,7 @@ fn texts(folder: &Path, name: &str) -> [PathBuf; 2] {
 }
 
 /// Writes the files of an answer.
-pub(super) fn write<E: From<WriteError> + From<FigureError> + From<ReportError>>(
-    folder: &Path,
-    name: &str,
-    Answer { csv, chart, page }: Answer,
-) -> Result<Vec<PathBuf>, E> {
+pub(super) fn write(folder: &Path, name: &str, Answer { csv, chart, page }: Answer) -> Result<Vec<PathBuf>, Failure> {
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let [table, html] = texts(folder, name);
     write_whole(&table, csv).map_err(WriteError::of(&table))?;

@@ -1,19 +1,18 @@
 //! `flexframe fit`: parameters of a body by measured frequencies, with intervals of confidence.
 
-mod error;
 mod least_squares;
 mod report;
 mod student;
 mod subject;
 
+use diagnostic::{Failure, Kind};
 use model::{BuildProgress, Builder};
 use scene::{Measured, System};
 
-pub use error::FitError;
 pub use report::{FitReport, FittedMode, FittedParameter};
 
 use faer::Mat;
-use least_squares::{Residuals, Solution, solve};
+use least_squares::{Fault, Residuals, Solution, Unseen, solve};
 use report::{CONFIDENCE, Quality};
 use subject::{Found, Subject};
 
@@ -44,15 +43,18 @@ impl Fit {
     /// The fit of a scene of one body, or of bodies in joints.
     ///
     /// # Errors
-    /// [`FitError`] of parameters and tables that do not fit the scene or each other.
+    /// [`Failure`] of parameters and tables that do not fit the scene or each other.
     pub fn new(
         system: &System,
         builder: &Builder,
         settings: &FitSettings,
         progress: impl FnMut(BuildProgress),
-    ) -> Result<Self, FitError> {
+    ) -> Result<Self, Failure> {
         let of_scene = || system.bodies.iter().find_map(|scene| scene.modes.measured.clone());
-        let measured = settings.measured.clone().or_else(of_scene).ok_or(FitError::NoTable)?;
+        let measured = settings.measured.clone().or_else(of_scene).ok_or_else(|| {
+            let found = "no measured frequencies: found neither --measured nor `measured` in [modes] of the scene";
+            Kind::Usage.alone().help("name a CSV file with a column `frequency`: --measured test.csv").says(found)
+        })?;
         let subject = Subject::new(system, builder, &settings.parameters, &measured, progress)?;
         let (deviations, is_stated) = deviations(&measured, settings.deviation)?;
         Ok(Self { subject, measured, deviations, is_stated })
@@ -61,8 +63,8 @@ impl Fit {
     /// Frequencies of the modes that were measured, in the scene as it is.
     ///
     /// # Errors
-    /// [`FitError`].
-    pub fn frequencies(&self) -> Result<Vec<f64>, FitError> {
+    /// [`Failure`].
+    pub fn frequencies(&self) -> Result<Vec<f64>, Failure> {
         Ok(self.residuals(&vec![0.0; self.subject.names().len()])?.frequencies)
     }
 
@@ -78,13 +80,13 @@ impl Fit {
     /// Finds the parameters.
     ///
     /// # Errors
-    /// [`FitError`] of parameters that the frequencies do not tell, and where no values are found.
-    pub fn run(&self) -> Result<FitReport, FitError> {
+    /// [`Failure`] of parameters that the frequencies do not tell, and where no values are found.
+    pub fn run(&self) -> Result<FitReport, Failure> {
         let names = self.subject.names();
         let start = vec![0.0; names.len()];
         let limits = |x: &[f64]| self.is_within(x);
         let Solution { x, first, last, iterations, singular, right } =
-            solve(&start, |x| self.residuals(x), limits).map_err(|fault| FitError::of_fault(fault, &names))?;
+            solve(&start, |x| self.residuals(x), limits).map_err(|fault| not_found(fault, &names))?;
         let (count, unknowns) = (self.measured.modes.len(), x.len());
         let freedom = count - unknowns;
         let sum: f64 = last.values.iter().map(|r| r * r).sum();
@@ -129,7 +131,7 @@ impl Fit {
     }
 
     /// The frequencies of measured modes with their rates, in units of their deviations.
-    fn residuals(&self, x: &[f64]) -> Result<Residuals, FitError> {
+    fn residuals(&self, x: &[f64]) -> Result<Residuals, Failure> {
         let Found { frequencies, rates, modes } = self.subject.found(x, &self.measured)?;
         let of_modes = frequencies.iter().zip(&self.measured.modes).zip(&self.deviations);
         let values = of_modes.map(|((f, mode), deviation)| (f - mode.frequency) / deviation).collect();
@@ -146,25 +148,65 @@ impl Fit {
 /// Fits parameters of a scene to measured frequencies.
 ///
 /// # Errors
-/// [`FitError`].
+/// [`Failure`].
 pub fn fit(
     system: &System,
     builder: &Builder,
     settings: &FitSettings,
     progress: impl FnMut(BuildProgress),
-) -> Result<FitReport, FitError> {
+) -> Result<FitReport, Failure> {
     Fit::new(system, builder, settings, progress)?.run()
 }
 
 /// Standard deviations of the measured frequencies, and true if they are stated: of all of them or of none.
-fn deviations(measured: &Measured, relative: Option<f64>) -> Result<(Vec<f64>, bool), FitError> {
+fn deviations(measured: &Measured, relative: Option<f64>) -> Result<(Vec<f64>, bool), Failure> {
     let of = |mode: &scene::MeasuredMode| mode.deviation.or(relative.map(|relative| relative * mode.frequency));
     let stated: Vec<f64> = measured.modes.iter().filter_map(of).collect();
     if stated.is_empty() {
         return Ok((measured.modes.iter().map(|mode| mode.frequency).collect(), false));
     }
     match measured.modes.iter().find(|mode| of(mode).is_none()) {
-        Some(mode) => Err(FitError::SomeDeviations { file: measured.file.clone(), line: mode.line }),
+        Some(mode) => {
+            let wrong = Kind::Input.of(&measured.file).line(mode.line).found("no deviation");
+            let help = "add it, give --deviation for those that have none, or leave the column out";
+            Err(wrong.expected("one, since other lines have theirs").help(help).into())
+        }
         None => Ok((stated, true)),
+    }
+}
+
+/// The error of parameters that could not be found.
+fn not_found(fault: Fault<Failure>, names: &[String]) -> Failure {
+    let refused = |words: String, help: &str| Kind::Refused.alone().help(help).says(words);
+    match fault {
+        Fault::Residuals(error) => error,
+        Fault::Coordinates(Unseen::NoInfluence(j)) => refused(
+            format!("{} changes none of the measured frequencies", names[j]),
+            "leave it out, or measure modes that it changes: `flexframe gradient` shows them",
+        ),
+        Fault::Coordinates(Unseen::Gone(j)) => refused(
+            format!(
+                "the search has taken {} to where it changes none of the measured frequencies: no value of it gives them",
+                names[j]
+            ),
+            "see whether modes are mistaken for each other, or fit what is wrong in the model",
+        ),
+        Fault::Coordinates(Unseen::Apart(parts)) => {
+            let together: Vec<&str> = parts.iter().map(|(j, _)| &*names[*j]).collect();
+            let grown: Vec<String> =
+                parts.iter().map(|(j, part)| format!("{} grows by s^{part:.2}", names[*j])).collect();
+            refused(
+                format!(
+                    "the measured frequencies do not tell {} apart: none of them changes where {}, for any s",
+                    together.join(" and "),
+                    grown.join(", ")
+                ),
+                "leave one of them out, or measure a mass or a static displacement",
+            )
+        }
+        Fault::Coordinates(Unseen::Steps(steps)) => {
+            let help = "begin with values nearer to the truth, or fit fewer parameters; `flexframe gradient` shows what each changes";
+            Kind::Run.alone().help(help).says(format!("no values were found in {steps} steps"))
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! Ranges of frequencies that a command is asked for.
 
+use diagnostic::{Failure, Kind};
+
 /// Frequencies, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frequencies {
@@ -12,26 +14,42 @@ pub struct Frequencies {
 }
 
 impl Frequencies {
-    /// At equal ratios; none where the lowest is not above 0, the range is empty, or the count is not 2 to `most`.
-    pub(crate) fn by_ratios(&self, most: usize) -> Option<Vec<f64>> {
+    /// At equal ratios; refused where the lowest is not above 0, the range is empty, or the count is not 2 to `most`.
+    pub(crate) fn by_ratios(&self, most: usize) -> Result<Vec<f64>, Failure> {
         let &Self { start, end, .. } = self;
-        (start > 0.0).then(|| self.spaced(most, |part| start * (end / start).powf(part)))?
+        if start > 0.0 {
+            self.spaced(most, |part| start * (end / start).powf(part))
+        } else {
+            Err(self.refusal("<", most))
+        }
     }
 
-    /// At equal distances; none where the lowest is below 0, the range is empty, or the count is not 2 to `most`.
-    pub(crate) fn evenly(&self, most: usize) -> Option<Vec<f64>> {
+    /// At equal distances; refused where the lowest is below 0, the range is empty, or the count is not 2 to `most`.
+    pub(crate) fn evenly(&self, most: usize) -> Result<Vec<f64>, Failure> {
         let &Self { start, end, .. } = self;
-        (start >= 0.0).then(|| self.spaced(most, |part| start + (end - start) * part))?
+        if start >= 0.0 {
+            self.spaced(most, |part| start + (end - start) * part)
+        } else {
+            Err(self.refusal("≤", most))
+        }
+    }
+
+    fn refusal(&self, below: &str, most: usize) -> Failure {
+        let Self { start, end, count } = self;
+        let expected =
+            format!("start:end:count, cycles per time, with 0 {below} start < end and a count of 2 to {most}");
+        let wrong = Kind::Usage.alone().key("frequencies").found(format!("{start}:{end}:{count}")).expected(expected);
+        wrong.help("give a range, such as 1:2000:200").into()
     }
 
     /// By their parts of the range, from 0 to 1.
-    fn spaced(&self, most: usize, at: impl Fn(f64) -> f64) -> Option<Vec<f64>> {
+    fn spaced(&self, most: usize, at: impl Fn(f64) -> f64) -> Result<Vec<f64>, Failure> {
         let &Self { start, end, count } = self;
         if !(end > start && end.is_finite() && (2..=most).contains(&count)) {
-            return None;
+            return Err(self.refusal("≤", most));
         }
         let last = (count - 1) as f64;
         let inner = (1..count - 1).map(|k| at(k as f64 / last));
-        Some(std::iter::once(start).chain(inner).chain([end]).collect())
+        Ok(std::iter::once(start).chain(inner).chain([end]).collect())
     }
 }

@@ -6,6 +6,7 @@ mod peaks;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Diagnostic, Failure};
 use faer::c64;
 use figures::{LineChart, Scale};
 use linear::{Damping, FrequencyResponse, SecondOrder};
@@ -18,7 +19,7 @@ use peaks::peaks;
 
 use crate::commands::linear::curves::{self, Answer};
 use crate::commands::linear::frequencies::Frequencies;
-use crate::commands::linear::linearize::{AtOnce, LinearSettings, LinearizeError, linear_model};
+use crate::commands::linear::linearize::{AtOnce, LinearSettings, linear_model};
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 
@@ -67,27 +68,25 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
 /// Computes the responses of a scene, and writes `frf.csv`, the page `frf.html`, and `frf` as SVG, PDF and PNG to a folder.
 ///
 /// # Errors
-/// [`LinearizeError`].
+/// [`Failure`].
 pub fn frf(
     system: &System,
     builder: &Builder,
     folder: &Path,
     settings: &FrfSettings,
     progress: impl FnMut(BuildProgress),
-) -> Result<FrfReport, LinearizeError> {
-    let Frequencies { start, end, count } = settings.frequencies;
+) -> Result<FrfReport, Failure> {
     let frequencies = match settings.logarithmic {
         true => settings.frequencies.by_ratios(MAX_FREQUENCIES),
         false => settings.frequencies.evenly(MAX_FREQUENCIES),
-    };
-    let frequencies = frequencies.ok_or(LinearizeError::Frequencies { start, end, count })?;
+    }?;
     let mut model = linear_model(system, builder, &settings.linear, progress)?;
     if let Some(loss_factor) = settings.loss_factor {
         model.state.damping = structural(loss_factor);
     }
     let equations = &model.equations;
-    let failed = |source| LinearizeError::Linear { scene: system.path.clone(), source: Box::new(source) };
-    let response = equations.frequency_response(&frequencies, damping_of(settings.loss_factor)).map_err(failed)?;
+    let response = equations.frequency_response(&frequencies, damping_of(settings.loss_factor));
+    let response = response.map_err(|source| source.in_file(&system.path))?;
 
     let unit = frequency_unit(&system.units.time);
     let logarithmic = settings.logarithmic;
@@ -100,7 +99,7 @@ pub fn frf(
     Ok(FrfReport {
         title: system.title.clone(),
         frequency_unit: unit,
-        files: curves::write::<LinearizeError>(folder, NAME, answer)?,
+        files: curves::write(folder, NAME, answer)?,
         about: model.state.to_string(),
         peaks,
         at_once: AtOnce::of_equations(equations),

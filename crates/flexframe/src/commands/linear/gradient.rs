@@ -1,7 +1,6 @@
 //! `flexframe gradient`: rates of frequencies, effective masses and static answers with the numbers that a body is made with.
 
 mod damping;
-mod error;
 mod here;
 pub(crate) mod number;
 mod report;
@@ -13,23 +12,24 @@ mod varying;
 
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use model::{BuildError, BuildProgress, Builder, Needs, Parameter, RatesOf};
 use scene::System;
 use whole_file::write_whole;
 
-pub use error::GradientError;
 pub use report::{GradientReport, ParameterReport, StaticReport};
 pub use responses::ResponseReport;
 
 use crate::commands::linear::frequencies::Frequencies;
 use crate::commands::modes::lone_body;
 use crate::files::write_error::WriteError;
-use error::MAX_FREQUENCIES;
 use number::Number;
 use system::VariedSystem;
 
 const NAME: &str = "gradient.csv";
 const RESPONSES: &str = "gradient_frf.csv";
+/// The most frequencies of responses.
+const MAX_FREQUENCIES: usize = 100_000;
 
 /// Settings of rates.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -49,14 +49,14 @@ pub fn files(folder: &Path, settings: &GradientSettings) -> Vec<PathBuf> {
 /// Finds the rates of a scene of one body, or of bodies in joints, and writes `gradient.csv` to a folder, and `gradient_frf.csv` where responses are asked for.
 ///
 /// # Errors
-/// [`GradientError`].
+/// [`Failure`].
 pub fn gradient(
     system: &System,
     builder: &Builder,
     folder: &Path,
     settings: &GradientSettings,
     progress: impl FnMut(BuildProgress),
-) -> Result<GradientReport, GradientError> {
+) -> Result<GradientReport, Failure> {
     let mut report = rates(system, builder, settings, progress)?;
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let tables = [table::rows(&report), table::responses(&report)];
@@ -70,17 +70,15 @@ pub fn gradient(
 /// The same without files.
 ///
 /// # Errors
-/// [`GradientError`].
+/// [`Failure`].
 pub fn rates(
     system: &System,
     builder: &Builder,
     settings: &GradientSettings,
     progress: impl FnMut(BuildProgress),
-) -> Result<GradientReport, GradientError> {
+) -> Result<GradientReport, Failure> {
     let frequencies = match settings.frequencies {
-        Some(asked @ Frequencies { start, end, count }) => {
-            asked.evenly(MAX_FREQUENCIES).ok_or(GradientError::Frequencies { start, end, count })?
-        }
+        Some(asked) => asked.evenly(MAX_FREQUENCIES)?,
         None => Vec::new(),
     };
     if system.has_connections() {

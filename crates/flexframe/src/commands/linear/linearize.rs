@@ -3,7 +3,6 @@
 mod at_once;
 mod at_time;
 mod channels;
-mod error;
 mod files;
 mod growth;
 mod held;
@@ -18,8 +17,9 @@ mod unseen;
 
 use std::path::Path;
 
+use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{Initial, MotionState};
-use linear::SecondOrder;
+use linear::{LinearError, SecondOrder};
 use model::{BuildProgress, Builder, Model, Needs};
 use nalgebra::Vector3;
 use scene::System;
@@ -27,7 +27,6 @@ use scene::System;
 pub use at_once::AtOnce;
 use at_time::{moving_modes, states_at};
 pub(super) use channels::{acting_loads, input_channels};
-pub use error::LinearizeError;
 use growth::growing;
 pub use reduction::{Reduced, Reduction};
 pub use report::LinearReport;
@@ -49,21 +48,20 @@ pub struct LinearModel {
 /// that are exact for laws of fourth degree in the motion.
 ///
 /// # Errors
-/// [`LinearizeError`].
+/// [`Failure`].
 pub fn linear_model(
     system: &System,
     builder: &Builder,
     settings: &LinearSettings,
     progress: impl FnMut(BuildProgress),
-) -> Result<LinearModel, LinearizeError> {
+) -> Result<LinearModel, Failure> {
     // A motion that the scene does not call for is one that an input may: of a free body any, of a held one a vibration.
     let builder = builder.needing(match &system.bodies[..] {
         [scene] if scene.reduced_constraint().is_none() => Needs::external_inputs(),
         _ => Needs::vibrations(),
     });
     let models = builder.models(system, progress)?;
-    let refuse =
-        |found: &str, help| LinearizeError::Refused { scene: system.path.clone(), found: found.to_owned(), help };
+    let refuse = |found: &str, help: &str| Kind::Refused.of(&system.path).help(help).says(found);
     let is_free = |model: &Model| model.body.motion.is_free() && model.physics.drive.is_none();
     let states = settings.time.map(|time| states_at(system, &models, time)).transpose()?;
     let is_alone = models.len() == 1 && !system.has_connections();
@@ -114,16 +112,16 @@ pub fn linear_model(
 /// Linearises a scene, and lowers the order of its state space where that is asked for.
 ///
 /// # Errors
-/// [`LinearizeError`].
+/// [`Failure`].
 pub fn linear_space(
     system: &System,
     builder: &Builder,
     settings: &LinearSettings,
     reduction: Option<Reduction>,
     progress: impl FnMut(BuildProgress),
-) -> Result<LinearSpace, LinearizeError> {
+) -> Result<LinearSpace, Failure> {
     let LinearModel { equations, mut state } = linear_model(system, builder, settings, progress)?;
-    let failed = |source| LinearizeError::Linear { scene: system.path.clone(), source: Box::new(source) };
+    let failed = |source: LinearError| source.in_file(&system.path);
     let whole = equations.state_space().map_err(failed)?;
     let rigid = if settings.without_rigid { 0 } else { state.rigid };
     state.warnings.extend(growing(&equations, rigid).map_err(failed)?);
@@ -134,7 +132,7 @@ pub fn linear_space(
 /// Writes the state space of a scene to a file, .mat or .json, or that of a model of lower order.
 ///
 /// # Errors
-/// [`LinearizeError`].
+/// [`Failure`].
 pub fn linearize(
     system: &System,
     builder: &Builder,
@@ -142,10 +140,10 @@ pub fn linearize(
     reduction: Option<Reduction>,
     output: &Path,
     progress: impl FnMut(BuildProgress),
-) -> Result<LinearReport, LinearizeError> {
+) -> Result<LinearReport, Failure> {
     files::check_ending(output)?;
     let space = linear_space(system, builder, settings, reduction, progress)?;
-    let failed = |source| LinearizeError::Linear { scene: system.path.clone(), source: Box::new(source) };
+    let failed = |source: LinearError| source.in_file(&system.path);
     let poles = space.model().poles().map_err(failed)?;
     files::write(space.model(), output)?;
     Ok(LinearReport::new(system, &space, &poles, output))

@@ -1,6 +1,5 @@
 //! `flexframe psd`: the response of a scene to stationary random inputs, Eqs. (F6) to (F8) of `docs/method/linear.md`.
 
-mod error;
 mod files;
 mod page;
 mod report;
@@ -8,11 +7,11 @@ mod responses;
 
 use std::path::Path;
 
-use linear::Quadrature;
+use diagnostic::{Diagnostic, Failure};
+use linear::{LinearError, Quadrature};
 use model::{BuildProgress, Builder};
 use scene::System;
 
-pub use error::PsdError;
 pub use files::files;
 pub use report::{PsdReport, RandomOutput};
 
@@ -36,7 +35,7 @@ pub struct PsdSettings {
 /// PNG to a folder.
 ///
 /// # Errors
-/// [`PsdError`].
+/// [`Failure`].
 pub fn psd(
     system: &System,
     builder: &Builder,
@@ -44,7 +43,7 @@ pub fn psd(
     folder: &Path,
     settings: &PsdSettings,
     progress: impl FnMut(BuildProgress),
-) -> Result<PsdReport, PsdError> {
+) -> Result<PsdReport, Failure> {
     let spectra = Spectra::read(table)?;
     let band = spectra.band(settings.band)?;
     let asked = LinearSettings { inputs: spectra.inputs(), ..settings.linear.clone() };
@@ -52,7 +51,7 @@ pub fn psd(
     if let Some(loss_factor) = settings.loss_factor {
         model.state.damping = structural(loss_factor);
     }
-    let failed = |source| PsdError::Linear { scene: system.path.clone(), source: Box::new(source) };
+    let failed = |source: LinearError| source.in_file(&system.path);
     let damping = damping_of(settings.loss_factor);
     let poles = model.equations.poles(damping).map_err(failed)?;
     let rule = Quadrature::of_poles(band, &spectra.frequencies(), &poles).map_err(failed)?;

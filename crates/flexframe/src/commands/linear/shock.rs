@@ -1,16 +1,16 @@
 //! `flexframe shock`: the largest answers of a scene to a shock of its base or of a load, summed over its modes, Eqs. (R4) to (R7), (R8) and (R9) of
 //! `docs/method/shock.md`.
 
-mod error;
 mod peaks;
 mod report;
 
 use std::path::Path;
 
+use diagnostic::{Diagnostic, Failure, Kind};
 use model::{BuildProgress, Builder};
 use scene::{Interpolation, System};
+use shock::ShockError;
 
-pub use error::ShockResponseError;
 pub use peaks::ShockOutput;
 pub use report::{ShockMode, ShockReport};
 
@@ -24,25 +24,24 @@ const COUPLED: f64 = 0.02;
 /// Sums the peaks of the modes of a scene where its input in the settings, which is one, follows the CSV file.
 ///
 /// # Errors
-/// [`ShockResponseError`].
+/// [`Failure`].
 pub fn shock(
     system: &System,
     builder: &Builder,
     (table, interpolation): (&Path, Interpolation),
     settings: &LinearSettings,
     progress: impl FnMut(BuildProgress),
-) -> Result<ShockReport, ShockResponseError> {
+) -> Result<ShockReport, Failure> {
     let motion = table::read(table, interpolation)?;
     let model = linear_model(system, builder, settings, progress)?;
     let inputs: Vec<String> = model.equations.inputs.iter().map(|input| input.name.clone()).collect();
     let [input] = &inputs[..] else {
-        return Err(ShockResponseError::Inputs { scene: system.path.clone(), found: inputs.join(", ") });
+        let wrong = Kind::Usage.of(&system.path).found(format!("the inputs {}", inputs.join(", ")));
+        let help = "name it whole, such as --input base.acceleration.z";
+        return Err(wrong.expected("one, which follows the table").help(help).into());
     };
-    let modes = model
-        .equations
-        .real_modes()
-        .map_err(|source| ShockResponseError::Linear { scene: system.path.clone(), source: Box::new(source) })?;
-    let failed = |source| ShockResponseError::Shock { table: table.to_owned(), source };
+    let modes = model.equations.real_modes().map_err(|source| source.in_file(&system.path))?;
+    let failed = |source: ShockError| source.in_file(table);
     let peaks = ModePeaks::new(&model.equations, &modes, &motion).map_err(failed)?;
     let mut warnings = model.state.warnings.clone();
     if modes.coupling > COUPLED {
@@ -53,7 +52,9 @@ pub fn shock(
     }
     let outputs = peaks.outputs(&model.equations, motion.peak()).map_err(failed)?;
     if outputs.is_empty() {
-        return Err(ShockResponseError::Outputs { scene: system.path.clone() });
+        let help = "ask for displacements, accelerations, coordinates of joints or stresses, or for reactions of joints where nothing is damped";
+        let none = "velocities and rates alone, of which a shock has no sums";
+        return Err(Kind::Usage.of(&system.path).found(none).expected("an output with a sum").help(help).into());
     }
     let mixed = peaks::mixed(&model.equations);
     if !mixed.is_empty() {

@@ -5,45 +5,12 @@
 
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Failure, Kind};
 use faer::{Mat, c64};
 use linear::RandomInput;
 
 use super::names::is_asked;
 use super::table;
-
-/// A table that has no spectra.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // the message of a variant says what its fields are
-pub enum SpectraError {
-    /// The table cannot be read.
-    #[error("{}: {source}", path.display())]
-    Unreadable { path: PathBuf, source: std::io::Error },
-    /// The first line.
-    #[error(
-        "{}:1: found {found}; expected `frequency`, then inputs by name, such as `frequency,loads[0].force,base.acceleration.y`, and for two of \
-         them `coherence A & B` and `phase A & B`", path.display()
-    )]
-    Header { path: PathBuf, found: String },
-    /// A line that is no row.
-    #[error("{}:{line}: found {found}; expected {expected}", path.display())]
-    Row { path: PathBuf, line: usize, found: String, expected: String },
-    /// Less than two rows.
-    #[error("{}: {count} rows; expected 2 or more", path.display())]
-    Few { path: PathBuf, count: usize },
-    /// A column of an input that the scene does not have, or that several go by.
-    #[error("{}:1: column `{found}` names {count} inputs; expected one of {}", path.display(), known.join(", "))]
-    Input { path: PathBuf, found: String, count: usize, known: Vec<String> },
-    /// The table does not reach over the band.
-    #[error(
-        "{}: rows from {} to {}, which leave out {left_out:.3} of the band {} to {} on a linear axis\n = give rows for all of it, with 0 where \
-         nothing acts, or a band within the table (--band)",
-        path.display(), table[0], table[1], band[0], band[1]
-    )]
-    Short { path: PathBuf, table: [f64; 2], band: [f64; 2], left_out: f64 },
-    /// A band that is none.
-    #[error("band {start}:{end}: expected start:end with 0 ≤ start < end, e.g. 20:2000")]
-    Band { start: f64, end: f64 },
-}
 
 /// Two inputs with their coherence and phase.
 #[derive(Debug, Clone)]
@@ -71,9 +38,10 @@ impl Spectra {
     /// Reads a table. Empty lines and those that begin with `#` are left out.
     ///
     /// # Errors
-    /// [`SpectraError`].
-    pub fn read(path: &Path) -> Result<Self, SpectraError> {
-        let unreadable = |source| SpectraError::Unreadable { path: path.to_owned(), source };
+    /// [`Failure`].
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let unreadable =
+            |error: std::io::Error| Kind::Io.of(path).help("name a CSV file of spectra").says(error.to_string());
         let mut lines = table::lines(path).map_err(unreadable)?.into_iter();
         let header = lines.next().map_or_else(String::new, |(_, content)| content);
         let (inputs, pairs) = columns(path, &header)?;
@@ -81,7 +49,7 @@ impl Spectra {
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for (line, content) in lines {
             let refuse = |found: String, expected: &str| {
-                Err(SpectraError::Row { path: path.to_owned(), line, found, expected: expected.to_owned() })
+                Err(Kind::Input.of(path).line(line).found(found).expected(expected).into())
             };
             let numbers: Vec<f64> = content
                 .split(',')
@@ -110,7 +78,7 @@ impl Spectra {
             rows.push(numbers);
         }
         if rows.len() < 2 {
-            return Err(SpectraError::Few { path: path.to_owned(), count: rows.len() });
+            return Err(Kind::Input.of(path).found(format!("{} rows", rows.len())).expected("2 or more").into());
         }
         Ok(Self { path: path.to_owned(), inputs, pairs, rows })
     }
@@ -128,18 +96,28 @@ impl Spectra {
     /// The band of the table, or a band that is within it.
     ///
     /// # Errors
-    /// [`SpectraError::Band`], [`SpectraError::Short`].
-    pub fn band(&self, asked: Option<[f64; 2]>) -> Result<[f64; 2], SpectraError> {
+    /// A band that is none, or not within the table.
+    pub fn band(&self, asked: Option<[f64; 2]>) -> Result<[f64; 2], Failure> {
         let table = [self.rows[0][0], self.rows[self.rows.len() - 1][0]];
         let Some(band) = asked else { return Ok(table) };
         let [start, end] = band;
         if !(start >= 0.0 && end > start && end.is_finite()) {
-            return Err(SpectraError::Band { start, end });
+            return Err(Kind::Usage
+                .alone()
+                .key("band")
+                .found(format!("{start}:{end}"))
+                .expected("start:end with 0 ≤ start < end")
+                .into());
         }
         let covered = (end.min(table[1]) - start.max(table[0])).max(0.0);
         let left_out = 1.0 - covered / (end - start);
         if start < table[0] || end > table[1] {
-            return Err(SpectraError::Short { path: self.path.clone(), table, band, left_out });
+            let wrong = Kind::Usage.of(&self.path).found(format!(
+                "rows from {} to {}, which leave out {left_out:.3} of the band {start} to {end} on a linear axis",
+                table[0], table[1]
+            ));
+            let help = "give rows for all of it, with 0 where nothing acts, or a band within the table (--band)";
+            return Err(wrong.expected("rows for all of the band").help(help).into());
         }
         Ok(band)
     }
@@ -147,15 +125,15 @@ impl Spectra {
     /// The densities of a model's inputs, by their names, at some frequencies.
     ///
     /// # Errors
-    /// [`SpectraError::Input`].
-    pub fn at(&self, names: &[&str], frequencies: &[f64]) -> Result<RandomInput, SpectraError> {
+    /// A name of no input, or of several.
+    pub fn at(&self, names: &[&str], frequencies: &[f64]) -> Result<RandomInput, Failure> {
         let mut place = Vec::new();
         for (asked, _) in &self.inputs {
             let found: Vec<usize> = (0..names.len()).filter(|k| is_asked(names[*k], asked)).collect();
             let [only] = found[..] else {
-                let known = names.iter().map(|name| (*name).to_owned()).collect();
-                let (path, found, count) = (self.path.clone(), asked.clone(), found.len());
-                return Err(SpectraError::Input { path, found, count, known });
+                let found = format!("column `{asked}`, which names {} inputs", found.len());
+                let wrong = Kind::Input.of(&self.path).line(1).found(found);
+                return Err(wrong.expected(format!("one of {}", names.join(", "))).into());
             };
             place.push(only);
         }
@@ -210,8 +188,12 @@ impl Spectra {
 }
 
 /// Inputs and pairs of a header.
-fn columns(path: &Path, header: &str) -> Result<(Inputs, Vec<Pair>), SpectraError> {
-    let refuse = |found: String| Err(SpectraError::Header { path: path.to_owned(), found });
+fn columns(path: &Path, header: &str) -> Result<(Inputs, Vec<Pair>), Failure> {
+    let refuse = |found: String| {
+        let expected = "`frequency`, then inputs by name, such as `frequency,loads[0].force,base.acceleration.y`, and for two of them \
+                        `coherence A & B` and `phase A & B`";
+        Err(Kind::Input.of(path).line(1).found(found).expected(expected).into())
+    };
     let names: Vec<&str> = header.split(',').map(str::trim).collect();
     if names[0] != "frequency" || names.len() < 2 {
         return refuse(format!("`{header}`"));

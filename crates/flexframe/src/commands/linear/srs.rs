@@ -1,7 +1,6 @@
 //! `flexframe srs`: shock response spectra of a base motion, Eqs. (R1) and (R2) of `docs/method/shock.md`.
 
 mod diagram;
-mod error;
 mod files;
 mod page;
 mod report;
@@ -9,15 +8,19 @@ pub(super) mod table;
 
 use std::path::Path;
 
+use diagnostic::{Diagnostic, Failure, Kind};
 pub use scene::Interpolation;
 use shock::Spectrum;
 
-pub use error::SrsError;
 pub use files::files;
 pub use report::{DampingReport, SrsReport};
 
 use crate::commands::linear::frequencies::Frequencies;
-use error::{MAX_DAMPINGS, MAX_FREQUENCIES};
+
+/// Each frequency takes a run of an oscillator for each damping ratio.
+const MAX_FREQUENCIES: usize = 10_000;
+/// More lines than this have no colours of their own.
+const MAX_DAMPINGS: usize = 7;
 
 /// Settings of spectra.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,18 +37,18 @@ pub struct SrsSettings {
 /// and PNG to `folder`.
 ///
 /// # Errors
-/// [`SrsError`].
-pub fn srs(table: &Path, folder: &Path, settings: &SrsSettings) -> Result<SrsReport, SrsError> {
-    let Frequencies { start, end, count } = settings.frequencies;
-    let frequencies = settings.frequencies.by_ratios(MAX_FREQUENCIES);
-    let frequencies = frequencies.ok_or(SrsError::Frequencies { start, end, count })?;
-    if !(1..=MAX_DAMPINGS).contains(&settings.damping_ratios.len()) {
-        return Err(SrsError::Dampings { count: settings.damping_ratios.len() });
+/// [`Failure`].
+pub fn srs(table: &Path, folder: &Path, settings: &SrsSettings) -> Result<SrsReport, Failure> {
+    let frequencies = settings.frequencies.by_ratios(MAX_FREQUENCIES)?;
+    let count = settings.damping_ratios.len();
+    if !(1..=MAX_DAMPINGS).contains(&count) {
+        let wrong = Kind::Usage.alone().key("damping").found(format!("{count} damping ratios"));
+        return Err(wrong.expected(format!("1 to {MAX_DAMPINGS}")).help("give some, such as 0.02,0.05").into());
     }
     let motion = table::read(table, settings.interpolation)?;
     let of = |ratio: &f64| motion.spectrum(&frequencies, *ratio);
     let spectra = settings.damping_ratios.iter().map(of).collect::<Result<Vec<Spectrum>, _>>();
-    let spectra = spectra.map_err(|source| SrsError::Shock { table: table.to_owned(), source })?;
+    let spectra = spectra.map_err(|source| source.in_file(table))?;
     let files = files::write((table, settings.interpolation), &spectra, folder)?;
     Ok(SrsReport::new((table, settings.interpolation), &motion, &spectra, files))
 }

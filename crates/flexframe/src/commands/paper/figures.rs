@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use dynamics::SharedLoad;
 use figures::{ChartGrid, FigureError, LineChart, Reference, Scale, Series, Stroke};
 use model::Model;
@@ -10,7 +11,7 @@ use results::Results;
 use scene::Scene;
 
 use super::rigid_plate::{RigidHistories, WATCHED_POINT, dead_force};
-use crate::commands::pictures::mode_shapes::{self, ShapesError};
+use crate::commands::pictures::mode_shapes;
 use crate::rows::units::UnitLabels;
 
 /// The names of the figures, in the order of the paper.
@@ -35,7 +36,7 @@ pub(super) fn draw(
     results: &Results,
     rigid: &RigidHistories,
     folder: &Path,
-) -> Result<Vec<PathBuf>, ShapesError> {
+) -> Result<Vec<PathBuf>, Failure> {
     let units = &scene.units;
     let (length, time) = (&units.length, &units.time);
     let x_label = format!("time, {time}");

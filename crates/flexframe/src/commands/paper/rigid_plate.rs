@@ -2,13 +2,12 @@
 
 use std::any::Any;
 
+use diagnostic::{Failure, Kind};
 use dynamics::{LoadFrame, PointForce, SharedLoad};
 use model::Model;
 use nalgebra::Vector3;
 use results::Results;
 use rigid_kin::{Attitude, RigidBody, RigidState, Wrench};
-
-use super::error::PaperError;
 
 /// The point whose accelerations Figs. 10 to 13 show.
 pub(super) const WATCHED_POINT: &str = "P1";
@@ -31,9 +30,10 @@ pub(super) fn dead_force(load: &SharedLoad) -> Option<&PointForce> {
 
 /// Integrates the rigid plate under the scene's loads, in the steps of the results; `None` where there are other loads
 /// than dead forces.
-pub(super) fn histories(model: &Model, results: &Results) -> Result<Option<RigidHistories>, PaperError> {
+pub(super) fn histories(model: &Model, results: &Results) -> Result<Option<RigidHistories>, Failure> {
     let Some(forces) = model.loads().iter().map(dead_force).collect::<Option<Vec<_>>>() else { return Ok(None) };
-    let body = RigidBody::new(model.body.mass, model.body.inertia)?;
+    let body = RigidBody::new(model.body.mass, model.body.inertia)
+        .map_err(|error| Kind::Refused.alone().says(error.to_string()))?;
     let watched = model.points.iter().find(|(name, _)| name == WATCHED_POINT);
     let arm = watched.map_or_else(Vector3::zeros, |(_, point)| point.position_body());
     let wrench = |time: f64, attitude: &Attitude| {
@@ -55,7 +55,8 @@ pub(super) fn histories(model: &Model, results: &Results) -> Result<Option<Rigid
     for (i, time) in times.iter().copied().enumerate() {
         if i > 0 {
             let before = times[i - 1];
-            state = body.step(&state, before, time - before, wrench)?;
+            let stepped = body.step(&state, before, time - before, wrench);
+            state = stepped.map_err(|error| Kind::Run.alone().says(error.to_string()))?;
         }
         let load = wrench(time, &state.attitude);
         let omega = state.omega_body;

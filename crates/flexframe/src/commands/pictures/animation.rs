@@ -1,6 +1,5 @@
 //! `flexframe animate`: a scene or a results file as a moving picture.
 
-mod error;
 mod film;
 mod mode;
 mod settings;
@@ -8,6 +7,7 @@ mod settings;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::Path;
 
+use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{Observation, Reached, Simulation, StepError};
 use figures::{Animation, FilmFrame};
 use model::{BuildError, Builder};
@@ -17,12 +17,10 @@ use rigid_kin::Attitude;
 use scene::{Rows, Shared, System, Time};
 use whole_file::TemporaryFolder;
 
-pub use self::error::AnimationError;
-pub use self::film::FilmError;
 use self::film::Format;
 pub use self::mode::animate_mode;
 pub use self::settings::{AnimationSettings, Coloured, MAX_FRAMES};
-use crate::commands::export::ExportError;
+use crate::commands::export::{no_elements, no_rows};
 use crate::commands::modes::require_surface;
 use crate::commands::run::{self, RunError, RunProgress, RunSettings};
 use crate::drawn::{Drawn, Part};
@@ -34,14 +32,14 @@ use crate::surface::Surface;
 /// `.webm`. Returns a warning where the frames are too few to show the spin.
 ///
 /// # Errors
-/// [`AnimationError`].
+/// [`Failure`].
 pub fn animate(
     system: &System,
     builder: &Builder,
     path: &Path,
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
-) -> Result<Option<String>, AnimationError> {
+) -> Result<Option<String>, Failure> {
     let format = Format::of(path)?;
     let scenes = &system.bodies[..];
     let surface_of = |scene| require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)));
@@ -72,7 +70,7 @@ pub fn animate(
         let part = frame as f64 / last as f64;
         let due = from * (1.0 - part) + to * part;
         let now = simulations.iter_mut().map(|simulation| observed_at(simulation, due)).collect::<Result<Vec<_>, _>>();
-        let now = now.map_err(|source| AnimationError::Step { scene: system.path.clone(), source })?;
+        let now = now.map_err(|source| source.in_file(&system.path))?;
         let state =
             |now: &Observation| (now.origin_global, now.attitude, now.modal_displacement.clone(), now.omega_body);
         picture.add(due, &now.iter().map(state).collect::<Vec<_>>());
@@ -88,7 +86,7 @@ fn animate_tied(
     path: &Path,
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
-) -> Result<Option<String>, AnimationError> {
+) -> Result<Option<String>, Failure> {
     let [from, to] = settings.times(system.time.end)?;
     let rows = Rows::Interval((to - from) / (settings.frames.clamp(2, MAX_FRAMES) - 1) as f64);
     let until = |shared: Shared| Shared { time: Time { end: to, ..shared.time }, rows, ..shared };
@@ -104,22 +102,22 @@ fn animate_tied(
 /// as asked for, or as there are rows.
 ///
 /// # Errors
-/// [`AnimationError`].
+/// [`Failure`].
 pub fn animate_results(
     file: &Path,
     path: &Path,
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
-) -> Result<Option<String>, AnimationError> {
+) -> Result<Option<String>, Failure> {
     let format = Format::of(path)?;
-    let Drawn { results, bodies } = Drawn::open(file, Part::Surface).map_err(ExportError::from)?;
+    let Drawn { results, bodies } = Drawn::open(file, Part::Surface)?;
     let drawn: Vec<(BodyResults<'_>, Shapes)> =
         results.bodies().zip(bodies).filter_map(|(of, body)| Some((of, body.shapes?))).collect();
     if drawn.is_empty() {
-        return Err(ExportError::NoElements { path: file.to_owned() }.into());
+        return Err(no_elements(file));
     }
     if drawn.iter().any(|(_, shapes)| shapes.faces.is_empty()) {
-        return Err(ExportError::NoElements { path: file.to_owned() }.into());
+        return Err(no_elements(file));
     }
     let times = results.numbers("time").unwrap_or_default();
     let [from, to] = settings.times(times.last().copied().unwrap_or_default())?;
@@ -128,7 +126,7 @@ pub fn animate_results(
     let last = rows.len().min(settings.frames.clamp(2, MAX_FRAMES) as usize).saturating_sub(1);
     if last == 0 {
         let times = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
-        return Err(ExportError::NoRows { path: file.to_owned(), times }.into());
+        return Err(no_rows(file, times));
     }
     let chosen: Vec<usize> = (0..=last).map(|frame| rows[(frame * (rows.len() - 1) + last / 2) / last]).collect();
     let interval = chosen.windows(2).map(|pair| times[pair[1]] - times[pair[0]]).fold(0.0, f64::max);
@@ -156,12 +154,14 @@ pub fn animate_results(
 
 impl AnimationSettings {
     /// Times of the first and the last frame of a run to this end.
-    fn times(&self, end: f64) -> Result<[f64; 2], AnimationError> {
+    fn times(&self, end: f64) -> Result<[f64; 2], Failure> {
         let (from, to) = (self.from.unwrap_or(0.0), self.to.unwrap_or(end));
         if 0.0 <= from && from < to && to <= end {
             Ok([from, to])
         } else {
-            Err(AnimationError::Times { from, to, end })
+            let wrong = Kind::Usage.alone().key("--from, --to").found(format!("the times from {from} to {to}"));
+            let help = format!("give --from and --to so that 0 ≤ from < to ≤ {end}, or leave them out");
+            Err(wrong.expected(format!("a part of the run, which goes from 0 to {end}")).help(help).into())
         }
     }
 }
@@ -188,10 +188,11 @@ struct PictureBody {
 
 impl PictureBody {
     /// Refuses a body that deforms and has no stress where that is the coloured quantity.
-    fn new(origin: Vector3<f64>, surface: Surface, coloured: Coloured, file: &Path) -> Result<Self, AnimationError> {
+    fn new(origin: Vector3<f64>, surface: Surface, coloured: Coloured, file: &Path) -> Result<Self, Failure> {
         let Shapes { displacements, stress, .. } = &surface.shapes;
         if coloured == Coloured::Stress && stress.is_none() && !displacements.is_empty() {
-            return Err(AnimationError::NoStress { file: file.to_owned() });
+            let words = "the stress of a body that deforms is not known, because its elements are not";
+            return Err(Kind::Input.of(file).help("leave --colour stress out").says(words));
         }
         Ok(Self { origin, surface })
     }
@@ -235,7 +236,7 @@ impl<'a> Picture<'a> {
     }
 
     /// Writes it. Returns a warning where the frames are too few to show the spin.
-    fn save(self, format: Format, path: &Path) -> Result<Option<String>, AnimationError> {
+    fn save(self, format: Format, path: &Path) -> Result<Option<String>, Failure> {
         let Self { title, units, bodies, settings, interval, frames, fastest } = self;
         let factor = match settings.magnification {
             1.0 => String::new(),

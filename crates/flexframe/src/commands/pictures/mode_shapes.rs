@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use figures::{FigureError, Panel, ShapeGrid, View};
-use model::{BuildError, Meshed, Model};
+use diagnostic::Failure;
+use figures::{Panel, ShapeGrid, View};
+use model::{Meshed, Model};
 use nalgebra::Vector3;
-use scene::{Scene, SceneError};
+use scene::Scene;
 
 use crate::commands::modes::{frequency_unit, require_flexible, require_surface};
 use crate::surface::Surface;
@@ -15,25 +16,11 @@ const DRAWN: f64 = 0.08;
 /// More modes than this do not fit a page.
 const MAX_PANELS: usize = 20;
 
-/// Mode shapes that could not be drawn.
-#[derive(Debug, thiserror::Error)]
-pub enum ShapesError {
-    /// The body has no flexible modes.
-    #[error("{0}")]
-    Scene(#[from] SceneError),
-    /// The surface of a body is not known.
-    #[error("{0}")]
-    Build(#[from] BuildError),
-    /// The picture could not be drawn.
-    #[error("{0}")]
-    Figure(#[from] FigureError),
-}
-
 /// Draws the flexible mode shapes, numbered from 1, to `<stem>.svg`, `<stem>.pdf` and `<stem>.png`.
 ///
 /// # Errors
-/// [`ShapesError`], also where there are no flexible modes to draw.
-pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 3], ShapesError> {
+/// [`Failure`], also where there are no flexible modes to draw.
+pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 3], Failure> {
     require_surface(scene)?;
     let meshed = require_flexible(scene, model)?;
     let Meshed { mesh, modes, .. } = meshed;

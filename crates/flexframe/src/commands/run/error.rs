@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use advice::Refusal;
+use diagnostic::{Diagnosis, Diagnostic, Kind};
 use dynamics::{CheckpointError, IslandError, StepError};
 use model::{BuildError, StartError};
 use results::FileError;
@@ -128,5 +129,36 @@ impl From<BeginError> for RunFailure {
 impl From<IslandError> for RunFailure {
     fn from(failed: IslandError) -> Self {
         Self::Step(failed.source)
+    }
+}
+
+impl Diagnostic for RunError {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Build(error) => error.diagnosis(),
+            Self::File(error) => error.diagnosis(),
+            Self::Scene(error) => error.diagnosis(),
+            Self::Output(error) => error.diagnosis(),
+            Self::Setup { scene, source } => source.diagnosis().in_file(scene),
+            Self::Verify { scene, source } => source.diagnosis().in_file(scene),
+            Self::Folder { folder, .. } => Kind::Io.of(folder),
+            Self::Step { results, .. } => Kind::Run.of(results),
+            Self::Refused { results, .. } => Kind::Refused.of(results),
+            Self::Stopped { part, .. } => Kind::Stopped.of(part),
+            Self::Restore { part, .. } | Self::Changed { part, .. } => Kind::Input.of(part),
+            Self::Large { scene, estimate } => {
+                let refused = Kind::Refused.of(scene).key("output.interval").found(estimate.to_string());
+                refused.expected("1 GB at the most").help("name fewer rows in [output], or allow it with --large")
+            }
+        }
+    }
+}
+
+impl Diagnostic for RunFailure {
+    fn diagnosis(&self) -> Diagnosis {
+        match self {
+            Self::Start(error) => error.diagnosis(),
+            Self::Tie(_) | Self::Step(_) | Self::OutOfPatience { .. } => Kind::Run.alone(),
+        }
     }
 }

@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use diagnostic::Failure;
 use dynamics::{Effect, EffectMap};
 use model::{Builder, Model, Needs};
 use results::Results;
@@ -13,7 +14,6 @@ use serde::Serialize;
 use toml::Value;
 
 use crate::commands::check::checked_rows::check_run;
-use crate::commands::check::error::CheckError;
 use crate::commands::check::report::{BodyCheck, CheckReport, RowCheck};
 use crate::commands::check::rows::{self, CheckRows};
 use crate::files::json;
@@ -48,14 +48,14 @@ impl LargeChoice {
     /// The best other choice of the large modes of a lone body whose model the check found wrong by more than a per cent, if one is better.
     ///
     /// # Errors
-    /// [`CheckError`]: the check of a choice.
+    /// [`Failure`]: the check of a choice.
     pub(super) fn better(
         file: &Path,
         results: &Results,
         (system, models): (&System, &[Model]),
         builder: &Builder,
         check: &CheckReport,
-    ) -> Result<Option<Self>, CheckError> {
+    ) -> Result<Option<Self>, Failure> {
         let ([scene], [model], [BodyCheck { rows, .. }]) = (&system.bodies[..], models, &check.bodies[..]) else {
             return Ok(None);
         };

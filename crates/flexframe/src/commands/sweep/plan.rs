@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Diagnosis, Diagnostic, Failure, Kind};
 use foreign_program::read_at_most;
 use keys::Hash;
 use scene::{AssignError, Scene, SceneError, System, assign, text_of};
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::error::SweepError;
 use crate::files::identity::{contents, identity_of_row};
 
 /// More rows than these are a mistake.
@@ -88,30 +88,47 @@ pub(super) struct Plan {
     pub identities: Vec<u64>,
 }
 
+/// A sweep of which no row is a scene.
+#[derive(Debug, thiserror::Error)]
+#[error("{source}\n  = with {with} (no row of the sweep is a scene that can be read)")]
+struct NoRow {
+    with: String,
+    source: SceneError,
+}
+
+impl Diagnostic for NoRow {
+    fn diagnosis(&self) -> Diagnosis {
+        self.source.diagnosis()
+    }
+}
+
+/// Help about the file of a sweep.
+const SWEEP_CURE: &str = "correct it: docs/reference/cli.md, \"Sweeps\", has an example with all its keys";
+
 impl Plan {
-    pub fn read(path: &Path) -> Result<Self, SweepError> {
-        let bytes =
-            read_at_most(path, LONGEST).map_err(|source| SweepError::Unreadable { path: path.to_owned(), source })?;
-        let of_sweep = String::from_utf8(bytes).map_err(|error| SweepError::Form {
-            path: path.to_owned(),
-            message: format!("this is not text in UTF-8 (byte {})", error.utf8_error().valid_up_to() + 1),
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let bytes = read_at_most(path, LONGEST).map_err(|error| {
+            let help = "check its name; it is relative to the folder you are in";
+            Kind::Io.of(path).help(help).says(format!("the file of the sweep cannot be read: {error}"))
         })?;
-        let form = |error: toml::de::Error| SweepError::Form { path: path.to_owned(), message: error.to_string() };
+        let of_form = |words: String| Kind::Input.of(path).help(SWEEP_CURE).says(words);
+        let of_sweep = String::from_utf8(bytes).map_err(|error| {
+            of_form(format!("this is not text in UTF-8 (byte {})", error.utf8_error().valid_up_to() + 1))
+        })?;
+        let form = |error: toml::de::Error| of_form(error.to_string());
         let file: File = toml::from_str(&of_sweep).map_err(form)?;
         let scene_path = path.parent().unwrap_or(Path::new("")).join(&file.scene);
         let of_scene = |error: SceneError| match error {
             SceneError::Unreadable { path, cause, .. } => SceneError::Unreadable { path, cause, help: SCENE_CURE },
             other => other,
         };
-        let unreadable = |error| SweepError::Scene { key: None, source: of_scene(error).without_text() };
+        let unreadable = |error| Failure::from(of_scene(error).without_text());
         let of_all = text_of(&scene_path).map_err(unreadable)?;
         let system = System::parse(&of_all, &scene_path).map_err(unreadable)?;
 
-        let invalid = |key: &str, found: String, expected: &str| SweepError::Invalid {
-            path: path.to_owned(),
-            key: key.to_owned(),
-            found,
-            expected: expected.to_owned(),
+        let invalid = |key: &str, found: String, expected: &str| {
+            let words = format!("`{key}`: found {found}, expected {expected}");
+            Kind::Input.of(path).key(key).found(found).expected(expected).help(SWEEP_CURE).says(words)
         };
         if file.results.is_empty() {
             return Err(invalid(
@@ -134,7 +151,7 @@ impl Plan {
                     .map_err(|(found, expected)| invalid(&format!("parameters.\"{key}\""), found, expected))?;
                 Ok((key, values))
             })
-            .collect::<Result<_, SweepError>>()?;
+            .collect::<Result<_, Failure>>()?;
         if lists.is_empty() {
             return Err(invalid("parameters", "nothing".into(), "keys of the scene with lists or ranges of values"));
         }
@@ -175,7 +192,8 @@ impl Plan {
             && let Some((row, source)) = first_refusal
         {
             let source: SceneError = source;
-            return Err(SweepError::Scene { key: Some(in_words(&parameters, row)), source });
+            let with = in_words(&parameters, row);
+            return Err(NoRow { with, source }.into());
         }
         check_bodies(&system, &file.results).map_err(|(key, found, expected)| invalid(&key, found, &expected))?;
         let identity = format!("{of_sweep}\n{of_all}");

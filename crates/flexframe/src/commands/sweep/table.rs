@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use diagnostic::Failure;
 use keys::Digest;
 use sealed::{Declared, Format, Kind, SealedError, SealedFile, Writer};
 use serde::de::DeserializeOwned;
 use toml::Value;
 
-use super::error::SweepError;
 use super::plan::{Asked, Plan};
 
 /// State of a row, by the numbers in the file.
@@ -50,7 +50,7 @@ pub(super) struct Table {
 
 impl Table {
     /// The table in a file, or an empty one where there is none. Rows that failed are open again.
-    pub fn open(path: &Path, plan: &Plan, overwrite: bool) -> Result<Self, SweepError> {
+    pub fn open(path: &Path, plan: &Plan, overwrite: bool) -> Result<Self, Failure> {
         let found = if overwrite { None } else { Self::read(path, plan)? };
         let mut table =
             found.unwrap_or_else(|| Self { rows: vec![RowState::Open; plan.rows.len()], stale: 0, csv: String::new() });
@@ -61,11 +61,17 @@ impl Table {
     }
 
     /// The table in a file, if there is one.
-    pub fn read(path: &Path, plan: &Plan) -> Result<Option<Self>, SweepError> {
+    pub fn read(path: &Path, plan: &Plan) -> Result<Option<Self>, Failure> {
         if !path.exists() {
             return Ok(None);
         }
-        let other = |what: &str| SweepError::OtherTable { path: path.to_owned(), what: what.to_owned() };
+        let other = |what: &str| {
+            let help = "move it away, choose another file with -o, or replace it with --overwrite";
+            diagnostic::Kind::Io
+                .of(path)
+                .help(help)
+                .says(format!("the file there is not the table of this sweep ({what})"))
+        };
         let file = SealedFile::open(path, Format::BODY).map_err(|error| match error {
             SealedError::System { .. } => error.into(),
             SealedError::Damaged { what, .. } => other(&format!("it is damaged: {what}")),
@@ -146,7 +152,7 @@ impl Table {
     }
 
     /// Writes the file anew.
-    pub fn write(&self, path: &Path, plan: &Plan, durable: bool) -> Result<(), SweepError> {
+    pub fn write(&self, path: &Path, plan: &Plan, durable: bool) -> Result<(), Failure> {
         let count = self.rows.len();
         let declared = |path: String, kind, shape: &[usize], description: String| Declared {
             path,

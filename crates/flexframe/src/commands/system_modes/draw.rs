@@ -3,16 +3,16 @@
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use faer::c64;
 use figures::{Panel, ShapeGrid, View};
-use model::{BuildError, Model};
+use model::Model;
 use nalgebra::Vector3;
-use results::{Block, CellKind, Field, FileError, Grid, VtkHdf};
+use results::{Block, CellKind, Field, Grid, VtkHdf};
 use scene::System;
 
 use super::report::{SystemModes, body_names};
 use super::shape::SystemSurface;
-use crate::commands::pictures::mode_shapes::ShapesError;
 
 /// Largest displacement drawn, as a fraction of the system's size.
 const DRAWN: f64 = 0.08;
@@ -23,13 +23,13 @@ const MAX_PANELS: usize = 20;
 /// spin the real part.
 ///
 /// # Errors
-/// [`ShapesError`].
+/// [`Failure`].
 pub fn draw(
     system: &System,
     models: &[Model],
     modes: &SystemModes,
     stem: &Path,
-) -> Result<Option<[PathBuf; 3]>, ShapesError> {
+) -> Result<Option<[PathBuf; 3]>, Failure> {
     let surface = SystemSurface::new(system, models, modes, false)?;
     if surface.points.is_empty() || modes.vibrations.modes.is_empty() {
         return Ok(None);
@@ -80,7 +80,7 @@ pub fn write_fields(
     modes: &SystemModes,
     to: &Path,
     overwrite: bool,
-) -> Result<bool, FieldsError> {
+) -> Result<bool, Failure> {
     let surface = SystemSurface::new(system, models, modes, false)?;
     if surface.points.is_empty() || modes.vibrations.modes.is_empty() {
         return Ok(false);
@@ -122,15 +122,4 @@ pub fn write_fields(
     }
     out.finish()?;
     Ok(true)
-}
-
-/// Vibrations that could not be written for ParaView.
-#[derive(Debug, thiserror::Error)]
-pub enum FieldsError {
-    /// The surface of a body is not known.
-    #[error("{0}")]
-    Build(#[from] BuildError),
-    /// The file could not be written.
-    #[error("{0}")]
-    Write(#[from] FileError),
 }

@@ -3,12 +3,12 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use diagnostic::{Failure, Kind};
 use scene::{Shared, assign};
 use serde::Serialize;
 use toml::Value;
 use whole_file::write_whole;
 
-use super::error::FitError;
 use crate::commands::modes::frequency_unit;
 use crate::files::json;
 use crate::files::write_error::WriteError;
@@ -159,21 +159,21 @@ impl FitReport {
     /// The text of the scene with the parameters in it.
     ///
     /// # Errors
-    /// [`FitError::NoKey`] of a factor on the shape, and of a key that cannot be set.
-    pub fn scene_text(&self) -> Result<String, FitError> {
+    /// A factor on the shape, and of a key that cannot be set.
+    pub fn scene_text(&self) -> Result<String, Failure> {
         if let Some(parameter) = self.parameters.iter().find(|parameter| !parameter.is_key) {
-            return Err(FitError::NoKey { name: parameter.name.clone() });
+            return Err(no_key(&parameter.name));
         }
         let values: Vec<(String, Value)> =
             self.parameters.iter().map(|parameter| (parameter.name.clone(), Value::Float(parameter.value))).collect();
-        assign(&self.text, &values).map_err(|error| FitError::NoKey { name: error.key })
+        assign(&self.text, &values).map_err(|error| no_key(&error.key))
     }
 
     /// Writes the scene with the parameters in it.
     ///
     /// # Errors
-    /// [`FitError::Write`].
-    pub fn write_scene(&mut self, path: &Path) -> Result<(), FitError> {
+    /// [`Failure`].
+    pub fn write_scene(&mut self, path: &Path) -> Result<(), Failure> {
         write_whole(path, self.scene_text()?).map_err(WriteError::of(path))?;
         self.file = Some(path.to_owned());
         Ok(())
@@ -230,4 +230,13 @@ impl fmt::Display for FitReport {
         }
         self.warnings.iter().try_for_each(|warning| write!(f, "\n  warning  {warning}"))
     }
+}
+
+/// The refusal of a number that does not stand in the scene.
+fn no_key(name: &str) -> Failure {
+    let words = format!(
+        "{name} is no key of the scene, which cannot be written with it: found a factor on the shape of the mesh, expected numbers of \
+         materials and point masses"
+    );
+    Kind::Usage.alone().help("leave -o out, and mesh the body with the thickness that was found").says(words)
 }

@@ -1,10 +1,10 @@
 //! The subject of a fit: numbers of a body, or of a system.
 
+use diagnostic::{Failure, Kind};
 use fem_tet10::BodyNumber;
 use model::{BuildError, BuildProgress, Builder, Needs, Parameter, RatesOf, VariedBody};
 use scene::{Measured, Shared, System};
 
-use super::error::FitError;
 use crate::commands::linear::gradient::number::Number;
 use crate::commands::linear::gradient::system::VariedSystem;
 use crate::commands::modes::lone_body;
@@ -34,12 +34,14 @@ impl Subject {
         names: &[String],
         measured: &Measured,
         progress: impl FnMut(BuildProgress),
-    ) -> Result<Self, FitError> {
+    ) -> Result<Self, Failure> {
         if system.has_connections() {
             let all = Number::all(system)?;
             check(names, || all.iter().map(|number| number.name.clone()).collect(), measured)?;
             if !measured.places.is_empty() {
-                return Err(FitError::Shapes { file: measured.file.clone() });
+                let wrong = Kind::Input.of(&measured.file).found("shapes");
+                let expected = "frequencies alone: modes of bodies in joints are matched by their order";
+                return Err(wrong.expected(expected).help("leave the shapes out, and put the lines in order").into());
             }
             let parameters = Number::named(system, names)?;
             return Ok(Self::System(Box::new(VariedSystem::new(system, builder, progress)?), parameters));
@@ -95,7 +97,7 @@ impl Subject {
     }
 
     /// The frequencies at coordinates.
-    pub fn found(&self, x: &[f64], measured: &Measured) -> Result<Found, FitError> {
+    pub fn found(&self, x: &[f64], measured: &Measured) -> Result<Found, Failure> {
         let values: Vec<f64> = x.iter().enumerate().map(|(i, x)| self.value(i, *x)).collect();
         let (frequencies, rates, modes) = match self {
             Self::Body(varied, parameters) => {
@@ -120,7 +122,9 @@ impl Subject {
                 let found = varied.rates(&system, parameters, &[])?;
                 let (count, there) = (measured.modes.len(), found.frequencies.len());
                 if count > there {
-                    return Err(FitError::FewModes { file: measured.file.clone(), count, there });
+                    let wrong = Kind::Input.of(&measured.file).found(format!("{count} measured modes"));
+                    let expected = format!("at most {there}, the vibrations of the bodies");
+                    return Err(wrong.expected(expected).help("leave lines out, or keep more modes").into());
                 }
                 (found.frequencies, found.rates, (0..count).collect())
             }
@@ -136,13 +140,17 @@ impl Subject {
 }
 
 /// Refuses a fit without parameters, and one of more than there are frequencies.
-fn check(names: &[String], all: impl Fn() -> Vec<String>, measured: &Measured) -> Result<(), FitError> {
+fn check(names: &[String], all: impl Fn() -> Vec<String>, measured: &Measured) -> Result<(), Failure> {
     if names.is_empty() {
-        return Err(FitError::NoParameters { names: all() });
+        let help = format!("name some of {}: --parameters NAME,…", all().join(", "));
+        return Err(Kind::Usage.alone().help(help).says("no parameters to fit"));
     }
     let (count, unknowns) = (measured.modes.len(), names.len());
     if unknowns > count {
-        return Err(FitError::TooFew { file: measured.file.clone(), count, unknowns, names: names.to_vec() });
+        let found = format!("{count} measured frequencies for {unknowns} parameters ({})", names.join(", "));
+        let wrong = Kind::Input.of(&measured.file).found(found);
+        let expected = "at least as many as parameters, and more for intervals";
+        return Err(wrong.expected(expected).help("measure more modes, or fit fewer parameters").into());
     }
     Ok(())
 }

@@ -3,15 +3,15 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use dynamics::{CommonSpin, SteadyState, SystemMode, Vibrations};
+use diagnostic::{Diagnostic, Failure, Kind};
+use dynamics::{CommonSpin, SteadyError, SteadyState, SystemMode, Vibrations};
 use faer::Mat;
 use model::Model;
 use scene::System;
 
-use super::error::GradientError;
 use super::number::{Number, Place};
 use super::varying::{REPEATED, Varying};
-use crate::commands::system_modes::{Rotors, SystemModesError, TiedMotion, tied_motions};
+use crate::commands::system_modes::{Rotors, TiedMotion, tied_motions};
 
 /// A part of an entry that is rounding.
 const ROUNDING: f64 = 1e-8;
@@ -41,16 +41,16 @@ impl<'a> Varied<'a> {
 }
 
 impl<'a> Here<'a> {
-    pub fn new(system: &'a System, models: &'a [Model]) -> Result<Self, GradientError> {
+    pub fn new(system: &'a System, models: &'a [Model]) -> Result<Self, Failure> {
         let (motion, steady) = steady(system, models)?;
         let linear = &steady.linear;
-        let failed = |source| SystemModesError::Steady { scene: system.path.clone(), source };
+        let failed = |source: SteadyError| source.in_file(&system.path);
         let Vibrations { rigid, zeros, modes } = linear.vibrations().map_err(failed)?;
         let mut modes: Vec<SystemMode> = modes.into_iter().filter(|mode| mode.circular_frequency() > 0.0).collect();
         modes.sort_by(|a, b| a.circular_frequency().total_cmp(&b.circular_frequency()));
         for matrix in [&linear.stiffness, &linear.damping] {
             if (matrix - matrix.transpose()).norm_max() > ROUNDING * matrix.norm_max() {
-                return Err(GradientError::Loaded { scene: system.path.clone() });
+                return Err(loaded(system));
             }
         }
         let is_loose = rigid.ncols() > 0 || zeros > 0;
@@ -61,17 +61,18 @@ impl<'a> Here<'a> {
         self.system.path.clone()
     }
 
-    pub fn loaded(&self) -> GradientError {
-        GradientError::Loaded { scene: self.path() }
+    pub fn loaded(&self) -> Failure {
+        loaded(self.system)
     }
 
     /// The error of a number of a body that is not in the system.
-    pub fn outside(&self, number: &Number) -> GradientError {
-        GradientError::Outside { scene: self.path(), parameter: number.name.clone() }
+    pub fn outside(&self, number: &Number) -> Failure {
+        let wrong = Kind::Refused.of(&self.system.path).found(format!("{} of a body outside the system", number.name));
+        wrong.expected("one of a body that joints, springs or bushings tie to it").help("leave it out").into()
     }
 
     /// Refuses bodies that stand deformed, and so elsewhere with other numbers.
-    pub fn refuse_deformed(&self) -> Result<(), GradientError> {
+    pub fn refuse_deformed(&self) -> Result<(), Failure> {
         let is_still = |(place, body): (usize, &usize)| {
             let size = self.models[*body].body.inertia.trace().sqrt();
             self.steady.modal_displacement(place).iter().all(|q| q.abs() <= ROUNDING * size)
@@ -85,7 +86,7 @@ impl<'a> Here<'a> {
         i: usize,
         number: &Number,
         varied: &'v [Option<Varied<'v>>],
-    ) -> Result<(usize, &'v Varying<'v>, usize), GradientError> {
+    ) -> Result<(usize, &'v Varying<'v>, usize), Failure> {
         let Place::Body(body, _) = number.place else { return Err(self.outside(number)) };
         let found = varied[body].as_ref().and_then(|varied| varied.of(i));
         found.map(|(of_body, k)| (body, of_body, k)).ok_or_else(|| self.outside(number))
@@ -99,7 +100,7 @@ impl<'a> Here<'a> {
     }
 
     /// The rate of K with a stiffness.
-    pub fn stiffness_rate(&self, number: &Number) -> Result<Mat<f64>, GradientError> {
+    pub fn stiffness_rate(&self, number: &Number) -> Result<Mat<f64>, Failure> {
         let (mut changed, value) = (self.system.clone(), number.value(self.system));
         number.set(&mut changed, 2.0 * value);
         let (there, here) = (steady(&changed, self.models)?.1, &self.steady);
@@ -119,14 +120,23 @@ impl<'a> Here<'a> {
     }
 }
 
+/// The refusal of a system whose place depends on its stiffnesses.
+fn loaded(system: &System) -> Failure {
+    let words =
+        "found bodies that forces deform at the start, whose vibrations follow stiffnesses and materials in two ways";
+    let help = "take the loads and preloads out, and place the bodies so that springs have no force";
+    Kind::Refused.of(&system.path).help(help).says(words)
+}
+
 /// The one system of a scene where it stands at the start.
-fn steady(system: &System, models: &[Model]) -> Result<(TiedMotion, SteadyState), GradientError> {
+fn steady(system: &System, models: &[Model]) -> Result<(TiedMotion, SteadyState), Failure> {
     let mut motions = tied_motions(system, models)?;
     let (Some(motion), true) = (motions.pop(), motions.is_empty()) else {
-        let (scene, count) = (system.path.clone(), motions.len() + 1);
-        return Err(GradientError::Systems { scene, count });
+        let found = format!("{} systems that nothing ties together", motions.len() + 1);
+        let wrong = Kind::Input.of(&system.path).found(found).expected("one");
+        return Err(wrong.help("make a scene of each").into());
     };
-    let failed = |source| SystemModesError::Steady { scene: system.path.clone(), source };
+    let failed = |source: SteadyError| source.in_file(&system.path);
     let of_motion = motion.run.motion();
     let steady = Rotors::of(of_motion, |_| false).steady_state(of_motion, &CommonSpin::REST).map_err(failed)?;
     Ok((motion, steady))

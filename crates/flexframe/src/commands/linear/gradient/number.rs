@@ -1,10 +1,9 @@
 //! Numbers of a scene of bodies in joints that its vibrations follow.
 
+use diagnostic::{Failure, Kind};
 use fem_tet10::BodyNumber;
 use model::{BuildError, Parameter};
 use scene::{AlongAndAbout, Body, MeshedBody, Scene, System, one_of};
-
-use super::error::GradientError;
 
 /// A number of a scene, with the path of its key.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,12 +30,19 @@ pub(crate) enum Part {
     Rotation,
 }
 
+/// The refusal of a name that is none of a number, or is named twice.
+fn no_number(name: &str, expected: String) -> Failure {
+    let help = "name each once; of bodies in joints, stiffnesses and the materials and point masses of bodies with a mesh are the parameters \
+                that frequencies have rates with";
+    Kind::Usage.alone().found(name).expected(expected).help(help).into()
+}
+
 impl Number {
     /// All of a scene: stiffnesses that are not zero, then the materials and point masses of bodies in joints.
     ///
     /// # Errors
-    /// [`GradientError::Build`] of a body whose numbers cannot be listed.
-    pub fn all(system: &System) -> Result<Vec<Self>, GradientError> {
+    /// A body whose numbers cannot be listed.
+    pub fn all(system: &System) -> Result<Vec<Self>, Failure> {
         let springs = system
             .springs
             .iter()
@@ -67,7 +73,7 @@ impl Number {
     }
 
     /// The numbers of some names; all without any.
-    pub fn named(system: &System, names: &[String]) -> Result<Vec<Self>, GradientError> {
+    pub fn named(system: &System, names: &[String]) -> Result<Vec<Self>, Failure> {
         let all = Self::all(system)?;
         if names.is_empty() && !all.is_empty() {
             return Ok(all);
@@ -81,11 +87,11 @@ impl Number {
                     [] => format!("a parameter of {STIFF}, and the scene has none of these"),
                     names => one_of(names),
                 };
-                GradientError::Number { name: name.clone(), expected }
+                no_number(name, expected)
             })
         };
         if names.is_empty() {
-            return Err(GradientError::Number { name: "nothing that is stiff".to_owned(), expected: STIFF.to_owned() });
+            return Err(no_number("nothing that is stiff", STIFF.to_owned()));
         }
         names.iter().enumerate().map(of_name).collect()
     }

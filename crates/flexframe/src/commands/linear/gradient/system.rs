@@ -7,6 +7,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
+use diagnostic::{Failure, Kind};
 use dynamics::SystemMode;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
@@ -14,7 +15,6 @@ use model::{BuildProgress, Builder, Model, Parameter};
 use scene::System;
 
 use super::damping::Damped;
-use super::error::GradientError;
 use super::here::{Here, Varied};
 use super::number::{Number, Place};
 use super::system_responses::SystemResponses;
@@ -40,19 +40,14 @@ pub(crate) struct SystemRates {
 
 impl VariedSystem {
     /// The bodies of a scene.
-    pub fn new(system: &System, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, GradientError> {
+    pub fn new(system: &System, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
         let system = system.clone();
         let models = builder.models(&system, progress)?;
         Ok(Self { system, builder: builder.clone(), models })
     }
 
     /// Frequencies and responses with their rates of a scene with other numbers, at rest where it stands at the start.
-    pub fn rates(
-        &self,
-        system: &System,
-        numbers: &[Number],
-        frequencies: &[f64],
-    ) -> Result<SystemRates, GradientError> {
+    pub fn rates(&self, system: &System, numbers: &[Number], frequencies: &[f64]) -> Result<SystemRates, Failure> {
         let is_same = |i: usize| system.bodies[i].body == self.system.bodies[i].body;
         let anew =
             if (0..system.bodies.len()).all(is_same) { None } else { Some(self.builder.models(system, |_| ())?) };
@@ -86,7 +81,7 @@ impl VariedSystem {
     }
 
     /// The bodies of which numbers vary, by number in the scene, with the places of these in the list.
-    fn varied<'a>(&self, here: &Here<'a>, numbers: &[Number]) -> Result<Vec<Option<Varied<'a>>>, GradientError> {
+    fn varied<'a>(&self, here: &Here<'a>, numbers: &[Number]) -> Result<Vec<Option<Varied<'a>>>, Failure> {
         let of_body = |body: usize| {
             let of = |(i, number): (usize, &Number)| match &number.place {
                 Place::Body(of, parameter) if *of == body => Some((i, parameter.clone())),
@@ -115,17 +110,28 @@ fn frequency_rates(
     repeated: &[Range<usize>],
     number: &Number,
     change: impl Fn(&SystemMode, &SystemMode) -> c64,
-) -> Result<Vec<f64>, GradientError> {
+) -> Result<Vec<f64>, Failure> {
     let modes = &here.modes;
     let mut rates = vec![0.0; modes.len()];
     let apart = (0..modes.len()).filter(|k| !repeated.iter().any(|group| group.contains(k))).map(|k| k..k + 1);
     for group in repeated.iter().cloned().chain(apart) {
         let frequency = modes[group.start].circular_frequency() / TAU;
-        let not_finite = || GradientError::NotFinite { scene: here.path(), frequency, parameter: number.name.clone() };
+        let not_finite = || {
+            let words = format!(
+                "found rates of the vibration at {frequency} cycles per time with {} that are not finite",
+                number.name
+            );
+            let help = "look for values in the scene that are many powers of ten apart";
+            Kind::Run.of(here.path()).help(help).says(words)
+        };
         let group_modes = &modes[group.clone()];
         let moved = moved(group_modes, &here.steady.linear.damping);
         if is_critical(&moved, group_modes).ok_or_else(not_finite)? {
-            return Err(GradientError::Critical { scene: here.path(), frequency });
+            let found = format!(
+                "a vibration at {frequency} cycles per time that is damped critically (Yᵀ(2s + C)Y is singular)"
+            );
+            let wrong = Kind::Refused.of(here.path()).found(found).expected("one with rates");
+            return Err(wrong.help("change the damping of joints, bushings or bodies a little").into());
         }
         rates[group].copy_from_slice(&of_group(group_modes, &change, &moved).ok_or_else(not_finite)?);
     }

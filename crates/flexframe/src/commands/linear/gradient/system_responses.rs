@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use diagnostic::{Failure, Kind};
 use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
 use nalgebra::Vector3;
 
-use super::error::GradientError;
 use super::here::{Here, Varied};
 use super::number::Number;
 use super::responses::{AXES, ResponseReport};
@@ -55,7 +55,7 @@ impl Here<'_> {
         stiffness_rates: &[Option<Mat<f64>>],
         varied: &[Option<Varied<'_>>],
         frequencies: &[f64],
-    ) -> Result<SystemResponses, GradientError> {
+    ) -> Result<SystemResponses, Failure> {
         if frequencies.is_empty() {
             return Ok(SystemResponses { responses: Vec::new(), rates: vec![Vec::new(); numbers.len()] });
         }
@@ -84,7 +84,11 @@ impl Here<'_> {
             let moved = dynamic.partial_piv_lu().solve(&right);
             let is_known = |value: c64| value.re.is_finite() && value.im.is_finite();
             if (*frequency == 0.0 && self.is_loose) || !moved.col_iter().all(|x| x.iter().all(|x| is_known(*x))) {
-                return Err(GradientError::Resonance { scene: self.path(), frequency: *frequency });
+                let words = format!(
+                    "the response at {frequency} cycles per time has no end: an undamped vibration or a motion as a whole is there"
+                );
+                let help = "take other --frequencies, or give the bodies damping";
+                return Err(Kind::Run.of(self.path()).help(help).says(words));
             }
             let coordinates: Vec<Vec<c64>> = moved.col_iter().map(|x| x.iter().copied().collect()).collect();
             let motions: Vec<Vec<c64>> = coordinates.iter().map(|x| times(&linear.basis, x)).collect();
@@ -164,7 +168,7 @@ impl Here<'_> {
         number: &Number,
         varied: &'a [Option<Varied<'a>>],
         ports: &[&Port],
-    ) -> Result<Change<'a>, GradientError> {
+    ) -> Result<Change<'a>, Failure> {
         let (body, of_body, k) = self.varying(i, number, varied)?;
         let rates = &of_body.body.rates[k];
         let followed = |port: &&Port| {

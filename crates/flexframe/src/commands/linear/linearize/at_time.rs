@@ -1,10 +1,10 @@
 //! The state of a run at a time.
 
-use dynamics::{Island, MotionState, Reached};
+use diagnostic::{Diagnostic, Failure, Kind};
+use dynamics::{Island, MotionState, Reached, StepError};
 use model::Model;
 use scene::System;
 
-use super::error::LinearizeError;
 use crate::motion::{self, StartSettings};
 
 /// Steps that are taken at once.
@@ -13,16 +13,17 @@ const STEPS: u64 = 1000;
 const MOVES: f64 = 1e-3;
 
 /// The state of each body at a time of the scene's run.
-pub(super) fn states_at(system: &System, models: &[Model], time: f64) -> Result<Vec<MotionState>, LinearizeError> {
+pub(super) fn states_at(system: &System, models: &[Model], time: f64) -> Result<Vec<MotionState>, Failure> {
     let end = system.time.end;
     if !(time.is_finite() && (0.0..=end).contains(&time)) {
-        return Err(LinearizeError::Time { scene: system.path.clone(), time, end });
+        let wrong = Kind::Usage.of(&system.path).key("time").found(time.to_string());
+        return Err(wrong.expected(format!("0 to {end}, the end of the run")).into());
     }
     let references: Vec<&Model> = models.iter().collect();
     let beginning = StartSettings::of(system, &references);
     let mut states: Vec<Option<MotionState>> = vec![None; models.len()];
-    let failed = |source| LinearizeError::Run { scene: system.path.clone(), source: Box::new(source) };
-    let mut run = motion::begin(system, &references, &beginning).map_err(Box::new)?;
+    let failed = |source: StepError| source.in_file(&system.path);
+    let mut run = motion::begin(system, &references, &beginning)?;
     run.set_stop_time(Some(time));
     while run.time() < time {
         if let Reached::Stop | Reached::End = run.advance(STEPS, |_, _| ()).map_err(|of| failed(of.source))? {

@@ -1,11 +1,11 @@
 //! Names and units of inputs and outputs.
 
+use diagnostic::{Failure, Kind};
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
 use nalgebra::Vector3;
 use scene::{Load, Scene, Shared};
 
-use super::error::LinearizeError;
 use super::settings::LinearSettings;
 use crate::commands::linear::names::{STRESS, is_asked};
 use crate::rows::units::UnitLabels;
@@ -21,15 +21,16 @@ pub(super) struct Channels {
 
 impl Channels {
     /// The equations with the channels that are asked for.
-    pub fn chosen(self, settings: &LinearSettings, scene: &Shared) -> Result<SecondOrder, LinearizeError> {
+    pub fn chosen(self, settings: &LinearSettings, scene: &Shared) -> Result<SecondOrder, Failure> {
         let Self { equations, usual, more_inputs } = self;
         let inputs: Vec<&str> = equations.inputs.iter().map(|channel| &channel.name[..]).collect();
         let outputs: Vec<&str> = equations.outputs.iter().map(|output| &output.channel.name[..]).collect();
         let pick = |what, list: &[&str], more: &[String], asked: &[String], usual: usize| {
             if let Some(found) = asked.iter().find(|asked| !list.iter().any(|name| is_asked(name, asked))) {
-                let known = list.iter().map(|name| (*name).to_owned()).chain(more.iter().cloned()).collect();
-                let (scene, found) = (scene.path.clone(), found.clone());
-                return Err(LinearizeError::NoChannel { scene, what, found, known });
+                let known: Vec<&str> = list.iter().copied().chain(more.iter().map(String::as_str)).collect();
+                let expected = format!("one of {}", known.join(", "));
+                let words = format!("no {what} `{found}`; expected {expected}");
+                return Err(Kind::Usage.of(&scene.path).found(found).expected(expected).says(words));
             }
             let is_picked = |k: &usize| match asked {
                 [] => *k < usual,
@@ -39,7 +40,7 @@ impl Channels {
         };
         let inputs = pick("input", &inputs, &more_inputs, &settings.inputs, usual[0])?;
         let outputs = pick("output", &outputs, &[], &settings.outputs, usual[1])?;
-        let nothing = |what, help| Err(LinearizeError::Nothing { scene: scene.path.clone(), what, help });
+        let nothing = |what, help: &str| Err(Kind::Usage.of(&scene.path).help(help).says(format!("no {what}")));
         if inputs.is_empty() {
             return nothing(
                 "inputs",

@@ -2,24 +2,24 @@
 
 use std::path::Path;
 
+use diagnostic::{Failure, Kind};
 use faer::Mat;
 use linear::{Channel, MatArray, StateSpace, mat_file};
 use serde_json::{Value, json};
 use whole_file::write_whole;
 
-use super::error::LinearizeError;
 use crate::files::write_error::WriteError;
 
 /// Refuses an ending that no writer has.
-pub(super) fn check_ending(path: &Path) -> Result<(), LinearizeError> {
+pub(super) fn check_ending(path: &Path) -> Result<(), Failure> {
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("mat" | "json") => Ok(()),
-        _ => Err(LinearizeError::Ending { path: path.to_owned() }),
+        _ => Err(Kind::Usage.of(path).help("end its name so").says("expected a file that ends in .mat or .json")),
     }
 }
 
 /// Writes a state space: matrices A, B, C, D, and names and units of states, inputs and outputs.
-pub(super) fn write(space: &StateSpace, path: &Path) -> Result<(), LinearizeError> {
+pub(super) fn write(space: &StateSpace, path: &Path) -> Result<(), Failure> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     }

@@ -4,7 +4,8 @@ mod base;
 mod driven;
 mod rigid;
 
-use dynamics::{AtRest, DrivenMotion, Initial};
+use diagnostic::{Diagnostic, Failure, Kind};
+use dynamics::{AtRest, DrivenMotion, Initial, LoadedError};
 use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
@@ -15,7 +16,6 @@ use super::channels::{
     Channels, base_accelerations, input_channels, point_outputs, relative_outputs, stress_outputs, unit_of_coordinate,
     wrench_channels,
 };
-use super::error::LinearizeError;
 use super::settings::LinearSettings;
 use super::state::{State, damping_in_words};
 use crate::commands::linear::names::is_asked;
@@ -39,13 +39,12 @@ pub(super) fn of_held(
     model: &Model,
     (initial, time): (&Initial, f64),
     settings: &LinearSettings,
-) -> Result<(Channels, State), LinearizeError> {
-    let refuse =
-        |found: &str, help| Err(LinearizeError::Refused { scene: scene.path.clone(), found: found.to_owned(), help });
+) -> Result<(Channels, State), Failure> {
+    let refuse = |found: &str, help: &str| Err(Kind::Refused.of(&scene.path).help(help).says(found));
     if model.physics.large_deflection.is_some() {
         return refuse("a body with large modes", "give `large_deflection = false` in [effects]");
     }
-    let failed = |source| LinearizeError::Rest { scene: scene.path.clone(), source: Box::new(source) };
+    let failed = |source: LoadedError| source.in_file(&scene.path);
     let rest = model.at_rest(initial, time).map_err(failed)?;
     let AtRest { unit_forces, modal_displacement, .. } = &rest;
     // Rigid motions that are left: none of a drive, which is given.

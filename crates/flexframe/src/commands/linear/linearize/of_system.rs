@@ -1,6 +1,7 @@
 //! Small motions of free bodies, and of bodies in joints, about rest or a steady spin.
 
-use dynamics::{Coordinate, Island, Linearization, MotionState, Row, SteadyState, SystemMotion};
+use diagnostic::{Diagnostic, Failure, Kind};
+use dynamics::{Coordinate, Island, Linearization, MotionState, Row, SteadyError, SteadyState, SystemMotion};
 use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
@@ -8,7 +9,6 @@ use nalgebra::Vector3;
 use scene::System;
 
 use super::channels::{Channels, input_channels, point_outputs, stress_outputs, unit_of_coordinate, wrench_channels};
-use super::error::LinearizeError;
 use super::settings::LinearSettings;
 use super::state::{State, damping_in_words};
 use super::system_spin::SystemSpin;
@@ -28,21 +28,18 @@ pub(super) fn of_system(
     spin: Option<Vector3<f64>>,
     states: Option<&[MotionState]>,
     settings: &LinearSettings,
-) -> Result<(Channels, State), LinearizeError> {
+) -> Result<(Channels, State), Failure> {
     let references: Vec<&Model> = models.iter().collect();
-    let refuse =
-        |found: &str, help| LinearizeError::Refused { scene: system.path.clone(), found: found.to_owned(), help };
-    let no_body = || refuse("no body", "name a body in the scene");
+    let no_body = || Kind::Refused.of(&system.path).help("name a body in the scene").says("no body");
     let beginning = StartSettings { together: true, ..StartSettings::of(system, &references) };
-    let mut run = motion::begin(system, &references, &beginning).map_err(Box::new)?;
+    let mut run = motion::begin(system, &references, &beginning)?;
     let Some(Island { motion, joints, bodies, .. }) = run.islands_mut().first_mut() else { return Err(no_body()) };
     if let Some(states) = states {
         let states: Vec<MotionState> = bodies.iter().map(|body| states[*body].clone()).collect();
-        let scene = system.path.clone();
-        motion.set_states(&states).map_err(|source| LinearizeError::State { scene, source: Box::new(source) })?;
+        motion.set_states(&states).map_err(|source| source.in_file(&system.path))?;
     }
     let motion = motion.system_motion().ok_or_else(no_body)?;
-    let failed = |source| LinearizeError::Steady { scene: system.path.clone(), source: Box::new(source) };
+    let failed = |source: SteadyError| source.in_file(&system.path);
     let SystemSpin { omega_global, steady, rotors, warnings: turning } =
         SystemSpin::new(motion, spin).map_err(failed)?;
     let (linear, _) = steady.linear.with_loose_apart().map_err(failed)?;

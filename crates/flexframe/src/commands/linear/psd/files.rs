@@ -3,10 +3,10 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use figures::{LineChart, Scale};
 use report::Responses as Page;
 
-use super::error::PsdError;
 use super::responses::Responses;
 use crate::commands::linear::curves::{self, Answer};
 use crate::commands::modes::frequency_unit;
@@ -24,7 +24,7 @@ pub(super) fn write(
     responses: &Responses,
     page: Page,
     folder: &Path,
-) -> Result<Vec<PathBuf>, PsdError> {
+) -> Result<Vec<PathBuf>, Failure> {
     let chart = chart(title, &frequency_unit(time_unit), responses);
     curves::write(folder, NAME, Answer { csv: csv(responses), chart, page })
 }

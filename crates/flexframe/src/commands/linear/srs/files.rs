@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use scene::Interpolation;
 use shock::Spectrum;
 
 use super::diagram::diagram;
-use super::error::SrsError;
 use super::page::page;
 use crate::commands::linear::curves::{self, Answer};
 
@@ -24,7 +24,7 @@ pub(super) fn write(
     (table, interpolation): (&Path, Interpolation),
     spectra: &[Spectrum],
     folder: &Path,
-) -> Result<Vec<PathBuf>, SrsError> {
+) -> Result<Vec<PathBuf>, Failure> {
     let (chart, page) = (diagram(table, spectra), page(table, interpolation, spectra));
     curves::write(folder, NAME, Answer { csv: rows(spectra), chart, page })
 }

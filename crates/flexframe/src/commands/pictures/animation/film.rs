@@ -1,11 +1,13 @@
 //! The file of a moving picture: a GIF, or a film that ffmpeg makes.
+use crate::files::write_error::WriteError;
 
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
-use figures::{Animation, FigureError};
+use diagnostic::{Failure, Kind};
+use figures::Animation;
 use foreign_program::{ForeignProgram, Limits, ProgramError, Stream, named};
 use whole_file::{TemporaryFolder, write_whole};
 
@@ -13,44 +15,6 @@ use whole_file::{TemporaryFolder, write_whole};
 const FFMPEG: &str = "FLEXFRAME_FFMPEG";
 /// The most time, and the most bytes of pictures and film, of anything that anybody waits for.
 const LIMITS: Limits = Limits { time: Some(Duration::from_secs(6 * 3600)), bytes: Some(64 << 30), memory: None };
-
-/// A film that could not be made.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // the message of a variant says what its fields are
-pub enum FilmError {
-    /// The name is not that of a moving picture: it may be that of a file which is not to be replaced.
-    #[error(
-        "{}: the animation is a GIF or a film; give its file a name that ends in .gif, .mp4 or .webm", path.display()
-    )]
-    OtherFormat { path: PathBuf },
-    /// A frame could not be drawn, or the GIF not be written.
-    #[error("{0}")]
-    Figure(#[from] FigureError),
-    /// No ffmpeg.
-    #[error(
-        "{}: a film is made by ffmpeg, but `{program}` cannot be started: {cause}\n = install ffmpeg (Debian: apt install ffmpeg), \
-         name it in {FFMPEG}, or give the file a name that ends in .gif, which needs no other program",
-        path.display()
-    )]
-    NoProgram { path: PathBuf, program: String, cause: io::Error },
-    /// This ffmpeg cannot make such a film.
-    #[error(
-        "{}: `{program}` has no encoder {encoder}\n = name an ffmpeg that has it in {FFMPEG}, or give the file a name that ends in \
-         {other} or .gif",
-        path.display()
-    )]
-    NoEncoder { path: PathBuf, program: String, encoder: &'static str, other: &'static str },
-    /// It has failed.
-    #[error("{}: `{program}` cannot make the film: {said}\n = try a name that ends in .gif", path.display())]
-    Failed { path: PathBuf, program: String, said: String },
-    /// The pictures or the film could not be put on the disk.
-    #[error("{}: the film cannot be written: {cause}\n = make room there and in the folder that TMPDIR names", path.display())]
-    Io {
-        path: PathBuf,
-        #[source]
-        cause: io::Error,
-    },
-}
 
 /// Kind of a moving picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,12 +31,15 @@ impl Format {
     /// The kind that the ending of a name asks for, with what makes it at hand.
     ///
     /// # Errors
-    /// [`FilmError`] of another ending, and without an encoder.
-    pub(super) fn of(path: &Path) -> Result<Self, FilmError> {
+    /// [`Failure`] of another ending, and without an encoder.
+    pub(super) fn of(path: &Path) -> Result<Self, Failure> {
         let is = |ending: &str| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
         let kinds = [("gif", Self::Gif), ("mp4", Self::Mp4), ("webm", Self::WebM)];
         let format = kinds.into_iter().find(|(ending, _)| is(ending)).map(|(_, format)| format);
-        let format = format.ok_or_else(|| FilmError::OtherFormat { path: path.to_owned() })?;
+        let format = format.ok_or_else(|| {
+            let help = "give its file a name that ends in .gif, .mp4 or .webm";
+            Kind::Usage.of(path).help(help).says("the animation is a GIF or a film")
+        })?;
         format.require_encoder(path)?;
         Ok(format)
     }
@@ -89,7 +56,7 @@ impl Format {
         }
     }
 
-    fn require_encoder(self, path: &Path) -> Result<(), FilmError> {
+    fn require_encoder(self, path: &Path) -> Result<(), Failure> {
         let Some((encoder, _)) = self.encoder() else { return Ok(()) };
         let folder = temporary(path)?;
         let said = ffmpeg(path, folder.path(), &["-hide_banner".to_owned(), "-encoders".to_owned()])?;
@@ -98,7 +65,9 @@ impl Format {
             return Ok(());
         }
         let other = if self == Self::Mp4 { ".webm" } else { ".mp4" };
-        Err(FilmError::NoEncoder { path: path.to_owned(), program: program(), encoder, other })
+        let help =
+            format!("name an ffmpeg that has it in {FFMPEG}, or give the file a name that ends in {other} or .gif");
+        Err(Kind::Io.of(path).help(help).says(format!("`{}` has no encoder {encoder}", program())))
     }
 
     /// Draws the frames and writes the file, whole or not at all. Tells the part that is done, 0 to 1.
@@ -107,7 +76,7 @@ impl Format {
         animation: &Animation<'_>,
         path: &Path,
         mut progress: impl FnMut(f64),
-    ) -> Result<(), FilmError> {
+    ) -> Result<(), Failure> {
         let Some((encoder, settings)) = self.encoder() else { return Ok(animation.save_gif(path)?) };
         let folder = temporary(path)?;
         let count = animation.frames.len() as f64;
@@ -139,7 +108,7 @@ impl Format {
         let said = ffmpeg(path, folder.path(), &arguments)?;
         if !said.is_done {
             let said = said.error.unwrap_or_else(|| "it says nothing".to_owned());
-            return Err(FilmError::Failed { path: path.to_owned(), program: program(), said });
+            return Err(failed(path, &said));
         }
         let bytes = fs::read(folder.path().join(film)).map_err(of(path))?;
         write_whole(path, bytes).map_err(of(path))
@@ -154,7 +123,7 @@ struct Said {
     error: Option<String>,
 }
 
-fn ffmpeg(path: &Path, folder: &Path, arguments: &[String]) -> Result<Said, FilmError> {
+fn ffmpeg(path: &Path, folder: &Path, arguments: &[String]) -> Result<Said, Failure> {
     let (mut output, mut error) = (Vec::new(), None);
     let hear = |stream, line: String| match stream {
         Stream::Output => output.push(line),
@@ -164,21 +133,31 @@ fn ffmpeg(path: &Path, folder: &Path, arguments: &[String]) -> Result<Said, Film
     match ForeignProgram::new(&named(FFMPEG, "ffmpeg"), folder).args(arguments).run(LIMITS, || false, hear) {
         Ok(status) => Ok(Said { is_done: status.success(), output, error }),
         Err(ProgramError::Start(cause)) => {
-            Err(FilmError::NoProgram { path: path.to_owned(), program: program(), cause })
+            let help = format!(
+                "install ffmpeg (Debian: apt install ffmpeg), name it in {FFMPEG}, or give the file a name that ends in .gif, which needs no \
+                 other program"
+            );
+            let words = format!("a film is made by ffmpeg, but `{}` cannot be started: {cause}", program());
+            Err(Kind::Io.of(path).help(help).says(words))
         }
-        Err(cause) => Err(FilmError::Failed { path: path.to_owned(), program: program(), said: cause.to_string() }),
+        Err(cause) => Err(failed(path, &cause.to_string())),
     }
+}
+
+fn failed(path: &Path, said: &str) -> Failure {
+    let words = format!("`{}` cannot make the film: {said}", program());
+    Kind::Io.of(path).help("try a name that ends in .gif").says(words)
 }
 
 fn program() -> String {
     named(FFMPEG, "ffmpeg").to_string_lossy().into_owned()
 }
 
-fn temporary(path: &Path) -> Result<TemporaryFolder, FilmError> {
+fn temporary(path: &Path) -> Result<TemporaryFolder, Failure> {
     TemporaryFolder::new().map_err(of(path))
 }
 
-fn of(path: &Path) -> impl Fn(io::Error) -> FilmError + use<> {
+fn of(path: &Path) -> impl Fn(io::Error) -> Failure + use<> {
     let path = path.to_owned();
-    move |cause| FilmError::Io { path: path.clone(), cause }
+    move |error| WriteError::of(&path)(error).into()
 }

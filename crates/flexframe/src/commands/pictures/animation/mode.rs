@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
+use diagnostic::{Failure, Kind};
 use figures::{Animation, FilmFrame};
 use model::Builder;
 use nalgebra::Vector3;
 use scene::{Shared, System};
 
-use super::error::AnimationError;
 use super::film::Format;
 use super::settings::{AnimationSettings, Coloured, MAX_FRAMES};
 use crate::commands::modes::{self, frequency_unit, require_flexible, require_surface};
@@ -24,7 +24,7 @@ const DRAWN: f64 = 0.08;
 /// have one.
 ///
 /// # Errors
-/// [`AnimationError`].
+/// [`Failure`].
 pub fn animate_mode(
     system: &System,
     builder: &Builder,
@@ -32,15 +32,24 @@ pub fn animate_mode(
     path: &Path,
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
-) -> Result<(), AnimationError> {
+) -> Result<(), Failure> {
     let format = Format::of(path)?;
-    let no_such = |modes| AnimationError::NoSuchMode { scene: system.path.clone(), number, modes };
+    let no_such = |modes: usize| {
+        let wrong = Kind::Usage.of(&system.path).key("--mode").found(number.to_string());
+        let help = "`flexframe modes` lists them; ask for more in [modes] of the scene";
+        Failure::from(wrong.expected(format!("1 to {modes}")).help(help))
+    };
+    let several = |count: usize| {
+        let found = format!("{count} bodies or systems that move apart, each with modes of its own");
+        let wrong = Kind::Usage.of(&system.path).key("--mode").found(found);
+        Err(wrong.expected("one").help("choose a body with --body NAME").into())
+    };
     let index = number.wrapping_sub(1);
     if system.has_connections() {
         let models = builder.models(system, |p| progress(RunProgress::Build(p)))?;
         let found = system_modes::vibrations(system, &models)?;
         let [modes] = &found[..] else {
-            return Err(AnimationError::SeveralMotions { scene: system.path.clone(), count: found.len() });
+            return several(found.len());
         };
         let count = modes.vibrations.modes.len();
         let mode = modes.vibrations.modes.get(index).ok_or_else(|| no_such(count))?;
@@ -60,7 +69,7 @@ pub fn animate_mode(
         );
     }
     let [scene] = &system.bodies[..] else {
-        return Err(AnimationError::SeveralMotions { scene: system.path.clone(), count: system.bodies.len() });
+        return several(system.bodies.len());
     };
     require_surface(scene)?;
     let (model, _) = modes::modes(scene, builder, None, |p| progress(RunProgress::Build(p)))?;
@@ -108,7 +117,7 @@ impl Swinging<'_> {
         (format, path): (Format, &Path),
         settings: AnimationSettings,
         mut progress: impl FnMut(RunProgress),
-    ) -> Result<(), AnimationError> {
+    ) -> Result<(), Failure> {
         let count = settings.frames.clamp(2, MAX_FRAMES);
         // The last frame is one before the first: the picture goes round without a halt.
         let phases: Vec<f64> = (0..count).map(|frame| TAU * frame as f64 / count as f64).collect();

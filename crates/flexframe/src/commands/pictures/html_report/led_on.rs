@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
+use diagnostic::{Failure, Kind};
 use dynamics::{DescribedBody, DrivenMotion, JointForce, RunDescription};
 use live::Change;
 use model::{BuildProgress, Builder, Model};
@@ -10,7 +11,6 @@ use report::{Control, Live, LiveBody};
 use results::Results;
 use scene::Load;
 
-use super::error::HtmlReportError;
 use crate::commands::run::{bodies, metadata, system_of};
 use crate::motion::StartSettings;
 use crate::motion::described::{Described, describe};
@@ -29,8 +29,11 @@ pub(super) fn led_on(
     results: &Results,
     builder: &Builder,
     progress: impl FnMut(BuildProgress),
-) -> Result<Live, HtmlReportError> {
-    let changed = |what| HtmlReportError::Changed { results: file.to_owned(), what };
+) -> Result<Live, Failure> {
+    let changed = |what| {
+        let help = "run its scene again with --overwrite, then make its live page";
+        Kind::Input.of(file).help(help).says(format!("{what} has changed since this run"))
+    };
     let system = system_of(results)?.ok_or_else(|| changed("the list of bodies"))?;
     let models = builder.models(&system, progress)?;
     let now = metadata(&system, &bodies(&system.bodies, &models));
@@ -65,7 +68,9 @@ pub(super) fn led_on(
     let results::Units { length, mass, time } = &results.metadata.units;
     let units = UnitLabels { length, mass, time };
     Ok(Live {
-        run: run.to_bytes().map_err(|source| HtmlReportError::Live { results: file.to_owned(), source })?,
+        run: run
+            .to_bytes()
+            .map_err(|error| Kind::Usage.of(file).says(format!("no live page can be made of this run: {error}")))?,
         bodies: models.iter().map(|model| LiveBody { mass: model.body.mass }).collect(),
         controls,
         units: [units.force(), units.energy(), units.momentum(), units.angular_momentum()],
