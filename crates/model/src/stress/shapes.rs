@@ -123,7 +123,7 @@ impl BodyStress {
     }
 
     /// The nodes that stress is known at (m), once for each material there, and the stress of a unit of each coordinate, one
-    /// after the other (each m × 6); none without [`Output::stress_field`].
+    /// after the other (each m × 6); none without [`Needs::stress_field`](crate::Needs::stress_field).
     pub(crate) fn field(&self) -> Option<(&[u32], Vec<Vec<f64>>)> {
         let Field { sites, shapes } = self.field.as_ref()?;
         let of_coordinate = |k: usize| (0..sites.len()).flat_map(|site| shapes.of_site(site)[k]).collect();
@@ -138,7 +138,7 @@ impl BodyStress {
     }
 
     /// The stress at a node in these [`coordinates`](Self::coordinates), of the material with the larger von Mises stress; zero
-    /// without [`Output::stress_field`].
+    /// without [`Needs::stress_field`](crate::Needs::stress_field).
     ///
     /// # Panics
     /// Where there is no such node.
