@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use diagnostic::Failure;
-use flexframe::export::{self, ExportRows, Exported, DrawnMotion};
+use flexframe::export::{self, DrawnMotion, ExportRows, Exported};
 use flexframe::given_file::GivenFile;
 use flexframe::run::RunProgress;
 

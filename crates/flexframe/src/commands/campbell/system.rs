@@ -48,11 +48,11 @@ pub fn campbell_of_system(
     let models = builder.needing(Needs::spin()).models(system, |p| progress(CampbellProgress::Build(p)))?;
     let motions = tied_motions(system, &models)?;
     let Some(motion) = motions.first() else {
-        return Err(no_axis(&system, "bodies that nothing ties together", &[]));
+        return Err(no_axis(system, "bodies that nothing ties together", &[]));
     };
     let of_motion = motion.run.motion();
     let Axis { direction: axis, point, joint } = axis_of(motion, settings).map_err(|found| match found {
-        Found::Nothing(found) => no_axis(&system, &found, of_motion.system().joints()),
+        Found::Nothing(found) => no_axis(system, &found, of_motion.system().joints()),
         Found::NoDirection(error) => error,
     })?;
     let rotor = joint.map(|joint| rotor_of(of_motion, joint)).transpose().map_err(|source| {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use diagnostic::{Diagnostic, Failure};
-use model::{BuildError, TieForce, Model, Tied, tie};
+use model::{BuildError, Model, TieForce, Tied, tie};
 use results::Results;
 use scene::System;
 

@@ -155,6 +155,6 @@ impl Swinging<'_> {
             plain_triangles: &[],
             traced_point: None,
         };
-        Ok(format.write(&animation, path, |part| progress(RunProgress::Motion(part)))?)
+        format.write(&animation, path, |part| progress(RunProgress::Motion(part)))
     }
 }
