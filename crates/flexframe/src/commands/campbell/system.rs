@@ -48,7 +48,8 @@ pub fn campbell_of_system(
     let models = builder.needing(Needs::spin()).models(system, |p| progress(CampbellProgress::Build(p)))?;
     let motions = tied_motions(system, &models)?;
     let Some(motion) = motions.first() else {
-        return Err(no_axis(system, "bodies that nothing ties together", &[]));
+        let alone = Kind::Usage.of(&system.path).found("bodies that nothing ties together");
+        return Err(alone.expected("joints, springs or bushings").help("name one body: --body NAME").into());
     };
     let of_motion = motion.run.motion();
     let Axis { direction: axis, point, joint } = axis_of(motion, settings).map_err(|found| match found {

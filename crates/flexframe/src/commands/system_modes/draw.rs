@@ -73,7 +73,7 @@ const ROUNDING: f64 = 1e-6;
 /// the displacements of each vibration as a field; of one whose points are not in phase, those a quarter of a period later, too.
 ///
 /// # Errors
-/// [`FileError`]; false, and no file, where no body has a mesh.
+/// [`Failure`]; false, and no file, where no body has a mesh.
 pub fn write_fields(
     system: &System,
     models: &[Model],
