@@ -65,7 +65,7 @@ fn a_run_says_how_wrong_it_is_and_the_command_says_more() {
     assert_eq!(last[0], error);
     let refused = flexframe(&["check", file, "--rows", "6"]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8(refused.stderr).unwrap().contains("--rows: found 6, expected a number from 0 to 5"));
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("no row 6, expected a number from 0 to 5"));
 }
 
 /// Conserved: where a rod hardly bends, more modes alone mend what is wrong when a force sets in at once: the error of its static shape is

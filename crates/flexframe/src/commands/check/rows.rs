@@ -36,8 +36,9 @@ pub(super) fn chosen(
             .map(|asked| match *asked < count {
                 true => Ok((*asked, vec!["asked for"])),
                 false => {
-                    let wrong = Kind::Usage.of(file).key("--rows").found(asked.to_string());
-                    Err(wrong.expected(format!("a number from 0 to {}", count - 1)).into())
+                    let expected = format!("a number from 0 to {}", count - 1);
+                    let wrong = Kind::Usage.of(file).key("--rows").found(asked.to_string()).expected(&expected);
+                    Err(wrong.says(format!("there is no row {asked}, expected {expected}")))
                 }
             })
             .collect();

@@ -102,12 +102,9 @@ impl Spectra {
         let Some(band) = asked else { return Ok(table) };
         let [start, end] = band;
         if !(start >= 0.0 && end > start && end.is_finite()) {
-            return Err(Kind::Usage
-                .alone()
-                .key("band")
-                .found(format!("{start}:{end}"))
-                .expected("start:end with 0 ≤ start < end")
-                .into());
+            let expected = "start:end with 0 ≤ start < end, e.g. 20:2000";
+            let wrong = Kind::Usage.alone().key("--band").found(format!("{start}:{end}")).expected(expected);
+            return Err(wrong.says(format!("band {start}:{end}: expected {expected}")));
         }
         let covered = (end.min(table[1]) - start.max(table[0])).max(0.0);
         let left_out = 1.0 - covered / (end - start);

@@ -16,8 +16,9 @@ const MOVES: f64 = 1e-3;
 pub(super) fn states_at(system: &System, models: &[Model], time: f64) -> Result<Vec<MotionState>, Failure> {
     let end = system.time.end;
     if !(time.is_finite() && (0.0..=end).contains(&time)) {
-        let wrong = Kind::Usage.of(&system.path).key("time").found(time.to_string());
-        return Err(wrong.expected(format!("0 to {end}, the end of the run")).into());
+        let expected = format!("0 to {end}, the end of the run");
+        let wrong = Kind::Usage.of(&system.path).found(time.to_string()).expected(&expected);
+        return Err(wrong.says(format!("time {time}: expected {expected}")));
     }
     let references: Vec<&Model> = models.iter().collect();
     let beginning = StartSettings::of(system, &references);
