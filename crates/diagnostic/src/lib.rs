@@ -150,7 +150,7 @@ impl Diagnosis {
 
 /// An error that tells its diagnosis.
 pub trait Diagnostic: Error + Send + Sync + 'static {
-    /// Its kind, its place and the cure: those of the error that it passes on, if it has one.
+    /// Kind, place and cure. An error that only passes another on gives the diagnosis of the other.
     fn diagnosis(&self) -> Diagnosis;
 
     /// The same in a file that only the caller knows, which its message begins with.

@@ -131,7 +131,7 @@ impl Model {
     }
 
     /// The parts of the run of its scene where forces are added that the estimates do not know: the physics, the loads and the
-    /// damping ratio of each flexible mode. The effects are those of [`Needs::external_inputs`].
+    /// damping ratio of each flexible mode. Effects are on as by [`Needs::external_inputs`].
     pub fn under_unknown_forces(&self, scene: &Scene) -> (Physics, Vec<SharedLoad>, Vec<f64>) {
         let mut physics = self.physics.clone();
         for effect in Needed::new(scene, &Needs::default()).on_under_unknown_forces() {

@@ -5,9 +5,17 @@ use std::ops::Deref;
 use dynamics::{Effect, EffectMap, Method};
 use scene::{Body, Choice, Effects, Flexible, Large, Load, Modes, Scene};
 
-/// Effects that unknown forces may call for, of any body and of one with modes.
+/// Effects of bodies with modes and without; all others need modes.
 const OF_ANY_BODY: [Effect; 3] = [Effect::Translation, Effect::Rotation, Effect::Gravity];
-const OF_MODES: [Effect; 3] = [Effect::Damping, Effect::DeformedInertia, Effect::Coriolis];
+/// Effects that unknown forces may call for.
+const UNDER_UNKNOWN_FORCES: [Effect; 6] = [
+    Effect::Translation,
+    Effect::Rotation,
+    Effect::Gravity,
+    Effect::Damping,
+    Effect::DeformedInertia,
+    Effect::Coriolis,
+];
 
 /// The parts of a body that a command wants computed. By default they are those of a run of its scene. No command changes a scene: where it
 /// wants others, it says so here.
@@ -84,6 +92,11 @@ impl Needs {
         Self { external_inputs: true, ..Self::default() }
     }
 
+    /// The method of the motion of a body.
+    pub fn method_of(&self, scene: &Scene) -> Method {
+        self.method.unwrap_or(*scene.method())
+    }
+
     /// Small vibrations that no load of the scene sets off: damping is on where the scene leaves it open.
     pub fn vibrations() -> Self {
         Self { open_effects: &[Effect::Damping], ..Self::default() }
@@ -157,7 +170,7 @@ impl<'a> Needed<'a> {
         }
         let mut needed = Self {
             scene,
-            method: needs.method.unwrap_or(*scene.method()),
+            method: needs.method_of(scene),
             modes,
             effects,
             loads: if needs.loads { &scene.loads } else { &[] },
@@ -167,8 +180,9 @@ impl<'a> Needed<'a> {
             support_reactions: needs.rows && !needs.external_inputs,
             backbones: needs.backbones,
         };
-        let unknown = if needs.external_inputs { needed.on_under_unknown_forces() } else { Vec::new() };
-        needed.turn_on(&unknown);
+        if needs.external_inputs {
+            needed.turn_on(&UNDER_UNKNOWN_FORCES);
+        }
         needed.turn_on(needs.open_effects);
         needed
     }
@@ -182,27 +196,26 @@ impl<'a> Needed<'a> {
         self.stress || self.peak_stress || self.stress_field
     }
 
-    /// Turns effects on that are left open; those of modes of a body with modes only.
+    /// Turns effects on that are left open.
     pub fn turn_on(&mut self, effects: &[Effect]) {
-        let has_modes = self.has_modes();
-        for effect in effects.iter().filter(|effect| has_modes || OF_ANY_BODY.contains(effect)) {
-            if self.effects.choices[*effect] == Choice::Auto {
-                self.effects.choices[*effect] = Choice::On;
-            }
+        for effect in self.left_open(effects) {
+            self.effects.choices[effect] = Choice::On;
         }
     }
 
-    /// The effects that are on under forces that nobody knows, of those that are left open.
+    /// The effects that are on under forces that nobody knows, and are left open.
     pub fn on_under_unknown_forces(&self) -> Vec<Effect> {
-        let of_modes: &[Effect] = if self.has_modes() { &OF_MODES } else { &[] };
-        let effects = OF_ANY_BODY.iter().chain(of_modes).copied();
-        effects.filter(|effect| self.effects.choices[*effect] == Choice::Auto).collect()
+        self.left_open(&UNDER_UNKNOWN_FORCES)
     }
 
-    fn has_modes(&self) -> bool {
-        !matches!(self.body, Body::Rigid(_))
+    /// The effects that the body can have and the scene neither switches on nor off.
+    fn left_open(&self, effects: &[Effect]) -> Vec<Effect> {
+        let has_modes = !matches!(self.body, Body::Rigid(_))
             && self.modes.flexible.most() > 0
-            && self.effects.choices[Effect::Flexibility] != Choice::Off
+            && self.effects.choices[Effect::Flexibility] != Choice::Off;
+        let can_be = |effect: Effect| has_modes || OF_ANY_BODY.contains(&effect);
+        let is_open = |effect: &Effect| can_be(*effect) && self.effects.choices[*effect] == Choice::Auto;
+        effects.iter().copied().filter(is_open).collect()
     }
 }
 

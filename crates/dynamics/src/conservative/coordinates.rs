@@ -99,7 +99,7 @@ pub(crate) struct InertiaConstants {
 }
 
 impl ConservativeBody {
-    /// Its constants of inertia in z; it turns freely about three axes.
+    /// Its constants of inertia in z; it moves freely, or something holds it.
     pub(crate) fn inertia_constants(&self) -> InertiaConstants {
         if let Some(held) = &self.held {
             return self.constants_of_held(held);

@@ -24,6 +24,7 @@ use crate::body::initial::Initial;
 use crate::conservative::ConservativeBody;
 use crate::equations::Equations;
 use crate::error::{SetupError, StepError};
+use crate::state::State;
 use crate::vibration::steady_spin::EigenError;
 use crate::vibration::system::body::BodyTerms;
 use crate::vibration::system::configuration::BodyConfiguration;
@@ -66,7 +67,7 @@ pub enum LoadedError {
 }
 
 /// First order of a body about rest in its frame, M ξ̈ + C ξ̇ + K ξ = forces: ξ are a displacement and a turn of the frame along the axes of the
-/// body, and changes of the modes. Where something holds the frame, the first six rows are those of its reaction.
+/// body, and changes of the modes. Where something holds the frame, its reaction balances the first six rows.
 #[derive(Debug, Clone)]
 pub struct AtRest {
     /// Modal displacements at rest.
@@ -81,8 +82,6 @@ pub struct AtRest {
     pub unit_forces: Vec<Vec<f64>>,
     /// The motion of the frame that a unit of the drive's speed is.
     pub driven: Option<[f64; 6]>,
-    /// Forces that are left on the frame, and none on the modes.
-    forces: Vec<f64>,
 }
 
 impl ConservativeBody {
@@ -95,7 +94,7 @@ impl ConservativeBody {
         let nf = self.flexible();
         let mut q = vec![0.0; nf];
         for _ in 0..MOST {
-            let there = self.still_at(initial, &q, time)?;
+            let (there, state) = self.still_at(initial, &q, time)?;
             let force = Mat::from_fn(nf, 1, |i, _| there.forces[6 + i]);
             let way = of_modes(&there.stiffness).partial_piv_lu().solve(&force);
             let size = (0..nf).map(|k| (way[(k, 0)] / amplitudes[k]).abs()).fold(0.0, f64::max);
@@ -103,7 +102,12 @@ impl ConservativeBody {
                 break;
             }
             if size <= AT_REST {
-                return Ok(there);
+                let BodyTerms { mass, damping, stiffness, .. } = there;
+                let motion = self.motion_state(&state).map_err(|error| error.in_step(time, 0.0))?;
+                let unit_forces = self.unit_forces(&motion);
+                let along = |[v, omega]: [Vector3<f64>; 2]| [v.x, v.y, v.z, omega.x, omega.y, omega.z];
+                let driven = self.driven().map(along);
+                return Ok(AtRest { modal_displacement: q, mass, damping, stiffness, unit_forces, driven });
             }
             let part = (STRIDE / size).min(1.0);
             q.iter_mut().enumerate().for_each(|(k, q)| *q += part * way[(k, 0)]);
@@ -111,8 +115,8 @@ impl ConservativeBody {
         Err(LoadedError::NoRest)
     }
 
-    /// First order where the body has some modal displacements and does not move but as its drive does.
-    fn still_at(&self, initial: &Initial, q: &[f64], time: f64) -> Result<AtRest, LoadedError> {
+    /// The terms and the state of the body with some modal displacements, which does not move but as its drive does.
+    fn still_at(&self, initial: &Initial, q: &[f64], time: f64) -> Result<(BodyTerms, State), LoadedError> {
         let nf = self.flexible();
         let still = Initial::at_rest(nf);
         let still = Initial { attitude: initial.attitude, origin: initial.origin, ..still };
@@ -123,20 +127,9 @@ impl ConservativeBody {
             (at.velocity, at.omega) = (velocity * speed, omega * speed);
             (at.velocity_rate, at.omega_rate) = (velocity * acceleration, omega * acceleration);
         }
-        let BodyTerms { mass, damping, mut stiffness, forces, .. } = BodyTerms::new(self, &at, time);
-        stiffnesses(self).enumerate().for_each(|(k, square)| stiffness[(6 + k, 6 + k)] += square);
-        let motion = self.motion_state(&state).map_err(|error| error.in_step(time, 0.0))?;
-        Ok(AtRest {
-            modal_displacement: q.to_vec(),
-            mass,
-            damping,
-            stiffness,
-            unit_forces: self.unit_forces(&motion),
-            driven: self
-                .driven()
-                .map(|[velocity, omega]| std::array::from_fn(|i| if i < 3 { velocity[i] } else { omega[i - 3] })),
-            forces,
-        })
+        let mut terms = BodyTerms::new(self, &at, time);
+        stiffnesses(self).enumerate().for_each(|(k, square)| terms.stiffness[(6 + k, 6 + k)] += square);
+        Ok((terms, state))
     }
 
     /// The vibrations about the rest under the loads, slowest first. `amplitudes` (nf) are small modal displacements.
@@ -148,7 +141,7 @@ impl ConservativeBody {
             let rest = self.at_rest(initial, amplitudes, 0.0)?;
             self.inverse_mass(&rest.mass) * of_modes(&rest.stiffness)
         } else {
-            of_modes(&self.still_at(initial, &vec![0.0; self.flexible()], 0.0)?.stiffness)
+            of_modes(&self.still_at(initial, &vec![0.0; self.flexible()], 0.0)?.0.stiffness)
         };
         let eigenvalues: Vec<c64> = squares.eigenvalues().map_err(|_| EigenError { size: self.flexible() })?;
         let mut modes: Vec<LoadedMode> = eigenvalues

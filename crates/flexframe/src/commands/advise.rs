@@ -179,7 +179,7 @@ pub fn advise(
 /// Error of the steps; that of a step that no run can start with is infinite.
 fn step_row(scene: &Scene, needs: &Needs, model: &Model) -> Row {
     let (tolerance, initial) = (scene.effects.tolerance, model.initial(scene));
-    let method = needs.method.unwrap_or(*scene.method());
+    let method = needs.method_of(scene);
     match advice::step_estimate(&Setup { method: model.paper.or(&method), ..model.setup(scene, &initial) }) {
         Ok(Some(estimate)) => estimate.row(tolerance),
         Ok(None) => {

@@ -148,8 +148,8 @@ pub fn price_list(
 /// A body that is built.
 struct Built {
     model: Model,
-    /// Its models with more and more modes: the same effects whatever their number, and no static shapes, which stand for modes that are
-    /// left out.
+    /// Its models with more and more modes, with the same effects for any number. They have no static shapes, which stand for modes that
+    /// are left out.
     with_modes: Vec<Model>,
 }
 

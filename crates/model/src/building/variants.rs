@@ -79,7 +79,7 @@ impl Assembly {
 }
 
 impl<'a> Variants<'a> {
-    /// The model of a scene, which may differ from that of the assembly in its effects and modes, as its needs may.
+    /// The model of a scene. Scene and needs may differ from those of the assembly in effects and modes.
     ///
     /// # Errors
     /// As [`Builder::build`].

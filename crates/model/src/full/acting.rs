@@ -7,7 +7,6 @@ use rigid_kin::Attitude;
 use crate::full::FullModel;
 use crate::load::mesh_load::{Action, MeshLoad};
 use crate::load::rotation::Rotation;
-use crate::tie::mesh_marker::MeshMarker;
 use crate::tie::place::Place;
 
 /// A force and a moment at a marker, global components.
@@ -33,10 +32,10 @@ impl FullModel {
             act(load, time, attitude, &mut dead, &mut others);
         }
         for TieForce { marker, part, force_global, moment_global } in joints {
-            if let Some(place) = self.markers.get(*marker).and_then(|marker| marker.place(*part)) {
+            let Some(marker) = self.markers.get(*marker) else { continue };
+            if let Some(place) = marker.place(*part) {
                 let [force, moment] = [force_global, moment_global].map(|vector| attitude.to_body(vector));
-                let arm =
-                    self.markers.get(*marker).filter(|_| part.is_none()).map_or_else(Vector3::zeros, MeshMarker::arm);
+                let arm = if part.is_none() { marker.arm() } else { Vector3::zeros() };
                 act_at(place, &force, moment + arm.cross(&force), &mut dead, &mut others);
             }
         }

@@ -129,7 +129,7 @@ fn follow(scene: &Scene, needs: &Needs, model: &Model) -> Result<Vec<Observation
         StepControl::Fixed(step) => (scene.time.end / step / COMPARED).ceil() * step,
         StepControl::Tolerance(_) => scene.time.end / COMPARED,
     };
-    let method = needs.method.unwrap_or(*scene.method());
+    let method = needs.method_of(scene);
     let simulation = model.start_with(scene, method, control, Rows::Interval(interval))?;
     Ok(simulation.collect::<Result<Vec<_>, _>>()?)
 }

@@ -41,7 +41,7 @@ pub fn shock(
         return Err(wrong.expected("one, which follows the table").help(help).into());
     };
     let modes = model.equations.real_modes().map_err(|source| source.in_file(&system.path))?;
-    // Frequencies and damping are those of the model: no argument of the command is at fault.
+    // The model gives frequencies and damping: no argument of the command is at fault.
     let failed = |source: ShockError| Kind::Input.of(table).says(source.to_string());
     let peaks = ModePeaks::new(&model.equations, &modes, &motion).map_err(failed)?;
     let mut warnings = model.state.warnings.clone();
