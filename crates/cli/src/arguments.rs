@@ -2,12 +2,16 @@
 
 pub mod values;
 
+use std::path::{Path, PathBuf};
+
 use clap::Args;
 use diagnostic::{Diagnosis, Failure, Kind};
 use flexframe::linearize::LinearSettings;
+use flexframe::outputs::{OutputError, Written};
 use scene::{Flexible, System};
 
 use crate::arguments::values::{angular_velocity, finite, mode_count};
+use crate::output;
 use crate::scene_input::SceneInput;
 
 #[derive(Debug, Args)]
@@ -93,4 +97,28 @@ pub struct FileArgs {
     /// is never replaced.
     #[arg(long)]
     pub overwrite: bool,
+}
+
+/// The folder for the files of a report.
+#[derive(Debug, Args)]
+pub struct FolderArgs {
+    /// Folder for the files: tables as CSV, charts and pages [default: out/<name of the scene file>].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub files: FileArgs,
+}
+
+impl FolderArgs {
+    /// Refuses standard output and files.
+    pub fn check(&self) -> Result<(), Failure> {
+        output::require_file("--output", self.output.as_deref())?;
+        Ok(self.output.as_deref().map_or(Ok(()), |folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?)
+    }
+
+    /// The folder, or one named after the file that the command reads.
+    pub fn folder(&self, input: &Path) -> PathBuf {
+        let named = || Path::new("out").join(input.file_stem().unwrap_or("scene".as_ref()));
+        self.output.clone().unwrap_or_else(named)
+    }
 }

@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 
 use diagnostic::Failure;
 use flexframe::modes;
-use flexframe::outputs::{OutputError, Written, outputs_of_scene};
+use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_scene, outputs_of_system};
 use flexframe::plausible;
+use flexframe::report::{File, Report};
 use flexframe::run::RunSettings;
 use model::Builder;
 use scene::{Scene, Shared, System};
 use slepc::files_of_folder;
 
-use crate::arguments::ModeCountArgs;
+use crate::arguments::{FolderArgs, ModeCountArgs, SceneArgs};
 use crate::output;
 use crate::progress::Bar;
 use crate::scene_input::SceneInput;
@@ -52,6 +53,38 @@ impl Session {
         self.tell_doubts(&system);
         modes.set(&mut system);
         Ok(system)
+    }
+
+    /// Reads a scene, runs a command, writes the files of its report to the folder and prints it. The command reads `tables` beside the scene.
+    pub fn answer(
+        self,
+        SceneArgs { scene, json }: SceneArgs,
+        out: &FolderArgs,
+        files: &[File],
+        tables: &[&Path],
+        command: impl FnOnce(&mut Self, &System) -> Result<Report, Failure>,
+    ) -> Result<(), Failure> {
+        out.check()?;
+        let system = self.read_system(scene)?;
+        let outputs = outputs_of_system(&system, &self.builder, out.files.overwrite);
+        let outputs = tables.iter().fold(outputs, |outputs, table| outputs.and_input(table));
+        self.report(outputs, &out.folder(&system.path), files, json, |session| command(session, &system))
+    }
+
+    /// Claims the files of a command, runs it, writes the files of its report to the folder and prints it.
+    pub fn report(
+        mut self,
+        outputs: Outputs,
+        folder: &Path,
+        files: &[File],
+        json: bool,
+        command: impl FnOnce(&mut Self) -> Result<Report, Failure>,
+    ) -> Result<(), Failure> {
+        outputs.claim(&File::paths(files, folder))?;
+        let mut report = command(&mut self)?;
+        report.write(files, folder, &flexframe::report::program())?;
+        drop(self.bar);
+        output::print(&report, json)
     }
 
     pub fn tell_doubts(&self, system: &System) {

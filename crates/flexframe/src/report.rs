@@ -9,6 +9,8 @@ use model::{MatrixChecks, Meshed, Model};
 use results::kind::{COMBINATION, NATURAL_MODE, STATIC_ANSWER, STATIC_SHAPE};
 use serde::{Serialize, Serializer};
 
+pub use ::report::{File, Form, Report, Table, Value, quantity};
+
 /// Reports of the bodies of a scene, in its order. As JSON it is the report of a single body, and otherwise an object with the list
 /// `bodies`, each with its `name`.
 #[derive(Debug, Clone)]
@@ -152,18 +154,9 @@ pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
-/// A quantity for people to read: seven digits, with a power of ten where it is very large or small.
-pub fn quantity(value: f64) -> String {
-    let magnitude = value.abs();
-    if magnitude == 0.0 {
-        return "0".to_owned();
-    }
-    if !(1e-4..1e7).contains(&magnitude) {
-        return format!("{value:.6e}");
-    }
-    let decimals = (6 - magnitude.log10().floor() as i32).max(0) as usize;
-    let fixed = format!("{value:.decimals$}");
-    if fixed.contains('.') { fixed.trim_end_matches('0').trim_end_matches('.').to_owned() } else { fixed }
+/// Name and version of the program, as a page says them.
+pub fn program() -> String {
+    format!("flexframe {}", env!("CARGO_PKG_VERSION"))
 }
 
 /// Size of the finite-element model.
@@ -407,7 +400,7 @@ pub(crate) fn kinds(model: &Model) -> Vec<&'static str> {
 
 #[cfg(test)]
 mod tests {
-    use super::quantity;
+    use ::report::quantity;
 
     /// Closed form: numbers rounded by hand.
     #[test]

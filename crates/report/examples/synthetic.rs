@@ -13,7 +13,7 @@ use std::path::Path;
 
 use report::{
     Chart, Compared, Component, Curve, Effect, Fact, PageBalance, PageBody, PageHistory, PageMotion, PageStress,
-    PageSurface, PageTrustLine, PageUnits, Report, Responses, RunState, SceneText, Shape, ShapeKind, Trust,
+    PageSurface, PageTrustLine, PageUnits, Responses, RunPage, RunState, SceneText, Shape, ShapeKind, Trust,
 };
 
 const LENGTH: f64 = 1000.0;
@@ -96,7 +96,7 @@ fn surface(along: usize, across: usize) -> PageSurface {
 }
 
 /// Lays the origin into the end of the plate and leaves it there, so that the middle of the plate goes around it.
-fn hinge(report: &mut Report) {
+fn hinge(report: &mut RunPage) {
     let body = &mut report.bodies[0];
     for [x, ..] in body.surface.iter_mut().flat_map(|surface| &mut surface.vertices) {
         *x += LENGTH as f32 / 2.0;
@@ -105,7 +105,7 @@ fn hinge(report: &mut Report) {
 }
 
 /// A square with two shapes: one moves it by (3, 4, 0) under tension in x, one by (0, 0, 2) under shear.
-fn patch() -> Report {
+fn patch() -> RunPage {
     let mut report = plate(2, 2, 0, 3, "Patch");
     let body = &mut report.bodies[0];
     body.surface = Some(PageSurface {
@@ -132,7 +132,7 @@ fn patch() -> Report {
 }
 
 /// A struck plate, a smaller one without stress beside it, and a rigid body without a mesh.
-fn several() -> Report {
+fn several() -> RunPage {
     let mut report = plate(60, 4, 4, 1001, "Three bodies");
     let [mut other, mut rigid] = [plate(20, 4, 2, 1001, ""), plate(4, 2, 0, 1001, "")];
     for (i, (of, name)) in
@@ -159,9 +159,9 @@ fn several() -> Report {
 }
 
 /// A struck plate whose every row is in the page, and another run of it, 200 mm beside it and half as far bent.
-fn compared() -> Report {
+fn compared() -> RunPage {
     let mut report = plate(120, 8, 6, 501, "Two runs of a plate");
-    let Report { times, mut bodies, .. } = plate(60, 4, 2, 301, "");
+    let RunPage { times, mut bodies, .. } = plate(60, 4, 2, 301, "");
     let PageMotion { origins, coordinates, .. } = &mut bodies[0].motion;
     origins.iter_mut().for_each(|[_, y, _]| *y += 200.0);
     coordinates.iter_mut().for_each(|q| *q *= 0.5);
@@ -202,7 +202,7 @@ fn shape(number: usize, kind: ShapeKind, name: String, surface: &PageSurface) ->
     (Shape { name, kind, displacement: displacements }, stresses)
 }
 
-fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) -> Report {
+fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) -> RunPage {
     let surface = surface(along, across);
     let frequency = |k: usize| 12.0 * ((k + 2) as f64 / 2.0).powi(2);
     let (shapes, stresses): (Vec<_>, Vec<_>) = (0..modes)
@@ -285,7 +285,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
         measure: measure.into(),
         reason: reason.into(),
     };
-    Report {
+    RunPage {
         title: title.to_owned(),
         program: "flexframe 0.1.0".to_owned(),
         state: RunState::Complete,

@@ -1,7 +1,7 @@
 //! Sizes and numbers of a report, checked before anything is written.
 
 use crate::ReportError;
-use crate::report::{Compared, Component, Control, PageBody, PageMotion, PageSurface, Report};
+use crate::run_page::{Compared, Component, Control, PageBody, PageMotion, PageSurface, RunPage};
 
 /// Shapes that a page can draw: layers of a texture that every graphics processor has.
 const MAX_SHAPES: usize = 256;
@@ -13,7 +13,7 @@ const UNIT_TOLERANCE: f64 = 1e-6;
 ///
 /// # Errors
 /// The first thing that is wrong.
-pub(crate) fn check(report: &Report) -> Result<(), ReportError> {
+pub(crate) fn check(report: &RunPage) -> Result<(), ReportError> {
     check_bodies(&report.times, &report.bodies)?;
     if let Some(Compared { times, bodies, .. }) = &report.compared {
         check_bodies(times, bodies)?;

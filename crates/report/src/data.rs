@@ -7,8 +7,8 @@ use serde::Serialize;
 use crate::numbers::Numbers;
 use crate::packed::packed;
 use crate::peak::{length, peak, von_mises};
-use crate::report::{
-    Compared, Component, Control, Fact, Live, PageBody, PageMotion, PageStress, PageSurface, Report, RunState, Shape,
+use crate::run_page::{
+    Compared, Component, Control, Fact, Live, PageBody, PageMotion, PageStress, PageSurface, RunPage, RunState, Shape,
     ShapeKind, Trust,
 };
 use crate::thin::{Thinning, spread};
@@ -157,7 +157,7 @@ struct BalanceData<'a> {
 
 impl<'a> Data<'a> {
     /// Data of a report that has been checked.
-    pub(crate) fn new(report: &'a Report) -> Self {
+    pub(crate) fn new(report: &'a RunPage) -> Self {
         let times = &report.times;
         let rows = times.len();
         let thinning = Thinning::new(rows, history_points(report));
@@ -256,7 +256,7 @@ fn motion_rows(times: &[f64], bodies: &[PageBody]) -> Vec<usize> {
 }
 
 /// How many points a history may have.
-fn history_points(report: &Report) -> usize {
+fn history_points(report: &RunPage) -> usize {
     let of_histories: usize = report.histories.iter().map(|history| history.components.len()).sum();
     let of_balances: usize = report.balances.iter().map(|balance| balance.terms.len() + balance.errors.len()).sum();
     let (least, most) = HISTORY_POINTS;

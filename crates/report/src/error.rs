@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use diagnostic::{Diagnosis, Diagnostic, Kind};
+use figures::FigureError;
 
 /// A report that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -34,6 +35,9 @@ pub enum ReportError {
     /// More shapes than the page can draw.
     #[error("the report has {found} shapes, and the page draws {most} at the most; leave out the highest modes")]
     TooManyShapes { found: usize, most: usize },
+    /// A chart cannot be drawn.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
     /// The file could not be written.
     #[error("{}: cannot write the report: {source}; check the folder and the room on its disk", path.display())]
     Write { path: PathBuf, source: io::Error },
@@ -41,6 +45,10 @@ pub enum ReportError {
 
 impl Diagnostic for ReportError {
     fn diagnosis(&self) -> Diagnosis {
-        if let Self::Write { path, .. } = self { Kind::Io.of(path) } else { Kind::Run.alone() }
+        match self {
+            Self::Write { path, .. } => Kind::Io.of(path),
+            Self::Figure(source) => source.diagnosis(),
+            _ => Kind::Run.alone(),
+        }
     }
 }

@@ -6,7 +6,7 @@ use whole_file::write_whole;
 
 use crate::check::check;
 use crate::data::Data;
-use crate::{Report, ReportError};
+use crate::{ReportError, RunPage};
 
 /// The page that `./dev report-page` builds from `web/src`.
 const PAGE: &str = include_str!("../web/page.html");
@@ -22,7 +22,7 @@ const PLACE: &str = "\"the data of the report\"";
 ///
 /// # Errors
 /// Lists that do not fit together, numbers that are not finite, more than 256 shapes.
-pub fn html(report: &Report) -> Result<String, ReportError> {
+pub fn html(report: &RunPage) -> Result<String, ReportError> {
     check(report)?;
     // Strings and finite numbers: they can all be written.
     let json = serde_json::to_string(&Data::new(report)).unwrap_or_default();
@@ -34,6 +34,6 @@ pub fn html(report: &Report) -> Result<String, ReportError> {
 ///
 /// # Errors
 /// Errors of [`html`], and of the system.
-pub fn write(report: &Report, path: &Path) -> Result<(), ReportError> {
+pub fn write(report: &RunPage, path: &Path) -> Result<(), ReportError> {
     write_whole(path, html(report)?).map_err(|source| ReportError::Write { path: path.to_owned(), source })
 }

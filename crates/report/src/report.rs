@@ -1,292 +1,365 @@
-//! Contents of a page.
+//! Everything that a command found, as data. Text, JSON, CSV, charts and pages are made of it in one way each.
 
-use serde::Serialize;
+use std::fmt;
+use std::path::{Path, PathBuf};
 
-/// Everything that a page shows, as plain data. The caller chooses the units and names them.
-#[derive(Debug, Clone, PartialEq)]
+use figures::LineChart;
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value as Json};
+use whole_file::write_whole;
+
+use crate::curves::{Curves, PageWords};
+use crate::table::Table;
+use crate::value::Value;
+use crate::{Fact, ReportError};
+
+/// Width of the labels of lines.
+const LABELS: usize = 9;
+
+/// The report of a command.
+#[derive(Debug, Clone, Default)]
 pub struct Report {
-    /// Title of the run.
-    pub title: String,
-    /// Name and version of the program that made the run.
-    pub program: String,
-    /// State of the run: complete or not.
-    pub state: RunState,
-    /// Names of units.
-    pub units: PageUnits,
-    /// Lines for the top of the page, such as the time and the scheme.
-    pub facts: Vec<Fact>,
-    /// Time of each row of the run, increasing.
-    pub times: Vec<f64>,
-    /// The bodies, at least one.
-    pub bodies: Vec<PageBody>,
-    /// Courses over the rows.
-    pub histories: Vec<PageHistory>,
-    /// Balances of energy and momentum.
-    pub balances: Vec<PageBalance>,
-    /// The scene.
-    pub scene: SceneText,
-    /// Warnings of the run, each a sentence or more.
+    /// Title of the scene; none of a command without a scene.
+    pub title: Option<String>,
+    /// Curves over the frequency, of which a chart and a page are made.
+    pub curves: Option<Curves>,
+    /// Charts that are not of [`Self::curves`], by the name of their files.
+    pub charts: Vec<(&'static str, LineChart)>,
+    /// Tables that are files alone.
+    pub tables: Vec<Table>,
+    /// Reservations.
     pub warnings: Vec<String>,
-    /// The places where the answer may be wrong, the worst first, and what the list does not see.
-    pub trust: Trust,
-    /// The run as data, of a page that computes.
-    pub live: Option<Live>,
-    /// Another run beside it.
-    pub compared: Option<Compared>,
+    /// Files that were written.
+    pub files: Vec<PathBuf>,
+    entries: Vec<Entry>,
 }
 
-/// How far the answer of a run can be trusted.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Trust {
-    /// A line for each place, the worst first; none is not shown.
-    pub lines: Vec<PageTrustLine>,
-    /// Limits of the list.
-    pub unseen: String,
+/// A part of a report, in the order of its text.
+#[derive(Debug, Clone)]
+enum Entry {
+    /// A value, by its path in JSON. Text does not have it.
+    Value(String, Value),
+    /// A line of text with its label. JSON does not have it.
+    Line(String, String),
+    /// Lines of text as they stand.
+    Words(String),
+    /// A table, in both.
+    Table(Table),
+    /// Reports with the names of their bodies, or without, by their path in JSON.
+    List(&'static str, Vec<(Option<String>, Report)>),
 }
 
-/// A place where the answer may be wrong.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PageTrustLine {
-    /// The place, such as "mesh".
-    pub place: String,
-    /// The body that it is worst in; empty for all.
-    pub body: String,
-    /// The error, relative; `None` where it is not known.
-    pub error: Option<f64>,
-    /// Meaning of the error.
-    pub meaning: String,
-    /// The way in which it is known; may be empty.
-    pub known: String,
-    /// Means that would make it smaller, or known; may be empty.
-    pub next: String,
+/// A file that a command writes of its report, by its name without its ending.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum File {
+    /// A table, as CSV.
+    Table(&'static str),
+    /// A chart, as SVG, PDF and PNG. Where there is nothing to draw, it is not written.
+    Chart(&'static str),
+    /// The page of the curves, as HTML.
+    Page(&'static str),
 }
 
-/// Another run that is shown beside the first: its bodies as ghosts. Its courses are components of the histories.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Compared {
-    /// Its name, such as that of its file.
-    pub name: String,
-    /// Time of each of its rows, increasing.
-    pub times: Vec<f64>,
-    /// Its bodies.
-    pub bodies: Vec<PageBody>,
-}
-
-/// A run that the page leads on by itself.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Live {
-    /// The data of the run, as the program of the page reads them.
-    pub run: Vec<u8>,
-    /// The bodies, in the order of the page.
-    pub bodies: Vec<LiveBody>,
-    /// Controls of what may be changed.
-    pub controls: Vec<Control>,
-    /// Names of the units of force, energy, momentum and angular momentum.
-    pub units: [String; 4],
-}
-
-/// A body of a run that the page leads on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LiveBody {
-    /// Its mass.
-    pub mass: f64,
-}
-
-/// A number of the run that may be changed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Control {
-    /// Name of the body or the joint that it is of.
-    pub group: String,
-    /// Its name.
-    pub name: String,
-    /// Unit; empty for a factor.
-    pub unit: String,
-    /// How the program of the page knows it.
-    pub change: [usize; 3],
-    /// Least and greatest value that is offered.
-    pub range: [f64; 2],
-    /// Value of the recorded run.
-    pub recorded: f64,
-}
-
-/// A body of a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageBody {
-    /// Its name; that of a single one is not shown.
-    pub name: String,
-    /// Lines about it, such as its mass and the size of its mesh.
-    pub facts: Vec<Fact>,
-    /// Surface or nodes of the undeformed body; none where the results file has none.
-    pub surface: Option<PageSurface>,
-    /// Shapes of the body, in the order of the coordinates.
-    pub shapes: Vec<Shape>,
-    /// Stresses of the shapes.
-    pub stress: Option<PageStress>,
-    /// Its rows.
-    pub motion: PageMotion,
-    /// Which effects were on, and why.
-    pub effects: Vec<Effect>,
-}
-
-/// State of the run: complete or not.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum RunState {
-    /// It did.
-    Complete,
-    /// It did not. The words say so, and how to continue it.
-    Unfinished(String),
-}
-
-/// Names of units, as they stand after a number.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PageUnits {
-    /// Unit of lengths, such as mm.
-    pub length: String,
-    /// Unit of times, such as s.
-    pub time: String,
-    /// Unit of natural frequencies, such as Hz.
-    pub frequency: String,
-}
-
-/// A line of the summary.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fact {
-    /// Its name.
-    pub label: String,
-    /// Its text.
-    pub value: String,
-}
-
-impl Fact {
-    /// By its name and its text.
-    pub fn new(label: &str, value: impl Into<String>) -> Self {
-        Self { label: label.to_owned(), value: value.into() }
+impl File {
+    /// The paths of some files in a folder.
+    pub fn paths(files: &[Self], folder: &Path) -> Vec<PathBuf> {
+        let paths = |file: &Self| match file {
+            Self::Table(name) => vec![folder.join(format!("{name}.csv"))],
+            Self::Page(name) => vec![folder.join(format!("{name}.html"))],
+            Self::Chart(name) => figures::files(&folder.join(name)).to_vec(),
+        };
+        files.iter().flat_map(paths).collect()
     }
 }
 
-/// Surface of the undeformed body, or its nodes alone where nothing is known of a surface: then there are no triangles.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageSurface {
-    /// Vertices in the reference shape, body axes, from the origin of the body frame.
-    pub vertices: Vec<[f32; 3]>,
-    /// Triangles by indices of vertices, counter-clockwise seen from outside.
-    pub triangles: Vec<[u32; 3]>,
-    /// Edges of the outline by indices of vertices.
-    pub edges: Vec<[u32; 2]>,
+impl Report {
+    /// An empty report of a scene.
+    pub fn new(title: &str) -> Self {
+        Self { title: Some(title.to_owned()), ..Self::default() }
+    }
+
+    /// The reports of the bodies of a scene, in its order. As JSON it is the report of a single body, and otherwise an object with
+    /// the list `bodies`, each with its `name`.
+    pub fn of_bodies(mut bodies: Vec<(Option<String>, Self)>) -> Self {
+        match (bodies.len(), bodies.pop()) {
+            (1, Some((_, report))) => report,
+            (_, last) => {
+                bodies.extend(last);
+                let mut report = Self::default();
+                report.list("bodies", bodies);
+                report
+            }
+        }
+    }
+
+    /// Adds a value to the JSON, by its path: `mesh.nodes` is a key of the object `mesh`.
+    pub fn put(&mut self, path: impl Into<String>, value: impl Into<Value>) {
+        self.entries.push(Entry::Value(path.into(), value.into()));
+    }
+
+    /// Adds a line to the text. A line without a label goes on with the line before it.
+    pub fn line(&mut self, label: &str, text: impl Into<String>) {
+        self.entries.push(Entry::Line(label.to_owned(), text.into()));
+    }
+
+    /// Adds a text to both: a line with a label, and a value by its path.
+    pub fn say(&mut self, label: &str, path: &str, text: impl Into<String>) {
+        let text = text.into();
+        self.put(path, &*text);
+        self.line(label, text);
+    }
+
+    /// Adds lines to the text as they stand.
+    pub fn words(&mut self, text: impl Into<String>) {
+        self.entries.push(Entry::Words(text.into()));
+    }
+
+    /// Adds a table to text and JSON.
+    pub fn table(&mut self, table: Table) {
+        self.entries.push(Entry::Table(table));
+    }
+
+    /// Adds reports, with the names of bodies where they are of bodies; in JSON they are a list.
+    pub fn list(&mut self, path: &'static str, reports: Vec<(Option<String>, Self)>) {
+        self.entries.push(Entry::List(path, reports));
+    }
+
+    /// The value at a path, such as `peaks[0].magnitude`, of the JSON.
+    pub fn value(&self, path: &str) -> Option<Json> {
+        let mut json = &self.json();
+        for part in path.split(['.', '[']) {
+            json = match part.strip_suffix(']') {
+                Some(index) => json.get(index.parse::<usize>().ok()?)?,
+                None => json.get(part)?,
+            };
+        }
+        Some(json.clone())
+    }
+
+    /// The number at a path.
+    pub fn number(&self, path: &str) -> Option<f64> {
+        self.value(path)?.as_f64()
+    }
+
+    /// The tree of all values: what `--json` prints.
+    pub fn json(&self) -> Json {
+        let mut object = Map::new();
+        self.title.iter().for_each(|title| put(&mut object, "title", title.as_str().into()));
+        for entry in &self.entries {
+            match entry {
+                Entry::Value(path, value) => put(&mut object, path, value.json()),
+                Entry::Table(table) => {
+                    if let Some(path) = table.path {
+                        put(&mut object, path, table.json());
+                    }
+                }
+                Entry::List(path, reports) => {
+                    let json = |(name, report): &(Option<String>, Self)| {
+                        let mut object = Map::new();
+                        name.iter().for_each(|name| put(&mut object, "name", name.as_str().into()));
+                        let Json::Object(of_report) = report.json() else { return Json::Null };
+                        object.extend(of_report);
+                        Json::Object(object)
+                    };
+                    put(&mut object, path, reports.iter().map(json).collect());
+                }
+                Entry::Line(..) | Entry::Words(_) => {}
+            }
+        }
+        if !self.files.is_empty() {
+            let files: Vec<Json> = self.files.iter().map(|file| file.display().to_string().into()).collect();
+            put(&mut object, "files", files.into());
+        }
+        put(&mut object, "warnings", self.warnings.clone().into());
+        Json::Object(object)
+    }
+
+    /// The lines of the text, as a page shows them.
+    fn facts(&self) -> Vec<Fact> {
+        let fact = |entry: &Entry| match entry {
+            Entry::Line(label, text) if !label.is_empty() => {
+                let (first, rest) = label.split_at(label.chars().next().map_or(0, char::len_utf8));
+                Some(Fact::new(&format!("{}{rest}", first.to_uppercase()), text.clone()))
+            }
+            _ => None,
+        };
+        self.entries.iter().filter_map(fact).collect()
+    }
+
+    /// Writes files to a folder, each whole or not at all, and notes their paths. The folder is made if it does not exist.
+    ///
+    /// # Errors
+    /// Errors of the system; curves and charts with numbers that are not finite.
+    pub fn write(&mut self, files: &[File], folder: &Path, program: &str) -> Result<(), ReportError> {
+        let failed = |path: &Path| {
+            let path = path.to_owned();
+            move |source| ReportError::Write { path, source }
+        };
+        if !files.is_empty() {
+            std::fs::create_dir_all(folder).map_err(failed(folder))?;
+        }
+        for file in files {
+            let paths = File::paths(&[*file], folder);
+            match (file, &self.curves) {
+                (File::Table(name), _) => {
+                    let of_text = self.entries.iter().filter_map(|entry| match entry {
+                        Entry::Table(table) => Some(table),
+                        _ => None,
+                    });
+                    let Some(table) = self.tables.iter().chain(of_text).find(|table| table.name == *name) else {
+                        continue;
+                    };
+                    for path in &paths {
+                        write_whole(path, table.csv()).map_err(failed(path))?;
+                    }
+                }
+                (File::Page(_), Some(curves)) => {
+                    for path in &paths {
+                        let title = self.title.as_deref().unwrap_or_default();
+                        let words = PageWords { title, program, facts: self.facts(), warnings: &self.warnings };
+                        curves.write(words, path)?;
+                    }
+                }
+                (File::Chart(name), curves) => {
+                    let of_curves = curves.iter().map(|curves| curves.chart(self.title.as_deref().unwrap_or_default()));
+                    let own = self.charts.iter().filter(|(of, _)| of == name).map(|(_, chart)| chart.clone());
+                    let Some(chart) = own.chain(of_curves).next().filter(|chart| !chart.is_empty()) else { continue };
+                    chart.save(folder.join(name))?;
+                }
+                (File::Page(_), None) => continue,
+            }
+            self.files.extend(paths);
+        }
+        Ok(())
+    }
 }
 
-/// A shape of the body, which one coordinate of the motion scales.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Shape {
-    /// Name, such as "mode 3" or "static shape of load 1".
-    pub name: String,
-    /// Kind of the shape.
-    pub kind: ShapeKind,
-    /// Displacement of each vertex of the surface where the coordinate is 1, body axes. Without a surface it is empty.
-    pub displacement: Vec<[f32; 3]>,
+/// Puts a value at a path of an object.
+fn put(object: &mut Map<String, Json>, path: &str, value: Json) {
+    match path.split_once('.') {
+        None => {
+            object.insert(path.to_owned(), value);
+        }
+        Some((first, rest)) => {
+            let inner = object.entry(first).or_insert_with(|| Json::Object(Map::new()));
+            if let Json::Object(inner) = inner {
+                put(inner, rest, value);
+            }
+        }
+    }
 }
 
-/// Kind of a shape.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ShapeKind {
-    /// A vibration mode.
-    Natural {
-        /// Natural frequency, in the unit of frequencies.
-        frequency: f64,
-        /// Damping ratio.
-        damping_ratio: f64,
-    },
-    /// A static shape: the answer to a load beyond the modes. It has no natural frequency.
-    Static,
-    /// A shape that a product of coordinates scales, such as the shortening of a bent beam.
-    SecondOrder,
+impl Serialize for Report {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.json().serialize(serializer)
+    }
 }
 
-/// Stresses on the surface: the sum over the shapes, each times its coordinate, and over products of two or three coordinates.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageStress {
-    /// Unit of stress, such as MPa.
-    pub unit: String,
-    /// For each shape, and then for each product, the stress of each vertex where the coordinate or the product is 1: xx, yy,
-    /// zz, xy, yz, zx in body axes.
-    pub shapes: Vec<Vec<[f32; 6]>>,
-    /// The coordinates of each product, numbered from 0; none where stress is linear in the coordinates.
-    pub products: Vec<Vec<usize>>,
+/// The text: the title, lines, tables, files and warnings.
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut lines: Vec<String> = self.title.iter().cloned().collect();
+        let line = |label: &str, text: &str| format!("  {label:<LABELS$}{text}");
+        for entry in &self.entries {
+            match entry {
+                Entry::Line(label, text) => lines.push(line(label, text)),
+                Entry::Words(text) => lines.push(text.clone()),
+                Entry::Table(table) => lines.extend(table.text()),
+                Entry::List(_, reports) => {
+                    for (name, report) in reports {
+                        if !lines.is_empty() {
+                            lines.push(String::new());
+                        }
+                        lines.extend(name.iter().map(|name| format!("body {name}")));
+                        lines.push(report.to_string());
+                    }
+                }
+                Entry::Value(..) => {}
+            }
+        }
+        lines.extend(self.files.iter().map(|file| line("wrote", &file.display().to_string())));
+        lines.extend(self.warnings.iter().map(|warning| line("warning", warning)));
+        f.write_str(&lines.join("\n"))
+    }
 }
 
-/// The rows of a body. A vertex X is at `origin` + attitude (X + Σ coordinate × shape).
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct PageMotion {
-    /// Position of the origin of the body frame, global axes.
-    pub origins: Vec<[f64; 3]>,
-    /// Attitudes as unit quaternions (w, x, y, z), which take body components to global ones.
-    pub attitudes: Vec<[f64; 4]>,
-    /// Coordinates of the shapes, row after row.
-    pub coordinates: Vec<f64>,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Chart, Curve, Form};
+    use serde_json::json;
 
-/// A quantity over the rows of the motion.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageHistory {
-    /// The group it belongs to, such as "point P1", or "point ring.P1" of one of several bodies. Histories of a group are shown
-    /// together.
-    pub group: String,
-    /// Name, such as "displacement (global)".
-    pub name: String,
-    /// Unit; empty for a plain number.
-    pub unit: String,
-    /// The axis of its plot is at least so long: what is less may be rounding. 0 where that is not known.
-    pub least_range: f64,
-    /// Its components, at least one.
-    pub components: Vec<Component>,
-}
+    fn report() -> Report {
+        let mut report = Report::new("Bar");
+        report.put("mesh.nodes", 12_usize);
+        report.put("mesh.mass", f64::INFINITY);
+        report.say("about", "about", "rest");
+        report.table(
+            Table::new("peaks", "peaks")
+                .titled("highest responses")
+                .shown("output", "output", Form::Plain, ["tip, left", "root"])
+                .shown("magnitude", "magnitude", Form::Power(2), [Some(1234.5), None])
+                .column("rigid", [true, false]),
+        );
+        report.warnings.push("it grows".to_owned());
+        report
+    }
 
-/// A component of a history.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Component {
-    /// Name, such as "x"; empty for the only one.
-    pub name: String,
-    /// Value in each row of the motion.
-    pub values: Vec<f64>,
-}
+    #[test]
+    fn values_are_a_tree_in_their_order() {
+        let json = report().json();
+        let expected = json!({
+            "title": "Bar", "mesh": { "nodes": 12, "mass": "infinite" }, "about": "rest",
+            "peaks": [
+                { "output": "tip, left", "magnitude": 1234.5, "rigid": true },
+                { "output": "root", "magnitude": null, "rigid": false },
+            ],
+            "warnings": ["it grows"],
+        });
+        assert_eq!(json, expected);
+        assert_eq!(report().number("peaks[0].magnitude"), Some(1234.5));
+        assert_eq!(report().value("peaks[2].magnitude"), None);
+        let text = serde_json::to_string(&json).unwrap();
+        assert!(text.find("mesh") < text.find("about") && text.find("about") < text.find("peaks"));
+    }
 
-/// A balance that holds in exact motion.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PageBalance {
-    /// The group it belongs to, such as the name of a body. Balances of a group are shown together.
-    pub group: String,
-    /// Name, such as "energy".
-    pub name: String,
-    /// The law in words.
-    pub law: String,
-    /// Unit of the terms and of the error.
-    pub unit: String,
-    /// The axes of its plots are at least so long: what is less may be rounding. 0 where that is not known.
-    pub least_range: f64,
-    /// The terms.
-    pub terms: Vec<Component>,
-    /// The imbalance: zero in exact motion. More than one for a vector.
-    pub errors: Vec<Component>,
-}
+    #[test]
+    fn text_is_lines_and_aligned_tables() {
+        let expected = "Bar\n  about    rest\n  highest responses\n  output     magnitude\n  tip, left     1.23e3\n  root               -\n  \
+                        warning  it grows";
+        assert_eq!(report().to_string(), expected);
+    }
 
-/// An effect of the model.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Effect {
-    /// Name.
-    pub name: String,
-    /// On, off, or other words.
-    pub state: String,
-    /// The number that decides, in words; may be empty.
-    pub measure: String,
-    /// The reason.
-    pub reason: String,
-}
+    #[test]
+    fn files_are_made_of_tables_and_curves() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut report = report();
+        let curve =
+            Curve { name: "tip".to_owned(), units: vec!["mm".to_owned()], values: vec![vec![0.0, 2.0]], about: vec![] };
+        report.curves = Some(Curves {
+            subject: "response",
+            frequency_unit: "Hz".to_owned(),
+            logarithmic: false,
+            frequencies: vec![0.0, 1.0],
+            charts: vec![Chart::new("Magnitude", true)],
+            headings: Vec::new(),
+            curves: vec![curve],
+        });
+        let files = [File::Table("peaks"), File::Page("bar"), File::Chart("bar")];
+        report.write(&files, folder.path(), "flexframe").unwrap();
+        assert_eq!(report.files, File::paths(&files, folder.path()));
+        assert!(report.files.iter().all(|file| file.is_file()));
+        let csv = std::fs::read_to_string(&report.files[0]).unwrap();
+        assert_eq!(csv, "output,magnitude,rigid\n\"tip, left\",1.2345e3,true\nroot,,false\n");
+    }
 
-/// The scene as it was written.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SceneText {
-    /// Name of the file.
-    pub file: String,
-    /// Its text.
-    pub text: String,
+    #[test]
+    fn several_bodies_are_a_list_and_one_is_itself() {
+        let one = Report::of_bodies(vec![(Some("arm".to_owned()), report())]);
+        assert_eq!(one.json(), report().json());
+        let two = Report::of_bodies(["arm", "leg"].map(|name| (Some(name.to_owned()), report())).to_vec());
+        assert_eq!(two.value("bodies[1].name"), Some("leg".into()));
+        assert_eq!(two.number("bodies[1].mesh.nodes"), Some(12.0));
+        assert!(two.to_string().contains("body leg\nBar\n"));
+    }
 }

@@ -4,13 +4,13 @@ mod data;
 
 use data::{bytes, data};
 use report::{
-    Component, PageBalance, PageBody, PageHistory, PageMotion, PageStress, PageSurface, PageUnits, Report, ReportError,
-    RunState, SceneText, Shape, ShapeKind, Trust, html, write,
+    Component, PageBalance, PageBody, PageHistory, PageMotion, PageStress, PageSurface, PageUnits, ReportError,
+    RunPage, RunState, SceneText, Shape, ShapeKind, Trust, html, write,
 };
 use serde_json::Value;
 
 /// A flat strip of vertices, on which every shape is a wave.
-fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Report {
+fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> RunPage {
     let wave = |k: usize, i: usize| ((k + 1) as f64 * i as f64 / vertices as f64).sin() as f32;
     let shape = |k: usize| Shape {
         name: format!("mode {}", k + 1),
@@ -27,7 +27,7 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
         least_range: 1e-9,
         components: vec![course("x")],
     };
-    Report {
+    RunPage {
         title: "strip".to_owned(),
         program: "test".to_owned(),
         state: RunState::Complete,
@@ -163,12 +163,12 @@ fn a_page_without_surface_shapes_or_histories_can_be_made() {
 
 #[test]
 fn what_does_not_fit_together_is_refused_with_its_place() {
-    let refused = |change: &dyn Fn(&mut Report)| {
+    let refused = |change: &dyn Fn(&mut RunPage)| {
         let mut report = strip(4, 2, 3, 1);
         change(&mut report);
         html(&report).unwrap_err()
     };
-    let message = |change: &dyn Fn(&mut Report)| refused(change).to_string();
+    let message = |change: &dyn Fn(&mut RunPage)| refused(change).to_string();
     assert!(message(&|r| r.times.clear()).contains("no rows"));
     assert!(message(&|r| r.bodies[0].motion = PageMotion::default()).contains("positions has 0 entries where 3"));
     assert!(message(&|r| r.bodies.clear()).contains("no body"));
@@ -178,7 +178,7 @@ fn what_does_not_fit_together_is_refused_with_its_place() {
     );
     let few = message(&|r| r.bodies[0].stress.as_mut().unwrap().shapes.truncate(1));
     assert!(few.contains("stresses of shapes and products has 1 entries"), "{few}");
-    let of_no_shape = |r: &mut Report| {
+    let of_no_shape = |r: &mut RunPage| {
         let stress = r.bodies[0].stress.as_mut().unwrap();
         stress.shapes.push(stress.shapes[0].clone());
         stress.products.push(vec![0, 5]);

@@ -39,7 +39,7 @@ pub struct Reference {
 /// A chart of lines over two axes. Colours are chosen by the order of the series; one without points keeps its colour, so
 /// that charts of the same series have the same colours, and is not in the legend. A series of a few points shows each of
 /// them as a dot. Where all happens within a tenth of a linear x axis, an inset shows that part.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct LineChart {
     /// Title; may be empty.
     pub title: String,
@@ -59,6 +59,11 @@ pub struct LineChart {
 }
 
 impl LineChart {
+    /// True without any point: then there is nothing to draw.
+    pub fn is_empty(&self) -> bool {
+        self.series.iter().all(|series| series.points.is_empty())
+    }
+
     /// Writes `<stem>.svg`, `<stem>.pdf` and `<stem>.png` and returns the three paths. Long histories are thinned to
     /// the highest and lowest point of every half pixel, so that peaks survive.
     ///

@@ -1,6 +1,5 @@
 //! Linear answers: state spaces, frequency responses, random responses, shock response spectra; rates and fits.
 
-mod curves;
 pub mod fit;
 pub mod frequencies;
 pub mod frf;

@@ -5,13 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::given_file::GivenFile;
-use flexframe::outputs::outputs_of_system;
 use flexframe::psd::{self, PsdSettings};
 
 use crate::arguments::values::{band, positive};
-use crate::arguments::{AboutArgs, FileArgs, SceneArgs};
-use crate::output;
-use crate::session::{Session, folder};
+use crate::arguments::{AboutArgs, FolderArgs, SceneArgs};
+use crate::session::Session;
 
 /// Compute the response to stationary random inputs: root mean squares, apparent frequencies, CSV and chart.
 ///
@@ -36,30 +34,21 @@ pub struct Psd {
     /// Loss factor of structural damping, in the place of the scene's damping.
     #[arg(long, value_name = "FACTOR", value_parser = positive)]
     structural: Option<f64>,
-    /// Folder for psd.csv, the chart and the page [default: out/<name of the scene file>].
-    #[arg(short, long, value_name = "DIR")]
-    output: Option<PathBuf>,
     #[command(flatten)]
-    files: FileArgs,
+    out: FolderArgs,
 }
 
 impl Psd {
-    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
-        let Self { scene: SceneArgs { scene, json }, spectra, about, outputs, band, structural, output, files } = self;
+    pub fn execute(self, session: Session) -> Result<(), Failure> {
+        let Self { scene, spectra, about, outputs, band, structural, out } = self;
         GivenFile::expect(
             &spectra,
             &[GivenFile::Table],
             "a CSV file of frequencies and densities (docs/reference/cli.md)",
         )?;
-        output::require_file("--output", output.as_deref())?;
-        let system = session.read_system(scene)?;
-        let folder = folder(&system, output)?;
-        outputs_of_system(&system, &session.builder, files.overwrite)
-            .and_input(&spectra)
-            .claim(&psd::files(&folder))?;
         let settings = PsdSettings { linear: about.settings(Vec::new(), outputs), band, loss_factor: structural };
-        let report = psd::psd(&system, &session.builder, &spectra, &folder, &settings, |p| session.bar.build(p))?;
-        drop(session.bar);
-        output::print(&report, json)
+        session.answer(scene, &out, &psd::FILES, &[&spectra], |session, system| {
+            psd::psd(system, &session.builder, &spectra, &settings, |p| session.bar.build(p))
+        })
     }
 }

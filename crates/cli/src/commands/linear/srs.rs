@@ -1,18 +1,17 @@
 //! `flexframe srs`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::frequencies::Frequencies;
 use flexframe::given_file::GivenFile;
-use flexframe::outputs::{Outputs, Written};
+use flexframe::outputs::Outputs;
 use flexframe::srs::{self, SrsSettings};
 use scene::Interpolation;
 
-use crate::arguments::FileArgs;
+use crate::arguments::FolderArgs;
 use crate::arguments::values::{finite, frequencies, interpolation};
-use crate::output;
 use crate::session::Session;
 
 /// Find shock response spectra of a base motion: CSV, and a diagram (docs/method/shock.md).
@@ -33,11 +32,8 @@ pub struct Srs {
     /// Damping ratios, 0 or more: a spectrum for each.
     #[arg(long, value_name = "ZETA,ZETA,…", value_delimiter = ',', default_values_t = [0.05], value_parser = finite, allow_hyphen_values = true)]
     damping: Vec<f64>,
-    /// Folder for srs.csv, the diagram and the page [default: out/<name of the table>].
-    #[arg(short, long, value_name = "DIR")]
-    output: Option<PathBuf>,
     #[command(flatten)]
-    files: FileArgs,
+    out: FolderArgs,
     /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
     #[arg(long)]
     json: bool,
@@ -45,21 +41,15 @@ pub struct Srs {
 
 impl Srs {
     pub fn execute(self, session: Session) -> Result<(), Failure> {
-        let Self { table, frequencies, interpolation, damping, output, files, json } = self;
+        let Self { table, frequencies, interpolation, damping, out, json } = self;
         GivenFile::expect(
             &table,
             &[GivenFile::Table],
             "a CSV file of times and accelerations (docs/reference/cli.md)",
         )?;
-        output::require_file("--output", output.as_deref())?;
-        if let Some(folder) = &output {
-            Written::FOLDER.check(folder)?;
-        }
-        let folder = output.unwrap_or_else(|| Path::new("out").join(table.file_stem().unwrap_or("srs".as_ref())));
-        Outputs::new(vec![table.clone()], files.overwrite).claim(&srs::files(&folder))?;
+        out.check()?;
+        let outputs = Outputs::new(vec![table.clone()], out.files.overwrite);
         let settings = SrsSettings { frequencies, damping_ratios: damping, interpolation };
-        let report = srs::srs(&table, &folder, &settings)?;
-        drop(session.bar);
-        output::print(&report, json)
+        session.report(outputs, &out.folder(&table), &srs::FILES, json, |_| srs::srs(&table, &settings))
     }
 }

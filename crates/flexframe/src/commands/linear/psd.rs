@@ -1,8 +1,5 @@
 //! `flexframe psd`: the response of a scene to stationary random inputs, Eqs. (F6) to (F8) of `docs/method/linear.md`.
 
-mod files;
-mod page;
-mod report;
 mod responses;
 
 use std::path::Path;
@@ -10,15 +7,19 @@ use std::path::Path;
 use diagnostic::{Diagnostic, Failure};
 use linear::{LinearError, Quadrature};
 use model::{BuildProgress, Builder};
+use report::{Chart, Curve, Curves, File, Form, Report, Table};
 use scene::System;
 
-pub use files::files;
-pub use report::{PsdReport, RandomOutput};
-
 use crate::commands::linear::frf::{damping_of, structural};
-use crate::commands::linear::linearize::{LinearSettings, linear_model};
+use crate::commands::linear::linearize::{LinearModel, LinearSettings, linear_model};
 use crate::commands::linear::spectra::Spectra;
+use crate::commands::modes::frequency_unit;
 use responses::Responses;
+
+/// The files of [`psd`]: `psd.csv`, the page `psd.html`, and `psd` as SVG, PDF and PNG.
+pub const FILES: [File; 3] = [File::Table("psd"), File::Page("psd"), File::Chart("psd")];
+/// Levels, in root mean squares, whose crossings are counted.
+const LEVELS: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 
 /// Settings of random responses.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,8 +32,7 @@ pub struct PsdSettings {
     pub loss_factor: Option<f64>,
 }
 
-/// Computes the response of a scene to the random inputs in a CSV file, and writes `psd.csv`, the page `psd.html`, and `psd` as SVG, PDF and
-/// PNG to a folder.
+/// Computes the response of a scene to the random inputs in a CSV file.
 ///
 /// # Errors
 /// [`Failure`].
@@ -40,10 +40,9 @@ pub fn psd(
     system: &System,
     builder: &Builder,
     table: &Path,
-    folder: &Path,
     settings: &PsdSettings,
     progress: impl FnMut(BuildProgress),
-) -> Result<PsdReport, Failure> {
+) -> Result<Report, Failure> {
     let spectra = Spectra::read(table)?;
     let band = spectra.band(settings.band)?;
     let asked = LinearSettings { inputs: spectra.inputs(), ..settings.linear.clone() };
@@ -59,8 +58,78 @@ pub fn psd(
     let input = spectra.at(&names, &rule.frequencies)?;
     let response = model.equations.frequency_response(&rule.frequencies, damping).map_err(failed)?;
     let responses = Responses::new(&model.equations, &response, &input, &rule.weights).map_err(failed)?;
-    let mut report = PsdReport::new(system, &model, band, &responses);
-    let page = page::page(system, &model.state, &report, &responses, &rule.weights);
-    report.files = files::write(&system.title, &system.units.time, &responses, page, folder)?;
-    Ok(report)
+    Ok(report_of(system, &model, band, &responses, &rule.weights))
+}
+
+fn report_of(
+    system: &System,
+    model: &LinearModel,
+    [low, high]: [f64; 2],
+    responses: &Responses,
+    weights: &[f64],
+) -> Report {
+    let unit = frequency_unit(&system.units.time);
+    let inputs: Vec<&str> = model.equations.inputs.iter().map(|input| &input.name[..]).collect();
+    let count = responses.frequencies.len();
+    let mut report = Report::new(&system.title);
+    report.put("frequency_unit", &unit);
+    report.say("about", "about", model.state.to_string());
+    report.line("inputs", inputs.join(", "));
+    report.put("inputs", inputs);
+    report.line("band", format!("{low} to {high} {unit}, {count} frequencies"));
+    report.put("band", [low, high]);
+    report.put("frequencies", count);
+    let outputs = || responses.outputs.iter();
+    let signals =
+        || outputs().enumerate().map(|(k, (_, response))| (k < responses.first_von_mises).then_some(response));
+    let crossings = || signals().map(|of| of.map(|of| LEVELS.map(|level| of.crossings(level * of.rms))));
+    let told = |level: usize| {
+        crossings().zip(outputs()).map(move |(all, (_, of))| all.map(|all| all[level]).filter(|_| of.rms > 0.0))
+    };
+    report.table(
+        Table::new("outputs", "outputs")
+            .titled("root mean squares")
+            .all()
+            .shown("output", "output", Form::Plain, outputs().map(|(channel, _)| &channel.name))
+            .shown("rms", "rms", Form::Power(6), outputs().map(|(_, of)| of.rms))
+            .shown("unit", "", Form::Plain, outputs().map(|(channel, _)| &channel.unit))
+            .column("rate_rms", signals().map(|of| of.map(|of| of.rate_rms)))
+            .column("crossings", crossings())
+            .text_only(format!("apparent, {unit}"), Form::Fixed(6), told(0))
+            .text_only(format!("above 3 rms, {unit}"), Form::Power(3), told(3)),
+    );
+    report.warnings.clone_from(&model.state.warnings);
+
+    // unit² per cycle per time.
+    let mut table = Table::new("psd", None).column("frequency", responses.frequencies.iter().copied());
+    for (channel, of) in outputs() {
+        table = table.column(&channel.name, of.density.iter().copied());
+    }
+    report.tables.push(table);
+    let curve = |(channel, of): &(linear::Channel, linear::RandomResponse)| {
+        let mut square = 0.0;
+        let cumulated = of.density.iter().zip(weights).map(|(density, weight)| {
+            square += density * weight;
+            f64::sqrt(square)
+        });
+        Curve {
+            name: channel.name.clone(),
+            units: vec![format!("({})²/{unit}", channel.unit), channel.unit.clone()],
+            values: vec![of.density.clone(), cumulated.collect()],
+            about: vec![format!("{:.4e} {}", of.rms, channel.unit)],
+        }
+    };
+    report.curves = Some(Curves {
+        subject: "random response",
+        curves: outputs().map(curve).collect(),
+        frequency_unit: unit.clone(),
+        logarithmic: true,
+        frequencies: responses.frequencies.clone(),
+        charts: vec![
+            Chart::new(format!("Power spectral density, unit² per {unit}"), true),
+            Chart::new("Cumulated rms", false),
+        ],
+        headings: vec!["rms"],
+    });
+    report
 }

@@ -2,22 +2,22 @@
 //! `docs/method/shock.md`.
 
 mod peaks;
-mod report;
 
 use std::path::Path;
 
 use diagnostic::{Diagnostic, Failure, Kind};
 use model::{BuildProgress, Builder};
+use report::{Form, Report, Table, Value};
 use scene::{Interpolation, System};
-use shock::ShockError;
-
-pub use peaks::ShockOutput;
-pub use report::{ShockMode, ShockReport};
+use shock::{Following, ShockError};
 
 use crate::commands::linear::linearize::{LinearSettings, linear_model};
 use crate::commands::linear::srs::table;
-use peaks::ModePeaks;
+use crate::commands::modes::frequency_unit;
+use peaks::{ModePeaks, ShockOutput};
 
+/// Most modes in the summary.
+const SHOWN: usize = 12;
 /// Damping between modes above this part of their own is told.
 const COUPLED: f64 = 0.02;
 
@@ -31,7 +31,7 @@ pub fn shock(
     (table, interpolation): (&Path, Interpolation),
     settings: &LinearSettings,
     progress: impl FnMut(BuildProgress),
-) -> Result<ShockReport, Failure> {
+) -> Result<Report, Failure> {
     let motion = table::read(table, interpolation)?;
     let model = linear_model(system, builder, settings, progress)?;
     let inputs: Vec<String> = model.equations.inputs.iter().map(|input| input.name.clone()).collect();
@@ -65,5 +65,44 @@ pub fn shock(
             mixed.join(", ")
         ));
     }
-    Ok(ShockReport::new(system, (input, interpolation), &motion, &peaks, outputs, warnings))
+
+    let unit = frequency_unit(&system.units.time);
+    let [duration, peak] = [motion.duration(), motion.peak()];
+    let mut report = Report::new(&system.title);
+    let between = interpolation.words();
+    report.line("shock", format!("{input} for {duration:.6}, at most {peak:.6e}, {between} between rows of the table"));
+    report.put("frequency_unit", &unit);
+    report.put("input", input);
+    report.put("interpolation", Value::of(&interpolation));
+    report.put("duration", duration);
+    report.put("peak", peak);
+    let count = peaks.frequencies.len();
+    let following = |value: fn(&Following) -> f64| peaks.following.iter().map(value);
+    report.table(
+        Table::new("modes", "modes")
+            .most(SHOWN)
+            .text_only("mode", Form::Plain, 1..=count)
+            .shown("frequency", unit, Form::Fixed(6), peaks.frequencies.iter().copied())
+            .shown("damping_ratio", "damping", Form::Fixed(4), peaks.damping_ratios.iter().copied())
+            .shown("factor", "factor", Form::Power(4), peaks.factors.iter().copied())
+            .shown("displacement", "displacement", Form::Power(4), following(|of| of.peaks.displacement))
+            .shown("acceleration", "acceleration", Form::Power(4), following(|of| of.peaks.acceleration()))
+            .shown("follows", "follows", Form::Fixed(4), following(|of| of.correlation)),
+    );
+    let by = |of: &ShockOutput| of.largest_mode.map_or_else(|| "rigid".to_owned(), |mode| format!("mode {mode}"));
+    report.table(
+        Table::new("outputs", "outputs")
+            .titled("largest values")
+            .all()
+            .shown("output", "output", Form::Plain, outputs.iter().map(|of| &of.output))
+            .shown("absolute", "absolute", Form::Power(4), outputs.iter().map(|of| of.absolute))
+            .shown("srss", "SRSS", Form::Power(4), outputs.iter().map(|of| of.srss))
+            .shown("cqc", "CQC", Form::Power(4), outputs.iter().map(|of| of.cqc))
+            .shown("unit", "", Form::Plain, outputs.iter().map(|of| &of.unit))
+            .column("rigid", outputs.iter().map(|of| of.rigid))
+            .column("largest_mode", outputs.iter().map(|of| of.largest_mode))
+            .text_only("most by", Form::Plain, outputs.iter().map(by)),
+    );
+    report.warnings = warnings;
+    Ok(report)
 }

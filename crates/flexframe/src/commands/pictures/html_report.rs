@@ -9,7 +9,7 @@ use std::path::Path;
 
 use diagnostic::{Failure, Kind};
 use model::{BuildProgress, Builder};
-use report::Report;
+use report::RunPage;
 
 use crate::drawn::{Drawn, Part};
 
@@ -17,7 +17,7 @@ use crate::drawn::{Drawn, Part};
 ///
 /// # Errors
 /// [`Failure`].
-pub fn contents(file: &Path) -> Result<Report, Failure> {
+pub fn contents(file: &Path) -> Result<RunPage, Failure> {
     let Drawn { results, bodies } = Drawn::open(file, Part::Surface)?;
     contents::contents(file, &results, bodies).ok_or_else(|| no_columns(file))
 }
@@ -30,7 +30,7 @@ fn no_columns(file: &Path) -> Failure {
 ///
 /// # Errors
 /// [`Failure`].
-pub fn compared_contents(file: &Path, other: &Path) -> Result<Report, Failure> {
+pub fn compared_contents(file: &Path, other: &Path) -> Result<RunPage, Failure> {
     let mut name = other.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     if other.file_stem() == file.file_stem() {
         name = other.display().to_string();
@@ -47,18 +47,18 @@ pub fn compared_contents(file: &Path, other: &Path) -> Result<Report, Failure> {
 ///
 /// # Errors
 /// [`Failure`].
-pub fn live_contents(file: &Path, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Report, Failure> {
+pub fn live_contents(file: &Path, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<RunPage, Failure> {
     let Drawn { results, bodies } = Drawn::open(file, Part::Surface)?;
     let led_on = led_on::led_on(file, &results, builder, progress)?;
     let contents = contents::contents(file, &results, bodies).ok_or_else(|| no_columns(file))?;
-    Ok(Report { live: Some(led_on), ..contents })
+    Ok(RunPage { live: Some(led_on), ..contents })
 }
 
 /// The page as a text.
 ///
 /// # Errors
 /// Contents that are no page, and errors of the system.
-pub fn page(report: &Report) -> Result<String, Failure> {
+pub fn page(report: &RunPage) -> Result<String, Failure> {
     Ok(report::html(report)?)
 }
 
@@ -66,6 +66,6 @@ pub fn page(report: &Report) -> Result<String, Failure> {
 ///
 /// # Errors
 /// Contents that are no page, and errors of the system.
-pub fn write(report: &Report, path: &Path) -> Result<(), Failure> {
+pub fn write(report: &RunPage, path: &Path) -> Result<(), Failure> {
     Ok(report::write(report, path)?)
 }

@@ -4,12 +4,11 @@ use std::f64::consts::TAU;
 
 use linear::{Output, RealModes, SecondOrder};
 use rayon::prelude::*;
-use serde::Serialize;
 use shock::{BaseMotion, Following, ModalPeak, Peaks, ShockError, Sum};
 
 /// The largest value of an output, in three sums.
-#[derive(Debug, Clone, Serialize)]
-pub struct ShockOutput {
+#[derive(Debug, Clone)]
+pub(super) struct ShockOutput {
     /// Its name.
     pub output: String,
     /// Its unit.

@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use report::{Compared, Component, Fact, PageBalance, PageHistory, PageMotion, Report};
+use report::{Compared, Component, Fact, PageBalance, PageHistory, PageMotion, RunPage};
 
 use crate::report::quantity;
 
 /// A page of a run with another one, which is named `name`. Both are shown where they have the time in common; `None` where that is
 /// less than two rows of the first.
-pub(super) fn compared(mut first: Report, other: Report, name: &str) -> Option<Report> {
+pub(super) fn compared(mut first: RunPage, other: RunPage, name: &str) -> Option<RunPage> {
     let (start, end) = (*other.times.first()?, *other.times.last()?);
     let slack = 1e-9 * end.abs();
     let inside = |time: &f64| (start - slack..=end + slack).contains(time);
@@ -53,7 +53,7 @@ pub(super) fn compared(mut first: Report, other: Report, name: &str) -> Option<R
 }
 
 /// The course of both runs, and their difference; `None` where the other has no such course.
-fn beside(history: &PageHistory, times: &[f64], other: &Report, name: &str) -> Option<[PageHistory; 2]> {
+fn beside(history: &PageHistory, times: &[f64], other: &RunPage, name: &str) -> Option<[PageHistory; 2]> {
     let is_same = |of: &&PageHistory| of.group == history.group && of.name == history.name && of.unit == history.unit;
     let found = other.histories.iter().find(is_same)?;
     let [mut theirs, mut differences] = [Vec::new(), Vec::new()];
@@ -87,7 +87,7 @@ fn at(times: &[f64], rows: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 /// Leaves only some rows of a run.
-fn clip(report: &mut Report, rows: Range<usize>) {
+fn clip(report: &mut RunPage, rows: Range<usize>) {
     report.times = report.times[rows.clone()].to_vec();
     for body in &mut report.bodies {
         let shapes = body.shapes.len();

@@ -6,7 +6,7 @@ use fem_tet10::von_mises;
 use nalgebra::Vector3;
 use report::{
     Component, Effect, Fact, PageBalance, PageBody, PageMotion, PageStress, PageSurface, PageTrustLine, PageUnits,
-    Report, RunState, SceneText, Shape, ShapeKind, Trust,
+    RunPage, RunState, SceneText, Shape, ShapeKind, Trust,
 };
 use results::kind::{NATURAL_MODE, STATIC_SHAPE};
 use results::{
@@ -26,13 +26,13 @@ use crate::surface;
 use crate::trust::card::TrustCard;
 
 /// All of it; `None` where the file has not got the columns that it needs.
-pub(super) fn contents(file: &Path, results: &Results, drawn: Vec<DrawnBody>) -> Option<Report> {
+pub(super) fn contents(file: &Path, results: &Results, drawn: Vec<DrawnBody>) -> Option<RunPage> {
     let run = &results.metadata;
     let units = &run.units;
     let quantities = Quantities::new(results);
     let scene_file = scene_file::to_path(&run.scene_file);
     let bodies = results.bodies().zip(drawn).map(|(of, drawn)| body(of, drawn.shapes, results));
-    Some(Report {
+    Some(RunPage {
         title: run.title.clone(),
         program: format!("flexframe {}", run.program_version),
         state: state(file, results)?,
