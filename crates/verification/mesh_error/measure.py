@@ -34,18 +34,16 @@ tolerance = 1e-6
 HEAD = """# The error that a mesh makes
 
 Made by `./dev mesh-error`: the estimated error of each frequency (Eq. (M15) of [the modes](../method/modes.md), `mesh_errors` of
-`flexframe modes --json`) beside the true one, which is the difference to the frequency of the same shape on a fine mesh. Shapes
-are paired by their MAC (`--mac`), and pairs below 0.9 are left out. The ratio is estimate over truth: its least, its median and its
-largest of the {modes} lowest modes.
+`flexframe modes --json`) beside the true one, the difference to the frequency of the same shape on a fine mesh (a MAC of 0.9 or more,
+`--mac`). The ratio is estimate over truth: its least, its median and its largest of the {modes} lowest modes.
 
 | body | size of elements, mm | nodes | largest true error, % | estimate over truth |
 |---|---|---|---|---|
 """
 TAIL = """
-On meshes that resolve the bending of the body the estimate is a half to nine tenths of the truth: a recovered stress that is the mean around
-a node is not much closer to the truth than that of the elements. With fewer than two elements across a wall, single modes (torsion above
-all) are up to ten times worse than the estimate. A frequency whose estimate is above a per cent calls for a finer mesh; one
-that has to be right to a tenth of a per cent wants an estimate of 0.05 % or less.
+On meshes that resolve the bending of the body the estimate is a half to nine tenths of the truth. With fewer than two elements across a wall,
+single modes (torsion above all) are up to ten times worse than the estimate. A frequency whose estimate is above a per cent calls for a finer
+mesh; one that has to be right to a tenth of a per cent wants an estimate of 0.05 % or less.
 """
 
 

@@ -83,13 +83,13 @@ pub fn page(mut notify: impl FnMut(String)) -> Result<String, Box<dyn Error>> {
     Ok(format!(
         "# Intervals of a fit\n\n\
          Made by `./dev fit-trials`: {TRIALS} fits each of the clamped bar of `meshes/rotating_bar.msh` with a mass at its tip to frequencies \
-         that were drawn by\nlot about the true ones, with a standard deviation of {:.0} % each. The search begins with values that are {:.0} % off. \
-         Counted is how often the\n95 % interval that `flexframe fit` states has the true value in it: {expected:.0} are expected, and {:.0} to {:.0} \
-         are within two standard deviations of such\na count. The interval is made of the deviations of the frequencies, which are stated, or of what is \
-         left of the frequencies, by\nStudent's distribution.\n\n\
+         drawn by\nlot about the true ones, with a standard deviation of {:.0} % each. The search begins {:.0} % off. \
+         Counted is how often the\n95 % interval that `flexframe fit` states has the true value in it: {expected:.0} are expected, {:.0} to {:.0} \
+         are within two standard deviations. The\ninterval is made of stated deviations of the frequencies, or, by Student's \
+         distribution, of what is left of them.\n\n\
          | case | deviations | parameter | hits of {TRIALS} | mean error, % | scatter, % | mean half width, % |\n|---|---|---|---|---|---|---|\n{rows}\n\
-         Errors and widths are those of logarithms. The mean error is zero but for the scatter over √{TRIALS}: the fit has no bias that counts. The same \
-         fits\nwithout stated deviations have wider intervals, since they have to tell the scatter from {} frequencies beyond the parameters or fewer.\n",
+         Errors and widths are of logarithms. The mean error is zero but for the scatter over √{TRIALS}. Without stated deviations the intervals are\n\
+         wider: they tell the scatter from {} frequencies beyond the parameters or fewer.\n",
         100.0 * NOISE,
         100.0 * (START - 1.0),
         expected - spread,

@@ -85,7 +85,7 @@ def method(parts):
         f"{patience} s are stopped. A time is the median, with ± the range. A ratio is that of two runs of the same turn: median, "
         "and least to largest; above 1 flexframe is faster, or smaller. Each program runs on one thread unless it says "
         "otherwise. Memory is the peak of the whole process (of both ranks together). "
-        f"The load of the machine, these runs with it, was {min(loads):.1f} to {max(loads):.1f}."
+        f"The load of the machine was {min(loads):.1f} to {max(loads):.1f}."
     )
 
 

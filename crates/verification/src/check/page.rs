@@ -58,8 +58,7 @@ pub fn page(picture: &Path, mut progress: impl FnMut(&str)) -> Result<String, St
     let _ = write!(
         page,
         "\n## In motion\n\n\
-         The check takes the accelerations of a row as given, so it does not see how far the phase of a vibration is off, nor that the \
-         inertia lacks the foreshortening. A body is let go from its first mode; eight modes and the nonlinear body (midpoint \
+         The check does not see how far the phase of a vibration is off, nor that the inertia lacks the foreshortening. A body is let go from its first mode; eight modes and the nonlinear body (midpoint \
          rule, 200 steps a period) move for four periods. Largest values in the rows of the fourth period, over the largest \
          displacement: how far the model is off, and how far the check says that it is.\n\n\
          | body | let go at, of its length | model | off, % | stated, % | beside the modes, % | frequency that it states, % |\n\

@@ -12,10 +12,9 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
         "# Hard cases\n\n\
          Every case is run with every scheme by `./dev stability`. A cell has the largest error or drift of \
          the whole run; tests assert bounds of them, and `crates/verification/src/stability` says why each case is hard. Errors are \
-         against closed forms where nothing else is said; attitudes are in rad; \"drift\" is that of energy and angular \
+         against closed forms where nothing else is said; attitudes are in rad; \"drift\" is of energy and angular \
          momentum, relative. \"Stops\" means that the body is refused, or that the run ends at its first bad step, with the words \
-         below the table in its message: where half of the energy comes from nowhere, or the paper's formulation has turned \
-         the body by 1 rad of its own. Nothing ends in NaN.\n",
+         below the table in its message. Nothing ends in NaN.\n",
     );
     let mut broken = Vec::new();
     for (title, cases) in sections() {
