@@ -71,6 +71,18 @@ impl Table {
         Self { most, ..self }
     }
 
+    /// With rows in the text that are spread over all, the first and the last among them.
+    #[must_use]
+    pub fn spread(self) -> Self {
+        Self { spread: true, ..self }
+    }
+
+    /// With a line in its place where it has no rows.
+    #[must_use]
+    pub fn without_rows(self, empty: &'static str) -> Self {
+        Self { empty, ..self }
+    }
+
     /// With a column of JSON and CSV.
     #[must_use]
     pub fn column<V: Into<Value>>(self, key: impl Into<String>, values: impl IntoIterator<Item = V>) -> Self {
@@ -151,7 +163,8 @@ impl Table {
         let rows = (0..=last).filter(|i| if self.spread { i % stride == 0 || *i == last } else { *i < most });
         let rows: Vec<usize> = rows.collect();
         let of_column = |column: &&Column| {
-            let is_words = column.values.iter().all(|value| matches!(value, Value::Json(Json::String(_) | Json::Null)));
+            let is_words = |value: &Value| matches!(value, Value::Json(Json::String(text)) if !begins_as_number(text));
+            let is_words = column.values.iter().any(is_words);
             let heading = column.heading.clone().unwrap_or_default();
             let cells: Vec<String> = rows.iter().map(|row| column.form.text(&column.values[*row])).collect();
             let width = cells.iter().chain([&heading]).map(|cell| cell.chars().count()).max().unwrap_or(0);
@@ -188,6 +201,10 @@ impl Form {
             _ => plain(value),
         }
     }
+}
+
+fn begins_as_number(text: &str) -> bool {
+    text.starts_with(|letter: char| letter.is_ascii_digit() || letter == '-')
 }
 
 /// A value as a field of CSV.

@@ -155,7 +155,7 @@ fn decks_of_all_kinds_have_the_masses_and_frequencies_of_other_programs() {
                 orders: Vec::new(),
                 about_rest: AboutRest::Auto,
             };
-            let report = campbell(&scene, &Builder::default(), folder.path(), &settings, |_| ()).unwrap();
+            let report = campbell(&scene, &Builder::default(), &settings, |_| ()).unwrap();
             let said = "rest     not found of a body with masses beside it (`tied_masses`): vibrations about the undeformed body";
             assert!(report.to_string().contains(said), "{report}");
         }

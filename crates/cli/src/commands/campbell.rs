@@ -1,17 +1,14 @@
 //! `flexframe campbell`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::campbell::{self, AboutRest, CampbellSettings, Speeds, SystemCampbellSettings};
 use flexframe::outputs::outputs_of_system;
 
 use crate::arguments::values::{about_rest, axis, positive, speeds};
-use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
+use crate::arguments::{FolderArgs, ModeCountArgs, SceneArgs};
 use crate::cli_error::CliError;
-use crate::output;
-use crate::session::{Session, folder};
+use crate::session::Session;
 
 /// Find natural frequencies against spin speed: table, CSV and Campbell diagram, with critical speeds.
 ///
@@ -50,36 +47,31 @@ pub struct Campbell {
     about_rest: AboutRest,
     #[command(flatten)]
     modes: ModeCountArgs,
-    /// Folder for campbell.csv, critical_speeds.csv and the diagram [default: out/<name of the scene file>].
-    #[arg(short, long, value_name = "DIR")]
-    output: Option<PathBuf>,
     #[command(flatten)]
-    files: FileArgs,
+    out: FolderArgs,
 }
 
 impl Campbell {
-    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
-        let Self { scene: SceneArgs { scene, json }, axis, joint, speeds, orders, about_rest, modes, output, files } =
-            self;
-        output::require_file("--output", output.as_deref())?;
+    pub fn execute(self, session: Session) -> Result<(), Failure> {
+        let Self { scene: SceneArgs { scene, json }, axis, joint, speeds, orders, about_rest, modes, out } = self;
+        out.check()?;
         let system = session.read_one(scene, modes)?;
-        let folder = folder(&system, output)?;
-        outputs_of_system(&system, &session.builder, files.overwrite).claim(&campbell::files(&folder))?;
-        let report = if system.has_connections() {
-            let settings = SystemCampbellSettings { axis, joint, speeds, orders };
-            campbell::campbell_of_system(&system, &session.builder, &folder, &settings, |p| session.bar.campbell(p))
-        } else {
-            let axis = axis.ok_or_else(|| CliError::Option {
-                option: "--axis",
-                found: "none".to_owned(),
-                expected: "the axis of the spin, in the axes of the mesh".to_owned(),
-                help: "give x, y, z, or three numbers such as 0,0.6,0.8".to_owned(),
-            })?;
-            let settings = CampbellSettings { axis, speeds, orders, about_rest };
-            campbell::campbell(system.only_body()?, &session.builder, &folder, &settings, |p| session.bar.campbell(p))
-        };
-        let report = report.map_err(|error| modes.refusal(error))?;
-        drop(session.bar);
-        output::print(&report, json)
+        let outputs = outputs_of_system(&system, &session.builder, out.files.overwrite);
+        session.report(outputs, &out.folder(&system.path), &campbell::FILES, json, |session| {
+            let report = if system.has_connections() {
+                let settings = SystemCampbellSettings { axis, joint, speeds, orders };
+                campbell::campbell_of_system(&system, &session.builder, &settings, |p| session.bar.campbell(p))
+            } else {
+                let axis = axis.ok_or_else(|| CliError::Option {
+                    option: "--axis",
+                    found: "none".to_owned(),
+                    expected: "the axis of the spin, in the axes of the mesh".to_owned(),
+                    help: "give x, y, z, or three numbers such as 0,0.6,0.8".to_owned(),
+                })?;
+                let settings = CampbellSettings { axis, speeds, orders, about_rest };
+                campbell::campbell(system.only_body()?, &session.builder, &settings, |p| session.bar.campbell(p))
+            };
+            report.map_err(|error| modes.refusal(error))
+        })
     }
 }

@@ -9,15 +9,11 @@
 mod bent;
 mod branches;
 mod critical;
-mod diagram;
-mod files;
 mod limits;
 mod report;
 mod system;
-mod table;
 
-use std::path::Path;
-
+use ::report::Report;
 use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{Effect, EigenError, SteadySpin};
 use model::{BuildError, BuildProgress, Builder, Needs};
@@ -25,13 +21,12 @@ use nalgebra::Vector3;
 use scene::Scene;
 
 pub use bent::AboutRest;
-pub use branches::Branch;
-pub use critical::{Critical, CriticalKind, SwingLimit};
-pub use files::files;
-pub use report::{CampbellReport, SpinEffects};
+use critical::CriticalKind;
+pub use report::FILES;
+use report::{Diagram, SpinEffects};
 pub use system::{SystemCampbellSettings, campbell_of_system};
 
-use crate::commands::modes::{frequency_unit, require_flexible};
+use crate::commands::modes::require_flexible;
 use crate::report::MeshReport;
 use bent::BentSpin;
 use branches::Branches;
@@ -110,8 +105,7 @@ fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, Failure> {
     })
 }
 
-/// Computes the diagram of a scene, and writes `campbell.csv`, `critical_speeds.csv`, and `campbell` as SVG, PDF and PNG
-/// to `folder`.
+/// Computes the diagram of a scene.
 ///
 /// Effects are those of the scene's `[effects]`, where `"auto"` is on. All its modes are kept (`flexible = "auto"`: the
 /// most there may be).
@@ -121,10 +115,9 @@ fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, Failure> {
 pub fn campbell(
     scene: &Scene,
     builder: &Builder,
-    folder: &Path,
     settings: &CampbellSettings,
     mut progress: impl FnMut(CampbellProgress),
-) -> Result<CampbellReport, Failure> {
+) -> Result<Report, Failure> {
     let axis = unit(settings.axis)?;
     let speeds = checked(settings.speeds, &settings.orders)?;
     // The rest at each speed is found here.
@@ -184,15 +177,7 @@ pub fn campbell(
             (branches, stable_below, critical, 0)
         }
     };
-    let mut report = CampbellReport {
-        bodies: Vec::new(),
-        rotor: None,
-        rotors: Vec::new(),
-        warnings: Vec::new(),
-        title: scene.title.clone(),
-        time_unit: scene.units.time.clone(),
-        length_unit: scene.units.length.clone(),
-        frequency_unit: frequency_unit(&scene.units.time),
+    let diagram = Diagram {
         mesh: MeshReport::new(&model),
         axis: axis.into(),
         origin: model.body.origin.into(),
@@ -200,12 +185,10 @@ pub fn campbell(
         no_rest,
         stable_below,
         critical_speeds,
-        swing_limits: Vec::new(),
         deflection: bent.iter().flat_map(|bent| branches.speeds.iter().map(|speed| bent.deflection(*speed))).collect(),
         branches: branches.lines(static_shapes),
         speeds: branches.speeds,
-        files: Vec::new(),
+        ..Diagram::default()
     };
-    report.files = files::write(&report, folder, &settings.orders)?;
-    Ok(report)
+    Ok(diagram.report(&scene.title, [&scene.units.length, &scene.units.time], &settings.orders))
 }

@@ -1,19 +1,17 @@
 //! The diagram of bodies that joints tie together: all of them spin about one axis, or a rotor on a support.
 
-use std::path::Path;
-
 use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{Effect, Rotor, RotorError, SteadyError, SystemMotion};
 use model::{Builder, Needs};
 use nalgebra::Vector3;
+use report::Report;
 use scene::System;
 
 use super::branches::Branches;
 use super::critical::CriticalKind;
 use super::limits::Limits;
-use super::report::{CampbellReport, SpinEffects};
-use super::{CampbellProgress, Speeds, checked, files, unit};
-use crate::commands::modes::frequency_unit;
+use super::report::{Diagram, SpinEffects};
+use super::{CampbellProgress, Speeds, checked, unit};
 use crate::commands::system_modes::{Rotors, TiedMotion, body_names, tied_motions};
 
 /// Settings of the diagram of a system.
@@ -29,7 +27,7 @@ pub struct SystemCampbellSettings {
     pub orders: Vec<f64>,
 }
 
-/// Computes the diagram of the first system of a scene, and writes the files of [`campbell`](super::campbell) to `folder`.
+/// Computes the diagram of the first system of a scene.
 ///
 /// At each speed the bodies are deformed as the spin asks, and drives hold still what they turn. Loads are left out; dampers and the
 /// damping of modes count. Where other joints keep the bodies from that spin, the body beyond the joint spins alone: a rotor on a support.
@@ -40,10 +38,9 @@ pub struct SystemCampbellSettings {
 pub fn campbell_of_system(
     system: &System,
     builder: &Builder,
-    folder: &Path,
     settings: &SystemCampbellSettings,
     mut progress: impl FnMut(CampbellProgress),
-) -> Result<CampbellReport, Failure> {
+) -> Result<Report, Failure> {
     let speeds = checked(settings.speeds, &settings.orders)?;
     let models = builder.needing(Needs::spin()).models(system, |p| progress(CampbellProgress::Build(p)))?;
     let motions = tied_motions(system, &models)?;
@@ -91,15 +88,9 @@ pub fn campbell_of_system(
     let unstable = branches.modes.iter().position(grows).map(|at| branches.speeds[at]);
     let begins = limits.critical.iter().filter(|critical| critical.kind == CriticalKind::GrowthBegins);
     let stable_below = begins.map(|critical| critical.speed).chain(unstable).reduce(f64::min);
-    let mut report = CampbellReport {
-        title: system.title.clone(),
-        time_unit: system.units.time.clone(),
-        length_unit: system.units.length.clone(),
-        frequency_unit: frequency_unit(&system.units.time),
-        mesh: None,
+    let diagram = Diagram {
         bodies: body_names(system, &motion.bodies),
         rotor: rotor.map(|rotor| body_names(system, &motion.bodies).swap_remove(rotor.body)),
-        no_rest: None,
         warnings: others.warnings(branches.modes.iter().flatten().map(|mode| mode.circular_frequency)),
         rotors: others.found,
         axis: axis.into(),
@@ -112,13 +103,11 @@ pub fn campbell_of_system(
         stable_below,
         critical_speeds: limits.critical,
         swing_limits: limits.swings,
-        deflection: Vec::new(),
         branches: branches.lines(static_shapes),
         speeds: branches.speeds,
-        files: Vec::new(),
+        ..Diagram::default()
     };
-    report.files = files::write(&report, folder, &settings.orders)?;
-    Ok(report)
+    Ok(diagram.report(&system.title, [&system.units.length, &system.units.time], &settings.orders))
 }
 
 /// The refusal of a system whose axis of the spin is not known.
