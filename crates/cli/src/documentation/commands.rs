@@ -19,13 +19,30 @@ fn page() -> String {
          [The command line](cli.md) has exit codes, output and what needs more words.\n\n\
          These options go with every command:\n\n"
         .to_owned();
-    page += &table(program.get_arguments().filter(|argument| argument.is_global_set()));
-    for command in program.get_subcommands().filter(|command| command.get_name() != "help") {
+    page += &table(program.get_arguments().filter(|argument| argument.is_global_set()).map(row));
+    let commands: Vec<&Command> = program.get_subcommands().filter(|command| command.get_name() != "help").collect();
+    let all: Vec<(String, String)> = commands.iter().flat_map(|command| arguments(command)).map(row).collect();
+    let of_many =
+        |row: &(String, String)| row.0.starts_with('-') && all.iter().filter(|other| *other == row).count() >= 3;
+    let mut shared: Vec<(String, String)> = Vec::new();
+    for row in all.iter().filter(|row| of_many(row)) {
+        if !shared.contains(row) {
+            shared.push(row.clone());
+        }
+    }
+    page += "\n## Options of several commands\n\nEach of these commands names the ones that it takes.\n\n";
+    page += &table(shared.into_iter());
+    for command in commands {
         let about = command.get_long_about().or(command.get_about()).map(ToString::to_string).unwrap_or_default();
         let _ = writeln!(page, "\n## {}\n\n{}\n", command.get_name(), about.trim());
         let usage = command.clone().render_usage().to_string();
         let _ = writeln!(page, "`{}`\n", usage.trim());
-        page += &table(arguments(command));
+        let (many, own): (Vec<_>, Vec<_>) = arguments(command).map(row).partition(of_many);
+        page += &table(own.into_iter());
+        if !many.is_empty() {
+            let names: Vec<String> = many.iter().map(|(name, _)| format!("`{name}`")).collect();
+            let _ = writeln!(page, "\n[As other commands](#options-of-several-commands): {}.", names.join(", "));
+        }
     }
     page
 }
@@ -38,11 +55,13 @@ fn arguments(command: &Command) -> impl Iterator<Item = &Arg> {
     })
 }
 
-fn table<'a>(arguments: impl Iterator<Item = &'a Arg>) -> String {
-    let mut rows = String::new();
-    for argument in arguments {
-        let _ = writeln!(rows, "| `{}` | {} |", name(argument).replace('|', "\\|"), meaning(argument));
-    }
+/// Name and meaning of an option.
+fn row(argument: &Arg) -> (String, String) {
+    (name(argument).replace('|', "\\|"), meaning(argument))
+}
+
+fn table(options: impl Iterator<Item = (String, String)>) -> String {
+    let rows: String = options.map(|(name, meaning)| format!("| `{name}` | {meaning} |\n")).collect();
     if rows.is_empty() { rows } else { format!("| option | meaning |\n|---|---|\n{rows}") }
 }
 
