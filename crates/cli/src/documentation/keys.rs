@@ -1,6 +1,6 @@
 //! The page of all keys of a scene, made of the JSON schema that editors use.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write;
 
 use serde_json::Value;
@@ -28,7 +28,8 @@ impl<'a> Page<'a> {
              [The scene file](scene.md) and [scenes of several bodies](systems.md) say what the keys mean together, \
              and which go with which. `[]` is an entry of a list, `NAME` a name of your own. Required keys are in bold.\n\n"
             .to_owned();
-        text += &page.table(schema, "", false);
+        text += &table(&page.rows(schema, ""));
+        let mut of_body: Vec<Row> = Vec::new();
         while let Some((section, path)) = page.to_write.pop_front() {
             // What a body of several shares with one alone has its tables there.
             if path == "bodies.NAME" && !page.to_write.is_empty() {
@@ -40,32 +41,59 @@ impl<'a> Page<'a> {
                 let _ = writeln!(text, "{about}\n");
             }
             match section["oneOf"].as_array().filter(|_| !section["properties"].is_object()) {
-                Some(kinds) => {
-                    for kind in kinds.iter().filter(|kind| kind["properties"].is_object()) {
-                        let name = kind["properties"]["kind"]["const"].as_str().unwrap_or_default();
-                        let kind_is = format!("`kind = \"{name}\"`");
-                        let about = about(kind).unwrap_or_default();
-                        let about = about.trim_start_matches(&kind_is).trim_start_matches(": ");
-                        let _ = writeln!(text, "**{kind_is}** {about}\n");
-                        text += &page.table(kind, &path, true);
-                        text.push('\n');
+                Some(kinds) => text += &page.kinds(kinds, &path),
+                None => {
+                    let mut rows = page.rows(section, &path);
+                    if path == "body" {
+                        of_body.clone_from(&rows);
+                    } else if path == "bodies.NAME" {
+                        // The rest is in the table of `body`.
+                        rows.retain(|row| !of_body.contains(row));
                     }
-                    text.truncate(text.trim_end().len());
-                    text.push('\n');
+                    text += &table(&rows);
                 }
-                None => text += &page.table(section, &path, false),
             }
         }
         text
     }
 
-    fn table(&mut self, section: &'a Value, path: &str, is_kind: bool) -> String {
-        let required = section["required"].as_array().map(Vec::as_slice).unwrap_or_default();
-        let mut rows = String::new();
-        for (key, of) in section["properties"].as_object().into_iter().flatten() {
-            if is_kind && key == "kind" {
-                continue;
+    /// The kinds of a table, and its keys, each once with the kinds that have it.
+    fn kinds(&mut self, kinds: &'a [Value], path: &str) -> String {
+        let mut names = Vec::new();
+        let mut keys: Vec<(Row, Vec<String>)> = Vec::new();
+        for kind in kinds.iter().filter(|kind| kind["properties"].is_object()) {
+            let name = format!("`\"{}\"`", kind["properties"]["kind"]["const"].as_str().unwrap_or_default());
+            let about = about(kind).unwrap_or_default();
+            let about =
+                about.trim_start_matches(&format!("`kind = {}`", name.trim_matches('`'))).trim_start_matches(": ");
+            names.push([name.clone(), about.to_owned()]);
+            for row in self.rows(kind, path).into_iter().filter(|row| !row[0].contains("`kind`")) {
+                match keys.iter_mut().find(|(known, _)| *known == row) {
+                    Some((_, of)) => of.push(name.clone()),
+                    None => keys.push((row, vec![name.clone()])),
+                }
             }
+        }
+        let count = names.len();
+        keys.sort_by_key(|(row, _)| row[0].trim_matches('*').to_owned());
+        let names: String = names.iter().map(|[name, about]| format!("| {name} | {about} |\n")).collect();
+        let rows: Vec<Row> = keys
+            .into_iter()
+            .map(|([key, value, default, about], of)| {
+                let of = if of.len() == count { "all kinds".to_owned() } else { of.join(", ") };
+                [format!("{key} of {of}"), value, default, about]
+            })
+            .collect();
+        format!("| `kind` | |\n|---|---|\n{names}\n{}", table(&rows))
+    }
+
+    /// Key, value, default and meaning.
+    fn rows(&mut self, section: &'a Value, path: &str) -> Vec<Row> {
+        let required = section["required"].as_array().map(Vec::as_slice).unwrap_or_default();
+        let mut rows = Vec::new();
+        // By name: features of serde_json decide the order of a map.
+        let keys: BTreeMap<_, _> = section["properties"].as_object().into_iter().flatten().collect();
+        for (key, of) in keys {
             let inner = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
             let value = self.value(of, &inner);
             let default = match &of["default"] {
@@ -75,9 +103,9 @@ impl<'a> Page<'a> {
             let name =
                 if required.iter().any(|name| name == key) { format!("**`{key}`**") } else { format!("`{key}`") };
             let about = about(of).or_else(|| about(self.target(of)?.1)).unwrap_or_default();
-            let _ = writeln!(rows, "| {name} | {value} | {default} | {about} |");
+            rows.push([name, value, default, about]);
         }
-        if rows.is_empty() { rows } else { format!("| key | value | default | meaning |\n|---|---|---|---|\n{rows}") }
+        rows
     }
 
     /// The definition that a value refers to, with its name.
@@ -153,6 +181,27 @@ impl<'a> Page<'a> {
         self.to_write.push_back((to, path.to_owned()));
         link(path)
     }
+}
+
+type Row = [String; 4];
+
+/// A table of keys; without a column of defaults where there are none.
+fn table(rows: &[Row]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let has_default = rows.iter().any(|row| !row[2].is_empty());
+    let head = if has_default {
+        "| key | value | default | meaning |\n|---|---|---|---|\n"
+    } else {
+        "| key | value | meaning |\n|---|---|---|\n"
+    };
+    let mut text = head.to_owned();
+    for [key, value, default, about] in rows {
+        let default = if has_default { format!(" {default} |") } else { String::new() };
+        let _ = writeln!(text, "| {key} | {value} |{default} {about} |");
+    }
+    text
 }
 
 fn link(path: &str) -> String {
