@@ -20,7 +20,7 @@ fn the_page_has_its_tables_and_its_pictures() {
     std::fs::create_dir(&docs).unwrap();
     accuracy_page(&[scene], &docs.join("accuracy.md"), &lists, Duration::from_millis(100), false).unwrap();
     let page = std::fs::read_to_string(docs.join("accuracy.md")).unwrap();
-    for words in ["# What accuracy costs", "## Ring", "**The paper's scheme.**", "What the modes cost"] {
+    for words in ["# The price of accuracy", "## Ring", "**The paper's scheme.**", "The price of modes"] {
         assert!(page.contains(words), "{words} in {page}");
     }
     assert!(docs.join("accuracy/ring.svg").exists());

@@ -82,7 +82,7 @@ def method(parts):
     return (
         f"**Method.** The programs run in turn, {' or '.join(map(str, sorted(efforts)))} times each, the loop at the same "
         f"step {loop.TURNS} times as often; those that take longer than {once} s once, and those that take longer than "
-        f"{patience} s are stopped. A time is the median, with ± the range. A ratio is that of two runs of the same turn: median, "
+        f"{patience} s are stopped. A time is the median, with ± the range. A ratio is of two runs of the same turn: median, "
         "and least to largest; above 1 flexframe is faster, or smaller. Each program runs on one thread unless it says "
         "otherwise. Memory is the peak of the whole process (of both ranks together). "
         f"The load of the machine was {min(loads):.1f} to {max(loads):.1f}."

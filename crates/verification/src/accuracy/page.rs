@@ -76,7 +76,7 @@ fn page(reports: &[(&Scene, CostReport)], pictures: &Path) -> String {
 }
 
 fn write_page(out: &mut String, reports: &[(&Scene, CostReport)], pictures: &Path) -> std::fmt::Result {
-    writeln!(out, "# What accuracy costs\n")?;
+    writeln!(out, "# The price of accuracy\n")?;
     if let Some((_, report)) = reports.first() {
         writeln!(
             out,
@@ -93,7 +93,7 @@ fn write_page(out: &mut String, reports: &[(&Scene, CostReport)], pictures: &Pat
         "The **error** is the largest over up to 100 equally spaced times: the angle to the reference's attitude (rad), and \
          the differences in modal coordinates and in displacement, velocity and acceleration of the points, each over its \
          largest value. The **reference** is the exponential scheme with its step halved until this changes nothing more; \
-         \"≤\" is below three times its own error. The **time** is that of the loop on one core: the shortest of at least \
+         \"≤\" is below three times its own error. The **time** is of the loop on one core: the shortest of at least \
          three runs (the slowest took up to {worst_spread:.1} times as long). Beyond the error of the modes, digits come from \
          more modes, not from shorter steps.\n"
     )?;
@@ -194,7 +194,7 @@ fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
     let Some(most) = body.modes.last() else { return Ok(()) };
     writeln!(
         out,
-        "What the modes cost: the same motion against {} modes (steps leave {:.0e}).\n",
+        "The price of modes: the same motion against {} modes (steps leave {:.0e}).\n",
         most.flexible, most.step_error
     )?;
     writeln!(

@@ -84,7 +84,7 @@ pub fn page(picture: &Path, mut progress: impl FnMut(&str)) -> Result<String, St
     }
     let _ = writeln!(
         page,
-        "\nThe frequency that it states is that of small vibrations about the row, without the inertia of large ones."
+        "\nThe frequency that it states is of small vibrations about the row, without the inertia of large ones."
     );
     scenes_by_lot(&mut page, picture, &mut progress)?;
     Ok(page)
