@@ -29,7 +29,7 @@ pub(crate) fn gradients(
     let frequencies = frequencies.map(|(start, end, count)| Frequencies { start, end, count });
     let settings = GradientSettings { parameters, frequencies };
     let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-    let work = move |told: &mut dyn FnMut(BuildProgress)| gradient::rates(&system, &builder, &settings, told);
+    let work = move |told: &mut dyn FnMut(BuildProgress)| gradient::gradient(&system, &builder, &settings, told);
     json(&built(py, &scene, work)?)
 }
 
@@ -51,7 +51,7 @@ pub(crate) fn fitted(
     };
     let settings = FitSettings { parameters, measured, deviation };
     let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-    let work = move |told: &mut dyn FnMut(BuildProgress)| fit::fit(&system, &builder, &settings, told);
+    let work = move |told: &mut dyn FnMut(BuildProgress)| fit::fit(&system, &builder, &settings, None, told);
     json(&built(py, &scene, work)?)
 }
 

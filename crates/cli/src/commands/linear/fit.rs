@@ -57,11 +57,8 @@ impl Fit {
         }
         let measured = measured.as_deref().map(Measured::read).transpose()?;
         let settings = FitSettings { parameters, measured, deviation };
-        let mut report = fit::fit(&system, &session.builder, &settings, |p| session.bar.build(p))
+        let report = fit::fit(&system, &session.builder, &settings, output.as_deref(), |p| session.bar.build(p))
             .map_err(|error| modes.refusal(error))?;
-        if let Some(output) = &output {
-            report.write_scene(output)?;
-        }
         drop(session.bar);
         output::print(&report, json)
     }

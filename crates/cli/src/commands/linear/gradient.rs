@@ -1,7 +1,5 @@
 //! `flexframe gradient`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::frequencies::Frequencies;
@@ -9,9 +7,8 @@ use flexframe::gradient::{self, GradientSettings};
 use flexframe::outputs::outputs_of_system;
 
 use crate::arguments::values::frequencies;
-use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
-use crate::output;
-use crate::session::{Session, folder};
+use crate::arguments::{FolderArgs, ModeCountArgs, SceneArgs};
+use crate::session::Session;
 
 /// Find the rates of frequencies, effective masses and static displacements with the numbers that a body is made with.
 ///
@@ -33,24 +30,21 @@ pub struct Gradient {
     frequencies: Option<Frequencies>,
     #[command(flatten)]
     modes: ModeCountArgs,
-    /// Folder for gradient.csv and, of responses, gradient_frf.csv [default: out/<name of the scene file>].
-    #[arg(short, long, value_name = "DIR")]
-    output: Option<PathBuf>,
     #[command(flatten)]
-    files: FileArgs,
+    out: FolderArgs,
 }
 
 impl Gradient {
-    pub fn execute(self, mut session: Session) -> Result<(), Failure> {
-        let Self { scene: SceneArgs { scene, json }, parameters, frequencies, modes, output, files } = self;
-        output::require_file("--output", output.as_deref())?;
+    pub fn execute(self, session: Session) -> Result<(), Failure> {
+        let Self { scene: SceneArgs { scene, json }, parameters, frequencies, modes, out } = self;
+        out.check()?;
         let system = session.read_one(scene, modes)?;
-        let folder = folder(&system, output)?;
+        let outputs = outputs_of_system(&system, &session.builder, out.files.overwrite);
         let settings = GradientSettings { parameters, frequencies };
-        outputs_of_system(&system, &session.builder, files.overwrite).claim(&gradient::files(&folder, &settings))?;
-        let report = gradient::gradient(&system, &session.builder, &folder, &settings, |p| session.bar.build(p));
-        let report = report.map_err(|error| modes.refusal(error))?;
-        drop(session.bar);
-        output::print(&report, json)
+        let files = gradient::files(&settings);
+        session.report(outputs, &out.folder(&system.path), &files, json, |session| {
+            let report = gradient::gradient(&system, &session.builder, &settings, |p| session.bar.build(p));
+            report.map_err(|error| modes.refusal(error))
+        })
     }
 }

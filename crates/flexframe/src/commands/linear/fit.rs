@@ -5,15 +5,16 @@ mod report;
 mod student;
 mod subject;
 
+use std::path::Path;
+
+use ::report::Report;
 use diagnostic::{Failure, Kind};
+use faer::Mat;
 use model::{BuildProgress, Builder};
 use scene::{Measured, System};
 
-pub use report::{FitReport, FittedMode, FittedParameter};
-
-use faer::Mat;
+use self::report::{CONFIDENCE, Fitted, FittedMode, FittedParameter};
 use least_squares::{Fault, Residuals, Solution, Unseen, solve};
-use report::{CONFIDENCE, Quality};
 use subject::{Found, Subject};
 
 /// The quantile of the normal distribution for it, on both sides.
@@ -31,7 +32,7 @@ pub struct FitSettings {
 }
 
 /// A body, or bodies in joints, that are fitted to measured frequencies.
-pub struct Fit {
+struct Fit {
     subject: Subject,
     measured: Measured,
     /// A standard deviation for each measured frequency: as stated, or the frequency itself where none is.
@@ -41,10 +42,7 @@ pub struct Fit {
 
 impl Fit {
     /// The fit of a scene of one body, or of bodies in joints.
-    ///
-    /// # Errors
-    /// [`Failure`] of parameters and tables that do not fit the scene or each other.
-    pub fn new(
+    fn new(
         system: &System,
         builder: &Builder,
         settings: &FitSettings,
@@ -60,28 +58,8 @@ impl Fit {
         Ok(Self { subject, measured, deviations, is_stated })
     }
 
-    /// Frequencies of the modes that were measured, in the scene as it is.
-    ///
-    /// # Errors
-    /// [`Failure`].
-    pub fn frequencies(&self) -> Result<Vec<f64>, Failure> {
-        Ok(self.residuals(&vec![0.0; self.subject.names().len()])?.frequencies)
-    }
-
-    /// Gives the lines of the table other measured frequencies, with the same relative deviations.
-    pub fn set_frequencies(&mut self, frequencies: &[f64]) {
-        let lines = self.measured.modes.iter_mut().zip(&mut self.deviations);
-        for ((mode, deviation), frequency) in lines.zip(frequencies) {
-            *deviation *= frequency / mode.frequency;
-            mode.frequency = *frequency;
-        }
-    }
-
     /// Finds the parameters.
-    ///
-    /// # Errors
-    /// [`Failure`] of parameters that the frequencies do not tell, and where no values are found.
-    pub fn run(&self) -> Result<FitReport, Failure> {
+    fn run(&self) -> Result<Fitted, Failure> {
         let names = self.subject.names();
         let start = vec![0.0; names.len()];
         let limits = |x: &[f64]| self.is_within(x);
@@ -121,13 +99,16 @@ impl Fit {
             after: last.frequencies[i],
             deviation: self.is_stated.then_some(self.deviations[i]),
         });
-        Ok(FitReport::new(
-            self.subject.scene(),
-            names.into_iter().enumerate().map(fitted).collect(),
-            modes.collect(),
-            (0..unknowns).map(|i| (0..unknowns).map(|j| correlation(i, j)).collect()).collect(),
-            Quality { freedom, is_stated: self.is_stated, scatter, iterations, singular },
-        ))
+        Ok(Fitted {
+            parameters: names.into_iter().enumerate().map(fitted).collect(),
+            modes: modes.collect(),
+            correlation: (0..unknowns).map(|i| (0..unknowns).map(|j| correlation(i, j)).collect()).collect(),
+            freedom,
+            is_stated: self.is_stated,
+            scatter,
+            iterations,
+            singular,
+        })
     }
 
     /// The frequencies of measured modes with their rates, in units of their deviations.
@@ -145,17 +126,20 @@ impl Fit {
     }
 }
 
-/// Fits parameters of a scene to measured frequencies.
+/// Fits parameters of a scene to measured frequencies, and writes the scene with them to a file where one is named.
 ///
 /// # Errors
-/// [`Failure`].
+/// [`Failure`] of parameters and tables that do not fit the scene or each other, of parameters that the frequencies do not tell, and where no
+/// values are found.
 pub fn fit(
     system: &System,
     builder: &Builder,
     settings: &FitSettings,
+    output: Option<&Path>,
     progress: impl FnMut(BuildProgress),
-) -> Result<FitReport, Failure> {
-    Fit::new(system, builder, settings, progress)?.run()
+) -> Result<Report, Failure> {
+    let fit = Fit::new(system, builder, settings, progress)?;
+    fit.run()?.report(fit.subject.scene(), output)
 }
 
 /// Standard deviations of the measured frequencies, and true if they are stated: of all of them or of none.

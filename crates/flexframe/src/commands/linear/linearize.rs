@@ -17,6 +17,7 @@ mod unseen;
 
 use std::path::Path;
 
+use ::report::Report;
 use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{Initial, MotionState};
 use linear::{LinearError, SecondOrder};
@@ -29,7 +30,6 @@ use at_time::{moving_modes, states_at};
 pub(super) use channels::{acting_loads, input_channels};
 use growth::growing;
 pub use reduction::{Reduced, Reduction};
-pub use report::LinearReport;
 pub use settings::LinearSettings;
 pub use space::LinearSpace;
 pub use state::State;
@@ -140,11 +140,11 @@ pub fn linearize(
     reduction: Option<Reduction>,
     output: &Path,
     progress: impl FnMut(BuildProgress),
-) -> Result<LinearReport, Failure> {
+) -> Result<Report, Failure> {
     files::check_ending(output)?;
     let space = linear_space(system, builder, settings, reduction, progress)?;
     let failed = |source: LinearError| source.in_file(&system.path);
     let poles = space.model().poles().map_err(failed)?;
     files::write(space.model(), output)?;
-    Ok(LinearReport::new(system, &space, &poles, output))
+    Ok(report::report(system, &space, &poles, output))
 }

@@ -1,18 +1,15 @@
 //! Report of a fit.
 
-use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use diagnostic::{Failure, Kind};
+use report::{Form, Report, Table, quantity};
 use scene::{Shared, assign};
-use serde::Serialize;
 use toml::Value;
 use whole_file::write_whole;
 
 use crate::commands::modes::frequency_unit;
-use crate::files::json;
 use crate::files::write_error::WriteError;
-use crate::report::quantity;
 
 /// Probability that an interval has the true value in it.
 pub(super) const CONFIDENCE: f64 = 0.95;
@@ -23,44 +20,26 @@ const MISSED: f64 = 0.05;
 /// A scatter in stated deviations from which something else is wrong.
 const SCATTERED: f64 = 2.0;
 
-/// Report of `flexframe fit`.
-#[derive(Debug, Clone, Serialize)]
-pub struct FitReport {
-    /// Title of the scene.
-    pub title: String,
-    /// Unit of frequencies.
-    pub frequency_unit: String,
-    /// The parameters.
+/// Parameters by measured frequencies.
+pub(super) struct Fitted {
     pub parameters: Vec<FittedParameter>,
-    /// Probability that an interval has the true value in it.
-    pub confidence: f64,
-    /// The measured modes.
     pub modes: Vec<FittedMode>,
-    /// Correlations of the parameters, of logarithms but for Poisson's ratios.
+    /// Of the parameters, of logarithms but for Poisson's ratios.
     pub correlation: Vec<Vec<f64>>,
-    /// Singular values of the rates of the frequencies, in units of their deviations, with the logarithms of the parameters.
-    pub singular_values: Vec<f64>,
     /// Measured frequencies beyond the number of parameters.
-    pub degrees_of_freedom: usize,
+    pub freedom: usize,
     /// True if the deviations of the frequencies are stated; else intervals follow from what is left.
-    pub deviations_stated: bool,
-    /// Standard deviation of what is left: in stated deviations, or relative to the frequencies. `null` without degrees of freedom.
-    #[serde(serialize_with = "json::optional")]
+    pub is_stated: bool,
+    /// Standard deviation of what is left: in stated deviations, or relative to the frequencies. None without degrees of freedom.
     pub scatter: Option<f64>,
     /// Steps of the search.
     pub iterations: usize,
-    /// Reservations.
-    pub warnings: Vec<String>,
-    /// The scene with the parameters, where it is written.
-    #[serde(serialize_with = "json::optional_path")]
-    pub file: Option<PathBuf>,
-    #[serde(skip)]
-    text: String,
+    /// Singular values of the rates of the frequencies, in units of their deviations, with the logarithms of the parameters.
+    pub singular: Vec<f64>,
 }
 
 /// A parameter that was fitted.
-#[derive(Debug, Clone, Serialize)]
-pub struct FittedParameter {
+pub(super) struct FittedParameter {
     /// The path of its key, or `thickness.GROUP.AXIS`.
     pub name: String,
     /// True if it stands in the scene; false of a factor on the shape of the mesh.
@@ -69,13 +48,12 @@ pub struct FittedParameter {
     pub start: f64,
     /// Its value by the measured frequencies.
     pub value: f64,
-    /// The interval that has the true value in it with the stated confidence; `null` where nothing tells the scatter.
+    /// The interval that has the true value in it with the confidence; none where nothing tells the scatter.
     pub interval: Option<[f64; 2]>,
 }
 
 /// A measured mode.
-#[derive(Debug, Clone, Serialize)]
-pub struct FittedMode {
+pub(super) struct FittedMode {
     /// Line of the table, from 1.
     pub line: usize,
     /// Number of the mode of the model, from 1.
@@ -90,23 +68,81 @@ pub struct FittedMode {
     pub deviation: Option<f64>,
 }
 
-/// Numbers on a fit as a whole.
-pub(super) struct Quality {
-    pub freedom: usize,
-    pub is_stated: bool,
-    pub scatter: Option<f64>,
-    pub iterations: usize,
-    pub singular: Vec<f64>,
-}
+impl Fitted {
+    /// The report; the scene with the parameters is written to a file where one is named.
+    pub fn report(self, scene: &Shared, output: Option<&Path>) -> Result<Report, Failure> {
+        if let Some(output) = output {
+            write_whole(output, self.scene_text(scene)?).map_err(WriteError::of(output))?;
+        }
+        let mut report = Report::new(&scene.title);
+        let unit = frequency_unit(&scene.units.time);
+        let (of, modes) = (&self.parameters, &self.modes);
+        let off = |mode: &FittedMode| match mode.deviation {
+            Some(deviation) => format!("{:.2} deviations", (mode.after - mode.measured) / deviation),
+            None => format!("{:.3} %", 100.0 * (mode.after / mode.measured - 1.0)),
+        };
+        report.put("frequency_unit", &unit);
+        report.put("confidence", CONFIDENCE);
+        report.table(
+            Table::new("modes", "modes")
+                .all()
+                .column("line", modes.iter().map(|mode| mode.line))
+                .shown("mode", "mode", Form::Plain, modes.iter().map(|mode| mode.mode))
+                .shown("measured", format!("measured, {unit}"), Form::Fixed(6), modes.iter().map(|mode| mode.measured))
+                .shown("before", "before", Form::Fixed(6), modes.iter().map(|mode| mode.before))
+                .shown("after", "after", Form::Fixed(6), modes.iter().map(|mode| mode.after))
+                .column("deviation", modes.iter().map(|mode| mode.deviation))
+                .text_only("off by", Form::Plain, modes.iter().map(off)),
+        );
+        let interval = |of: &FittedParameter| of.interval.map(|ends| ends.map(quantity).join(" to "));
+        let mut table = Table::new("parameters", "parameters")
+            .all()
+            .shown("name", "parameter", Form::Plain, of.iter().map(|of| &of.name))
+            .column("is_key", of.iter().map(|of| of.is_key))
+            .shown("start", "in the scene", Form::Plain, of.iter().map(|of| of.start))
+            .shown("value", "fitted", Form::Plain, of.iter().map(|of| of.value))
+            .column("interval", of.iter().map(|of| of.interval))
+            .text_only(format!("with {:.0} % confidence", 100.0 * CONFIDENCE), Form::Plain, of.iter().map(interval));
+        if of.len() > 1 {
+            for (k, row) in self.correlation.iter().enumerate() {
+                let heading = if k == 0 { "correlation" } else { "" };
+                table = table.text_only(heading, Form::Fixed(3), row.iter().copied());
+            }
+        }
+        report.table(table);
+        let scatter = match (self.scatter, self.is_stated) {
+            (None, _) => "unknown".to_owned(),
+            (Some(scatter), true) => format!("{scatter:.2} stated deviations"),
+            (Some(scatter), false) => format!("{:.3} % of a frequency", 100.0 * scatter),
+        };
+        let (freedom, steps) = (self.freedom, self.iterations);
+        report.line("scatter", format!("{scatter}, by {freedom} more frequencies than parameters; {steps} steps"));
+        report.put("correlation", &self.correlation[..]);
+        report.put("singular_values", &self.singular[..]);
+        report.put("degrees_of_freedom", freedom);
+        report.put("deviations_stated", self.is_stated);
+        report.put("scatter", self.scatter);
+        report.put("iterations", steps);
+        report.put("file", output.map(|output| output.display().to_string()));
+        match output {
+            Some(output) => report.line("wrote", output.display().to_string()),
+            None => report.line("to use", self.use_in_words()),
+        }
+        report.warnings = self.warnings();
+        Ok(report)
+    }
 
-impl FitReport {
-    pub(super) fn new(
-        scene: &Shared,
-        parameters: Vec<FittedParameter>,
-        modes: Vec<FittedMode>,
-        correlation: Vec<Vec<f64>>,
-        Quality { freedom, is_stated, scatter, iterations, singular }: Quality,
-    ) -> Self {
+    fn use_in_words(&self) -> String {
+        let (keys, stretches): (Vec<_>, Vec<_>) = self.parameters.iter().partition(|parameter| parameter.is_key);
+        let set = |parameter: &&FittedParameter| format!("--set '{}={}'", parameter.name, parameter.value);
+        let mesh = |of: &&FittedParameter| format!("a mesh with {} = {}", of.name, quantity(of.value));
+        let keys = keys.iter().map(set).collect::<Vec<_>>().join(" ");
+        let all = (!keys.is_empty()).then_some(keys).into_iter().chain(stretches.iter().map(mesh));
+        all.collect::<Vec<_>>().join(" and ")
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let Self { parameters, modes, correlation, is_stated, scatter, .. } = self;
         let mut warnings = Vec::new();
         for (i, row) in correlation.iter().enumerate() {
             for (j, together) in row.iter().enumerate().take(i).filter(|(_, together)| together.abs() > ALIKE) {
@@ -116,7 +152,7 @@ impl FitReport {
                 ));
             }
         }
-        if let Some(scatter) = scatter.filter(|scatter| is_stated && *scatter > SCATTERED) {
+        if let Some(scatter) = scatter.filter(|scatter| *is_stated && *scatter > SCATTERED) {
             warnings.push(format!(
                 "the frequencies are off by {scatter:.1} times their stated deviations: the model lacks something, modes are mistaken for \
                  each other, or the deviations are larger; the intervals do not have this in them"
@@ -132,103 +168,23 @@ impl FitReport {
                 worst.line
             ));
         }
-        if scatter.is_none() && !is_stated {
+        if scatter.is_none() && !*is_stated {
             warnings.push(
                 "as many parameters as frequencies: nothing tells the scatter, so that there are no intervals"
                     .to_owned(),
             );
         }
-        Self {
-            title: scene.title.clone(),
-            frequency_unit: frequency_unit(&scene.units.time),
-            parameters,
-            confidence: CONFIDENCE,
-            modes,
-            correlation,
-            singular_values: singular,
-            degrees_of_freedom: freedom,
-            deviations_stated: is_stated,
-            scatter,
-            iterations,
-            warnings,
-            file: None,
-            text: scene.text.to_string(),
-        }
+        warnings
     }
 
     /// The text of the scene with the parameters in it.
-    ///
-    /// # Errors
-    /// A factor on the shape, and of a key that cannot be set.
-    pub fn scene_text(&self) -> Result<String, Failure> {
+    fn scene_text(&self, scene: &Shared) -> Result<String, Failure> {
         if let Some(parameter) = self.parameters.iter().find(|parameter| !parameter.is_key) {
             return Err(no_key(&parameter.name));
         }
         let values: Vec<(String, Value)> =
             self.parameters.iter().map(|parameter| (parameter.name.clone(), Value::Float(parameter.value))).collect();
-        assign(&self.text, &values).map_err(|error| no_key(&error.key))
-    }
-
-    /// Writes the scene with the parameters in it.
-    ///
-    /// # Errors
-    /// [`Failure`].
-    pub fn write_scene(&mut self, path: &Path) -> Result<(), Failure> {
-        write_whole(path, self.scene_text()?).map_err(WriteError::of(path))?;
-        self.file = Some(path.to_owned());
-        Ok(())
-    }
-}
-
-impl fmt::Display for FitReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", self.title)?;
-        writeln!(f, "\n  mode  measured, {:<6}       before        after  off by", self.frequency_unit)?;
-        for FittedMode { mode, measured, before, after, deviation, .. } in &self.modes {
-            let off = match deviation {
-                Some(deviation) => format!("{:.2} deviations", (after - measured) / deviation),
-                None => format!("{:.3} %", 100.0 * (after / measured - 1.0)),
-            };
-            writeln!(f, "  {mode:>4}  {measured:>16.6} {before:>12.6} {after:>12.6}  {off}")?;
-        }
-        writeln!(f)?;
-        for FittedParameter { name, start, value, interval, .. } in &self.parameters {
-            write!(f, "  {name} = {}", quantity(*value))?;
-            if let Some([low, high]) = interval {
-                let percent = 100.0 * self.confidence;
-                write!(f, ", with {percent:.0} % confidence {} to {}", quantity(*low), quantity(*high))?;
-            }
-            writeln!(f, "; the scene has {}", quantity(*start))?;
-        }
-        let freedom = self.degrees_of_freedom;
-        let scatter = match (self.scatter, self.deviations_stated) {
-            (None, _) => "unknown".to_owned(),
-            (Some(scatter), true) => format!("{scatter:.2} stated deviations"),
-            (Some(scatter), false) => format!("{:.3} % of a frequency", 100.0 * scatter),
-        };
-        write!(f, "  scatter  {scatter}, by {freedom} more frequencies than parameters; {} steps", self.iterations)?;
-        if self.parameters.len() > 1 {
-            write!(f, "\n  correlation")?;
-            for (row, parameter) in self.correlation.iter().zip(&self.parameters) {
-                let numbers: Vec<String> = row.iter().map(|number| format!("{number:>7.3}")).collect();
-                write!(f, "\n    {}  {}", numbers.join(" "), parameter.name)?;
-            }
-        }
-        match &self.file {
-            Some(file) => write!(f, "\n  wrote    {}", file.display())?,
-            None => {
-                let (keys, stretches): (Vec<_>, Vec<_>) =
-                    self.parameters.iter().partition(|parameter| parameter.is_key);
-                let set = |parameter: &&FittedParameter| format!("--set '{}={}'", parameter.name, parameter.value);
-                let mesh = |parameter: &&FittedParameter| {
-                    format!("a mesh with {} = {}", parameter.name, quantity(parameter.value))
-                };
-                let keys = keys.iter().map(set).collect::<Vec<_>>().join(" ");
-                let all = (!keys.is_empty()).then_some(keys).into_iter().chain(stretches.iter().map(mesh));
-                write!(f, "\n  to use   {}", all.collect::<Vec<_>>().join(" and "))?;
-            }
-        }
-        self.warnings.iter().try_for_each(|warning| write!(f, "\n  warning  {warning}"))
+        assign(&scene.text, &values).map_err(|error| no_key(&error.key))
     }
 }
 

@@ -1,89 +1,63 @@
-//! Report of rates, for people and for scripts.
+//! Report of rates.
 
-use std::fmt;
-use std::path::PathBuf;
+use std::iter::once;
 
 use model::{BodyRates, Parameter, ParameterRates, VariedBody};
 use nalgebra::Vector3;
-use serde::Serialize;
-
-use scene::System;
+use report::{Form, Report, Table};
+use scene::{Shared, System};
 
 use super::number::Number;
-use super::responses::{self, ResponseReport};
+use super::responses::{self, AXES, ResponseReport};
 use super::system::SystemRates;
 use crate::commands::modes::frequency_unit;
-use crate::files::json;
-use crate::report::quantity;
 
-/// More modes than this do not fit a page; --json and the table have all.
-const SHOWN: usize = 30;
 /// A relative rate below which it is rounding.
 const NOTHING: f64 = 5e-7;
 
-/// Report of `flexframe gradient`.
-#[derive(Debug, Clone, Serialize)]
-pub struct GradientReport {
-    /// Title of the scene.
-    pub title: String,
-    /// Unit of frequencies.
-    pub frequency_unit: String,
-    /// Natural frequencies, cycles per time.
+/// Frequencies, effective masses, static displacements and responses, with their rates.
+pub(super) struct Rates {
+    /// Cycles per time.
     pub frequencies: Vec<f64>,
     /// Numbers, from 1, of the first and the last mode of each group of one frequency.
     pub repeated: Vec<[usize; 2]>,
-    /// Effective masses of each mode in translations of the base along the axes of the mesh; of modes of one frequency, their mean.
+    /// Of each mode in translations of the base along the axes of the mesh; of modes of one frequency, their mean.
     pub effective_masses: Vec<[f64; 3]>,
-    /// Static displacements; empty of a body that is not held, and without loads or points of the output.
-    pub statics: Vec<StaticReport>,
-    /// Frequencies of the responses, cycles per time; empty where none were asked for.
+    /// Empty of a body that is not held, and without loads or points of the output.
+    pub statics: Vec<Static>,
+    /// Cycles per time; empty where none were asked for.
     pub response_frequencies: Vec<f64>,
     /// Responses of the points to the loads.
     pub responses: Vec<ResponseReport>,
-    /// The rates with each parameter.
-    pub parameters: Vec<ParameterReport>,
-    /// Files.
-    #[serde(serialize_with = "json::paths")]
-    pub files: Vec<PathBuf>,
+    pub parameters: Vec<OfParameter>,
 }
 
 /// The static displacement of a point under a load where its history is 1.
-#[derive(Debug, Clone, Serialize)]
-pub struct StaticReport {
-    /// The load.
-    pub load: String,
-    /// The point.
-    pub point: String,
-    /// Its displacement, axes of the mesh.
-    pub displacement: [f64; 3],
+pub(super) struct Static {
+    load: String,
+    point: String,
+    /// Axes of the mesh.
+    displacement: [f64; 3],
 }
 
 /// Rates with a parameter: by its unit.
-#[derive(Debug, Clone, Serialize)]
-pub struct ParameterReport {
+pub(super) struct OfParameter {
     /// The path of its key, or `thickness.GROUP.AXIS`.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// Rates of the frequencies: of modes of one frequency, rates of the modes that the parameter parts, in rising order.
-    pub frequencies: Vec<f64>,
-    /// Relative rates of the frequencies, d ln f / d ln p.
-    pub relative: Vec<f64>,
-    /// Rates of the effective masses.
-    pub effective_masses: Vec<[f64; 3]>,
-    /// Rates of the static displacements, in their order; `null` of a load whose forces change with the shape.
-    pub statics: Vec<Option<[f64; 3]>>,
-    /// Rates of the responses, in their order: real and imaginary part at each frequency; `null` as of static displacements.
-    pub responses: Vec<Option<Vec<[f64; 2]>>>,
+    name: String,
+    value: f64,
+    /// Of modes of one frequency, rates of the modes that the parameter parts, in rising order.
+    frequencies: Vec<f64>,
+    /// d ln f / d ln p.
+    relative: Vec<f64>,
+    effective_masses: Vec<[f64; 3]>,
+    /// None of a load whose forces change with the shape.
+    statics: Vec<Option<[f64; 3]>>,
+    /// Real and imaginary part at each frequency; none as of static displacements.
+    responses: Vec<Option<Vec<[f64; 2]>>>,
 }
 
-impl GradientReport {
-    pub(super) fn new(
-        body: &VariedBody,
-        parameters: &[Parameter],
-        found: &BodyRates,
-        response_frequencies: Vec<f64>,
-    ) -> Self {
+impl Rates {
+    pub fn new(body: &VariedBody, parameters: &[Parameter], found: &BodyRates, response_frequencies: Vec<f64>) -> Self {
         let scene = body.scene();
         let (loads, damping) = (body.load_names(), &scene.modes.damping);
         let points: Vec<String> = scene.output.points.keys().cloned().collect();
@@ -94,7 +68,7 @@ impl GradientReport {
                 None => vec![None; points.len()],
             });
             let of_frequencies = rates.frequencies.iter().zip(&found.frequencies);
-            ParameterReport {
+            OfParameter {
                 name: parameter.name.clone(),
                 value,
                 frequencies: rates.frequencies.clone(),
@@ -109,7 +83,7 @@ impl GradientReport {
             }
         };
         let of_load = |(load, of_points): (&String, &Vec<Vector3<f64>>)| {
-            let of_point = |(point, u): (&String, &Vector3<f64>)| StaticReport {
+            let of_point = |(point, u): (&String, &Vector3<f64>)| Static {
                 load: load.clone(),
                 point: point.clone(),
                 displacement: (*u).into(),
@@ -117,8 +91,6 @@ impl GradientReport {
             points.iter().zip(of_points).map(of_point).collect::<Vec<_>>()
         };
         Self {
-            title: scene.title.clone(),
-            frequency_unit: frequency_unit(&scene.units.time),
             frequencies: found.frequencies.clone(),
             repeated: found.repeated.iter().map(|group| [group.start + 1, group.end]).collect(),
             effective_masses: found.effective_masses.clone().unwrap_or_default(),
@@ -130,12 +102,11 @@ impl GradientReport {
             },
             parameters: parameters.iter().zip(&found.rates).map(of_parameter).collect(),
             response_frequencies,
-            files: Vec::new(),
         }
     }
 
     /// Rates of the frequencies and responses of bodies in joints.
-    pub(super) fn of_system(
+    pub fn of_system(
         system: &System,
         parameters: &[Number],
         found: SystemRates,
@@ -144,7 +115,7 @@ impl GradientReport {
         let SystemRates { frequencies, repeated, rates, responses } = found;
         let of_parameter = |((parameter, rates), of_responses): ((&Number, Vec<f64>), Vec<_>)| {
             let value = parameter.value(system);
-            ParameterReport {
+            OfParameter {
                 name: parameter.name.clone(),
                 value,
                 relative: rates.iter().zip(&frequencies).map(|(rate, f)| value * rate / f).collect(),
@@ -155,8 +126,6 @@ impl GradientReport {
             }
         };
         Self {
-            title: system.title.clone(),
-            frequency_unit: frequency_unit(&system.units.time),
             repeated: repeated.into_iter().map(|group| [group.start + 1, group.end]).collect(),
             effective_masses: Vec::new(),
             statics: Vec::new(),
@@ -164,60 +133,135 @@ impl GradientReport {
             response_frequencies,
             parameters: parameters.iter().zip(rates).zip(responses.rates).map(of_parameter).collect(),
             frequencies,
-            files: Vec::new(),
         }
     }
 }
 
-impl fmt::Display for GradientReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", self.title)?;
-        for (k, parameter) in self.parameters.iter().enumerate() {
-            writeln!(f, "  {:<8} {} = {}", format!("[{}]", k + 1), parameter.name, quantity(parameter.value))?;
-        }
-        let heads = |f: &mut fmt::Formatter<'_>| {
-            (1..=self.parameters.len()).try_for_each(|k| write!(f, "  {:>10}", format!("[{k}]")))
-        };
-        let relative = |f: &mut fmt::Formatter<'_>, rate: f64| {
-            write!(f, "  {:>10.6}", if rate.abs() < NOTHING { 0.0 } else { rate })
-        };
-        writeln!(f, "\n  relative rates d ln f / d ln p: percent of a frequency for one percent of a parameter")?;
-        write!(f, "  mode  frequency, {:<6}", self.frequency_unit)?;
-        heads(f)?;
-        for (k, frequency) in self.frequencies.iter().enumerate().take(SHOWN) {
-            write!(f, "\n  {:>4}  {frequency:>17.6}", k + 1)?;
-            self.parameters.iter().try_for_each(|parameter| relative(f, parameter.relative[k]))?;
-        }
+impl Rates {
+    /// The report of a scene.
+    pub fn report(self, scene: &Shared) -> Report {
+        let mut report = Report::new(&scene.title);
+        let unit = frequency_unit(&scene.units.time);
+        let of = &self.parameters;
+        report.put("frequency_unit", &unit);
+        report.put("frequencies", &self.frequencies[..]);
+        report.put("repeated", &self.repeated[..]);
+        report.put("effective_masses", &self.effective_masses[..]);
+        report.put("response_frequencies", &self.response_frequencies[..]);
+        report.table(
+            Table::new("parameters", "parameters")
+                .all()
+                .text_only("", Form::Plain, (1..=of.len()).map(|k| format!("[{k}]")))
+                .shown("name", "parameter", Form::Plain, of.iter().map(|of| &of.name))
+                .shown("value", "value", Form::Plain, of.iter().map(|of| of.value))
+                .column("frequencies", of.iter().map(|of| &of.frequencies[..]))
+                .column("relative", of.iter().map(|of| &of.relative[..]))
+                .column("effective_masses", of.iter().map(|of| &of.effective_masses[..]))
+                .column("statics", of.iter().map(|of| &of.statics[..]))
+                .column("responses", of.iter().map(|of| &of.responses[..])),
+        );
+        let count = self.frequencies.len();
+        let table = Table::new("", None)
+            .titled("relative rates d ln f / d ln p: percent of a frequency for one percent of a parameter")
+            .text_only("mode", Form::Plain, 1..=count)
+            .text_only(format!("frequency, {unit}"), Form::Fixed(6), self.frequencies.iter().copied());
+        report.table(self.with_rates(table, |of| of.relative.iter().map(|rate| Some(*rate)).collect()));
         for [first, last] in &self.repeated {
-            write!(
-                f,
-                "\n  modes {first} to {last} have one frequency: the rates are those of the modes that a parameter parts"
-            )?;
+            report.words(format!(
+                "  modes {first} to {last} have one frequency: the rates are those of the modes that a parameter parts"
+            ));
         }
-        if !self.statics.is_empty() {
-            write!(
-                f,
-                "\n\n  relative rates of static displacements, along the displacement\n  {:<24}  {:>12}",
-                "load, point", "displacement"
-            )?;
-            heads(f)?;
-        }
-        for (k, answer) in self.statics.iter().enumerate() {
-            let u = Vector3::from(answer.displacement);
-            if u.norm() == 0.0 {
-                continue;
+        self.put_statics(&mut report);
+        let each = || self.responses.iter();
+        report.table(
+            Table::new("responses", "responses")
+                .column("input", each().map(|of| &of.input))
+                .column("output", each().map(|of| &of.output))
+                .column("values", each().map(|of| &of.values[..])),
+        );
+        report.tables.extend([self.rows(), self.response_rows()]);
+        report
+    }
+
+    /// A table with a column for the relative rates of each parameter.
+    fn with_rates(&self, table: Table, rates: impl Fn(&OfParameter) -> Vec<Option<f64>>) -> Table {
+        let told = |rate: Option<f64>| rate.map(|rate| if rate.abs() < NOTHING { 0.0 } else { rate });
+        self.parameters.iter().zip(1..).fold(table, |table, (of, k)| {
+            table.text_only(format!("[{k}]"), Form::Fixed(6), rates(of).into_iter().map(told))
+        })
+    }
+
+    fn put_statics(&self, report: &mut Report) {
+        let each = || self.statics.iter();
+        report.table(
+            Table::new("statics", "statics")
+                .column("load", each().map(|of| &of.load))
+                .column("point", each().map(|of| &of.point))
+                .column("displacement", each().map(|of| of.displacement)),
+        );
+        let moved: Vec<(usize, Vector3<f64>)> =
+            each().map(|of| Vector3::from(of.displacement)).enumerate().filter(|(_, u)| u.norm() > 0.0).collect();
+        let named = |(k, _): &(usize, _)| format!("{}, {}", self.statics[*k].load, self.statics[*k].point);
+        let table = Table::new("", None)
+            .titled("relative rates of static displacements, along the displacement")
+            .all()
+            .text_only("load, point", Form::Plain, moved.iter().map(named))
+            .text_only("displacement", Form::Plain, moved.iter().map(|(_, u)| u.norm()));
+        report.table(self.with_rates(table, |of| {
+            let along = |(k, u): &(usize, Vector3<f64>)| {
+                let rate = of.statics.get(*k).copied().flatten()?;
+                Some(of.value * u.dot(&Vector3::from(rate)) / u.norm_squared())
+            };
+            moved.iter().map(along).collect()
+        }));
+    }
+
+    /// A row for each number and parameter.
+    fn rows(&self) -> Table {
+        let mut rows: Vec<(String, f64, &OfParameter, f64)> = Vec::new();
+        for of in &self.parameters {
+            for (k, (value, rate)) in self.frequencies.iter().zip(&of.frequencies).enumerate() {
+                rows.push((format!("frequency.{}", k + 1), *value, of, *rate));
             }
-            write!(f, "\n  {:<24}  {:>12}", format!("{}, {}", answer.load, answer.point), quantity(u.norm()))?;
-            for parameter in &self.parameters {
-                match parameter.statics.get(k).copied().flatten() {
-                    Some(rate) => {
-                        let along = u.dot(&Vector3::from(rate));
-                        relative(f, parameter.value * along / u.norm_squared())?;
-                    }
-                    None => write!(f, "  {:>10}", "-")?,
+            for (k, (values, rates)) in self.effective_masses.iter().zip(&of.effective_masses).enumerate() {
+                for (axis, name) in AXES.iter().enumerate() {
+                    rows.push((format!("effective_mass.{name}.{}", k + 1), values[axis], of, rates[axis]));
+                }
+            }
+            for (answer, rates) in self.statics.iter().zip(&of.statics) {
+                let Some(rates) = rates else { continue };
+                for (axis, name) in AXES.iter().enumerate() {
+                    let quantity = format!("displacement.{}.{}.{name}", answer.load, answer.point);
+                    rows.push((quantity, answer.displacement[axis], of, rates[axis]));
                 }
             }
         }
-        self.files.iter().try_for_each(|file| write!(f, "\n  wrote    {}", file.display()))
+        let relative = |(_, value, of, rate): &(String, f64, &OfParameter, f64)| {
+            Some(of.value * rate / value).filter(|_| *value != 0.0)
+        };
+        Table::new("gradient", None)
+            .column("quantity", rows.iter().map(|row| &row.0))
+            .column("value", rows.iter().map(|row| row.1))
+            .column("parameter", rows.iter().map(|row| &row.2.name))
+            .column("parameter_value", rows.iter().map(|row| row.2.value))
+            .column("rate", rows.iter().map(|row| row.3))
+            .column("relative_rate", rows.iter().map(relative))
+    }
+
+    /// A row for each frequency: real and imaginary parts of the responses, then of their rates with each parameter.
+    fn response_rows(&self) -> Table {
+        let mut table = Table::new("gradient_frf", None).column("frequency", self.response_frequencies.iter().copied());
+        for (i, ResponseReport { input, output, values }) in self.responses.iter().enumerate() {
+            let name = format!("{output}/{input}");
+            let rates = self.parameters.iter().filter_map(|of| {
+                let rates = of.responses.get(i)?.as_deref()?;
+                Some((format!("d {name} / d {}", of.name), rates))
+            });
+            for (name, values) in once((name.clone(), &values[..])).chain(rates) {
+                table = table.column(format!("re {name}"), values.iter().map(|[re, _]| *re));
+                table = table.column(format!("im {name}"), values.iter().map(|[_, im]| *im));
+            }
+        }
+        table
     }
 }

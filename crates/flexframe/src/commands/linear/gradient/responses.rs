@@ -6,7 +6,6 @@ use faer::c64;
 use model::{BodyRates, ParameterRates, Residues};
 use nalgebra::Vector3;
 use scene::Damping;
-use serde::Serialize;
 
 use super::damping::Damped;
 
@@ -14,8 +13,8 @@ use super::damping::Damped;
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The response of a displacement of a point to the factor on a load, by the modes that are kept.
-#[derive(Debug, Clone, Serialize)]
-pub struct ResponseReport {
+#[derive(Debug, Clone)]
+pub(crate) struct ResponseReport {
     /// The load.
     pub input: String,
     /// The displacement, such as tip.displacement.y.

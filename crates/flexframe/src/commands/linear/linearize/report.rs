@@ -1,100 +1,70 @@
 //! Report of `flexframe linearize`.
 
 use std::f64::consts::TAU;
-use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use faer::c64;
-use linear::StateSpace;
+use linear::{Channel, StateSpace};
+use report::{Form, Report, Table, Value};
 use scene::Shared;
-use serde::Serialize;
 
 use super::at_once::AtOnce;
 use super::space::LinearSpace;
 use crate::commands::modes::frequency_unit;
-use crate::files::json;
 use crate::report::counted;
 
 /// Poles that are shown.
 const POLES: usize = 20;
 
-/// Report of `flexframe linearize`.
-#[derive(Debug, Clone, Serialize)]
-pub struct LinearReport {
-    /// Title of the scene.
-    pub title: String,
-    /// Unit of frequencies.
-    pub frequency_unit: String,
-    /// The file.
-    #[serde(serialize_with = "json::path")]
-    pub file: PathBuf,
-    /// Time of the state.
-    pub time: f64,
-    /// Angular velocity of the state, global.
-    pub omega_global: [f64; 3],
-    /// The state in words, with its damping.
-    pub about: String,
-    /// Number of states, inputs and outputs of what is written.
-    pub states: usize,
-    /// Names of the inputs.
-    pub inputs: Vec<String>,
-    /// Names of the outputs.
-    pub outputs: Vec<String>,
-    /// States of the whole model.
-    pub whole: usize,
-    /// Bound of the error of a balanced truncation, largest singular value at any frequency.
-    pub error_bound: Option<f64>,
-    /// Hankel values of the whole model, where it is reduced.
-    pub hankel_values: Vec<f64>,
-    /// Poles, slowest first: one of each conjugate pair.
-    pub poles: Vec<Pole>,
-    /// Rank of D, where outputs are as many as inputs.
-    pub at_once: Option<AtOnce>,
-    /// Reservations about the state.
-    pub warnings: Vec<String>,
-}
-
-/// A pole.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Pole {
-    /// Growth per time.
-    pub growth: f64,
-    /// Cycles per time.
-    pub frequency: f64,
-    /// −growth over the magnitude; 0 of a pole of zero.
-    pub damping_ratio: f64,
-    /// Its complex mode: real and imaginary part of each output, the largest of the unit of the first output 1.
-    pub shape: Vec<[f64; 2]>,
-}
-
-impl LinearReport {
-    pub(super) fn new(scene: &Shared, space: &LinearSpace, poles: &[c64], file: &Path) -> Self {
-        let LinearSpace { whole, state, .. } = space;
-        let (written, balanced) = (space.model(), space.balanced());
-        let pole = |pole: &c64| Pole {
-            growth: pole.re,
-            frequency: pole.im / TAU,
-            damping_ratio: if pole.norm() > 0.0 { -pole.re / pole.norm() } else { 0.0 },
-            shape: shape(written, *pole),
-        };
-        Self {
-            title: scene.title.clone(),
-            time: state.time,
-            frequency_unit: frequency_unit(&scene.units.time),
-            file: file.to_owned(),
-            omega_global: state.omega_global,
-            about: state.to_string(),
-            states: written.states.len(),
-            inputs: written.inputs.iter().map(|channel| channel.name.clone()).collect(),
-            outputs: written.outputs.iter().map(|channel| channel.name.clone()).collect(),
-            whole: whole.states.len(),
-            error_bound: balanced.map(|(bound, _)| *bound),
-            hankel_values: balanced.map_or_else(Vec::new, |(_, values)| values.clone()),
-            poles: poles.iter().filter(|pole| pole.im >= 0.0).map(pole).collect(),
-            at_once: AtOnce::of(written),
-            warnings: state.warnings.clone(),
-        }
-    }
+/// The report of a state space with its poles, which is written to a file.
+pub(super) fn report(scene: &Shared, space: &LinearSpace, poles: &[c64], file: &Path) -> Report {
+    let LinearSpace { whole, state, .. } = space;
+    let (written, balanced) = (space.model(), space.balanced());
+    let unit = frequency_unit(&scene.units.time);
+    let names = |list: &[Channel]| list.iter().map(|channel| channel.name.clone()).collect::<Vec<String>>();
+    let [inputs, outputs] = [&written.inputs, &written.outputs].map(|list| names(list));
+    let [size, whole] = [written.states.len(), whole.states.len()];
+    let mut report = Report::new(&scene.title);
+    report.put("frequency_unit", &unit);
+    report.put("time", state.time);
+    report.put("omega_global", state.omega_global);
+    report.say("about", "about", state.to_string());
+    let counts = [
+        counted(size, ["state", "states"]),
+        counted(inputs.len(), ["input", "inputs"]),
+        counted(outputs.len(), ["output", "outputs"]),
+    ];
+    let reduced = match balanced {
+        Some((bound, _)) => format!("; of {whole} states, no response wrong by more than {bound:.3e}"),
+        None if size < whole => format!("; of {whole} states, exact at frequency 0"),
+        None => String::new(),
+    };
+    report.line("model", format!("{}{reduced}", counts.join(", ")));
+    report.put("states", size);
+    report.put("whole", whole);
+    report.put("error_bound", balanced.map(|(bound, _)| *bound));
+    report.put("hankel_values", balanced.map_or_else(Vec::new, |(_, values)| values.clone()));
+    report.line("inputs", inputs.join(", "));
+    report.put("inputs", inputs);
+    report.line("outputs", outputs.join(", "));
+    report.put("outputs", outputs);
+    let at_once = AtOnce::of(written);
+    report.put("at_once", at_once.as_ref().map(Value::of));
+    at_once.iter().filter_map(AtOnce::in_words).for_each(|words| report.line("D", words));
+    report.say("file", "file", file.display().to_string());
+    // One of each conjugate pair, slowest first.
+    let poles: Vec<&c64> = poles.iter().filter(|pole| pole.im >= 0.0).collect();
+    let ratio = |pole: &&c64| if pole.norm() > 0.0 { -pole.re / pole.norm() } else { 0.0 };
+    report.table(
+        Table::new("poles", "poles")
+            .most(POLES)
+            .shown("frequency", format!("poles, {unit}"), Form::Fixed(6), poles.iter().map(|pole| pole.im / TAU))
+            .shown("damping_ratio", "damping", Form::Power(4), poles.iter().map(ratio))
+            .shown("growth", "growth", Form::Power(4), poles.iter().map(|pole| pole.re))
+            .column("shape", poles.iter().map(|pole| shape(written, **pole))),
+    );
+    report.warnings.clone_from(&state.warnings);
+    report
 }
 
 /// The outputs in the complex mode of a pole, in the scale of the largest of one unit.
@@ -105,36 +75,4 @@ fn shape(model: &StateSpace, pole: c64) -> Vec<[f64; 2]> {
     let largest = of_unit.map(|(output, _)| *output).max_by(|a, b| a.norm().total_cmp(&b.norm()));
     let scale = largest.filter(|largest| largest.norm() > 0.0).unwrap_or(c64::ONE);
     outputs.into_iter().map(|output| output / scale).map(|output| [output.re, output.im]).collect()
-}
-
-impl fmt::Display for LinearReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", self.title)?;
-        writeln!(f, "  about    {}", self.about)?;
-        let inputs = counted(self.inputs.len(), ["input", "inputs"]);
-        let outputs = counted(self.outputs.len(), ["output", "outputs"]);
-        write!(f, "  model    {}, {inputs}, {outputs}", counted(self.states, ["state", "states"]))?;
-        match self.error_bound {
-            Some(bound) => writeln!(f, "; of {} states, no response wrong by more than {bound:.3e}", self.whole)?,
-            None if self.states < self.whole => writeln!(f, "; of {} states, exact at frequency 0", self.whole)?,
-            None => writeln!(f)?,
-        }
-        writeln!(f, "  inputs   {}", self.inputs.join(", "))?;
-        writeln!(f, "  outputs  {}", self.outputs.join(", "))?;
-        if let Some(words) = self.at_once.as_ref().and_then(AtOnce::in_words) {
-            writeln!(f, "  D        {words}")?;
-        }
-        writeln!(f, "  file     {}", self.file.display())?;
-        write!(f, "\n  {:>16}  {:>12}  {:>12}", format!("poles, {}", self.frequency_unit), "damping", "growth")?;
-        for pole in self.poles.iter().take(POLES) {
-            write!(f, "\n  {:>16.6}  {:>12.4e}  {:>12.4e}", pole.frequency, pole.damping_ratio, pole.growth)?;
-        }
-        if self.poles.len() > POLES {
-            write!(f, "\n  … {} in all", self.poles.len())?;
-        }
-        for warning in &self.warnings {
-            write!(f, "\n  warning  {warning}")?;
-        }
-        Ok(())
-    }
 }
