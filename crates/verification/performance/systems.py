@@ -5,7 +5,6 @@ FLEXFRAME is the program, SYSTEMS the one of crates/verification/src/bin/systems
 """
 
 import copy
-import itertools
 import json
 import math
 import subprocess
@@ -94,32 +93,34 @@ def theirs(flexframe, case):
 
 
 def seconds_for(runs, kind, target):
-    """Seconds at an error of a kind, by a line between logarithms; beyond the ends, "at most", or by an order of two, marked."""
+    """Seconds at an error of a kind, by a line between logarithms; beyond the ends at most (≤), or by an order of two (≈)."""
     pairs = [(run[0], run[1 + kind]) for run in runs]
     within = [i for i in range(len(pairs)) if all(error <= target for _, error in pairs[i:])]
     if within and within[0] == 0:
-        return pairs[0][0], "at most"
+        return pairs[0][0], "≤ "
     if within:
         (s0, e0), (s1, e1) = pairs[within[0] - 1], pairs[within[0]]
         part = math.log(e0 / target) / math.log(e0 / e1)
         return s0 * (s1 / s0) ** part, ""
     seconds, error = pairs[-1]
-    return seconds * (error / target) ** 0.5, "extrapolated"
+    return seconds * (error / target) ** 0.5, "≈ "
 
 
 def main():
     flexframe, program, page = sys.argv[1:]
     figure, axes = plt.subplots(1, len(CASES), figsize=(15, 4), sharey=True)
-    tables, limits = ([], []), []
+    rows, limits = [], []
     for axis, (name, case) in zip(axes, CASES.items()):
         mine, our_limit = ours(program, case)
         others, their_limit = theirs(flexframe, case)
         place, both = our_limit.errors(their_limit, case[4])
         limits.append(f"| {name} | {place:.1e} | {both:.1e} |")
-        for (kind, rows), target in itertools.product(enumerate(tables), TARGETS):
-            (a, how_a), (b, how_b) = seconds_for(mine, kind, target), seconds_for(others, kind, target)
-            cell = lambda seconds, how: f"{1e3 * seconds:.3g} ms" + (f" ({how})" if how else "")
-            rows.append(f"| {name} | {target:.0e} | {cell(a, how_a)} | {cell(b, how_b)} | {b / a:.3g} |")
+        for target in TARGETS:
+            cells = [name, f"{target:.0e}"]
+            for kind in (1, 0):
+                (a, how_a), (b, how_b) = seconds_for(mine, kind, target), seconds_for(others, kind, target)
+                cells += [f"{how_a}{1e3 * a:.3g}", f"{how_b}{1e3 * b:.3g}", f"{b / a:.3g}"]
+            rows.append(f"| {' | '.join(cells)} |")
         for color, who, runs in (("C0", "flexframe", mine), ("C1", "Exudyn", others)):
             for kind, style in enumerate(("o-", "x--")):
                 axis.loglog(
@@ -140,8 +141,7 @@ def main():
     picture.parent.mkdir(exist_ok=True)
     figure.savefig(picture, metadata={"Date": None})
     template = (HERE / "systems" / "page.template").read_text()
-    places, both = ("\n".join(rows) for rows in tables)
-    text = template.replace("PLACES", places).replace("BOTH", both).replace("LIMITS", "\n".join(limits))
+    text = template.replace("TIMES", "\n".join(rows)).replace("LIMITS", "\n".join(limits))
     # What other recipes have measured stays.
     _, mark, rest = target.read_text().partition("\n## Random systems\n") if target.exists() else ("", "", "")
     target.write_text(text + mark + rest)

@@ -13,7 +13,7 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
          Every case is run with every scheme by `./dev stability`. A cell has the largest error or drift of \
          the whole run; tests assert bounds of them, and `crates/verification/src/stability` says why each case is hard. Errors are \
          against closed forms where nothing else is said; attitudes are in rad; \"drift\" is of energy and angular \
-         momentum, relative. \"Stops\" means that the body is refused, or that the run ends at its first bad step, with the words \
+         momentum, relative. \"(1)\" means that the body is refused, or that the run ends at its first bad step, with the words \
          below the table in its message. Nothing ends in NaN.\n",
     );
     let mut broken = Vec::new();
@@ -66,9 +66,9 @@ pub fn of_systems(extent: Extent, progress: &mut impl FnMut(&str)) -> (String, V
 
 /// The words of refusals, by the numbers that cells have.
 fn below(page: &mut String, refusals: &[String]) {
-    let words: Vec<String> = refusals.iter().enumerate().map(|(k, words)| format!("{}: {words}", k + 1)).collect();
+    let words: Vec<String> = refusals.iter().enumerate().map(|(k, words)| format!("({}) {words}", k + 1)).collect();
     if !words.is_empty() {
-        let _ = writeln!(page, "\nStops {}.", words.join("; "));
+        let _ = writeln!(page, "\nMessages: {}.", words.join("; "));
     }
 }
 
@@ -118,7 +118,7 @@ fn cell(outcome: &TrialOutcome, expected: Option<&Bound>, refusals: &mut Vec<Str
                 refusals.push(words.to_owned());
                 refusals.len() - 1
             });
-            format!("stops: {}", place + 1)
+            format!("({})", place + 1)
         }
     }
 }
