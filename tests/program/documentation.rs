@@ -17,7 +17,7 @@ const NOT_RUN: [(&str, &str, &str); 10] = [
     ("README.md", "./dev plate", "builds the program and runs all tests"),
     ("README.md", "cargo install", "installs"),
     ("docs/start/first-steps.md", "cargo install", "installs"),
-    ("docs/start/python.md", "", "builds the Python package, as ./dev python does"),
+    ("docs/how-to/python.md", "", "builds the Python package, as ./dev python does"),
     ("docs/reference/python.md", "", "builds the Python package, as ./dev python does"),
     ("docs/reference/cli.md", "flexframe run blade", "a line of a reference: there is no such scene"),
     ("docs/reference/cluster.md", "", "wants a cluster"),
