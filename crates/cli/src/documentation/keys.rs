@@ -151,9 +151,11 @@ impl<'a> Page<'a> {
             "string" => "text".to_owned(),
             "array" => {
                 let entry = self.value(&of["items"], &format!("{path}[]"));
-                match of["maxItems"].as_u64() {
-                    Some(count) => format!("list of {count}: {entry}"),
-                    None => format!("list: {entry}"),
+                match (of["maxItems"].as_u64(), entry.as_str()) {
+                    (Some(count), "number") => format!("{count} numbers"),
+                    (None, "number" | "text") => format!("list of {entry}s"),
+                    (Some(count), _) => format!("{count} × {entry}"),
+                    (None, _) => format!("list: {entry}"),
                 }
             }
             "object" if of["properties"].is_object() => self.link(of, path),
