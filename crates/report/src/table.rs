@@ -65,7 +65,7 @@ impl Table {
         self.most(usize::MAX)
     }
 
-    /// With so many rows in the text at the most.
+    /// With at most this number of rows in the text.
     #[must_use]
     pub fn most(self, most: usize) -> Self {
         Self { most, ..self }

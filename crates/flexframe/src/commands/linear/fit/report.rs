@@ -24,7 +24,7 @@ const SCATTERED: f64 = 2.0;
 pub(super) struct Fitted {
     pub parameters: Vec<FittedParameter>,
     pub modes: Vec<FittedMode>,
-    /// Of the parameters, of logarithms but for Poisson's ratios.
+    /// Between the parameters; between logarithms but for Poisson's ratios.
     pub correlation: Vec<Vec<f64>>,
     /// Measured frequencies beyond the number of parameters.
     pub freedom: usize,

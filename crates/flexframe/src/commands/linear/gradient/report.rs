@@ -21,7 +21,7 @@ pub(super) struct Rates {
     pub frequencies: Vec<f64>,
     /// Numbers, from 1, of the first and the last mode of each group of one frequency.
     pub repeated: Vec<[usize; 2]>,
-    /// Of each mode in translations of the base along the axes of the mesh; of modes of one frequency, their mean.
+    /// For each mode, in translations of the base along the axes of the mesh; the mean of modes of one frequency.
     pub effective_masses: Vec<[f64; 3]>,
     /// Empty of a body that is not held, and without loads or points of the output.
     pub statics: Vec<Static>,
@@ -45,7 +45,7 @@ pub(super) struct OfParameter {
     /// The path of its key, or `thickness.GROUP.AXIS`.
     name: String,
     value: f64,
-    /// Of modes of one frequency, rates of the modes that the parameter parts, in rising order.
+    /// For each mode; where modes have one frequency, for the modes that the parameter parts, in rising order.
     frequencies: Vec<f64>,
     /// d ln f / d ln p.
     relative: Vec<f64>,
