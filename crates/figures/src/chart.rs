@@ -7,3 +7,4 @@ pub(crate) mod lines;
 pub(crate) mod path;
 pub(crate) mod plot;
 pub(crate) mod series;
+pub mod stack;

@@ -1,6 +1,6 @@
 //! Figures: line charts, deformed bodies and animations, as SVG, PDF, PNG and GIF.
 //!
-//! * [`LineChart`], [`ChartGrid`], [`ShapeGrid`] and [`Animation`] draw figures and write their files.
+//! * [`LineChart`], [`ChartStack`], [`ChartGrid`], [`ShapeGrid`] and [`Animation`] draw figures and write their files.
 //! * [`facets()`] and [`sharp_edges`] turn the surface of a mesh into what the figures draw.
 //!
 //! The crate knows plain data only: no mesh, no mode, no results file.
@@ -21,5 +21,6 @@ pub use chart::axis::Scale;
 pub use chart::grid::ChartGrid;
 pub use chart::lines::{LineChart, Reference};
 pub use chart::series::{Series, Stroke};
+pub use chart::stack::ChartStack;
 pub use document::formats::files;
 pub use error::FigureError;

@@ -510,3 +510,16 @@ fn guides_are_labelled_at_their_ends_and_rings_lie_within_the_window() {
     // Rings within the window and that of the legend; the one above 7 is not there.
     assert_eq!(text.lines().filter(|line| line.contains("circle") && line.contains("stroke=\"#1E1E1E\"")).count(), 3);
 }
+
+#[test]
+fn charts_of_a_stack_have_axes_of_their_own() {
+    let line = |label: &str, size: f64| {
+        let guide = series("24.5", Stroke::Guide, [(0.2, 0.0), (0.2, size)]);
+        chart("", vec![series(label, Stroke::Solid, times(50).map(|t| (t, size * t))), guide])
+    };
+    let stack = ChartStack { title: "Two units".into(), charts: vec![line("force", 1e6), line("displacement", 1e-3)] };
+    let [svg, ..] = stack.save(folder().join("stack")).unwrap();
+    assert_eq!(["Two units", "force", "displacement", "24.5"].map(|text| count(&svg, text)), [1, 1, 1, 2]);
+    let none = ChartStack { title: "None".into(), charts: Vec::new() };
+    assert!(matches!(none.save(folder().join("none")), Err(FigureError::Empty { .. })));
+}

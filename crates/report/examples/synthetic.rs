@@ -12,8 +12,9 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use report::{
-    Chart, Compared, Component, Curve, Effect, Fact, PageBalance, PageBody, PageHistory, PageMotion, PageStress,
-    PageSurface, PageTrustLine, PageUnits, Responses, RunPage, RunState, SceneText, Shape, ShapeKind, Trust,
+    Chart, Compared, Component, Curve, Curves, Effect, Fact, PageBalance, PageBody, PageHistory, PageMotion,
+    PageStress, PageSurface, PageTrustLine, PageUnits, PageWords, RunPage, RunState, SceneText, Shape, ShapeKind,
+    Trust,
 };
 
 const LENGTH: f64 = 1000.0;
@@ -26,7 +27,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [kind, path] = arguments.as_slice() else { return Err("expected: KIND FILE".into()) };
     if kind == "responses" {
-        return Ok(responses().write(Path::new(path))?);
+        let (facts, warnings) = (vec![Fact::new("About", "rest")], vec!["a warning".to_owned()]);
+        let words = PageWords { title: "Two oscillators", program: "flexframe", facts, warnings: &warnings };
+        return Ok(responses().write(words, Path::new(path))?);
     }
     let mut report = match kind.as_str() {
         "small" | "unfinished" | "hinged" | "nodes" => plate(120, 8, 6, 5001, "Free plate, 50 N end pulse"),
@@ -350,7 +353,7 @@ fn trust() -> Trust {
 }
 
 /// Two oscillators at 10 and 100 Hz, and an output that sees nothing: their response, and the phase.
-fn responses() -> Responses {
+fn responses() -> Curves {
     let frequencies: Vec<f64> = (0..500).map(f64::from).collect();
     let curve = |name: &str, natural: f64, unit: &str| {
         let of = |f: &f64| {
@@ -366,17 +369,15 @@ fn responses() -> Responses {
         }
     };
     let nothing = Curve { values: vec![vec![0.0; 500]; 2], ..curve("nothing / </script><b>push", 1.0, "mm per N") };
-    Responses {
-        title: "Two oscillators".to_owned(),
-        program: "flexframe".to_owned(),
-        facts: vec![Fact::new("About", "rest")],
-        warnings: vec!["a warning".to_owned()],
+    Curves {
+        subject: "frequency response",
         frequency_unit: "Hz".to_owned(),
         logarithmic: false,
         charts: [("Magnitude", true), ("Phase, degrees", false)]
-            .map(|(name, logarithmic)| Chart { name: name.to_owned(), logarithmic })
+            .map(|(name, logarithmic)| Chart::new(name, logarithmic))
             .to_vec(),
-        headings: vec!["Highest".to_owned()],
+        resonances: Vec::new(),
+        headings: vec!["Highest"],
         curves: vec![curve("slow / push", 10.0, "mm per N"), curve("fast / push", 100.0, "mm/s per N"), nothing],
         frequencies,
     }

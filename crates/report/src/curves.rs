@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use figures::{LineChart, Scale, Series, Stroke};
+use figures::{ChartStack, LineChart, Scale, Series, Stroke};
 use serde::Serialize;
 use whole_file::write_whole;
 
@@ -20,6 +20,10 @@ const MOST: usize = 2_000_000;
 
 /// Curves of a chart at the most.
 const MAX_CURVES: usize = 12;
+/// Charts of a figure at the most.
+const MAX_CHARTS: usize = 8;
+/// Part of the axis of the frequency that the label of a resonance takes.
+const ROOM: f64 = 0.07;
 /// Curves with a colour of their own: those after them are dashed.
 const COLOURS: usize = 7;
 
@@ -34,7 +38,9 @@ pub struct Curves {
     pub logarithmic: bool,
     /// Frequencies, rising (n).
     pub frequencies: Vec<f64>,
-    /// Charts of the page, one above the other (c). The first is the chart of the files.
+    /// Natural frequencies that the figure names, rising.
+    pub resonances: Vec<f64>,
+    /// Charts, one above the other (c).
     pub charts: Vec<Chart>,
     /// Headings of the numbers that each curve has as a whole (m).
     pub headings: Vec<&'static str>,
@@ -157,30 +163,73 @@ impl Curves {
         if title.is_empty() { self.subject.to_owned() } else { format!("{title}: {}", self.subject) }
     }
 
-    /// The first chart, with as many curves as there is room for. On a logarithmic axis are values above zero, as the acceleration at no
-    /// frequency is not; where there is none at all, the axis is linear and the curves are zero.
-    pub fn chart(&self, title: &str) -> LineChart {
-        let Some(Chart { name, logarithmic }) = self.charts.first() else { return LineChart::default() };
-        let values = |curve: &Curve| curve.values.first().cloned().unwrap_or_default();
-        let any_positive = self.curves.iter().flat_map(values).any(|value| value > 0.0);
+    /// Charts one below another: for each unit of the first values of the curves one a chart of the page, with as many curves as there is
+    /// room for. On a logarithmic axis are values above zero, as the acceleration at no frequency is not; where there is none at all, the
+    /// axis is linear and the curves are zero.
+    pub(crate) fn figure(&self, title: &str) -> ChartStack {
+        let mut units: Vec<&str> = Vec::new();
+        for unit in self.curves.iter().filter_map(|curve| curve.units.first()) {
+            if !units.contains(&unit.as_str()) {
+                units.push(unit);
+            }
+        }
+        let of_unit = |unit: &&str| {
+            let curves = self.curves.iter().filter(|curve| curve.units.first().is_some_and(|of| of == unit));
+            let curves: Vec<&Curve> = curves.take(MAX_CURVES).collect();
+            let charts = (0..self.charts.len()).map(|k| self.chart(k, &curves));
+            charts.filter(|chart| !chart.is_empty()).collect::<Vec<LineChart>>()
+        };
+        let charts = units.iter().flat_map(of_unit).take(MAX_CHARTS).collect();
+        ChartStack { title: self.titled(title), charts }
+    }
+
+    /// The chart with a number of some curves, with the resonances.
+    fn chart(&self, k: usize, curves: &[&Curve]) -> LineChart {
+        let Chart { name, logarithmic } = &self.charts[k];
+        let any_positive = curves.iter().flat_map(|curve| &curve.values[k]).any(|value| *value > 0.0);
         let scale = |logarithmic: bool| if logarithmic { Scale::Log } else { Scale::Linear };
         let y_scale = scale(*logarithmic && any_positive);
         let is_drawn = |(x, y): &(f64, f64)| (y_scale == Scale::Linear || *y > 0.0) && (!self.logarithmic || *x > 0.0);
-        let series = self.curves.iter().map(|curve| {
-            let points = self.frequencies.iter().copied().zip(values(curve)).filter(is_drawn);
-            Series { label: curve.name.clone(), points: points.collect(), stroke: Stroke::Solid }
-        });
-        let mut series: Vec<Series> = series.filter(|series| !series.points.is_empty()).take(MAX_CURVES).collect();
-        series.iter_mut().skip(COLOURS).for_each(|series| series.stroke = Stroke::Dashed);
+        let line = |(number, curve): (usize, &&Curve)| Series {
+            label: curve.name.clone(),
+            points: self.frequencies.iter().copied().zip(curve.values[k].iter().copied()).filter(is_drawn).collect(),
+            stroke: if number < COLOURS { Stroke::Solid } else { Stroke::Dashed },
+        };
+        let mut series: Vec<Series> = curves.iter().enumerate().map(line).collect();
+        series.retain(|series| !series.points.is_empty());
+        let values = || series.iter().flat_map(|series| &series.points).map(|point| point.1);
+        let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+        if low < high {
+            series.extend(self.guides(low, high));
+        }
+        let unit = curves.first().map_or("", |curve| &curve.units[k]);
         LineChart {
-            title: self.titled(title),
+            title: String::new(),
             x_label: format!("Frequency ({})", self.frequency_unit),
-            y_label: name.clone(),
+            y_label: if unit.is_empty() || name.contains(unit) { name.clone() } else { format!("{name} ({unit})") },
             x_scale: scale(self.logarithmic),
             y_scale,
             series,
             reference: None,
         }
+    }
+
+    /// A line for each resonance, with its frequency where there is room.
+    fn guides(&self, low: f64, high: f64) -> Vec<Series> {
+        let drawn = self.frequencies.iter().copied().filter(|x| !self.logarithmic || *x > 0.0);
+        let along = |x: f64| if self.logarithmic { x.ln() } else { x };
+        let (start, end) = drawn.fold((f64::INFINITY, 0.0), |(start, end): (f64, f64), x| (start.min(x), end.max(x)));
+        let mut labelled = along(start);
+        let guide = |resonance: &f64| {
+            let x = along(*resonance);
+            let has_room = x - labelled > ROOM * (along(end) - along(start));
+            if has_room {
+                labelled = x;
+            }
+            let label = if has_room { format!("{resonance:.1}") } else { String::new() };
+            Series { label, points: vec![(*resonance, low), (*resonance, high)], stroke: Stroke::Guide }
+        };
+        self.resonances.iter().filter(|x| (start..=end).contains(*x)).map(guide).collect()
     }
 
     fn check(&self) -> Result<(), ReportError> {
@@ -238,6 +287,7 @@ mod tests {
             frequency_unit: "Hz".to_owned(),
             logarithmic: false,
             frequencies: (0..frequencies).map(|k| k as f64).collect(),
+            resonances: vec![2.0],
             charts: [("Magnitude", true), ("Phase", false)]
                 .map(|(name, logarithmic)| Chart { name: name.to_owned(), logarithmic })
                 .to_vec(),
@@ -268,5 +318,20 @@ mod tests {
         none.curves[0].values[0][3] = f64::NAN;
         assert!(matches!(none.html(words()), Err(ReportError::NotFinite { index: 3, .. })));
         assert!(matches!(page(0, 5).html(words()), Err(ReportError::Empty { .. })));
+    }
+
+    #[test]
+    fn a_figure_has_charts_for_each_unit_and_names_resonances() {
+        let mut curves = page(3, 5);
+        curves.curves[1].units[0] = "mm/s".to_owned();
+        let figure = curves.figure("Bar");
+        let labels: Vec<&str> = figure.charts.iter().map(|chart| &chart.y_label[..]).collect();
+        assert_eq!(labels, ["Magnitude (mm)", "Phase (°)", "Magnitude (mm/s)", "Phase (°)"]);
+        assert_eq!(figure.title, "Bar: frequency response");
+        // Lines that lie on one level have no place for a guide.
+        assert_eq!(figure.charts[0].series.len(), 2);
+        curves.curves[0].values[0][4] = 9.0;
+        let guide = curves.figure("Bar").charts[0].series.pop().unwrap();
+        assert_eq!((guide.label.as_str(), &guide.points[..]), ("2.0", &[(2.0, 1.0), (2.0, 9.0)][..]));
     }
 }

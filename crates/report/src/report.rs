@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use figures::LineChart;
+use figures::ChartStack;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value as Json};
 use whole_file::write_whole;
@@ -21,10 +21,10 @@ const LABELS: usize = 9;
 pub struct Report {
     /// Title of the scene; none of a command without a scene.
     pub title: Option<String>,
-    /// Curves over the frequency, of which a chart and a page are made.
+    /// Curves over the frequency, of which a figure and a page are made.
     pub curves: Option<Curves>,
     /// Charts that are not of [`Self::curves`], by the name of their files.
-    pub charts: Vec<(&'static str, LineChart)>,
+    pub charts: Vec<(&'static str, ChartStack)>,
     /// Tables that are files alone.
     pub tables: Vec<Table>,
     /// Reservations.
@@ -221,10 +221,13 @@ impl Report {
                     }
                 }
                 (File::Chart(name), curves) => {
-                    let of_curves = curves.iter().map(|curves| curves.chart(self.title.as_deref().unwrap_or_default()));
+                    let of_curves =
+                        curves.iter().map(|curves| curves.figure(self.title.as_deref().unwrap_or_default()));
                     let own = self.charts.iter().filter(|(of, _)| of == name).map(|(_, chart)| chart.clone());
-                    let Some(chart) = own.chain(of_curves).next().filter(|chart| !chart.is_empty()) else { continue };
-                    chart.save(folder.join(name))?;
+                    let Some(figure) = own.chain(of_curves).next().filter(|figure| !figure.charts.is_empty()) else {
+                        continue;
+                    };
+                    figure.save(folder.join(name))?;
                 }
                 (File::Page(_), None) => continue,
             }
@@ -341,6 +344,7 @@ mod tests {
             frequency_unit: "Hz".to_owned(),
             logarithmic: false,
             frequencies: vec![0.0, 1.0],
+            resonances: Vec::new(),
             charts: vec![Chart::new("Magnitude", true)],
             headings: Vec::new(),
             curves: vec![curve],

@@ -84,7 +84,7 @@ impl LineChart {
         svg_file(self, path.as_ref())
     }
 
-    fn check(&self) -> Result<(), FigureError> {
+    pub(crate) fn check(&self) -> Result<(), FigureError> {
         check_series(&self.title, &self.series, [self.x_scale, self.y_scale])
     }
 

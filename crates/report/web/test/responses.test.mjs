@@ -24,7 +24,7 @@ async function hover(page, frequency) {
 
 test("values under the pointer are those of the curves, also of those that are not shown", async (t) => {
     const page = await open(t, browser, "responses");
-    assert.equal(await page.textContent("#title"), "Two oscillators");
+    assert.equal(await page.textContent("#title"), "Two oscillators: frequency response");
     assert.equal(await page.textContent("#warnings"), "a warning");
     await hover(page, 20);
     assert.equal(await place(page), "At 20 Hz");

@@ -148,7 +148,7 @@ impl Diagram {
         self.put_branches(&mut report, [length, time], &unit);
         self.put_critical_speeds(&mut report, time, &unit);
         report.warnings.clone_from(&self.warnings);
-        report.charts.push(("campbell", self.chart(title, time, &unit, orders)));
+        report.charts.push(("campbell", self.chart(title, time, &unit, orders).into()));
         report
     }
 

@@ -1,6 +1,9 @@
 //! `flexframe frf`: frequency responses of a scene about rest or a steady spin, as a table and as charts.
 
+use std::f64::consts::TAU;
+
 use diagnostic::{Diagnostic, Failure};
+use faer::c64;
 use linear::{Damping, FrequencyResponse, SecondOrder};
 use model::{BuildProgress, Builder};
 use report::{Chart, Curve, Curves, File, Form, Report, Table, Value};
@@ -63,6 +66,8 @@ pub fn frf(
     let response = equations.frequency_response(&frequencies, damping_of(settings.loss_factor));
     let response = response.map_err(|source| source.in_file(&system.path))?;
     let responses = responses(equations, &response);
+    let resonances =
+        resonances(&equations.poles(damping_of(settings.loss_factor)).map_err(|e| e.in_file(&system.path))?);
     let unit = frequency_unit(&system.units.time);
 
     let mut report = Report::new(&system.title);
@@ -103,11 +108,20 @@ pub fn frf(
         curves: responses.into_iter().map(curve).collect(),
         frequency_unit: unit.clone(),
         logarithmic: settings.logarithmic,
-        charts: vec![Chart::new("Magnitude", true), Chart::new("Phase, degrees", false)],
+        charts: vec![Chart::new("Magnitude", true), Chart::new("Phase", false)],
         headings: vec!["Highest"],
+        resonances,
         frequencies,
     });
     Ok(report)
+}
+
+/// Natural frequencies of poles that swing, rising, cycles per time.
+pub(super) fn resonances(poles: &[c64]) -> Vec<f64> {
+    let swinging = poles.iter().filter(|pole| pole.im > -pole.re);
+    let mut frequencies: Vec<f64> = swinging.map(|pole| pole.norm() / TAU).collect();
+    frequencies.sort_by(f64::total_cmp);
+    frequencies
 }
 
 /// The response of each output to each input, input by input.

@@ -10,7 +10,7 @@ use model::{BuildProgress, Builder};
 use report::{Chart, Curve, Curves, File, Form, Report, Table};
 use scene::System;
 
-use crate::commands::linear::frf::{damping_of, structural};
+use crate::commands::linear::frf::{damping_of, resonances, structural};
 use crate::commands::linear::linearize::{LinearModel, LinearSettings, linear_model};
 use crate::commands::linear::spectra::Spectra;
 use crate::commands::modes::frequency_unit;
@@ -58,15 +58,15 @@ pub fn psd(
     let input = spectra.at(&names, &rule.frequencies)?;
     let response = model.equations.frequency_response(&rule.frequencies, damping).map_err(failed)?;
     let responses = Responses::new(&model.equations, &response, &input, &rule.weights).map_err(failed)?;
-    Ok(report_of(system, &model, band, &responses, &rule.weights))
+    Ok(report_of(system, &model, band, (&responses, &rule.weights), resonances(&poles)))
 }
 
 fn report_of(
     system: &System,
     model: &LinearModel,
     [low, high]: [f64; 2],
-    responses: &Responses,
-    weights: &[f64],
+    (responses, weights): (&Responses, &[f64]),
+    resonances: Vec<f64>,
 ) -> Report {
     let unit = frequency_unit(&system.units.time);
     let inputs: Vec<&str> = model.equations.inputs.iter().map(|input| &input.name[..]).collect();
@@ -125,11 +125,9 @@ fn report_of(
         frequency_unit: unit.clone(),
         logarithmic: true,
         frequencies: responses.frequencies.clone(),
-        charts: vec![
-            Chart::new(format!("Power spectral density, unit² per {unit}"), true),
-            Chart::new("Cumulated rms", false),
-        ],
+        charts: vec![Chart::new("Power spectral density", true), Chart::new("Cumulated rms", false)],
         headings: vec!["rms"],
+        resonances,
     });
     report
 }

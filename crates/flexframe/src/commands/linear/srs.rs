@@ -115,6 +115,7 @@ pub fn srs(table: &Path, settings: &SrsSettings) -> Result<Report, Failure> {
             Chart::new("Displacement from the base", true),
         ],
         headings: Vec::new(),
+        resonances: Vec::new(),
         frequencies,
     });
     Ok(report)
