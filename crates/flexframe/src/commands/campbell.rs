@@ -9,19 +9,20 @@
 mod bent;
 mod branches;
 mod critical;
+mod diagram;
+mod family;
 mod limits;
 mod report;
 mod system;
 
 use ::report::Report;
 use diagnostic::{Diagnostic, Failure, Kind};
-use dynamics::{Effect, EigenError, SteadySpin};
+use dynamics::{Effect, SpinMode, SteadySpin};
 use model::{BuildError, BuildProgress, Builder, Needs};
 use nalgebra::Vector3;
 use scene::Scene;
 
 pub use bent::AboutRest;
-use critical::CriticalKind;
 pub use report::FILES;
 use report::{Diagram, SpinEffects};
 pub use system::{SystemCampbellSettings, campbell_of_system};
@@ -29,7 +30,7 @@ pub use system::{SystemCampbellSettings, campbell_of_system};
 use crate::commands::modes::require_flexible;
 use crate::report::MeshReport;
 use bent::BentSpin;
-use branches::Branches;
+use family::Family;
 
 /// Each speed takes an eigenvalue problem, and a row of a table.
 const MAX_SPEEDS: usize = 10_000;
@@ -105,6 +106,22 @@ fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, Failure> {
     })
 }
 
+/// A body whose spin is held, about its undeformed shape.
+struct Undeformed<'a> {
+    spin: &'a SteadySpin,
+    scene: &'a Scene,
+}
+
+impl Family for Undeformed<'_> {
+    fn vibrations(&self, speed: f64) -> Result<Vec<SpinMode>, Failure> {
+        self.spin.modes(speed).map_err(|source| source.in_file(&self.scene.path))
+    }
+
+    fn resonances(&self, order: f64) -> Result<Option<Vec<f64>>, Failure> {
+        self.spin.critical_speeds(order).map(Some).map_err(|source| source.in_file(&self.scene.path))
+    }
+}
+
 /// Computes the diagram of a scene.
 ///
 /// Effects are those of the scene's `[effects]`, where `"auto"` is on. All its modes are kept (`flexible = "auto"`: the
@@ -141,7 +158,6 @@ pub fn campbell(
     let spin = SteadySpin::new(&model.body, &axis, &model.physics.effects);
     let total = speeds.len();
     let done = |done| progress(CampbellProgress::Speeds { done, total });
-    let failed = |source: EigenError| source.in_file(&scene.path);
     let highest = settings.speeds.end;
     let deflection = || bent::deflection(&model, &axis, highest);
     let may_be_bent = match settings.about_rest {
@@ -159,36 +175,19 @@ pub fn campbell(
         Some(bent) if settings.about_rest == AboutRest::Always || bent.differs(&spin, highest)? => Some(bent),
         _ => None,
     };
-    let (branches, stable_below, critical_speeds, static_shapes) = match &bent {
-        None => {
-            let branches = Branches::follow(&|speed| spin.modes(speed), speeds, done).map_err(failed)?;
-            let critical_speed = spin.critical_speed().map_err(failed)?;
-            let critical = critical::find(&spin, &branches, &settings.orders).map_err(failed)?;
-            (branches, critical_speed.is_finite().then_some(critical_speed), critical, model.static_shapes())
-        }
-        Some(bent) => {
-            let branches = Branches::follow(&|speed| bent.modes(speed), speeds, done)?;
-            let critical = critical::between(&branches, &settings.orders);
-            let grows = |here: &Vec<dynamics::SpinMode>| here.iter().any(|mode| mode.growth > 0.0);
-            let first = branches.modes.iter().position(grows).map(|at| branches.speeds[at]);
-            let stops = critical.iter().filter(|critical| critical.kind == CriticalKind::ZeroFrequency);
-            let stops = stops.map(|critical| critical.speed);
-            let stable_below = stops.chain(first).reduce(f64::min);
-            (branches, stable_below, critical, 0)
-        }
+    let (family, static_shapes): (&dyn Family, _) = match &bent {
+        None => (&Undeformed { spin: &spin, scene }, model.static_shapes()),
+        Some(bent) => (bent, 0),
     };
+    let diagram = diagram::diagram(family, static_shapes, speeds, &settings.orders, done)?;
     let diagram = Diagram {
         mesh: MeshReport::new(&model),
         axis: axis.into(),
         origin: model.body.origin.into(),
         effects: Some(effects),
         no_rest,
-        stable_below,
-        critical_speeds,
-        deflection: bent.iter().flat_map(|bent| branches.speeds.iter().map(|speed| bent.deflection(*speed))).collect(),
-        branches: branches.lines(static_shapes),
-        speeds: branches.speeds,
-        ..Diagram::default()
+        deflection: bent.iter().flat_map(|bent| diagram.speeds.iter().map(|speed| bent.deflection(*speed))).collect(),
+        ..diagram
     };
     Ok(diagram.report(&scene.title, [&scene.units.length, &scene.units.time], &settings.orders))
 }

@@ -13,6 +13,8 @@ use nonlinear::{
 use reduced_body::ReducedBody;
 use scene::Scene;
 
+use super::family::Family;
+
 /// Deflection over the length, by the linear answer to the spin, below which a body is not bent.
 const STRAIGHT: f64 = 1e-3;
 /// Vibrations that are compared, and the difference of one from which the rest at each speed is taken.
@@ -78,24 +80,8 @@ struct AtSpeed {
     deflection: f64,
 }
 
-impl<'a> BentSpin<'a> {
-    pub fn new(scene: &'a Scene, full: &'a FullModel, model: &'a Model, axis: &Vector3<f64>) -> Result<Self, Failure> {
-        let Some(meshed) = &model.meshed else { return Err(no_full_body(scene)) };
-        let body = full.body().map_err(|source| source.in_file(&scene.path))?;
-        Ok(Self {
-            scene,
-            axis: *axis,
-            shapes: &meshed.modes.shapes,
-            momenta: body.momenta_of(meshed.modes.shapes.as_ref()),
-            circular_frequencies: &model.body.circular_frequencies,
-            count: model.body.natural_modes,
-            found: RefCell::default(),
-            body,
-        })
-    }
-
-    /// The vibrations at a speed, slowest first.
-    pub fn modes(&self, speed: f64) -> Result<Vec<SpinMode>, Failure> {
+impl Family for BentSpin<'_> {
+    fn vibrations(&self, speed: f64) -> Result<Vec<SpinMode>, Failure> {
         if let Some(known) = self.known(speed) {
             return Ok(known.modes);
         }
@@ -113,6 +99,27 @@ impl<'a> BentSpin<'a> {
         modes.sort_by(|a, b| a.circular_frequency.total_cmp(&b.circular_frequency));
         self.found.borrow_mut().push(AtSpeed { speed, modes: modes.clone(), deflection });
         Ok(modes)
+    }
+
+    fn is_slow(&self) -> bool {
+        true
+    }
+}
+
+impl<'a> BentSpin<'a> {
+    pub fn new(scene: &'a Scene, full: &'a FullModel, model: &'a Model, axis: &Vector3<f64>) -> Result<Self, Failure> {
+        let Some(meshed) = &model.meshed else { return Err(no_full_body(scene)) };
+        let body = full.body().map_err(|source| source.in_file(&scene.path))?;
+        Ok(Self {
+            scene,
+            axis: *axis,
+            shapes: &meshed.modes.shapes,
+            momenta: body.momenta_of(meshed.modes.shapes.as_ref()),
+            circular_frequencies: &model.body.circular_frequencies,
+            count: model.body.natural_modes,
+            found: RefCell::default(),
+            body,
+        })
     }
 
     fn known(&self, speed: f64) -> Option<AtSpeed> {
@@ -159,7 +166,7 @@ impl<'a> BentSpin<'a> {
     /// True if a low frequency at a speed is off about the undeformed body, or the body has no rest there.
     pub fn differs(&self, spin: &SteadySpin, speed: f64) -> Result<bool, Failure> {
         let linear = spin.modes(speed).map_err(|source| source.in_file(&self.scene.path))?;
-        let Ok(bent) = self.modes(speed) else { return Ok(true) };
+        let Ok(bent) = self.vibrations(speed) else { return Ok(true) };
         let size = |mode: &SpinMode| mode.circular_frequency.powi(2) - mode.growth.powi(2);
         let mut pairs = linear.iter().zip(&bent).take(COMPARED);
         Ok(pairs.any(|(linear, bent)| (size(linear) - size(bent)).abs() > 2.0 * DIFFERENCE * size(bent).abs()))

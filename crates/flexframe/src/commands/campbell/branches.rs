@@ -2,9 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use diagnostic::Failure;
 use dynamics::SpinMode;
 use results::kind::{NATURAL_MODE, STATIC_SHAPE};
 use serde::Serialize;
+
+use super::family::Family;
 
 /// |⟨a, b⟩|² of two shapes that are taken for the same without a closer look. Above ½ only one can be.
 const ALIKE: f64 = 0.6;
@@ -46,18 +49,14 @@ pub(super) struct Branches {
 }
 
 impl Branches {
-    /// Follows all vibrations, which `find` finds at a speed, down from the highest speed: at rest a symmetric body has equal frequencies, whose shapes
+    /// Follows all vibrations down from the highest speed: at rest a symmetric body has equal frequencies, whose shapes
     /// are any mixture. The places are in the order of the frequencies at the lowest speed.
-    pub fn follow<E>(
-        find: &impl Fn(f64) -> Result<Vec<SpinMode>, E>,
-        speeds: Vec<f64>,
-        mut done: impl FnMut(usize),
-    ) -> Result<Self, E> {
+    pub fn follow(family: &dyn Family, speeds: Vec<f64>, mut done: impl FnMut(usize)) -> Result<Self, Failure> {
         let mut modes: Vec<Vec<SpinMode>> = Vec::with_capacity(speeds.len());
         for (i, &speed) in speeds.iter().enumerate().rev() {
             let here = match modes.last() {
-                Some(above) => continued(find, above, speeds[i + 1], speed, CLOSER)?,
-                None => find(speed)?,
+                Some(above) => continued(family, above, speeds[i + 1], speed, CLOSER)?,
+                None => family.vibrations(speed)?,
             };
             modes.push(here);
             done(modes.len());
@@ -71,10 +70,10 @@ impl Branches {
         Ok(Self { speeds, modes })
     }
 
-    /// The vibrations at a speed between the others, at the same places; `find` finds them.
-    pub fn at<E>(&self, find: &impl Fn(f64) -> Result<Vec<SpinMode>, E>, speed: f64) -> Result<Vec<SpinMode>, E> {
+    /// The vibrations at a speed between the others, at the same places.
+    pub fn at(&self, family: &dyn Family, speed: f64) -> Result<Vec<SpinMode>, Failure> {
         let above = self.speeds.partition_point(|s| *s < speed).min(self.speeds.len() - 1);
-        continued(find, &self.modes[above], self.speeds[above], speed, CLOSER)
+        continued(family, &self.modes[above], self.speeds[above], speed, CLOSER)
     }
 
     /// The lines of the diagram; the last ones are those of static shapes, which are stiff.
@@ -94,20 +93,20 @@ impl Branches {
 }
 
 /// The vibrations at the speed `to`, each at the place of the one at the speed `from` that it continues.
-pub(super) fn continued<E>(
-    find: &impl Fn(f64) -> Result<Vec<SpinMode>, E>,
+pub(super) fn continued(
+    family: &dyn Family,
     modes: &[SpinMode],
     from: f64,
     to: f64,
     halvings: u32,
-) -> Result<Vec<SpinMode>, E> {
-    let (matched, least_alike) = matched(modes, find(to)?);
+) -> Result<Vec<SpinMode>, Failure> {
+    let (matched, least_alike) = matched(modes, family.vibrations(to)?);
     if least_alike >= ALIKE || halvings == 0 || from == to {
         return Ok(matched);
     }
     let middle = 0.5 * (from + to);
-    let halfway = continued(find, modes, from, middle, halvings - 1)?;
-    continued(find, &halfway, middle, to, halvings - 1)
+    let halfway = continued(family, modes, from, middle, halvings - 1)?;
+    continued(family, &halfway, middle, to, halvings - 1)
 }
 
 /// Sorts the vibrations `next` to those of `modes` that they are most alike, and says how alike the worst pair is. Of several with equal

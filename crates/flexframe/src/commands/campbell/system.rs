@@ -1,5 +1,7 @@
 //! The diagram of bodies that joints tie together: all of them spin about one axis, or a rotor on a support.
 
+use std::f64::consts::TAU;
+
 use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{Effect, Rotor, RotorError, SteadyError, SystemMotion};
 use model::{Builder, Needs};
@@ -7,9 +9,7 @@ use nalgebra::Vector3;
 use report::Report;
 use scene::System;
 
-use super::branches::Branches;
-use super::critical::CriticalKind;
-use super::limits::Limits;
+use super::diagram::diagram;
 use super::report::{Diagram, SpinEffects};
 use super::{CampbellProgress, Speeds, checked, unit};
 use crate::commands::system_modes::{Rotors, TiedMotion, body_names, tied_motions};
@@ -77,21 +77,19 @@ pub fn campbell_of_system(
         modes.map_err(failed)
     };
     let total = speeds.len();
-    let branches = Branches::follow(&find, speeds, |done| progress(CampbellProgress::Speeds { done, total }))?;
     let is_on = |effect: Effect| {
         let mut flexible = motion.bodies.iter().map(|body| &models[*body]).filter(|model| model.body.flexible() > 0);
         flexible.all(|model| model.physics.effects[effect])
     };
     let static_shapes: usize = motion.bodies.iter().map(|body| models[*body].static_shapes()).sum();
-    let limits = Limits::between(&find, &branches, &settings.orders)?;
-    let grows = |here: &Vec<dynamics::SpinMode>| here.iter().any(|mode| mode.growth > 0.0);
-    let unstable = branches.modes.iter().position(grows).map(|at| branches.speeds[at]);
-    let begins = limits.critical.iter().filter(|critical| critical.kind == CriticalKind::GrowthBegins);
-    let stable_below = begins.map(|critical| critical.speed).chain(unstable).reduce(f64::min);
+    let done = |done| progress(CampbellProgress::Speeds { done, total });
+    let diagram = diagram(&find, static_shapes, speeds, &settings.orders, done)?;
+    let circular_frequencies =
+        diagram.branches.iter().flat_map(|branch| &branch.frequency).map(|frequency| frequency * TAU);
     let diagram = Diagram {
         bodies: body_names(system, &motion.bodies),
         rotor: rotor.map(|rotor| body_names(system, &motion.bodies).swap_remove(rotor.body)),
-        warnings: others.warnings(branches.modes.iter().flatten().map(|mode| mode.circular_frequency)),
+        warnings: others.warnings(circular_frequencies),
         rotors: others.found,
         axis: axis.into(),
         origin: point.into(),
@@ -100,12 +98,7 @@ pub fn campbell_of_system(
             softening: is_on(Effect::DeformedInertia),
             stiffening: is_on(Effect::GeometricStiffening),
         }),
-        stable_below,
-        critical_speeds: limits.critical,
-        swing_limits: limits.swings,
-        branches: branches.lines(static_shapes),
-        speeds: branches.speeds,
-        ..Diagram::default()
+        ..diagram
     };
     Ok(diagram.report(&system.title, [&system.units.length, &system.units.time], &settings.orders))
 }
