@@ -11,14 +11,13 @@ mod varying;
 
 use ::report::{File, Report};
 use diagnostic::Failure;
-use model::{BuildError, BuildProgress, Builder, Needs, Parameter, RatesOf};
+use model::{BuildProgress, Builder, Parameter, RatesOf};
 use scene::System;
 
 use self::report::Rates;
 use crate::commands::linear::frequencies::Frequencies;
-use crate::commands::modes::lone_body;
 use number::Number;
-use system::VariedSystem;
+use system::Varied;
 
 /// The most frequencies of responses.
 const MAX_FREQUENCIES: usize = 100_000;
@@ -52,15 +51,16 @@ pub fn gradient(
         Some(asked) => asked.evenly(MAX_FREQUENCIES)?,
         None => Vec::new(),
     };
-    if system.has_connections() {
-        let parameters = Number::named(system, &settings.parameters)?;
-        let varied = VariedSystem::new(system, builder, progress)?;
-        let found = varied.rates(system, &parameters, &frequencies)?;
-        return Ok(Rates::of_system(system, &parameters, found, frequencies).report(system));
-    }
-    let scene = lone_body(system).map_err(BuildError::from)?;
-    let parameters = Parameter::named(scene, &settings.parameters).map_err(BuildError::from)?;
-    let body = builder.needing(Needs::modes()).varied(scene, progress)?;
-    let found = body.rates(body.body(), &parameters, RatesOf::All)?;
-    Ok(Rates::new(&body, &parameters, &found, frequencies).report(scene))
+    let numbers = Number::named(system, &settings.parameters)?;
+    let rates = match Varied::new(system, builder, progress)? {
+        Varied::System(varied) => {
+            Rates::of_system(system, &numbers, varied.rates(system, &numbers, &frequencies)?, frequencies)
+        }
+        Varied::Body(body) => {
+            let parameters: Vec<Parameter> = numbers.iter().filter_map(Number::parameter).cloned().collect();
+            let found = body.rates(body.body(), &parameters, RatesOf::All)?;
+            Rates::new(&body, &parameters, &found, frequencies)
+        }
+    };
+    Ok(rates.report(system))
 }

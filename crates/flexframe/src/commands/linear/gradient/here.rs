@@ -28,12 +28,12 @@ pub(super) struct Here<'a> {
 }
 
 /// A body of which numbers vary, with their places among all numbers.
-pub(super) struct Varied<'a> {
+pub(super) struct NumbersOfBody<'a> {
     pub body: Varying<'a>,
     pub places: Vec<usize>,
 }
 
-impl<'a> Varied<'a> {
+impl<'a> NumbersOfBody<'a> {
     /// The body, and the place among its numbers of one of all.
     pub fn of(&self, number: usize) -> Option<(&Varying<'a>, usize)> {
         Some((&self.body, self.places.iter().position(|place| *place == number)?))
@@ -85,7 +85,7 @@ impl<'a> Here<'a> {
         &self,
         i: usize,
         number: &Number,
-        varied: &'v [Option<Varied<'v>>],
+        varied: &'v [Option<NumbersOfBody<'v>>],
     ) -> Result<(usize, &'v Varying<'v>, usize), Failure> {
         let Place::Body(body, _) = number.place else { return Err(self.outside(number)) };
         let found = varied[body].as_ref().and_then(|varied| varied.of(i));

@@ -1,9 +1,11 @@
-//! Numbers of a scene of bodies in joints that its vibrations follow.
+//! Numbers of a scene of one body, or of bodies in joints, that its vibrations follow.
 
 use diagnostic::{Failure, Kind};
 use fem_tet10::BodyNumber;
 use model::{BuildError, Parameter};
 use scene::{AlongAndAbout, Body, MeshedBody, Scene, System, one_of};
+
+use crate::commands::modes::lone_body;
 
 /// A number of a scene, with the path of its key.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,11 +40,15 @@ fn no_number(name: &str, expected: String) -> Failure {
 }
 
 impl Number {
-    /// All of a scene: stiffnesses that are not zero, then the materials and point masses of bodies in joints.
+    /// All of a scene: stiffnesses that are not zero, then the materials and point masses of bodies.
     ///
     /// # Errors
     /// A body whose numbers cannot be listed.
     pub fn all(system: &System) -> Result<Vec<Self>, Failure> {
+        if !system.has_connections() {
+            let numbers = Parameter::all(lone_body(system).map_err(BuildError::from)?);
+            return Ok(Self::of_body(0, numbers.map_err(BuildError::from)?).collect());
+        }
         let springs = system
             .springs
             .iter()
@@ -67,13 +73,21 @@ impl Number {
         let mut all: Vec<Self> = stiffnesses.filter(|stiffness| stiffness.value(system) > 0.0).collect();
         for (body, scene) in system.bodies.iter().enumerate().filter(|(_, scene)| varies(scene)) {
             let numbers = Parameter::all(scene).map_err(BuildError::from)?;
-            all.extend(numbers.into_iter().map(|of| Self { name: of.name.clone(), place: Place::Body(body, of) }));
+            all.extend(Self::of_body(body, numbers));
         }
         Ok(all)
     }
 
-    /// The numbers of some names; all without any.
+    fn of_body(body: usize, numbers: Vec<Parameter>) -> impl Iterator<Item = Self> {
+        numbers.into_iter().map(move |of| Self { name: of.name.clone(), place: Place::Body(body, of) })
+    }
+
+    /// The numbers of some names, of one body also stretches of its mesh; all without any.
     pub fn named(system: &System, names: &[String]) -> Result<Vec<Self>, Failure> {
+        if !system.has_connections() {
+            let numbers = Parameter::named(lone_body(system).map_err(BuildError::from)?, names);
+            return Ok(Self::of_body(0, numbers.map_err(BuildError::from)?).collect());
+        }
         let all = Self::all(system)?;
         if names.is_empty() && !all.is_empty() {
             return Ok(all);
@@ -136,9 +150,17 @@ impl Number {
         }
     }
 
+    /// The number of a body that it is.
+    pub fn parameter(&self) -> Option<&Parameter> {
+        match &self.place {
+            Place::Body(_, parameter) => Some(parameter),
+            _ => None,
+        }
+    }
+
     /// True of a Poisson's ratio.
     pub fn is_poisson_ratio(&self) -> bool {
-        matches!(&self.place, Place::Body(_, parameter) if matches!(parameter.number, BodyNumber::PoissonRatio(_)))
+        self.parameter().is_some_and(|parameter| matches!(parameter.number, BodyNumber::PoissonRatio(_)))
     }
 }
 

@@ -11,21 +11,38 @@ use diagnostic::{Failure, Kind};
 use dynamics::SystemMode;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
-use model::{BuildProgress, Builder, Model, Parameter};
+use model::{BuildError, BuildProgress, Builder, Model, Needs, Parameter, VariedBody};
 use scene::System;
 
 use super::damping::Damped;
-use super::here::{Here, Varied};
+use super::here::{Here, NumbersOfBody};
 use super::number::{Number, Place};
 use super::system_responses::SystemResponses;
 use super::varying::{Varying, product};
+use crate::commands::modes::lone_body;
 
 /// A pair of eigenvalues that is one parts by the root of rounding: G below this part of 2s YᵀY is singular.
 const CRITICAL: f64 = 1e-7;
 
+/// A body alone, or bodies in joints, whose numbers vary.
+pub(crate) enum Varied {
+    Body(Box<VariedBody>),
+    System(Box<VariedSystem>),
+}
+
+impl Varied {
+    pub fn new(system: &System, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
+        if system.has_connections() {
+            return Ok(Self::System(Box::new(VariedSystem::new(system, builder, progress)?)));
+        }
+        let scene = lone_body(system).map_err(BuildError::from)?;
+        Ok(Self::Body(Box::new(builder.needing(Needs::modes()).varied(scene, progress)?)))
+    }
+}
+
 /// A system whose numbers vary.
 pub(crate) struct VariedSystem {
-    pub system: System,
+    system: System,
     builder: Builder,
     models: Vec<Model>,
 }
@@ -40,7 +57,7 @@ pub(crate) struct SystemRates {
 
 impl VariedSystem {
     /// The bodies of a scene.
-    pub fn new(system: &System, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
+    fn new(system: &System, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
         let system = system.clone();
         let models = builder.models(&system, progress)?;
         Ok(Self { system, builder: builder.clone(), models })
@@ -81,7 +98,7 @@ impl VariedSystem {
     }
 
     /// The bodies of which numbers vary, by number in the scene, with the places of these in the list.
-    fn varied<'a>(&self, here: &Here<'a>, numbers: &[Number]) -> Result<Vec<Option<Varied<'a>>>, Failure> {
+    fn varied<'a>(&self, here: &Here<'a>, numbers: &[Number]) -> Result<Vec<Option<NumbersOfBody<'a>>>, Failure> {
         let of_body = |body: usize| {
             let of = |(i, number): (usize, &Number)| match &number.place {
                 Place::Body(of, parameter) if *of == body => Some((i, parameter.clone())),
@@ -98,7 +115,7 @@ impl VariedSystem {
             let damping =
                 if is_damped { Damped::modes(&model.natural_frequencies(), &scene.modes.damping) } else { Vec::new() };
             let first = here.steady.linear.coordinates_of(place).start;
-            Ok(Some(Varied { body: Varying { model, first, body: rates, damping }, places }))
+            Ok(Some(NumbersOfBody { body: Varying { model, first, body: rates, damping }, places }))
         };
         (0..here.models.len()).map(of_body).collect()
     }

@@ -7,7 +7,7 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
 use nalgebra::Vector3;
 
-use super::here::{Here, Varied};
+use super::here::{Here, NumbersOfBody};
 use super::number::Number;
 use super::responses::{AXES, ResponseReport};
 use super::varying::{Varying, product, times};
@@ -53,7 +53,7 @@ impl Here<'_> {
         &self,
         numbers: &[Number],
         stiffness_rates: &[Option<Mat<f64>>],
-        varied: &[Option<Varied<'_>>],
+        varied: &[Option<NumbersOfBody<'_>>],
         frequencies: &[f64],
     ) -> Result<SystemResponses, Failure> {
         if frequencies.is_empty() {
@@ -166,7 +166,7 @@ impl Here<'_> {
         &self,
         i: usize,
         number: &Number,
-        varied: &'a [Option<Varied<'a>>],
+        varied: &'a [Option<NumbersOfBody<'a>>],
         ports: &[&Port],
     ) -> Result<Change<'a>, Failure> {
         let (body, of_body, k) = self.varying(i, number, varied)?;
