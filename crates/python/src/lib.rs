@@ -20,6 +20,7 @@ mod interrupt;
 mod linear;
 mod motion;
 mod parameters;
+mod reports;
 mod rows;
 mod scene;
 mod system;
@@ -49,6 +50,8 @@ mod _flexframe {
     use super::motion::simulation::{Reached, Simulation};
     #[pymodule_export]
     use super::parameters::{fitted, gradients};
+    #[pymodule_export]
+    use super::reports::{Report, campbell_report, frf_report, psd_report, shock_report, srs_report};
     #[pymodule_export]
     use super::rows::results::read_results;
     #[pymodule_export]

@@ -186,6 +186,27 @@ impl Report {
         self.entries.iter().filter_map(fact).collect()
     }
 
+    /// All tables with a name, those of the text first.
+    pub fn tables(&self) -> impl Iterator<Item = &Table> {
+        let of_text = self.entries.iter().filter_map(|entry| match entry {
+            Entry::Table(table) => Some(table),
+            _ => None,
+        });
+        of_text.chain(&self.tables).filter(|table| !table.name.is_empty())
+    }
+
+    /// The table with a name; one that is a file alone goes before one of the text.
+    pub fn table_named(&self, name: &str) -> Option<&Table> {
+        self.tables.iter().chain(self.tables()).find(|table| table.name == name)
+    }
+
+    /// The figure with the name of its files; none where there is nothing to draw.
+    pub fn figure(&self, name: &str) -> Option<ChartStack> {
+        let own = self.charts.iter().find(|(of, _)| *of == name).map(|(_, figure)| figure.clone());
+        let of_curves = || self.curves.as_ref().map(|curves| curves.figure(self.title.as_deref().unwrap_or_default()));
+        own.or_else(of_curves).filter(|figure| !figure.charts.is_empty())
+    }
+
     /// Writes files to a folder, each whole or not at all, and notes their paths. The folder is made if it does not exist.
     ///
     /// # Errors
@@ -202,13 +223,7 @@ impl Report {
             let paths = File::paths(&[*file], folder);
             match (file, &self.curves) {
                 (File::Table(name), _) => {
-                    let of_text = self.entries.iter().filter_map(|entry| match entry {
-                        Entry::Table(table) => Some(table),
-                        _ => None,
-                    });
-                    let Some(table) = self.tables.iter().chain(of_text).find(|table| table.name == *name) else {
-                        continue;
-                    };
+                    let Some(table) = self.table_named(name) else { continue };
                     for path in &paths {
                         write_whole(path, table.csv()).map_err(failed(path))?;
                     }
@@ -220,13 +235,8 @@ impl Report {
                         curves.write(words, path)?;
                     }
                 }
-                (File::Chart(name), curves) => {
-                    let of_curves =
-                        curves.iter().map(|curves| curves.figure(self.title.as_deref().unwrap_or_default()));
-                    let own = self.charts.iter().filter(|(of, _)| of == name).map(|(_, chart)| chart.clone());
-                    let Some(figure) = own.chain(of_curves).next().filter(|figure| !figure.charts.is_empty()) else {
-                        continue;
-                    };
+                (File::Chart(name), _) => {
+                    let Some(figure) = self.figure(name) else { continue };
                     figure.save(folder.join(name))?;
                 }
                 (File::Page(_), None) => continue,

@@ -132,6 +132,11 @@ impl Table {
         self.columns.iter().filter(|column| !column.key.is_empty())
     }
 
+    /// The columns of JSON and CSV: names and values.
+    pub fn columns(&self) -> impl Iterator<Item = (&str, &[Value])> {
+        self.named().map(|column| (&column.key[..], &column.values[..]))
+    }
+
     /// A list of objects, a row each.
     pub fn json(&self) -> Json {
         let row = |i: usize| -> Json {

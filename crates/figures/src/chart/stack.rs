@@ -6,7 +6,7 @@ use plotters::prelude::*;
 
 use crate::FigureError;
 use crate::chart::lines::LineChart;
-use crate::document::formats::save;
+use crate::document::formats::{save, svg};
 use crate::document::picture::{Area, Figure, TITLE_EM, Unit, titled};
 
 const WIDTH: u32 = 720;
@@ -29,11 +29,24 @@ impl ChartStack {
     /// # Errors
     /// As [`LineChart::save`], for any of the charts.
     pub fn save(&self, stem: impl AsRef<Path>) -> Result<[PathBuf; 3], FigureError> {
+        self.check()?;
+        save(self, stem.as_ref())
+    }
+
+    /// The text of the SVG.
+    ///
+    /// # Errors
+    /// As [`Self::save`].
+    pub fn svg(&self) -> Result<String, FigureError> {
+        self.check()?;
+        svg(self)
+    }
+
+    fn check(&self) -> Result<(), FigureError> {
         if self.charts.is_empty() {
             return Err(FigureError::Empty { figure: self.title.clone(), what: "chart" });
         }
-        self.charts.iter().try_for_each(LineChart::check)?;
-        save(self, stem.as_ref())
+        self.charts.iter().try_for_each(LineChart::check)
     }
 }
 

@@ -51,7 +51,7 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), FigureError> {
     write_whole(path, bytes).map_err(|error| FigureError::system(path, &error))
 }
 
-fn svg(figure: &impl Figure) -> Result<String, FigureError> {
+pub(crate) fn svg(figure: &impl Figure) -> Result<String, FigureError> {
     font::register()?;
     let [width, height] = figure.size();
     let mut document = String::new();

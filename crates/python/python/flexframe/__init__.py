@@ -20,6 +20,7 @@ from flexframe._flexframe import (
     Motion,
     Reached,
     RelativeMotion,
+    Report,
     Row,
     Scene,
     Simulation,
@@ -28,6 +29,7 @@ from flexframe._flexframe import (
     resume,
     run,
 )
+from flexframe.commands import campbell, frf, psd, shock, srs
 from flexframe.errors import Error, FileError, InputError, RefusedError, RunError
 from flexframe.linear import Channel, LinearModel, linearize
 from flexframe.mesh import write_mesh
@@ -58,18 +60,24 @@ __all__ = [
     "Rates",
     "RefusedError",
     "RelativeMotion",
+    "Report",
     "Results",
     "Row",
     "RunError",
     "Scene",
     "Simulation",
     "System",
+    "campbell",
     "fit",
+    "frf",
     "gradient",
     "linearize",
+    "psd",
     "read_results",
     "resume",
     "run",
+    "shock",
+    "srs",
     "write_mesh",
 ]
 

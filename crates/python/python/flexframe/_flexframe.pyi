@@ -20,17 +20,23 @@ __all__ = [
     "Motion",
     "Reached",
     "RelativeMotion",
+    "Report",
     "Row",
     "Scene",
     "Simulation",
     "System",
     "_scene",
+    "campbell_report",
     "fitted",
+    "frf_report",
     "gradients",
     "linearized",
+    "psd_report",
     "read_results",
     "resume",
     "run",
+    "shock_report",
+    "srs_report",
 ]
 
 VERSION: str
@@ -425,6 +431,77 @@ def _scene(text: str, path: _Path, body: str | None, trust_geometry: bool) -> Sc
 
 def read_results(path: _Path) -> Results:
     """Reads a results file, finished or not."""
+
+@final
+class Report:
+    """The report of a command.
+
+    `report["peaks[0].magnitude"]` is a value by its path in the JSON of the program, `table(name)` a table as columns of numpy, `str(report)`
+    the text of the program. In a notebook it shows its figure and its text.
+    """
+
+    @property
+    def title(self) -> str | None:
+        """Title of the scene."""
+
+    @property
+    def warnings(self) -> list[str]:
+        """Reservations of the program."""
+
+    @property
+    def tables(self) -> list[str]:
+        """Names of the tables."""
+
+    def __getitem__(self, key: str, /) -> Any: ...
+    def data(self) -> dict[str, Any]:
+        """The whole JSON of the program as a dict."""
+
+    def table(self, name: str) -> dict[str, Any]:
+        """A table as a dict of columns: arrays of numbers, NaN where there is none, and lists of words."""
+
+    def to_pandas(self, name: str) -> Any:
+        """A table as a DataFrame of pandas, which has to be installed."""
+
+    def save(self, folder: _Path) -> list[os.PathLike[str]]:
+        """Writes the files of the command to a folder, which is made if it does not exist: tables as CSV, figures as SVG, PDF and PNG, the page.
+
+        Files of the same names are replaced.
+        """
+
+    def svg(self) -> str | None:
+        """The figure as SVG; None where there is nothing to draw."""
+
+
+_Range = tuple[float, float, int]
+
+def frf_report(
+    scene: Scene, about: dict[str, Any], frequencies: _Range, logarithmic: bool, structural: float | None
+) -> Report:
+    """The report of `flexframe frf`."""
+
+def psd_report(
+    scene: Scene,
+    about: dict[str, Any],
+    spectra: _Path,
+    band: tuple[float, float] | None,
+    structural: float | None,
+) -> Report:
+    """The report of `flexframe psd`."""
+
+def shock_report(scene: Scene, about: dict[str, Any], table: _Path, interpolation: str) -> Report:
+    """The report of `flexframe shock`."""
+
+def srs_report(table: _Path, frequencies: _Range, damping_ratios: list[float], interpolation: str) -> Report:
+    """The report of `flexframe srs`."""
+
+def campbell_report(
+    scene: Scene,
+    speeds: _Range,
+    about: tuple[list[float] | None, str | None],
+    orders: list[float],
+    about_rest: str,
+) -> Report:
+    """The report of `flexframe campbell`."""
 
 def linearized(
     scene: Scene,
