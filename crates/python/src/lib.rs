@@ -51,7 +51,7 @@ mod _flexframe {
     #[pymodule_export]
     use super::parameters::{fitted, gradients};
     #[pymodule_export]
-    use super::reports::{Report, campbell_report, frf_report, psd_report, shock_report, srs_report};
+    use super::reports::{CommandReport, campbell_report, frf_report, psd_report, shock_report, srs_report};
     #[pymodule_export]
     use super::rows::results::read_results;
     #[pymodule_export]

@@ -25,14 +25,14 @@ use crate::values::html::escaped;
 ///
 /// `report["peaks[0].magnitude"]` is a value by its path in the JSON of the program, `table(name)` a table as columns of numpy, `str(report)`
 /// the text of the program. In a notebook it shows its figure and its text.
-#[pyclass(frozen, module = "flexframe")]
-pub(crate) struct Report {
+#[pyclass(frozen, module = "flexframe", name = "Report")]
+pub(crate) struct CommandReport {
     report: flexframe::report::Report,
     files: &'static [File],
 }
 
 #[pymethods]
-impl Report {
+impl CommandReport {
     /// Title of the scene.
     #[getter]
     fn title(&self) -> Option<&str> {
@@ -155,13 +155,13 @@ pub(crate) fn frf_report(
     frequencies: (f64, f64, usize),
     logarithmic: bool,
     structural: Option<f64>,
-) -> PyResult<Report> {
+) -> PyResult<CommandReport> {
     let (start, end, count) = frequencies;
     let frequencies = Frequencies { start, end, count };
     let settings = FrfSettings { linear: about.into(), frequencies, logarithmic, loss_factor: structural };
     let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
     let work = move |told: &mut dyn FnMut(BuildProgress)| frf::frf(&system, &builder, &settings, told);
-    Ok(Report { report: built(py, &scene, work)?, files: &frf::FILES })
+    Ok(CommandReport { report: built(py, &scene, work)?, files: &frf::FILES })
 }
 
 /// The report of `flexframe psd`.
@@ -173,11 +173,11 @@ pub(crate) fn psd_report(
     spectra: PathBuf,
     band: Option<[f64; 2]>,
     structural: Option<f64>,
-) -> PyResult<Report> {
+) -> PyResult<CommandReport> {
     let settings = PsdSettings { linear: about.into(), band, loss_factor: structural };
     let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
     let work = move |told: &mut dyn FnMut(BuildProgress)| psd::psd(&system, &builder, &spectra, &settings, told);
-    Ok(Report { report: built(py, &scene, work)?, files: &psd::FILES })
+    Ok(CommandReport { report: built(py, &scene, work)?, files: &psd::FILES })
 }
 
 /// The report of `flexframe shock`.
@@ -188,14 +188,14 @@ pub(crate) fn shock_report(
     about: About,
     table: PathBuf,
     interpolation: &str,
-) -> PyResult<Report> {
+) -> PyResult<CommandReport> {
     let settings = LinearSettings::from(about);
     let interpolation = interpolation_of(py, interpolation)?;
     let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
     let work = move |told: &mut dyn FnMut(BuildProgress)| {
         shock::shock(&system, &builder, (&table, interpolation), &settings, told)
     };
-    Ok(Report { report: built(py, &scene, work)?, files: &[] })
+    Ok(CommandReport { report: built(py, &scene, work)?, files: &[] })
 }
 
 /// The report of `flexframe srs`.
@@ -206,12 +206,12 @@ pub(crate) fn srs_report(
     frequencies: (f64, f64, usize),
     damping_ratios: Vec<f64>,
     interpolation: &str,
-) -> PyResult<Report> {
+) -> PyResult<CommandReport> {
     let (start, end, count) = frequencies;
     let interpolation = interpolation_of(py, interpolation)?;
     let settings = SrsSettings { frequencies: Frequencies { start, end, count }, damping_ratios, interpolation };
     let report = py.detach(|| srs::srs(&table, &settings)).map_err(|error| exception(py, &*error))?;
-    Ok(Report { report, files: &srs::FILES })
+    Ok(CommandReport { report, files: &srs::FILES })
 }
 
 /// The report of `flexframe campbell`.
@@ -223,7 +223,7 @@ pub(crate) fn campbell_report(
     about: (Option<[f64; 3]>, Option<String>),
     orders: Vec<f64>,
     about_rest: &str,
-) -> PyResult<Report> {
+) -> PyResult<CommandReport> {
     let ((start, end, count), (axis, joint)) = (speeds, about);
     let speeds = Speeds { start, end, count };
     let about_rest = match about_rest {
@@ -254,7 +254,7 @@ pub(crate) fn campbell_report(
             }
         }
     };
-    Ok(Report { report: built(py, &scene, work)?, files: &campbell::FILES })
+    Ok(CommandReport { report: built(py, &scene, work)?, files: &campbell::FILES })
 }
 
 fn interpolation_of(py: Python<'_>, name: &str) -> PyResult<Interpolation> {
