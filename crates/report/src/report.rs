@@ -247,14 +247,17 @@ impl Report {
     }
 }
 
-/// Puts a value at a path of an object.
+/// Puts a value at a path of an object; null there gives way.
 fn put(object: &mut Map<String, Json>, path: &str, value: Json) {
     match path.split_once('.') {
         None => {
             object.insert(path.to_owned(), value);
         }
         Some((first, rest)) => {
-            let inner = object.entry(first).or_insert_with(|| Json::Object(Map::new()));
+            let inner = object.entry(first).or_insert(Json::Null);
+            if inner.is_null() {
+                *inner = Json::Object(Map::new());
+            }
             if let Json::Object(inner) = inner {
                 put(inner, rest, value);
             }
@@ -304,6 +307,7 @@ mod tests {
 
     fn report() -> Report {
         let mut report = Report::new("Bar");
+        report.put("mesh", Value::NONE);
         report.put("mesh.nodes", 12_usize);
         report.put("mesh.mass", f64::INFINITY);
         report.say("about", "about", "rest");
@@ -312,6 +316,7 @@ mod tests {
                 .titled("highest responses")
                 .shown("output", "output", Form::Plain, ["tip, left", "root"])
                 .shown("magnitude", "magnitude", Form::Power(2), [Some(1234.5), None])
+                .text_only("growth", Form::Fixed(2), [-1e-4, -1.0])
                 .column("rigid", [true, false]),
         );
         report.warnings.push("it grows".to_owned());
@@ -338,7 +343,8 @@ mod tests {
 
     #[test]
     fn text_is_lines_and_aligned_tables() {
-        let expected = "Bar\n  about    rest\n  highest responses\n  output     magnitude\n  tip, left     1.23e3\n  root               -\n  \
+        let expected = "Bar\n  about    rest\n  highest responses\n  output     magnitude  growth\n  tip, left     1.23e3    0.00\n  root               -   \
+                        -1.00\n  \
                         warning  it grows";
         assert_eq!(report().to_string(), expected);
     }

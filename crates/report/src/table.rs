@@ -199,7 +199,12 @@ impl Table {
 impl Form {
     fn text(self, value: &Value) -> String {
         match (self, value) {
-            (Self::Fixed(decimals), Value::Number(value)) => format!("{value:.decimals$}"),
+            (Self::Fixed(decimals), Value::Number(value)) => {
+                let text = format!("{value:.decimals$}");
+                // Rounding has no sign.
+                let is_zero = text.bytes().all(|digit| b"-0.".contains(&digit));
+                if is_zero { text.replace('-', "") } else { text }
+            }
             (Self::Power(decimals), Value::Number(value)) => format!("{value:.decimals$e}"),
             (Self::Plain, Value::Number(value)) => quantity(*value),
             (_, Value::Json(Json::Null)) => "-".to_owned(),

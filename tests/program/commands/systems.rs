@@ -112,7 +112,7 @@ fn modes_of_a_system_say_who_moves() {
     assert!((free / 22.373 - 1.0).abs() < 0.01, "{free}");
     let told = flexframe(&["modes", &scene]);
     let told = String::from_utf8_lossy(&told.stdout);
-    assert!(told.contains("bodies   hub, bar") && told.contains("bar 100 %; bar 100 %"), "{told}");
+    assert!(told.contains("bodies   hub, bar") && told.contains("bar 100 %  bar 100 %"), "{told}");
     let advised = flexframe(&["advise", &scene]);
     let advised = String::from_utf8_lossy(&advised.stdout);
     assert!(advised.contains("system of hub, bar") && advised.contains("bar bends in motions of"), "{advised}");

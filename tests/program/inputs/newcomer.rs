@@ -342,7 +342,10 @@ fn a_number_of_modes_that_is_none_is_refused() {
     }
     desk.changed(&[("flexible = 4", "flexible = 0")]);
     let (said, _) = desk.done(&["modes", "x.toml"]);
-    assert!(said.contains("modes  none, as the scene has it: `flexible = 0`") && !said.contains("frequency"), "{said}");
+    assert!(
+        said.contains("modes    none, as the scene has it: `flexible = 0`") && !said.contains("frequency"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use diagnostic::Failure;
-use flexframe::modes::{self, ModesReport};
+use flexframe::modes;
 use flexframe::outputs::{OutputError, Written, outputs_of_system};
-use flexframe::report::OfBodies;
-use flexframe::system_modes::{self, ModesOfSystems};
-use flexframe::{figures, mode_shapes, run};
+use flexframe::report::Report;
+use flexframe::{figures, mode_shapes, run, system_modes};
 use model::Model;
 use scene::{Scene, System};
 
@@ -59,19 +58,12 @@ impl Modes {
             return session.write_only(system.only_body()?, &to, self.files.overwrite);
         }
         self.output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
-        let json = self.scene.json;
-        let pictures = if system.has_connections() {
-            let (report, pictures) = self.of_bodies_in_joints(&system, &mut session)?;
-            drop(session.bar);
-            output::print(&report, json)?;
-            pictures
-        } else {
-            let (report, pictures) = self.of_bodies(&system, &mut session)?;
-            drop(session.bar);
-            output::print(&report, json)?;
-            pictures
+        let report = match system.has_connections() {
+            true => self.of_bodies_in_joints(&system, &mut session)?,
+            false => self.of_bodies(&system, &mut session)?,
         };
-        if json { Ok(()) } else { output::list(&pictures) }
+        drop(session.bar);
+        output::print(&report, self.scene.json)
     }
 
     /// Refuses what only one body has.
@@ -84,11 +76,7 @@ impl Modes {
         Err(CliError::Option { option: "--mac", found: bodies, expected: expected.to_owned(), help: help.to_owned() })
     }
 
-    fn of_bodies(
-        &self,
-        system: &System,
-        session: &mut Session,
-    ) -> Result<(OfBodies<ModesReport>, Vec<PathBuf>), Failure> {
+    fn of_bodies(&self, system: &System, session: &mut Session) -> Result<Report, Failure> {
         let scenes = &system.bodies;
         let picture = |folder: &Path, scene: &Scene| match &scene.name {
             Some(body) => folder.join(format!("modes.{body}")),
@@ -103,8 +91,7 @@ impl Modes {
         for scene in scenes {
             let (model, mut report) = self.of_body(scene, session)?;
             if let Some(other) = &self.mac {
-                let mac = modes::mac(scene, &model, other, &session.builder, |p| session.bar.build(p))?;
-                report.mac = Some(mac);
+                modes::mac(scene, &model, other, &session.builder, &mut report, |p| session.bar.build(p))?;
             }
             if let Some(folder) = self.output.as_ref().filter(|_| model.meshed.is_some() || scenes.len() == 1) {
                 make_folder(folder)?;
@@ -112,20 +99,18 @@ impl Modes {
             }
             reports.push((scene.name.clone(), report));
         }
-        Ok((OfBodies(reports), pictures))
+        let mut report = Report::of_bodies(reports);
+        report.files = pictures;
+        Ok(report)
     }
 
-    fn of_body(&self, scene: &Scene, session: &mut Session) -> Result<(Model, ModesReport), Failure> {
+    fn of_body(&self, scene: &Scene, session: &mut Session) -> Result<(Model, Report), Failure> {
         modes::modes(scene, &session.builder, self.about, |p| session.bar.build(p))
             .map_err(|error| self.modes.refusal(error.into()))
     }
 
     /// Modes of each system that joints make, and of the bodies that none ties.
-    fn of_bodies_in_joints(
-        &self,
-        system: &System,
-        session: &mut Session,
-    ) -> Result<(ModesOfSystems, Vec<PathBuf>), Failure> {
+    fn of_bodies_in_joints(&self, system: &System, session: &mut Session) -> Result<Report, Failure> {
         let models = session
             .builder
             .models(system, |p| session.bar.build(p))
@@ -134,7 +119,7 @@ impl Modes {
         let mut pictures = Vec::new();
         if let Some(folder) = &self.output {
             make_folder(folder)?;
-            for (k, modes) in systems.iter().enumerate() {
+            for (k, (modes, _)) in systems.iter().enumerate() {
                 let name = if systems.len() == 1 { "modes".to_owned() } else { format!("modes.system{}", k + 1) };
                 let stem = folder.join(name);
                 let fields = stem.with_extension("vtkhdf");
@@ -146,12 +131,16 @@ impl Modes {
                 }
             }
         }
-        let is_tied = |number: usize| systems.iter().any(|modes| modes.bodies.contains(&number));
+        let is_tied = |number: usize| systems.iter().any(|(modes, _)| modes.bodies.contains(&number));
         let mut bodies = Vec::new();
         for (_, scene) in system.bodies.iter().enumerate().filter(|(number, _)| !is_tied(*number)) {
             bodies.push((scene.name.clone(), self.of_body(scene, session)?.1));
         }
-        Ok((ModesOfSystems { systems: systems.into_iter().map(|modes| modes.report).collect(), bodies }, pictures))
+        let mut report = Report::default();
+        report.files = pictures;
+        report.list("systems", systems.into_iter().map(|(_, report)| (None, report)).collect());
+        report.list("bodies", bodies);
+        Ok(report)
     }
 }
 

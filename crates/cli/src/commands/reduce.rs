@@ -42,17 +42,16 @@ impl Reduce {
         if let Some(to) = solver.take(&mut session.builder, session.signals.slepc())? {
             return session.write_only(&scene, &to, files.overwrite);
         }
-        if let Some(form) = Form::of(&output) {
-            outputs_of_scene(&scene, &session.builder, files.overwrite).claim_as(&form.written(), &output)?;
-            let report = hand_over::hand_over(&scene, &session.builder, form, &output, |p| session.bar.build(p))?;
-            drop(session.bar);
-            output::print(&report, json)?;
-            return if json { Ok(()) } else { output::list(&[output]) };
-        }
-        outputs_of_scene(&scene, &session.builder, files.overwrite).claim_as(&Written::BODY, &output)?;
-        let report = modes::reduce(&scene, &session.builder, &output, matrices, stress, |p| session.bar.build(p))?;
+        let form = Form::of(&output);
+        let written = form.map_or(Written::BODY, Form::written);
+        outputs_of_scene(&scene, &session.builder, files.overwrite).claim_as(&written, &output)?;
+        let progress = |p| session.bar.build(p);
+        let mut report = match form {
+            Some(form) => hand_over::hand_over(&scene, &session.builder, form, &output, progress)?,
+            None => modes::reduce(&scene, &session.builder, &output, matrices, stress, progress)?,
+        };
         drop(session.bar);
-        output::print(&report, json)?;
-        if json { Ok(()) } else { output::list(&[output]) }
+        report.files.push(output);
+        output::print(&report, json)
     }
 }

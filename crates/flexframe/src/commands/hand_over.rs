@@ -14,13 +14,14 @@ use std::path::Path;
 
 use diagnostic::Failure;
 use model::{BuildProgress, Builder, Model};
+use report::Report;
 use scene::Scene;
 use whole_file::{Written, write_whole};
 
 use craig_bampton::matrices;
 pub use reduced::Reduced;
 
-use crate::commands::modes::ModesReport;
+use crate::commands::modes;
 use crate::files::write_error::WriteError;
 
 /// Forms of other programs.
@@ -74,10 +75,10 @@ pub fn hand_over(
     form: Form,
     path: &Path,
     progress: impl FnMut(BuildProgress),
-) -> Result<ModesReport, Failure> {
+) -> Result<Report, Failure> {
     let model = builder.build(scene, progress)?;
     let notes = write(scene, &model, form, path)?;
-    let mut report = ModesReport::new(scene, &model);
+    let mut report = modes::report(scene, &model, None);
     report.warnings.extend(notes);
     Ok(report)
 }

@@ -5,63 +5,81 @@ mod mac;
 mod scenes;
 mod strain_energy;
 
-use std::fmt;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use model::{BuildError, BuildProgress, Builder, Model, Needs};
-use scene::Scene;
-use serde::Serialize;
+use report::{Form, Report, Table, Value};
+use scene::{Scene, Units};
 
 use crate::plausible;
-pub use carried::CarriedReport;
-pub use mac::{MacReport, mac};
+pub(crate) use carried::Carried;
+pub use mac::mac;
 pub use scenes::require_surface;
 pub(crate) use scenes::{lone_body, require_flexible};
-pub use strain_energy::{EnergyPart, StrainEnergyReport};
+use strain_energy::StrainEnergy;
 
 use crate::report::{BodyReport, MeshReport, Times, size_and_mass};
 
-/// Report of `flexframe modes`.
-#[derive(Debug, Clone, Serialize)]
-pub struct ModesReport {
-    /// Title of the scene.
-    pub title: String,
-    /// Labels of length, mass and time.
-    pub units: [String; 3],
-    /// Unit of frequencies, such as "1/s".
-    pub frequency_unit: String,
-    /// The finite-element model.
-    pub mesh: Option<MeshReport>,
-    /// Mass properties and modes.
-    pub body: BodyReport,
-    /// The mass that each mode carries; none of a body without flexible modes, and of one that is written to a file.
-    pub carried: Option<CarriedReport>,
-    /// Where the strain energy of each mode is, and the error of its frequency; none of a body without elements.
-    pub strain_energy: Option<StrainEnergyReport>,
-    /// The modes beside those of another body, where one is given.
-    pub mac: Option<MacReport>,
-    /// Parts of the mesh file that were left out, and values that no material has.
-    pub warnings: Vec<String>,
-    /// Where the time went, seconds.
-    pub times: Times,
+/// The report of a model: its mesh, its mass and its modes, with the errors of their frequencies that the mesh makes, and the time that
+/// these took.
+pub(crate) fn report(scene: &Scene, model: &Model, errors: Option<(&[f64], Duration)>) -> Report {
+    let (unit, mesh, body) = (frequency_unit(&scene.units.time), MeshReport::new(model), BodyReport::new(model));
+    let Units { length, mass, time } = &scene.units;
+    let mut report = Report::new(&scene.title);
+    report.put("units", [length, mass, time]);
+    report.put("frequency_unit", &unit);
+    report.put("mesh", mesh.as_ref().map(Value::of));
+    report.put("body", Value::of(&body));
+    ["carried", "strain_energy", "mac"].into_iter().for_each(|none| report.put(none, Value::NONE));
+    if let Some(mesh) = &mesh {
+        report.line("mesh", mesh.to_string());
+        mesh.matrices.iter().for_each(|matrices| report.line("K, M", matrices.to_string()));
+        mesh.engine.iter().for_each(|engine| report.line("modes", engine.to_string()));
+    }
+    report.line("body", size_and_mass(mesh.as_ref(), &body, length, mass));
+    let mut times = Times::of_model(model);
+    errors.into_iter().for_each(|(_, time)| times.add("mesh error", time));
+    report.put("times", Value::of(&times));
+    report.line("time", times.to_string());
+    report.warnings = plausible::doubts(scene, model);
+    let frequencies = &body.natural_frequencies;
+    if frequencies.is_empty() {
+        report.line(
+            "modes",
+            match mesh {
+                Some(_) => {
+                    "none, as the scene has it: `flexible = 0` in [modes], or `flexibility = false` in [effects]"
+                }
+                None => "none: a rigid body without a mesh has no natural frequencies",
+            },
+        );
+        return report;
+    }
+    let residual = (0..frequencies.len()).map(|k| match body.residuals.get(k) {
+        Some(residual) => format!("{residual:.0e}"),
+        None => body.kinds[k].to_owned(),
+    });
+    let damped = frequencies.iter().copied().zip(body.damping_ratios.iter().copied());
+    let mut table = table_of_modes(None, &unit, damped).all().text_only("residual", Form::Plain, residual);
+    if let Some((errors, _)) = errors {
+        let error = |k| errors.get(k).map(|error| format!("{:.1e} %", 100.0 * error));
+        table = table.text_only("mesh error", Form::Plain, (0..frequencies.len()).map(error));
+    }
+    report.table(table);
+    report
 }
 
-impl ModesReport {
-    pub(crate) fn new(scene: &Scene, model: &Model) -> Self {
-        Self {
-            title: scene.title.clone(),
-            units: [scene.units.length.clone(), scene.units.mass.clone(), scene.units.time.clone()],
-            frequency_unit: frequency_unit(&scene.units.time),
-            warnings: plausible::doubts(scene, model),
-            mesh: MeshReport::new(model),
-            body: BodyReport::new(model),
-            carried: None,
-            strain_energy: None,
-            mac: None,
-            times: Times::of_model(model),
-        }
-    }
+/// The table of modes, by their frequencies and damping ratios, at a path.
+pub(crate) fn table_of_modes(
+    path: Option<&'static str>,
+    unit: &str,
+    modes: impl ExactSizeIterator<Item = (f64, f64)> + Clone,
+) -> Table {
+    Table::new("modes", path)
+        .text_only("mode", Form::Plain, 1..=modes.len())
+        .shown("frequency", format!("frequency, {unit}"), Form::Fixed(6), modes.clone().map(|(frequency, _)| frequency))
+        .shown("damping_ratio", "damping", Form::Fixed(4), modes.map(|(_, ratio)| ratio))
 }
 
 /// Reduces a scene's body as a run of it asks for, and writes it to a body file; with `matrices`, mass and stiffness are in it,
@@ -76,10 +94,10 @@ pub fn reduce(
     matrices: bool,
     stress: bool,
     progress: impl FnMut(BuildProgress),
-) -> Result<ModesReport, BuildError> {
+) -> Result<Report, BuildError> {
     let builder = builder.needing(Needs { stress_field: stress, ..Needs::default() });
     let model = builder.write_body(scene, output, matrices, progress)?;
-    Ok(ModesReport::new(scene, &model))
+    Ok(report(scene, &model, None))
 }
 
 /// Finds the modes of a scene's body, and what each carries: rotations of the base are `about` a point in the frame of the mesh, or
@@ -92,15 +110,18 @@ pub fn modes(
     builder: &Builder,
     about: Option<[f64; 3]>,
     progress: impl FnMut(BuildProgress),
-) -> Result<(Model, ModesReport), BuildError> {
+) -> Result<(Model, Report), BuildError> {
     let model = builder.needing(Needs::modes()).build(scene, progress)?;
-    let mut report = ModesReport::new(scene, &model);
-    if let Some(meshed) = model.meshed.as_ref().filter(|_| model.body.flexible() > 0) {
-        report.carried = Some(CarriedReport::new(&model, about));
-        let start = Instant::now();
-        report.strain_energy = StrainEnergyReport::new(meshed)?;
-        report.times.add("mesh error", start.elapsed());
-    }
+    let Some(meshed) = model.meshed.as_ref().filter(|_| model.body.flexible() > 0) else {
+        let report = report(scene, &model, None);
+        return Ok((model, report));
+    };
+    let start = Instant::now();
+    let energy = StrainEnergy::new(meshed)?;
+    let errors = energy.as_ref().map(|energy| (&energy.mesh_errors[..], start.elapsed()));
+    let mut report = report(scene, &model, errors);
+    Carried::of_body(&model, about).add_to(&mut report);
+    energy.iter().for_each(|energy| energy.add_to(&mut report));
     Ok((model, report))
 }
 
@@ -121,54 +142,4 @@ pub fn write_problem(
 /// "Hz" where time is in seconds.
 pub fn frequency_unit(time: &str) -> String {
     if time == "s" { "Hz".to_owned() } else { format!("1/{time}") }
-}
-
-impl fmt::Display for ModesReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", self.title)?;
-        if let Some(mesh) = &self.mesh {
-            writeln!(f, "  mesh   {mesh}")?;
-            if let Some(matrices) = &mesh.matrices {
-                writeln!(f, "  K, M   {matrices}")?;
-            }
-            if let Some(engine) = &mesh.engine {
-                writeln!(f, "  modes  {engine}")?;
-            }
-        }
-        let [length, mass, _] = &self.units;
-        writeln!(f, "  body   {}", size_and_mass(self.mesh.as_ref(), &self.body, length, mass))?;
-        let body = &self.body;
-        if body.natural_frequencies.is_empty() {
-            let why = match self.mesh {
-                Some(_) => {
-                    "none, as the scene has it: `flexible = 0` in [modes], or `flexibility = false` in [effects]"
-                }
-                None => "none: a rigid body without a mesh has no natural frequencies",
-            };
-            writeln!(f, "  modes  {why}")?;
-        } else {
-            let error = if self.strain_energy.is_some() { "  mesh error" } else { "" };
-            writeln!(f, "\n  mode  frequency, {:<6}  damping  residual{error}", self.frequency_unit)?;
-        }
-        for (k, (frequency, damping)) in body.natural_frequencies.iter().zip(&body.damping_ratios).enumerate() {
-            let kind = body.kinds.get(k).copied().unwrap_or_default();
-            let residual = body.residuals.get(k).map_or_else(|| kind.to_owned(), |r| format!("{r:.0e}"));
-            write!(f, "  {:>4}  {frequency:>17.6}  {damping:>7.4}  {residual}", k + 1)?;
-            if let Some(error) = self.strain_energy.as_ref().and_then(|energy| energy.mesh_errors.get(k)) {
-                write!(f, "  {:>8.1e} %", 100.0 * error)?;
-            }
-            writeln!(f)?;
-        }
-        if let Some(carried) = &self.carried {
-            write!(f, "{carried}")?;
-        }
-        if let Some(energy) = &self.strain_energy {
-            write!(f, "{energy}")?;
-        }
-        if let Some(mac) = &self.mac {
-            write!(f, "{mac}")?;
-        }
-        write!(f, "\n  time   {}", self.times)?;
-        self.warnings.iter().try_for_each(|warning| write!(f, "\n  warning  {warning}"))
-    }
 }

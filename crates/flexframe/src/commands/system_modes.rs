@@ -8,19 +8,20 @@ mod rotors;
 mod shape;
 mod stiffening;
 
+use ::report::Report;
 use diagnostic::{Diagnostic, Failure};
 use dynamics::{CommonSpin, SteadyError, SteadyState};
 use model::{BuildProgress, Builder, Model};
 use nalgebra::Vector3;
 use scene::System;
 
-use crate::commands::modes::CarriedReport;
+use crate::commands::modes::Carried;
 pub use advice::{AdviceOnSystems, SystemAdvice};
 use assembled::tied_motions_at;
 pub(crate) use assembled::{TiedMotion, tied_motions};
 pub use draw::{draw, write_fields};
 pub(crate) use report::body_names;
-pub use report::{ModesOfSystems, Share, SystemModeReport, SystemModes, SystemModesReport};
+pub use report::{Share, SystemModeReport, SystemModes, SystemModesReport};
 pub(crate) use rotors::Rotors;
 pub use rotors::SpinningRotor;
 pub(crate) use shape::SystemSurface;
@@ -38,14 +39,14 @@ pub fn system_modes(
     models: &[Model],
     time: Option<f64>,
     about: Option<[f64; 3]>,
-) -> Result<Vec<SystemModes>, Failure> {
+) -> Result<Vec<(SystemModes, Report)>, Failure> {
     let of_system = |motion: &TiedMotion| {
-        let (mut modes, steady) = of_motion(system, motion)?;
+        let (modes, steady) = of_motion(system, motion)?;
         let found = steady.participation(motion.run.motion(), about.map(Vector3::from));
         let found = found.map_err(|source| failed(system, source))?;
-        modes.report.carried =
-            found.map(|found| CarriedReport::of_system(found, about.is_some(), &modes.report.frequency_unit));
-        Ok(modes)
+        let unit = &modes.report.frequency_unit;
+        let report = modes.report.report(found.map(|found| Carried::of_system(found, about.is_some(), unit)));
+        Ok((modes, report))
     };
     motions_at(system, models, time)?.iter().map(of_system).collect()
 }

@@ -1,14 +1,13 @@
 //! Modal assurance criterion of the modes of two bodies, Eq. (M16) of `docs/method/modes.md`: their shapes at the same places.
 
-use std::fmt;
 use std::path::Path;
 
 use faer::{Col, Mat};
 use fem_tet10::Location;
 use model::{BuildError, BuildProgress, Builder, Meshed, Model, Needs};
 use rayon::prelude::*;
+use report::{Form, Report, Table};
 use scene::{Body, FileBody, MeshedBody, Scene};
-use serde::Serialize;
 
 use super::scenes::require_flexible;
 use crate::files::given_file::GivenFile;
@@ -19,25 +18,6 @@ const PLACES: usize = 1000;
 const APART: f64 = 0.02;
 /// Two shapes that are the same, in words.
 const SAME: f64 = 0.9;
-
-/// The modes of a body beside those of another.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MacReport {
-    /// Name of the file of the other body.
-    pub other: String,
-    /// Number of nodes at which the shapes are compared.
-    pub places: usize,
-    /// Largest distance of such a node to the other body, relative to the size of this one.
-    pub distance: f64,
-    /// Natural frequencies of the other body, cycles per time.
-    pub frequencies: Vec<f64>,
-    /// The criterion, 0 to 1: a row for each mode of this body, a column for each one of the other.
-    pub mac: Vec<Vec<f64>>,
-    /// For each mode of this body, the number of the one of the other that is most like it, from 1.
-    pub nearest: Vec<usize>,
-    #[serde(skip)]
-    own: Vec<f64>,
-}
 
 /// The scene of the other body: a scene file's, or this scene with another mesh or body file.
 fn scene_of(scene: &Scene, other: &Path) -> Result<Scene, BuildError> {
@@ -63,7 +43,8 @@ fn scene_of(scene: &Scene, other: &Path) -> Result<Scene, BuildError> {
 }
 
 /// Compares the modes of a body with those of another one: of a scene file, or of this scene with another mesh or body file. The other
-/// body has to lie where this one does.
+/// body has to lie where this one does. The report of the modes has then the criterion, 0 to 1, in a row for each mode of this body and a
+/// column for each one of the other.
 ///
 /// # Errors
 /// [`BuildError`] of the other body, of bodies that lie apart, and of those without flexible modes.
@@ -72,8 +53,9 @@ pub fn mac(
     model: &Model,
     other: &Path,
     builder: &Builder,
+    report: &mut Report,
     progress: impl FnMut(BuildProgress),
-) -> Result<MacReport, BuildError> {
+) -> Result<(), BuildError> {
     let own = require_flexible(scene, model)?;
     let with = scene_of(scene, other)?;
     let other_model = builder.needing(Needs::modes()).build(&with, progress)?;
@@ -90,16 +72,31 @@ pub fn mac(
     let products = own_shapes.transpose() * &other_shapes;
     let row = |j: usize| (0..products.ncols()).map(|k| products[(j, k)].powi(2) / (of_own[j] * of_other[k])).collect();
     let mac: Vec<Vec<f64>> = (0..products.nrows()).map(row).collect();
-    let nearest = |row: &Vec<f64>| row.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(k, _)| k + 1);
-    Ok(MacReport {
-        other: other.display().to_string(),
-        places: own_shapes.nrows() / 3,
-        distance: relative,
-        frequencies: other_model.natural_frequencies(),
-        nearest: mac.iter().map(nearest).collect(),
-        mac,
-        own: model.natural_frequencies(),
-    })
+    let nearest = |row: &Vec<f64>| (0..row.len()).max_by(|a, b| row[*a].total_cmp(&row[*b])).unwrap_or(0);
+    let nearest: Vec<usize> = mac.iter().map(nearest).collect();
+    let (places, frequencies) = (own_shapes.nrows() / 3, other_model.natural_frequencies());
+    report.put("mac.other", other.display().to_string());
+    report.put("mac.places", places);
+    report.put("mac.distance", relative);
+    report.put("mac.frequencies", &frequencies[..]);
+    report.put("mac.nearest", nearest.iter().map(|of| of + 1).collect::<Vec<_>>());
+    report.put("mac.mac", &mac[..]);
+    let likeness = || mac.iter().zip(&nearest).map(|(row, of)| row[*of]);
+    let there = || nearest.iter().map(|of| frequencies[*of]);
+    let change = there().zip(model.natural_frequencies()).map(|(there, here)| 100.0 * (there / here - 1.0));
+    let doubt = likeness().map(|mac| if mac < SAME { "no mode there is the same" } else { "" });
+    report.table(
+        Table::new("mac", None)
+            .titled(format!("beside {}, at {places} nodes", other.display()))
+            .all()
+            .text_only("mode", Form::Plain, 1..=mac.len())
+            .text_only("most like", Form::Plain, nearest.iter().map(|of| of + 1))
+            .text_only("MAC", Form::Fixed(4), likeness())
+            .text_only("frequency there", Form::Fixed(6), there())
+            .text_only("", Form::Plain, change.map(|change| format!("({change:+.3} %)")))
+            .text_only("", Form::Plain, doubt),
+    );
+    Ok(())
 }
 
 /// Shapes of both bodies at nodes of the first (3n×modes), and the largest distance of these to the second.
@@ -133,23 +130,4 @@ fn at_places(own: &Meshed, other: &Meshed) -> (Mat<f64>, Mat<f64>, f64) {
 /// Degrees of freedom of a node.
 fn dofs(meshed: &Meshed) -> usize {
     meshed.checks.map_or(3, |checks| checks.dofs)
-}
-
-impl fmt::Display for MacReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "\n  beside {}, at {} nodes", self.other, self.places)?;
-        writeln!(f, "  mode  most like   MAC    frequency there")?;
-        for (k, (nearest, row)) in self.nearest.iter().zip(&self.mac).enumerate() {
-            let (Some(frequency), Some(mac)) = (
-                nearest.checked_sub(1).and_then(|of| self.frequencies.get(of)),
-                nearest.checked_sub(1).and_then(|of| row.get(of)),
-            ) else {
-                continue;
-            };
-            let doubt = if *mac < SAME { "  no mode there is the same" } else { "" };
-            let change = 100.0 * (frequency / self.own[k] - 1.0);
-            writeln!(f, "  {:>4}  {nearest:>9}  {mac:.4}  {frequency:>12.6}  ({change:+.3} %){doubt}", k + 1)?;
-        }
-        Ok(())
-    }
 }

@@ -3,38 +3,25 @@
 //! The frequency that a mesh gives is too high by the energy of the error of the shape, Eq. (M15) of `docs/method/modes.md`. That is
 //! estimated from the difference between the stress of the elements and the recovered one.
 
-use std::fmt;
-
 use fem_tet10::{AssemblyError, Material, Materials, Mesh, StressError, StressRecovery};
 use model::Meshed;
-use serde::Serialize;
-
-use crate::files::json;
+use report::{Form, Report, Table};
 
 /// Part of the strain energy of each mode by materials and groups, and the errors of the frequencies.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StrainEnergyReport {
+pub(super) struct StrainEnergy {
     /// Estimated errors of the frequencies by the mesh, relative: it makes them too high by this.
-    #[serde(serialize_with = "json::numbers")]
     pub mesh_errors: Vec<f64>,
-    /// Parts by materials; they sum to 1.
-    pub by_material: Vec<EnergyPart>,
+    /// Parts by materials, with the groups that each is given to; they sum to 1.
+    by_material: Vec<EnergyPart>,
     /// Parts by the groups of volumes of the mesh, which may overlap.
-    pub by_group: Vec<EnergyPart>,
+    by_group: Vec<EnergyPart>,
 }
 
-/// The part of the energy of each mode that is in one material or group.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EnergyPart {
-    /// Name of the group; of a material, the groups that it is given to.
-    pub name: String,
-    /// The part of each mode, 0 to 1.
-    #[serde(serialize_with = "json::numbers")]
-    pub parts: Vec<f64>,
-}
+/// The name of a material or group, and the part of the energy of each mode that is in it, 0 to 1.
+type EnergyPart = (String, Vec<f64>);
 
-impl StrainEnergyReport {
-    /// The report of the modes of a body of elements; none of a body of matrices.
+impl StrainEnergy {
+    /// The energy of the modes of a body of elements; none of a body of matrices.
     ///
     /// # Errors
     /// [`AssemblyError`]: not enough memory.
@@ -43,8 +30,8 @@ impl StrainEnergyReport {
         let recovery = StressRecovery::new(mesh, &elements.materials)?;
         let of_elements = elements.materials.of_elements(mesh)?;
         let materials = named_materials(mesh, &elements.materials);
-        let part = |name: String| EnergyPart { name, parts: Vec::new() };
-        let mut report = Self {
+        let part = |name: String| (name, Vec::new());
+        let mut found = Self {
             mesh_errors: Vec::new(),
             by_material: materials.iter().map(|(name, _)| part(name.clone())).collect(),
             by_group: mesh.groups().iter().cloned().map(part).collect(),
@@ -60,16 +47,38 @@ impl StrainEnergyReport {
                     let of = of_shape().enumerate().filter(|(e, _)| is_in(*e));
                     of.map(|(_, energy)| energy.energy).sum::<f64>() / whole.energy
                 };
-                report.mesh_errors.push(0.5 * whole.error / whole.energy);
-                for ((_, material), part) in materials.iter().zip(&mut report.by_material) {
-                    part.parts.push(share(&|e| of_elements[e] == *material));
+                found.mesh_errors.push(0.5 * whole.error / whole.energy);
+                for ((_, material), (_, part)) in materials.iter().zip(&mut found.by_material) {
+                    part.push(share(&|e| of_elements[e] == *material));
                 }
-                for (group, part) in groups.iter().zip(&mut report.by_group) {
-                    part.parts.push(share(&|e| group[e]));
+                for (group, (_, part)) in groups.iter().zip(&mut found.by_group) {
+                    part.push(share(&|e| group[e]));
                 }
             }
         })?;
-        Ok(Some(report))
+        Ok(Some(found))
+    }
+
+    /// Adds it to a report.
+    pub fn add_to(&self, report: &mut Report) {
+        report.put("strain_energy.mesh_errors", &self.mesh_errors[..]);
+        let tables = [
+            ("material", "strain_energy.by_material", &self.by_material),
+            ("group", "strain_energy.by_group", &self.by_group),
+        ];
+        for (of, path, rows) in tables {
+            let names = || rows.iter().map(|(name, _)| name);
+            let mut table = Table::new(of, path).column("name", names());
+            table = table.column("parts", rows.iter().map(|(_, parts)| &parts[..]));
+            if rows.len() > 1 {
+                table = table.titled(format!("strain energy by {of}, %")).all().text_only("mode", Form::Plain, names());
+                for k in 0..self.mesh_errors.len() {
+                    let of_mode = rows.iter().map(|(_, parts)| 100.0 * parts[k]);
+                    table = table.text_only((k + 1).to_string(), Form::Fixed(1), of_mode);
+                }
+            }
+            report.table(table);
+        }
     }
 }
 
@@ -87,20 +96,5 @@ fn named_materials(mesh: &Mesh, materials: &Materials) -> Vec<(String, Material)
             }
             named
         }
-    }
-}
-
-impl fmt::Display for StrainEnergyReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let tables = [("material", &self.by_material), ("group", &self.by_group)];
-        for (what, table) in tables.into_iter().filter(|(_, table)| table.len() > 1) {
-            writeln!(f, "\n  strain energy by {what}, %")?;
-            for EnergyPart { name, parts } in table {
-                write!(f, "  {name:>14}")?;
-                parts.iter().try_for_each(|part| write!(f, "  {:>5.1}", 100.0 * part))?;
-                writeln!(f)?;
-            }
-        }
-        Ok(())
     }
 }

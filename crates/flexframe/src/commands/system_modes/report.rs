@@ -2,22 +2,19 @@
 
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
-use std::fmt;
 
 use dynamics::{Effect, Spring, SteadyState, SystemMode, Vibrations};
+use report::{Form, Report, Value};
 use scene::{Choice, Damping, Scene, System};
 use serde::Serialize;
 
 use super::assembled::TiedMotion;
 use super::rotors::{Rotors, SpinningRotor};
-use crate::commands::modes::{CarriedReport, ModesReport, frequency_unit};
-use crate::files::json;
-use crate::report::quantity;
+use crate::commands::modes::{Carried, frequency_unit, table_of_modes};
+use crate::report::{counted, quantity};
 
 /// Part of a mode's energy from which a body or a joint is named.
 const NAMED: f64 = 0.005;
-/// More modes than this do not fit a page.
-const SHOWN: usize = 30;
 /// An acceleration, as a part of the size of the system and the square of its lowest frequency, from which it is told.
 const TOLD: f64 = 1e-9;
 /// Part of the elastic energy above which a vibration is that of a body.
@@ -34,12 +31,12 @@ pub struct SystemModes {
     pub states: Vec<dynamics::MotionState>,
     /// Their vibrations.
     pub vibrations: Vibrations,
-    /// Report for people and programs.
+    /// Who takes part in them, and the system as a whole.
     pub report: SystemModesReport,
 }
 
-/// Report of the vibrations of bodies that are tied together.
-#[derive(Debug, Clone, Serialize)]
+/// Who takes part in the vibrations of bodies that are tied together, and the system as a whole.
+#[derive(Debug, Clone)]
 pub struct SystemModesReport {
     /// Title of the scene.
     pub title: String,
@@ -48,7 +45,6 @@ pub struct SystemModesReport {
     /// Label of the unit of time.
     pub time_unit: String,
     /// Time of the run at which the system stands so.
-    #[serde(serialize_with = "json::number")]
     pub time: f64,
     /// Names of the bodies.
     pub bodies: Vec<String>,
@@ -67,28 +63,21 @@ pub struct SystemModesReport {
     /// Motions that nothing resists, whose frequency is zero.
     pub rigid_modes: usize,
     /// Rotors that spin, of which the vibrations have the gyroscopic moments.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rotors: Vec<SpinningRotor>,
     /// Sentences about a state that is not at rest, and about vibrations that grow.
     pub warnings: Vec<String>,
     /// Vibrations, slowest first.
     pub modes: Vec<SystemModeReport>,
-    /// The mass that each carries in a motion of the ground, if that holds the system.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub carried: Option<CarriedReport>,
 }
 
 /// One vibration.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct SystemModeReport {
     /// Frequency of the motion, cycles per time.
-    #[serde(serialize_with = "json::number")]
     pub frequency: f64,
     /// Damping ratio: −growth over the magnitude of the eigenvalue.
-    #[serde(serialize_with = "json::number")]
     pub damping_ratio: f64,
     /// Rate at which it grows; negative where it decays.
-    #[serde(serialize_with = "json::number")]
     pub growth: f64,
     /// Parts of the kinetic energy by bodies: who moves.
     pub moves: Vec<Share>,
@@ -102,7 +91,6 @@ pub struct Share {
     /// Name of the body, joint, spring or bushing.
     pub name: String,
     /// Its part.
-    #[serde(serialize_with = "json::number")]
     pub part: f64,
 }
 
@@ -144,7 +132,6 @@ impl SystemModesReport {
             rigid_modes,
             warnings: rotors.warnings(found.modes.iter().map(SystemMode::circular_frequency)),
             rotors: rotors.found,
-            carried: None,
             modes: found.modes.iter().map(mode).collect(),
             elements: motion.elements.clone(),
             bodies,
@@ -205,6 +192,62 @@ impl SystemModesReport {
         })
     }
 
+    /// The report, with the mass that each vibration carries in a motion of the ground, if that holds the system.
+    pub(super) fn report(&self, carried: Option<Carried>) -> Report {
+        let (time, unit) = (&self.time_unit, &self.frequency_unit);
+        let mut report = Report::new(&self.title);
+        report.put("frequency_unit", unit);
+        report.put("time_unit", time);
+        report.put("time", self.time);
+        report.put("bodies", &self.bodies[..]);
+        report.put("joints", &self.joints[..]);
+        report.put("elements", &self.elements[..]);
+        report.put("rows", self.rows);
+        report.put("redundant", Value::of(&self.redundant));
+        report.put("degrees_of_freedom", self.degrees_of_freedom);
+        report.put("mechanisms", self.mechanisms);
+        report.put("rigid_modes", self.rigid_modes);
+        if !self.rotors.is_empty() {
+            report.put("rotors", Value::of(&self.rotors));
+        }
+        let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        report.line("bodies", list(&self.bodies));
+        if self.time > 0.0 {
+            let at = quantity(self.time);
+            report.line("place", format!("at the time {at} {time} of a run, at rest there"));
+        }
+        let elements = if self.elements.is_empty() { String::new() } else { format!("; {}", self.elements.join(", ")) };
+        report.line("joints", format!("{}{elements}: {} rows", list(&self.joints), self.rows));
+        for (name, rows) in &self.redundant {
+            let rows = counted(*rows, ["row is", "rows are"]);
+            report.line("", format!("{rows} implied by others at {name}, where bodies are rigid"));
+        }
+        self.rotors.iter().for_each(|rotor| report.line("rotor", rotor.words(time)));
+        let deform = counted(self.mechanisms, ["deforms", "deform"]);
+        let coordinates = counted(self.degrees_of_freedom, ["independent coordinate", "independent coordinates"]);
+        let free = if self.rigid_modes == 0 { "none".to_owned() } else { self.rigid_modes.to_string() };
+        report.line("motions", format!("{coordinates}, of which {deform} no body; nothing resists {free}"));
+        let each = || self.modes.iter();
+        let growth = each().map(|mode| match (mode.growth > 0.0, mode.frequency > 0.0) {
+            (true, _) => format!("grows by {} per {time}", quantity(mode.growth)),
+            (false, true) => String::new(),
+            (false, false) => format!("decays by {} per {time}", quantity(-mode.growth)),
+        });
+        let table = table_of_modes(Some("modes"), unit, each().map(|mode| (mode.frequency, mode.damping_ratio)));
+        report.table(
+            table
+                .column("growth", each().map(|mode| mode.growth))
+                .column("moves", each().map(|mode| Value::of(&mode.moves)))
+                .column("strained", each().map(|mode| Value::of(&mode.strained)))
+                .text_only("who moves", Form::Plain, each().map(|mode| words(&mode.moves)))
+                .text_only("who is strained", Form::Plain, each().map(|mode| words(&mode.strained)))
+                .text_only("", Form::Plain, growth),
+        );
+        carried.into_iter().for_each(|carried| carried.add_to(&mut report));
+        report.warnings.clone_from(&self.warnings);
+        report
+    }
+
     fn growth(&self) -> Option<String> {
         let grows = self.modes.iter().position(|mode| mode.growth > 0.0)?;
         Some(format!(
@@ -216,35 +259,16 @@ impl SystemModesReport {
     }
 }
 
-/// Reports of the systems of a scene, and of its bodies that nothing ties.
-#[derive(Debug, Serialize)]
-pub struct ModesOfSystems {
-    /// Modes of bodies that are tied together.
-    pub systems: Vec<SystemModesReport>,
-    /// Modes of bodies that move alone, with their names.
-    #[serde(serialize_with = "crate::report::list_of_named")]
-    pub bodies: Vec<(Option<String>, ModesReport)>,
-}
-
-impl fmt::Display for ModesOfSystems {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, system) in self.systems.iter().enumerate() {
-            if i > 0 {
-                f.write_str("\n\n")?;
-            }
-            write!(f, "{system}")?;
-        }
-        for (name, report) in &self.bodies {
-            write!(f, "\n\nbody {}\n{report}", name.as_deref().unwrap_or("body"))?;
-        }
-        Ok(())
-    }
-}
-
 /// Names of bodies by their numbers.
 pub(crate) fn body_names(system: &System, numbers: &[usize]) -> Vec<String> {
     let name = |number: &usize| system.bodies[*number].name.clone().unwrap_or_else(|| "body".to_owned());
     numbers.iter().map(name).collect()
+}
+
+/// The largest shares.
+fn words(shares: &[Share]) -> String {
+    let each = shares.iter().take(4).map(|share| format!("{} {:.0} %", share.name, 100.0 * share.part));
+    if shares.is_empty() { "nothing".to_owned() } else { each.collect::<Vec<_>>().join(", ") }
 }
 
 /// Names, some of them of several parts.
@@ -277,56 +301,4 @@ fn shares(names: &Names, parts: &[f64]) -> Vec<Share> {
     let mut shares: Vec<Share> = named.map(|(name, part)| Share { name: name.clone(), part }).collect();
     shares.sort_by(|a, b| b.part.abs().total_cmp(&a.part.abs()));
     shares
-}
-
-impl fmt::Display for SystemModesReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", self.title)?;
-        let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        writeln!(f, "  bodies   {}", list(&self.bodies))?;
-        if self.time > 0.0 {
-            writeln!(f, "  place    at the time {} {} of a run, at rest there", quantity(self.time), self.time_unit)?;
-        }
-        let elements = if self.elements.is_empty() { String::new() } else { format!("; {}", self.elements.join(", ")) };
-        writeln!(f, "  joints   {}{elements}: {} rows", list(&self.joints), self.rows)?;
-        for (name, rows) in &self.redundant {
-            let s = if *rows == 1 { " is" } else { "s are" };
-            writeln!(f, "           {rows} row{s} implied by others at {name}, where bodies are rigid")?;
-        }
-        for rotor in &self.rotors {
-            writeln!(f, "  rotor    {}", rotor.words(&self.time_unit))?;
-        }
-        let count = |count: usize, of: &str| format!("{count} {of}{}", if count == 1 { "" } else { "s" });
-        writeln!(
-            f,
-            "  motions  {}, of which {} no body; nothing resists {}",
-            count(self.degrees_of_freedom, "independent coordinate"),
-            if self.mechanisms == 1 { "1 deforms".to_owned() } else { format!("{} deform", self.mechanisms) },
-            if self.rigid_modes == 0 { "none".to_owned() } else { self.rigid_modes.to_string() },
-        )?;
-        writeln!(f, "\n  mode  frequency, {:<6}  damping  who moves; who is strained", self.frequency_unit)?;
-        for (k, mode) in self.modes.iter().enumerate().take(SHOWN) {
-            let words = |shares: &[Share]| {
-                let each = shares.iter().take(4).map(|share| format!("{} {:.0} %", share.name, 100.0 * share.part));
-                each.collect::<Vec<_>>().join(", ")
-            };
-            let strained = if mode.strained.is_empty() { "nothing".to_owned() } else { words(&mode.strained) };
-            // A ratio that is zero but for rounding is shown as zero.
-            let ratio = if mode.damping_ratio.abs() < 5e-5 { 0.0 } else { mode.damping_ratio };
-            let swings = mode.frequency > 0.0;
-            let growth = match (mode.growth > 0.0, swings) {
-                (true, _) => format!("; grows by {} per {}", quantity(mode.growth), self.time_unit),
-                (false, true) => String::new(),
-                (false, false) => format!("; decays by {} per {}", quantity(-mode.growth), self.time_unit),
-            };
-            let moves = words(&mode.moves);
-            writeln!(f, "  {:>4}  {:>17.6}  {ratio:>7.4}  {moves}; {strained}{growth}", k + 1, mode.frequency)?;
-        }
-        if self.modes.len() > SHOWN {
-            let more = self.modes.len() - SHOWN;
-            writeln!(f, "  {more} more, most of them of static shapes; --json has them all")?;
-        }
-        self.carried.iter().try_for_each(|carried| write!(f, "{carried}"))?;
-        self.warnings.iter().try_for_each(|warning| write!(f, "\n  warning  {warning}"))
-    }
 }

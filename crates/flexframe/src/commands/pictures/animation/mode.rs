@@ -5,13 +5,13 @@ use std::path::Path;
 
 use diagnostic::{Failure, Kind};
 use figures::{Animation, FilmFrame};
-use model::Builder;
+use model::{Builder, Needs};
 use nalgebra::Vector3;
 use scene::{Shared, System};
 
 use super::film::Format;
 use super::settings::{AnimationSettings, Coloured, MAX_FRAMES};
-use crate::commands::modes::{self, frequency_unit, require_flexible, require_surface};
+use crate::commands::modes::{frequency_unit, require_flexible, require_surface};
 use crate::commands::run::RunProgress;
 use crate::commands::system_modes::{self, SystemSurface};
 use crate::surface::Surface;
@@ -72,7 +72,7 @@ pub fn animate_mode(
         return several(system.bodies.len());
     };
     require_surface(scene)?;
-    let (model, _) = modes::modes(scene, builder, None, |p| progress(RunProgress::Build(p)))?;
+    let model = builder.needing(Needs::modes()).build(scene, |p| progress(RunProgress::Build(p)))?;
     let meshed = require_flexible(scene, &model)?;
     let frequencies = meshed.modes.natural_frequencies();
     let frequency = *frequencies.get(index).ok_or_else(|| no_such(frequencies.len()))?;
